@@ -1,0 +1,13 @@
+# Warnings, sanitizers and numerics of our own targets; third-party headers are left alone.
+# -ffp-contract=off: the same source gives the same bytes whichever instruction set the compiler targets.
+add_library(ripplenotch_options INTERFACE)
+target_compile_options(ripplenotch_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor -ffp-contract=off)
+if(RIPPLENOTCH_WERROR)
+    target_compile_options(ripplenotch_options INTERFACE -Werror)
+endif()
+if(RIPPLENOTCH_SANITIZE)
+    target_compile_options(ripplenotch_options INTERFACE
+        -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(ripplenotch_options INTERFACE -fsanitize=address,undefined)
+endif()

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Ripple amplitude per order of one or several torque signals along the same motion, in bounded memory: least squares
+// of trend and orders in the motor angle over windows of whole motor turns.
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+struct OrderLevel {
+    double order = 0.0;
+    double mean_hz = 0.0;              ///< mean of n Kg |v| / 360 over the windows
+    std::vector<double> amplitude_nm;  ///< per signal, zero to peak, rms over windows
+};
+
+struct RippleLevels {
+    std::vector<OrderLevel> orders;
+    std::vector<double> residual_rms_nm;            ///< per signal: torque minus the window's trend
+    std::vector<double> residual_peak_to_peak_nm;   ///< per signal: the same, median over windows
+    std::vector<double> ripple_peak_to_peak_nm;     ///< per signal: of the fitted orders alone, largest window
+    std::size_t windows = 0;                        ///< how many windows of usable motion were measured
+    double measured_share = 0.0;                    ///< samples in windows / samples seen
+};
+
+/// Feed rows in order; ask at the end. Signals are measured on the same windows, so that ratios are attenuations.
+class RippleMeter {
+  public:
+    RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz sample_rate, std::size_t signals);
+    ~RippleMeter();
+    RippleMeter(RippleMeter&&) noexcept;
+    RippleMeter& operator=(RippleMeter&&) noexcept;
+
+    /// position_deg may be nullptr: then the angle is integrated velocity. `torque_nm` has one value per signal.
+    void add(double velocity_deg_s, const double* position_deg, std::span<const double> torque_nm);
+    /// A gap: the window under way is dropped.
+    void split();
+    [[nodiscard]] RippleLevels levels() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace ripplenotch

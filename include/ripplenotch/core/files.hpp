@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Files as the tool promises them: read whole or in pieces, written to a temporary name and renamed, never overwritten
+// unasked, "-" is the pipe.
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace ripplenotch {
+
+/// A source of bytes: a file, or standard input when the path is "-".
+class ByteSource {
+  public:
+    /// Throws FileError naming the path and the system's reason.
+    explicit ByteSource(const std::string& path);
+    ~ByteSource();
+    ByteSource(const ByteSource&) = delete;
+    ByteSource& operator=(const ByteSource&) = delete;
+
+    /// Reads up to `size` bytes, blocking until at least one is there; 0 means the end. Throws FileError.
+    std::size_t read(char* into, std::size_t size);
+    /// As people should see it: the path, or "standard input".
+    [[nodiscard]] const std::string& name() const { return name_; }
+
+  private:
+    std::string name_;
+    int descriptor_ = -1;
+    bool owns_ = false;
+};
+
+/// Reads a whole file, or standard input when the path is "-".
+[[nodiscard]] std::string read_all(const std::string& path);
+
+/// Where results go: a file that appears under its name only when finished, or standard output when the path is "-".
+/// Destroying an unfinished sink removes what it wrote. A reader that has gone away (| head) ends the process quietly
+/// by SIGPIPE's default action.
+class ByteSink {
+  public:
+    enum class Overwrite { no, yes };
+    /// Throws FileError when the path exists and overwriting was not asked for, or cannot be written.
+    /// Throws UsageError when `binary` is true and the sink is a terminal.
+    ByteSink(const std::string& path, Overwrite overwrite, bool binary = false);
+    ~ByteSink();
+    ByteSink(const ByteSink&) = delete;
+    ByteSink& operator=(const ByteSink&) = delete;
+
+    void write(std::string_view bytes);
+    /// True when bytes already written can be replaced (a file, not a pipe).
+    [[nodiscard]] bool can_rewrite() const { return !temporary_.empty(); }
+    /// Replaces bytes at an offset from the start; only when can_rewrite().
+    void rewrite(std::size_t offset, std::string_view bytes);
+    /// Renames the temporary file into place; for a pipe, checks that all was taken.
+    void finish();
+
+  private:
+    std::string path_;
+    std::string temporary_;
+    int descriptor_ = -1;
+    bool finished_ = false;
+    Overwrite overwrite_ = Overwrite::no;
+};
+
+/// Writes a finished text in one go, with the same promises.
+void write_all(const std::string& path, std::string_view bytes, ByteSink::Overwrite overwrite);
+
+/// SHA-256 of bytes, fed in pieces, as 64 hexadecimal digits.
+class Sha256 {
+  public:
+    Sha256();
+    ~Sha256();
+    void update(std::string_view bytes);
+    [[nodiscard]] std::string hex();
+
+  private:
+    struct Context;
+    std::unique_ptr<Context> context_;
+};
+
+[[nodiscard]] std::string sha256_of_file(const std::string& path);
+
+}  // namespace ripplenotch

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Numbers as text: strict, independent of the locale, exact in both directions.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace ripplenotch {
+
+/// Reads one finite or non-finite decimal number that fills `text` entirely (a leading '+' is allowed, white space is
+/// not). Correctly rounded. `decimal_mark` is '.' or ','. Empty when the text is not a number or overflows a double.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text, char decimal_mark = '.');
+
+/// The shortest text that reads back as the same double, e.g. "0.1", "1e+30", "nan", "-inf".
+[[nodiscard]] std::string shortest(double value);
+
+/// Appends shortest(value) to `out`; for inner loops.
+void append_shortest(std::string& out, double value);
+
+/// Appends `value` with exactly `decimals` digits after the mark, rounded as printf does.
+void append_fixed(std::string& out, double value, int decimals);
+
+}  // namespace ripplenotch

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The table of candidate notch filters, one row per band of joint speed (Kim, Kim, Song 2011, table 1).
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/core/biquad.hpp"
+#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/design/notch.hpp"
+
+namespace ripplenotch {
+
+struct CandidateNotch {
+    Order order;
+    NotchSpec notch;
+    Biquad section;
+};
+
+/// One band: from < |v| <= to, as in the paper.
+struct Band {
+    int number = 0;               ///< from 1
+    DegPerSec from, to;
+    std::vector<CandidateNotch> notches;   ///< one per order, lowest first
+    Seconds dc_delay;             ///< group delay at 0 Hz of all notches in series
+    Seconds settle;               ///< of a step, into settle_band_percent
+    double settle_band_percent = 0.5;
+    double overshoot_percent = 0.0;
+    std::vector<double> worst_attenuation_db;   ///< per order, anywhere in the band
+
+    [[nodiscard]] Cascade cascade() const;
+};
+
+/// What happens where no band applies.
+enum class OutsideRule { pass, hold, fade };
+[[nodiscard]] std::string_view outside_rule_name(OutsideRule rule);
+
+struct TableSpec {
+    GearRatio gear_ratio;
+    std::vector<Order> orders;
+    Hertz sample_rate;
+    std::vector<std::pair<DegPerSec, DegPerSec>> bands;   ///< from, to; sorted, not overlapping
+    double q = 0.25;
+    double depth_db = infinite_depth_db;
+    WidthRule width = WidthRule::analog;
+    double settle_band_percent = 0.5;
+    OutsideRule below = OutsideRule::pass;
+    OutsideRule above = OutsideRule::hold;
+};
+
+/// Bands of equal width, e.g. 18:180:18. Throws UsageError on an empty, backward, non-finite or uneven range.
+[[nodiscard]] std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(DegPerSec from, DegPerSec to,
+                                                                           DegPerSec spacing);
+
+/// Sorted, non-overlapping bands with their filters; an object of this type is always valid.
+class CandidateTable {
+  public:
+    /// Designs every band, notch centres at the band's middle speed. Throws UsageError that names the band and the
+    /// limit: centre not below half the sample rate, Q, depth, bands that overlap or run backward, no orders.
+    static CandidateTable design(const TableSpec& spec);
+    /// From stored rows (table.json): checks the same limits and that each section is stable.
+    static CandidateTable from_bands(TableSpec spec, std::vector<Band> bands);
+
+    [[nodiscard]] const TableSpec& spec() const { return spec_; }
+    [[nodiscard]] std::span<const Band> bands() const { return bands_; }
+    /// Index of the band with from < |v| <= to; -1 below the first band or in a hole between bands, -2 above the last.
+    [[nodiscard]] int find(DegPerSec speed) const noexcept;
+
+  private:
+    TableSpec spec_;
+    std::vector<Band> bands_;
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A filter method is a record: one file in src/filter/methods, one line in methods.def. Law tests run over the list.
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
+
+namespace ripplenotch {
+
+/// Consecutive samples of one joint; spans of equal length, position may be empty.
+struct Samples {
+    std::span<const double> velocity_deg_s, torque_nm, position_deg;
+};
+
+/// One change of filter while running.
+struct Switch {
+    std::size_t sample = 0;      ///< counted from the first sample given to the filter
+    int from_band = 0;           ///< band number, 0 for no filter
+    int to_band = 0;
+    double speed_deg_s = 0.0;
+    double jump_nm = 0.0;        ///< output now minus what the old filter would have put out at this sample
+};
+
+/// A running filter of one joint. Causal: output k depends on inputs 0..k only. The first sample after construction and
+/// after restart() starts in the steady state of a constant input, so a constant torque passes unchanged at once.
+class CausalFilter {
+  public:
+    virtual ~CausalFilter() = default;
+    /// Filters `in` into `out` (same length; may not overlap). Any split into blocks gives the same bytes.
+    virtual void process(const Samples& in, std::span<double> out) = 0;
+    /// Forgets the past: the next sample starts settled (after a gap in time).
+    virtual void restart() = 0;
+    /// Changes of filter since construction, oldest first; empty for methods that do not switch.
+    [[nodiscard]] virtual std::span<const Switch> switches() const { return {}; }
+};
+
+/// What a filter would do to a small torque signal at one constant speed, for delay and attenuation figures.
+struct FrozenFilter {
+    Cascade cascade;
+    std::string note;   ///< e.g. "band 5: 90-108 deg/s", "no band: passes"
+};
+
+struct Method {
+    std::string_view name, summary, source;
+    std::span<const Key> keys;
+    bool needs_table = false;    ///< the key "table" names a table.json, loaded by the caller
+    /// `table` is null unless needs_table. Throws UsageError on what cannot be designed at this sample rate.
+    std::unique_ptr<CausalFilter> (*start)(const Settings& settings, Hertz sample_rate,
+                                           const CandidateTable* table) = nullptr;
+    /// The linear filter in force at a constant speed; empty function for methods that have none.
+    FrozenFilter (*frozen)(const Settings& settings, Hertz sample_rate, const CandidateTable* table,
+                           DegPerSec speed) = nullptr;
+};
+
+[[nodiscard]] std::span<const Method* const> methods();
+/// Throws UsageError with the nearest name.
+[[nodiscard]] const Method& find_method(std::string_view name);
+
+}  // namespace ripplenotch

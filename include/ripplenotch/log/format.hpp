@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A log format is a record: one file in src/log/formats, one line in formats.def. Law tests run over the whole list.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/log/layout.hpp"
+
+namespace ripplenotch {
+
+/// A run of consecutive rows of the chosen joint, in the tool's units, with the bytes they came from.
+/// Reused between calls; the vectors keep their capacity.
+struct RowBlock {
+    std::size_t first_row = 0;   ///< 0-based number of the first row in the log
+    std::vector<double> time_s, velocity_deg_s, torque_nm, position_deg;  ///< equal lengths; position may be empty
+    std::string bytes;           ///< the rows as they stand in the file, line ends included
+    std::vector<std::size_t> torque_begin, torque_end;  ///< per row, offsets into `bytes` of the torque cell
+    std::vector<std::size_t> row_end;                   ///< per row, offset just past the row's last byte of content
+    std::size_t held_bad_values = 0;                    ///< cells replaced because hold_bad_values was set
+
+    [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
+};
+
+/// Reads one log from start to end in bounded memory.
+class LogReader {
+  public:
+    virtual ~LogReader() = default;
+    [[nodiscard]] virtual const Layout& layout() const = 0;
+    /// The bytes before the first row (header, comments), to be passed on as they are.
+    [[nodiscard]] virtual std::string_view head() const = 0;
+    /// Fills `block` with the next rows; false when there are none left. Block boundaries carry no meaning.
+    /// Throws DataError with file, line and column.
+    virtual bool next(RowBlock& block) = 0;
+    /// Bytes after the last row (comments, a final line such as EOF), known once next() has returned false.
+    [[nodiscard]] virtual std::string_view tail() const { return {}; }
+};
+
+struct WriteOptions {
+    enum class Decimals { shortest, input, fixed };
+    Decimals decimals = Decimals::shortest;
+    int fixed_decimals = 6;
+    bool append = false;          ///< add a column instead of replacing the torque
+    std::string append_name = "torque_filtered";  ///< its name; a unit is added as in the torque column
+};
+
+/// Writes rows that a reader gave, with other torque values.
+class LogWriter {
+  public:
+    virtual ~LogWriter() = default;
+    /// `torque_nm` has block.size() entries, in newton-metres; it is written in the unit of the torque column.
+    virtual void write(const RowBlock& block, std::span<const double> torque_nm) = 0;
+    /// Completes the file; nothing appears under its name before. `tail` from the reader.
+    virtual void finish(std::string_view tail) = 0;
+};
+
+/// A table of named numeric columns to be written as a new log (simulate, conversions, spectra).
+struct NumberColumn {
+    std::string name;              ///< with its unit: "torque_nm"
+    std::vector<double> values;
+};
+
+struct LogFormat {
+    std::string_view name, summary;
+    std::span<const std::string_view> extensions;          ///< ".csv", ".txt"
+    bool binary = false;
+    /// True when these first bytes of a file are surely this format.
+    bool (*sniff)(std::string_view first_bytes) = nullptr;
+    /// `first_bytes` have been read from `source` already and come before what it still holds.
+    std::unique_ptr<LogReader> (*open)(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                                       const ReadOptions& options) = nullptr;
+    /// A writer for rows of a log that was read in this same format: other columns pass byte for byte.
+    std::unique_ptr<LogWriter> (*rewrite)(std::unique_ptr<ByteSink> sink, const LogReader& reader,
+                                          const WriteOptions& options) = nullptr;
+    /// Writes columns of equal length as a new log.
+    void (*write_columns)(ByteSink& sink, std::span<const NumberColumn> columns) = nullptr;
+};
+
+/// All formats, in the order of formats.def.
+[[nodiscard]] std::span<const LogFormat* const> log_formats();
+/// Throws UsageError that lists the known names.
+[[nodiscard]] const LogFormat& find_log_format(std::string_view name);
+/// The format of an output: `asked` if given, else by the path's extension, else CSV. ("-" has no extension.)
+[[nodiscard]] const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked);
+
+}  // namespace ripplenotch

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Parses, dispatches, and turns every exception into one message and an exit code. Nothing else.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <new>
+
+#include "cli/command.hpp"
+#include "cli/options_implementation.hpp"
+#include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/core/version.hpp"
+
+namespace ripplenotch {
+namespace {
+
+int complain(ExitCode code, std::string_view command, std::string_view message) {
+    if (command.empty()) {
+        fmt::print(stderr, "{}: {}\n", tool_name, message);
+    } else {
+        fmt::print(stderr, "{} {}: {}\n", tool_name, command, message);
+    }
+    return static_cast<int>(code);
+}
+
+std::vector<std::string> command_names() {
+    std::vector<std::string> names;
+    for (const Command* command : all_commands()) names.emplace_back(command->name);
+    return names;
+}
+
+// CLI11 answers a mistyped command with "A subcommand is required"; people want to know which one they meant.
+int complain_unknown_command(const std::string& word) {
+    const auto names = command_names();
+    const auto near = nearest_name(word, names);
+    return complain(ExitCode::usage, "",
+                    fmt::format("there is no command '{}'{}; commands: {}", word,
+                                near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(names, ", ")));
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Torque ripple of harmonic drives in joint logs: find it, filter it, measure the cost.",
+                 std::string(tool_name));
+    app.set_version_flag("--version", fmt::format("{} {}", tool_name, version()));
+    app.footer("Each command explains itself: ripplenotch COMMAND --help. A LOG of - is standard input.");
+    app.require_subcommand(1);
+
+    std::function<ExitCode()> work;
+    std::string running;
+    std::vector<std::unique_ptr<Options::Implementation>> implementations;
+    std::vector<std::unique_ptr<Options>> options;
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    for (const Command* command : all_commands()) {
+        CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
+        sub->footer(std::string(command->description));
+        implementations.push_back(std::make_unique<Options::Implementation>(Options::Implementation{sub, words}));
+        options.push_back(std::make_unique<Options>(*implementations.back()));
+        sub->callback([&work, &running, command, run_it = command->attach(*options.back())] {
+            work = run_it;
+            running = command->name;
+        });
+    }
+
+    if (words.empty()) {
+        fmt::print(stderr, "{}", app.help());
+        return static_cast<int>(ExitCode::usage);
+    }
+    if (words.front().empty() || words.front().front() != '-') {
+        const auto names = command_names();
+        if (std::find(names.begin(), names.end(), words.front()) == names.end()) {
+            return complain_unknown_command(words.front());
+        }
+        running = words.front();
+    }
+    try {
+        app.parse(argc, argv);
+        return static_cast<int>(work());
+    } catch (const CLI::CallForHelp& request) {
+        return app.exit(request);
+    } catch (const CLI::CallForVersion& request) {
+        return app.exit(request);
+    } catch (const CLI::ParseError& error) {
+        return complain(ExitCode::usage, running,
+                        fmt::format("{}; see {} {} --help", error.what(), tool_name, running));
+    } catch (const Error& error) {
+        return complain(error.code(), running, error.what());
+    } catch (const std::bad_alloc&) {
+        return complain(ExitCode::internal, running, "out of memory");
+    } catch (const std::exception& error) {
+        return complain(ExitCode::internal, running, fmt::format("internal fault: {}", error.what()));
+    }
+}
+
+}  // namespace
+}  // namespace ripplenotch
+
+int main(int argc, char** argv) { return ripplenotch::run(argc, argv); }

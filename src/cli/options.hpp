@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// How a command declares its options, without knowing the library that parses them (CLI11, in options.cpp alone).
+// Names are as the user types them: "-o,--output", "--json", or "LOG" for a positional argument.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/log/layout.hpp"
+
+namespace ripplenotch {
+
+class Options {
+  public:
+    struct Implementation;
+    explicit Options(Implementation& implementation) : implementation_(implementation) {}
+
+    void flag(std::string_view names, bool& target, std::string_view help);
+    void text(std::string_view names, std::string& target, std::string_view type_name, std::string_view help);
+    void text(std::string_view names, std::optional<std::string>& target, std::string_view type_name,
+              std::string_view help);
+    /// May be given several times; each occurrence takes exactly one value.
+    void texts(std::string_view names, std::vector<std::string>& target, std::string_view type_name,
+               std::string_view help);
+    void choice(std::string_view names, std::string& target, std::span<const std::string_view> choices,
+                std::string_view help);
+    void count(std::string_view names, int& target, int lowest, int highest, std::string_view help);
+    void number(std::string_view names, double& target, Dimension dimension, std::string_view help);
+    void number(std::string_view names, std::optional<double>& target, Dimension dimension, std::string_view help);
+    /// "1,2,4" or "25Hz,50Hz"
+    void numbers(std::string_view names, std::vector<double>& target, Dimension dimension, std::string_view help);
+
+    template <class Tag>
+    void quantity(std::string_view names, Quantity<Tag>& target, Dimension dimension, std::string_view help) {
+        parsed_number(names, dimension, help, target.value(), true,
+                      [&target](double value) { target = Quantity<Tag>(value); });
+    }
+    template <class Tag>
+    void quantity(std::string_view names, std::optional<Quantity<Tag>>& target, Dimension dimension,
+                  std::string_view help) {
+        parsed_number(names, dimension, help, 0.0, false, [&target](double value) { target = Quantity<Tag>(value); });
+    }
+
+    /// Positional arguments; `required` ones raise a usage error when missing.
+    void argument(std::string_view name, std::string& target, bool required, std::string_view help);
+    void arguments(std::string_view name, std::vector<std::string>& target, bool required, std::string_view help);
+
+    /// The command line as it would be typed again, without -o, --force, -q, -v and --json; for provenance.
+    [[nodiscard]] std::string command_line() const;
+
+  private:
+    void parsed_number(std::string_view names, Dimension dimension, std::string_view help, double default_value,
+                       bool has_default, std::function<void(double)> assign);
+    Implementation& implementation_;
+};
+
+/// What every command has.
+struct CommonOptions {
+    std::string output = "-";
+    bool json = false, quiet = false, verbose = false, force = false;
+    [[nodiscard]] ByteSink::Overwrite overwrite() const {
+        return force ? ByteSink::Overwrite::yes : ByteSink::Overwrite::no;
+    }
+};
+void attach_common(Options& options, CommonOptions& common);
+
+/// How to read a log: --format, --joint, --columns, --unit, --sample-rate, --delimiter, --decimal, --no-header, --kt,
+/// --hold-bad-values. Call resolve() after parsing.
+struct LogOptions {
+    std::optional<std::string> format, joint, columns, delimiter, decimal, kt;
+    std::vector<std::string> units;
+    std::optional<Hertz> sample_rate;
+    bool no_header = false, hold_bad_values = false;
+    [[nodiscard]] ReadOptions resolve() const;
+};
+void attach_log(Options& options, LogOptions& log);
+
+/// Messages for people, on standard error: "ripplenotch: warning: ...". Nothing at all when quiet.
+void say_warnings(const CommonOptions& common, std::span<const std::string> warnings);
+void say(const CommonOptions& common, std::string_view sentence);          ///< only with -v
+/// The option line that would force the reading of a log, with -v; its warnings always unless quiet.
+void say_layout(const CommonOptions& common, const Layout& layout);
+
+}  // namespace ripplenotch

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/core/files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t piece_size = std::size_t{1} << 20;
+
+std::string reason() { return std::strerror(errno); }
+
+bool exists(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
+
+// A device or a named pipe is written in place: /dev/null must stay what it is.
+bool is_special(const std::string& path) {
+    struct stat status {};
+    return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+void write_fully(int descriptor, std::string_view bytes, const std::string& path) {
+    while (!bytes.empty()) {
+        const ssize_t taken = ::write(descriptor, bytes.data(), bytes.size());
+        if (taken < 0) {
+            if (errno == EINTR) continue;
+            raise<FileError>("{}: cannot write: {}", path, reason());
+        }
+        bytes.remove_prefix(static_cast<std::size_t>(taken));
+    }
+}
+
+}  // namespace
+
+ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard input" : path) {
+    if (path == "-") {
+        descriptor_ = STDIN_FILENO;
+        return;
+    }
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor_ < 0) raise<FileError>("{}: cannot open: {}", path, reason());
+    owns_ = true;
+    struct stat status {};
+    if (::fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) {
+        ::close(descriptor_);
+        raise<FileError>("{}: is a directory; name a log file in it", path);
+    }
+}
+
+ByteSource::~ByteSource() {
+    if (owns_) ::close(descriptor_);
+}
+
+std::size_t ByteSource::read(char* into, std::size_t size) {
+    while (true) {
+        const ssize_t got = ::read(descriptor_, into, size);
+        if (got >= 0) return static_cast<std::size_t>(got);
+        if (errno != EINTR) raise<FileError>("{}: cannot read: {}", name_, reason());
+    }
+}
+
+std::string read_all(const std::string& path) {
+    ByteSource source(path);
+    std::string bytes;
+    std::vector<char> buffer(piece_size);
+    while (const std::size_t size = source.read(buffer.data(), buffer.size())) bytes.append(buffer.data(), size);
+    return bytes;
+}
+
+ByteSink::ByteSink(const std::string& path, Overwrite overwrite, bool binary) : path_(path), overwrite_(overwrite) {
+    if (path == "-") {
+        descriptor_ = STDOUT_FILENO;
+        if (binary && ::isatty(STDOUT_FILENO) == 1) {
+            raise<UsageError>("binary output would go to the terminal; name a file with -o, or pipe it on");
+        }
+        return;
+    }
+    if (is_special(path)) {
+        descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+        if (descriptor_ < 0) raise<FileError>("{}: cannot write: {}", path, reason());
+        return;
+    }
+    if (overwrite == Overwrite::no && exists(path)) {
+        raise<FileError>("{}: exists already; choose another name or overwrite it with --force", path);
+    }
+    static std::atomic<unsigned> made = 0;
+    temporary_ = fmt::format("{}.part-{}-{}", path, ::getpid(), made++);
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) {
+        const std::string why = reason();
+        temporary_.clear();
+        raise<FileError>("{}: cannot write: {}", path, why);
+    }
+}
+
+ByteSink::~ByteSink() {
+    if (descriptor_ >= 0 && descriptor_ != STDOUT_FILENO) ::close(descriptor_);
+    if (!finished_ && !temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void ByteSink::write(std::string_view bytes) {
+    write_fully(descriptor_, bytes, path_ == "-" ? "standard output" : path_);
+}
+
+void ByteSink::rewrite(std::size_t offset, std::string_view bytes) {
+    if (::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset)) !=
+        static_cast<ssize_t>(bytes.size())) {
+        raise<FileError>("{}: cannot write: {}", path_, reason());
+    }
+}
+
+void ByteSink::finish() {
+    finished_ = true;
+    if (temporary_.empty()) return;
+    if (::close(descriptor_) != 0) {
+        descriptor_ = -1;
+        ::unlink(temporary_.c_str());
+        raise<FileError>("{}: cannot write: {}", path_, reason());
+    }
+    descriptor_ = -1;
+    // link() refuses to replace what somebody else made in the meantime; rename() replaces when that was asked for.
+    const bool replaced = overwrite_ == Overwrite::yes;
+    const int outcome = replaced ? ::rename(temporary_.c_str(), path_.c_str())
+                                 : ::link(temporary_.c_str(), path_.c_str());
+    const std::string why = outcome == 0 ? "" : reason();
+    if (!replaced || outcome != 0) ::unlink(temporary_.c_str());
+    if (outcome != 0) raise<FileError>("{}: cannot put the finished file in place: {}", path_, why);
+}
+
+void write_all(const std::string& path, std::string_view bytes, ByteSink::Overwrite overwrite) {
+    ByteSink sink(path, overwrite);
+    sink.write(bytes);
+    sink.finish();
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/core/spec.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+const Key* find_key(std::span<const Key> keys, std::string_view name) {
+    const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name; });
+    return found == keys.end() ? nullptr : &*found;
+}
+
+double checked_number(std::string_view text, const Key& key, std::string_view what) {
+    const std::string label = fmt::format("{}, {}", what, key.name);
+    const double value = parse_quantity(text, key.dimension, label);
+    const std::string_view unit = base_unit(key.dimension);
+    if (!(value > key.above)) {
+        raise<UsageError>("{}: {} is not above {} {}", label, text, shortest(key.above), unit);
+    }
+    if (!(value <= key.at_most)) {
+        raise<UsageError>("{}: {} is above the limit of {} {}", label, text, shortest(key.at_most), unit);
+    }
+    return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> pieces;
+    while (true) {
+        const std::size_t at = text.find(separator);
+        pieces.push_back(text.substr(0, at));
+        if (at == std::string_view::npos) return pieces;
+        text.remove_prefix(at + 1);
+    }
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = row[j];
+            row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+        }
+    }
+    return row[b.size()];
+}
+
+}  // namespace
+
+std::optional<std::string> nearest_name(std::string_view text, std::span<const std::string> known) {
+    std::optional<std::string> best;
+    std::size_t best_distance = std::max<std::size_t>(1, text.size() / 3) + 1;
+    for (const std::string& name : known) {
+        const std::size_t distance = edit_distance(text, name);
+        if (distance < best_distance) {
+            best_distance = distance;
+            best = name;
+        }
+    }
+    return best;
+}
+
+std::string Spec::text() const {
+    std::string out = name;
+    for (const auto& [key, value] : values) out += fmt::format(",{}={}", key, value);
+    return out;
+}
+
+Spec parse_spec(std::string_view text) {
+    Spec spec;
+    const auto pieces = split(text, ',');
+    spec.name = std::string(pieces.front());
+    if (spec.name.empty()) raise<UsageError>("'{}': expected NAME,KEY=VALUE,..., but the name is empty", text);
+    if (spec.name.find('=') != std::string::npos) {
+        raise<UsageError>("'{}': expected NAME,KEY=VALUE,..., but it starts with '{}'", text, spec.name);
+    }
+    for (std::size_t i = 1; i < pieces.size(); ++i) {
+        const std::size_t equals = pieces[i].find('=');
+        if (equals == std::string_view::npos || equals == 0) {
+            raise<UsageError>("'{}': '{}' is not KEY=VALUE", text, pieces[i]);
+        }
+        std::string key(pieces[i].substr(0, equals));
+        for (const auto& [other, value] : spec.values) {
+            if (other == key) raise<UsageError>("'{}': {} is given twice", text, key);
+        }
+        spec.values.emplace_back(std::move(key), std::string(pieces[i].substr(equals + 1)));
+    }
+    return spec;
+}
+
+Settings::Settings(std::string_view what, const Spec& spec, std::span<const Key> keys) : what_(what) {
+    for (const Key& key : keys) {
+        if (!key.default_text.empty()) texts_[std::string(key.name)] = std::string(key.default_text);
+    }
+    for (const auto& [name, value] : spec.values) {
+        if (find_key(keys, name) == nullptr) {
+            std::vector<std::string> known;
+            for (const Key& key : keys) known.emplace_back(key.name);
+            const auto near = nearest_name(name, known);
+            raise<UsageError>("{} has no key '{}'{}; its keys: {}", what, name,
+                              near ? fmt::format(" (did you mean {}?)", *near) : "",
+                              known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")));
+        }
+        texts_[name] = value;
+    }
+    for (const Key& key : keys) {
+        const auto found = texts_.find(key.name);
+        if (found == texts_.end()) {
+            if (key.required) raise<UsageError>("{} needs {}=...: {}", what, key.name, key.help);
+            continue;
+        }
+        const std::string& value = found->second;
+        switch (key.kind) {
+            case KeyKind::number:
+                numbers_[std::string(key.name)] = {checked_number(value, key, what)};
+                break;
+            case KeyKind::list: {
+                std::vector<double> entries;
+                for (const auto piece : split(value, ':')) entries.push_back(checked_number(piece, key, what));
+                numbers_[std::string(key.name)] = std::move(entries);
+                break;
+            }
+            case KeyKind::choice:
+                if (std::find(key.choices.begin(), key.choices.end(), value) == key.choices.end()) {
+                    raise<UsageError>("{}, {}: '{}' is none of {}", what, key.name, value,
+                                      fmt::join(key.choices, ", "));
+                }
+                break;
+            case KeyKind::text:
+                if (value.empty()) raise<UsageError>("{}, {}: the value is empty", what, key.name);
+                break;
+        }
+    }
+}
+
+bool Settings::has(std::string_view key) const { return texts_.find(key) != texts_.end(); }
+
+double Settings::number(std::string_view key) const { return list(key).front(); }
+
+std::vector<double> Settings::list(std::string_view key) const {
+    const auto found = numbers_.find(key);
+    if (found == numbers_.end()) raise<UsageError>("{} needs {}=...", what_, key);
+    return found->second;
+}
+
+std::string Settings::text(std::string_view key) const {
+    const auto found = texts_.find(key);
+    if (found == texts_.end()) raise<UsageError>("{} needs {}=...", what_, key);
+    return found->second;
+}
+
+}  // namespace ripplenotch

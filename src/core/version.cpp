@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/core/version.hpp"
+
+namespace ripplenotch {
+
+std::string_view version() { return RIPPLENOTCH_VERSION; }
+
+}  // namespace ripplenotch

@@ -1,0 +1,50 @@
+#include "ripplenotch/core/number.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <random>
+
+using namespace ripplenotch;
+
+TEST_CASE("shortest text reads back as the same double, bit for bit") {
+    std::mt19937_64 engine(7);
+    for (int i = 0; i < 200000; ++i) {
+        const std::uint64_t bits = engine();
+        double value = 0.0;
+        std::memcpy(&value, &bits, sizeof value);
+        if (!std::isfinite(value)) continue;
+        const auto back = parse_number(shortest(value));
+        REQUIRE(back.has_value());
+        std::uint64_t back_bits = 0;
+        std::memcpy(&back_bits, &*back, sizeof back_bits);
+        REQUIRE(back_bits == bits);
+    }
+}
+
+TEST_CASE("a number fills its text or is refused") {
+    CHECK(parse_number("1.5") == 1.5);
+    CHECK(parse_number("+1.5") == 1.5);
+    CHECK(parse_number("-.5e1") == -5.0);
+    CHECK(parse_number("1,5", ',') == 1.5);
+    CHECK(std::isnan(parse_number("nan").value()));
+    CHECK(std::isinf(parse_number("-inf").value()));
+    for (const char* junk : {"", "+", "-", "1.5 ", " 1.5", "1.5x", "1,5", "0x10", "+-1", "--1", "1e999", "e5", "."}) {
+        INFO(junk);
+        CHECK_FALSE(parse_number(junk).has_value());
+    }
+    CHECK_FALSE(parse_number("1.5", ',').has_value());
+}
+
+TEST_CASE("fixed decimals round as printf does") {
+    std::string out;
+    append_fixed(out, -0.0005, 3);
+    out += ' ';
+    append_fixed(out, 2.5, 0);
+    out += ' ';
+    append_fixed(out, 1e15 + 0.3, 1);
+    char expected[80];
+    std::snprintf(expected, sizeof expected, "%.3f %.0f %.1f", -0.0005, 2.5, 1e15 + 0.3);
+    CHECK(out == expected);
+}
