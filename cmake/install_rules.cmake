@@ -1,6 +1,6 @@
 include(CMakePackageConfigHelpers)
 install(TARGETS ripplenotch_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS ripplenotch ripplenotch_options EXPORT ripplenotch_targets
+install(TARGETS ripplenotch EXPORT ripplenotch_targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT ripplenotch_targets NAMESPACE ripplenotch:: FILE ripplenotch-targets.cmake

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""Every command, method, format and effect that is listed has its page, and a command's page names every option."""
+
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+TOOL = os.environ["RIPPLENOTCH"]
+
+REGISTRIES = {
+    "commands": ("src/cli/commands.def", "COMMAND"),
+    "methods": ("src/filter/methods.def", "METHOD"),
+    "formats": ("src/log/formats.def", "FORMAT"),
+    "effects": ("src/model/effects.def", "EFFECT"),
+}
+
+
+def run(*words):
+    return subprocess.run([TOOL, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60)
+
+
+def listed(kind):
+    path, word = REGISTRIES[kind]
+    candidates = [SOURCE / path, *sorted((SOURCE / "src").rglob(pathlib.Path(path).name))]
+    text = next(c for c in candidates if c.is_file()).read_text()
+    return [name.replace("_", "-") for name in re.findall(rf"^{word}\((\w+)\)", text, re.M)]
+
+
+class Pages(unittest.TestCase):
+    def test_everything_listed_has_a_page(self):
+        for kind in REGISTRIES:
+            names = listed(kind)
+            self.assertTrue(names, kind)
+            for name in names:
+                self.assertTrue((SOURCE / "docs" / kind / f"{name}.md").is_file(), f"docs/{kind}/{name}.md is missing")
+
+    def test_a_page_of_a_command_names_every_option_of_its_help(self):
+        common = (SOURCE / "docs" / "commands" / "README.md").read_text()
+        for name in listed("commands"):
+            done = run(name, "--help")
+            self.assertEqual(done.returncode, 0)
+            page = (SOURCE / "docs" / "commands" / f"{name}.md").read_text() + common
+            for option in sorted(set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", done.stdout))):
+                self.assertRegex(page, re.escape(option) + r"(?![a-z-])", f"docs/commands/{name}.md lacks {option}")
+
+    def test_every_command_refuses_an_unknown_option_with_exit_code_2(self):
+        for name in listed("commands"):
+            done = run(name, "--no-such-option")
+            self.assertEqual(done.returncode, 2, name)
+            self.assertEqual(done.stdout, "")
+            self.assertIn("--no-such-option", done.stderr)
+
+    def test_a_mistyped_command_is_answered_with_the_nearest(self):
+        done = run("filtre")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("did you mean filter?", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

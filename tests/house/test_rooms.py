@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""Who may include whom, floor by floor; where third-party headers live; what must not stand in the repository."""
+
+import os
+import pathlib
+import re
+import subprocess
+import unittest
+
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+
+# A room sees only the rooms named here, and itself. docs/decisions/0001-rooms.md says why.
+SEES = {
+    "core": set(),
+    "log": {"core"},
+    "analysis": {"core"},
+    "design": {"core"},
+    "model": {"core"},
+    "filter": {"core", "log", "analysis", "design"},
+    "evaluate": {"core", "filter", "analysis", "design"},
+    "artifact": {"core", "log", "analysis", "design", "filter", "evaluate", "model"},
+    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "artifact"},
+}
+
+# Third-party header -> the files that may include it.
+DOORS = {
+    r"fftw3": {"src/analysis/fourier.cpp"},
+    r"nlohmann/": {"src/artifact/json.hpp"},
+    r"CLI/": {"src/cli/options_implementation.hpp"},
+    r"fast_float/": {"src/core/number.cpp"},
+    r"nettle/": {"src/core/sha256.cpp"},
+}
+
+
+def sources():
+    for top in ("include/ripplenotch", "src"):
+        for path in sorted((SOURCE / top).rglob("*")):
+            if path.suffix in (".hpp", ".cpp"):
+                room = path.relative_to(SOURCE / top).parts[0]
+                yield path, room, re.findall(r'^\s*#include\s+[<"]([^>"]+)[>"]', path.read_text(), re.M)
+
+
+class Rooms(unittest.TestCase):
+    def test_a_room_sees_only_the_rooms_it_may(self):
+        looked_at = 0
+        for path, room, includes in sources():
+            for include in includes:
+                target = re.match(r"(?:ripplenotch/)?([a-z]+)/", include)
+                if target and target[1] in SEES and include.endswith((".hpp", ".def")):
+                    looked_at += 1
+                    self.assertTrue(target[1] == room or target[1] in SEES[room],
+                                    f"{path.relative_to(SOURCE)} in {room} includes {include}")
+        self.assertGreater(looked_at, 50)
+
+    def test_third_party_headers_have_one_door_each(self):
+        for path, _, includes in sources():
+            name = str(path.relative_to(SOURCE))
+            for include in includes:
+                for pattern, doors in DOORS.items():
+                    if re.match(pattern, include):
+                        self.assertIn(name, doors, f"{name} includes {include}")
+                if include.startswith("Eigen/"):
+                    self.assertEqual(path.suffix, ".cpp", f"{name} includes {include}; Eigen stays in .cpp files")
+
+    def test_every_source_file_names_its_licence(self):
+        for path, _, _ in sources():
+            self.assertIn("SPDX-License-Identifier: MIT", path.read_text().split("\n", 1)[0], str(path))
+
+
+class Repository(unittest.TestCase):
+    def test_no_absolute_path_of_a_machine_and_no_finished_binary_is_kept(self):
+        listed = subprocess.run(["git", "ls-files"], cwd=SOURCE, capture_output=True, text=True)
+        if listed.returncode != 0:
+            self.skipTest("not a git checkout")
+        for name in listed.stdout.split("\n"):
+            path = SOURCE / name
+            if not name or not path.is_file():
+                continue
+            self.assertLess(path.stat().st_size, 1_500_000, f"{name} is large for a source repository")
+            text = path.read_bytes()
+            for forbidden in (b"/ho" b"me/", b"/ro" b"ot/", b"/wo" b"rk/"):
+                self.assertNotIn(forbidden, text, f"{name} holds an absolute path")
+
+
+if __name__ == "__main__":
+    unittest.main()
