@@ -13,9 +13,10 @@ namespace ripplenotch {
 
 struct Command {
     std::string_view name;
-    std::string_view summary;       ///< one line, for the list of commands
-    std::string_view description;   ///< a few lines for its own help: what goes in, what comes out, an example
-    /// Declares the options; must not touch a file. The function returned does the work, after a successful parse.
+    std::string_view summary;      ///< one line, for the list of commands
+    std::string_view description;  ///< a few lines for its own help: what goes in, what comes out, an example
+    /// Declares the options; must not touch a file. The function returned does the work, after a successful
+    /// parse.
     std::function<ExitCode()> (*attach)(Options& options) = nullptr;
 };
 

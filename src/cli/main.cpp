@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -37,9 +38,10 @@ std::vector<std::string> command_names() {
 int complain_unknown_command(const std::string& word) {
     const auto names = command_names();
     const auto near = nearest_name(word, names);
-    return complain(ExitCode::usage, "",
-                    fmt::format("there is no command '{}'{}; commands: {}", word,
-                                near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(names, ", ")));
+    return complain(
+        ExitCode::usage, "",
+        fmt::format("there is no command '{}'{}; commands: {}", word,
+                    near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(names, ", ")));
 }
 
 int run(int argc, char** argv) {
@@ -57,7 +59,8 @@ int run(int argc, char** argv) {
     for (const Command* command : all_commands()) {
         CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
         sub->footer(std::string(command->description));
-        implementations.push_back(std::make_unique<Options::Implementation>(Options::Implementation{sub, words}));
+        implementations.push_back(
+            std::make_unique<Options::Implementation>(Options::Implementation{sub, words}));
         options.push_back(std::make_unique<Options>(*implementations.back()));
         sub->callback([&work, &running, command, run_it = command->attach(*options.back())] {
             work = run_it;
@@ -98,4 +101,8 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace ripplenotch
 
-int main(int argc, char** argv) { return ripplenotch::run(argc, argv); }
+int main(int argc, char** argv) {
+    // "| head" must end us quietly even where the parent process has SIGPIPE ignored.
+    std::signal(SIGPIPE, SIG_DFL);
+    return ripplenotch::run(argc, argv);
+}

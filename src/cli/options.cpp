@@ -24,12 +24,15 @@ std::string unit_type_name(Dimension dimension) {
 
 // CLI11 lets an option of one value swallow positionals only when it may take several; these never do.
 CLI::Option* single(CLI::Option* option, std::string_view type_name) {
-    return option->type_name(owned(type_name))->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+    return option->type_name(owned(type_name))
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
 }
 
 std::string shell_quoted(const std::string& word) {
     const auto plain = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("-_=./:,@+%").find(c) != std::string_view::npos;
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+               std::string_view("-_=./:,@+%").find(c) != std::string_view::npos;
     };
     if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
     std::string quoted = "'";
@@ -55,8 +58,10 @@ void Options::flag(std::string_view names, bool& target, std::string_view help) 
     implementation_.command->add_flag(owned(names), target, owned(help));
 }
 
-void Options::text(std::string_view names, std::string& target, std::string_view type_name, std::string_view help) {
-    CLI::Option* option = single(implementation_.command->add_option(owned(names), target, owned(help)), type_name);
+void Options::text(std::string_view names, std::string& target, std::string_view type_name,
+                   std::string_view help) {
+    CLI::Option* option =
+        single(implementation_.command->add_option(owned(names), target, owned(help)), type_name);
     if (!target.empty()) option->default_str(target);
 }
 
@@ -92,9 +97,10 @@ void Options::count(std::string_view names, int& target, int lowest, int highest
         ->default_str(std::to_string(target));
 }
 
-void Options::parsed_number(std::string_view names, Dimension dimension, std::string_view help, double default_value,
-                            bool has_default, std::function<void(double)> assign) {
-    const std::string label = owned(names.substr(names.rfind(',') == std::string_view::npos ? 0 : names.rfind(',') + 1));
+void Options::parsed_number(std::string_view names, Dimension dimension, std::string_view help,
+                            double default_value, bool has_default, std::function<void(double)> assign) {
+    const std::string label =
+        owned(names.substr(names.rfind(',') == std::string_view::npos ? 0 : names.rfind(',') + 1));
     CLI::Option* option = single(implementation_.command->add_option_function<std::string>(
                                      owned(names),
                                      [dimension, label, assign](const std::string& value) {
@@ -145,7 +151,8 @@ std::string Options::command_line() const {
         if (words[i] == "-o" || words[i] == "--output") {
             ++i;
         } else if (words[i].rfind("--output=", 0) != 0 && words[i] != "--force" && words[i] != "-q" &&
-                   words[i] != "--quiet" && words[i] != "-v" && words[i] != "--verbose" && words[i] != "--json") {
+                   words[i] != "--quiet" && words[i] != "-v" && words[i] != "--verbose" &&
+                   words[i] != "--json") {
             line += " " + shell_quoted(words[i]);
         }
     }
@@ -161,11 +168,15 @@ void attach_common(Options& options, CommonOptions& common) {
 }
 
 void attach_log(Options& options, LogOptions& log) {
-    options.text("--format", log.format, "NAME", "format of the log: csv, npy (default: found out from its first bytes)");
-    options.text("--joint", log.joint, "NAME", "which joint of a file that holds several; all runs each where possible");
-    options.text("--columns", log.columns, "LIST",
-                 "what the columns are: by place 'time,velocity,torque' (- skips one), or by name 'torque=tau_J'");
-    options.texts("--unit", log.units, "COLUMN=UNIT", "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable");
+    options.text("--format", log.format, "NAME",
+                 "format of the log: csv, npy (default: found out from its first bytes)");
+    options.text("--joint", log.joint, "NAME",
+                 "which joint of a file that holds several; all runs each where possible");
+    options.text(
+        "--columns", log.columns, "LIST",
+        "what the columns are: by place 'time,velocity,torque' (- skips one), or by name 'torque=tau_J'");
+    options.texts("--unit", log.units, "COLUMN=UNIT",
+                  "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable");
     options.quantity("--sample-rate", log.sample_rate, Dimension::frequency,
                      "rate of a log without time; overrides the log's own time");
     options.text("--delimiter", log.delimiter, "CHAR", "between cells of a text log: , ; space or tab");

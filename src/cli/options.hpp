@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// How a command declares its options, without knowing the library that parses them (CLI11, in options.cpp alone).
-// Names are as the user types them: "-o,--output", "--json", or "LOG" for a positional argument.
+// How a command declares its options, without knowing the library that parses them (CLI11, in options.cpp
+// alone). Names are as the user types them: "-o,--output", "--json", or "LOG" for a positional argument.
 
 #include <functional>
 #include <memory>
@@ -35,9 +35,11 @@ class Options {
                 std::string_view help);
     void count(std::string_view names, int& target, int lowest, int highest, std::string_view help);
     void number(std::string_view names, double& target, Dimension dimension, std::string_view help);
-    void number(std::string_view names, std::optional<double>& target, Dimension dimension, std::string_view help);
+    void number(std::string_view names, std::optional<double>& target, Dimension dimension,
+                std::string_view help);
     /// "1,2,4" or "25Hz,50Hz"
-    void numbers(std::string_view names, std::vector<double>& target, Dimension dimension, std::string_view help);
+    void numbers(std::string_view names, std::vector<double>& target, Dimension dimension,
+                 std::string_view help);
 
     template <class Tag>
     void quantity(std::string_view names, Quantity<Tag>& target, Dimension dimension, std::string_view help) {
@@ -47,19 +49,21 @@ class Options {
     template <class Tag>
     void quantity(std::string_view names, std::optional<Quantity<Tag>>& target, Dimension dimension,
                   std::string_view help) {
-        parsed_number(names, dimension, help, 0.0, false, [&target](double value) { target = Quantity<Tag>(value); });
+        parsed_number(names, dimension, help, 0.0, false,
+                      [&target](double value) { target = Quantity<Tag>(value); });
     }
 
     /// Positional arguments; `required` ones raise a usage error when missing.
     void argument(std::string_view name, std::string& target, bool required, std::string_view help);
-    void arguments(std::string_view name, std::vector<std::string>& target, bool required, std::string_view help);
+    void arguments(std::string_view name, std::vector<std::string>& target, bool required,
+                   std::string_view help);
 
     /// The command line as it would be typed again, without -o, --force, -q, -v and --json; for provenance.
     [[nodiscard]] std::string command_line() const;
 
   private:
-    void parsed_number(std::string_view names, Dimension dimension, std::string_view help, double default_value,
-                       bool has_default, std::function<void(double)> assign);
+    void parsed_number(std::string_view names, Dimension dimension, std::string_view help,
+                       double default_value, bool has_default, std::function<void(double)> assign);
     Implementation& implementation_;
 };
 
@@ -73,7 +77,8 @@ struct CommonOptions {
 };
 void attach_common(Options& options, CommonOptions& common);
 
-/// How to read a log: --format, --joint, --columns, --unit, --sample-rate, --delimiter, --decimal, --no-header, --kt,
+/// How to read a log: --format, --joint, --columns, --unit, --sample-rate, --delimiter, --decimal,
+/// --no-header, --kt,
 /// --hold-bad-values. Call resolve() after parsing.
 struct LogOptions {
     std::optional<std::string> format, joint, columns, delimiter, decimal, kt;
@@ -86,7 +91,7 @@ void attach_log(Options& options, LogOptions& log);
 
 /// Messages for people, on standard error: "ripplenotch: warning: ...". Nothing at all when quiet.
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings);
-void say(const CommonOptions& common, std::string_view sentence);          ///< only with -v
+void say(const CommonOptions& common, std::string_view sentence);  ///< only with -v
 /// The option line that would force the reading of a log, with -v; its warnings always unless quiet.
 void say_layout(const CommonOptions& common, const Layout& layout);
 

@@ -12,7 +12,7 @@ namespace ripplenotch {
 
 struct Options::Implementation {
     CLI::App* command = nullptr;
-    std::vector<std::string> words;   ///< the command line after the program's name
+    std::vector<std::string> words;  ///< the command line after the program's name
 };
 
 }  // namespace ripplenotch

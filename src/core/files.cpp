@@ -40,11 +40,32 @@ void write_fully(int descriptor, std::string_view bytes, const std::string& path
     }
 }
 
+// Both return the reason of a failure, empty when all went well.
+std::string put_in_place(const std::string& from, const std::string& to) {
+    return ::rename(from.c_str(), to.c_str()) == 0 ? "" : reason();
+}
+
+// A new name for the file, then the old one goes: link() refuses to replace what somebody else made in the
+// meantime. File systems without links get the small race instead.
+std::string put_in_free_place(const std::string& from, const std::string& to) {
+    if (::link(from.c_str(), to.c_str()) == 0) {
+        ::unlink(from.c_str());
+        return "";
+    }
+    const bool without_links = errno == EPERM || errno == EOPNOTSUPP || errno == ENOSYS || errno == EMLINK;
+    if (!without_links) return reason();
+    return exists(to) ? "it exists already" : put_in_place(from, to);
+}
+
 }  // namespace
 
 ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard input" : path) {
     if (path == "-") {
         descriptor_ = STDIN_FILENO;
+        if (::isatty(STDIN_FILENO) == 1) {
+            raise<UsageError>(
+                "standard input is a terminal; name a file, or pipe one in: cat log.csv | ripplenotch ...");
+        }
         return;
     }
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -73,11 +94,13 @@ std::string read_all(const std::string& path) {
     ByteSource source(path);
     std::string bytes;
     std::vector<char> buffer(piece_size);
-    while (const std::size_t size = source.read(buffer.data(), buffer.size())) bytes.append(buffer.data(), size);
+    while (const std::size_t size = source.read(buffer.data(), buffer.size()))
+        bytes.append(buffer.data(), size);
     return bytes;
 }
 
-ByteSink::ByteSink(const std::string& path, Overwrite overwrite, bool binary) : path_(path), overwrite_(overwrite) {
+ByteSink::ByteSink(const std::string& path, Overwrite overwrite, bool binary)
+    : path_(path), overwrite_(overwrite) {
     if (path == "-") {
         descriptor_ = STDOUT_FILENO;
         if (binary && ::isatty(STDOUT_FILENO) == 1) {
@@ -128,13 +151,12 @@ void ByteSink::finish() {
         raise<FileError>("{}: cannot write: {}", path_, reason());
     }
     descriptor_ = -1;
-    // link() refuses to replace what somebody else made in the meantime; rename() replaces when that was asked for.
-    const bool replaced = overwrite_ == Overwrite::yes;
-    const int outcome = replaced ? ::rename(temporary_.c_str(), path_.c_str())
-                                 : ::link(temporary_.c_str(), path_.c_str());
-    const std::string why = outcome == 0 ? "" : reason();
-    if (!replaced || outcome != 0) ::unlink(temporary_.c_str());
-    if (outcome != 0) raise<FileError>("{}: cannot put the finished file in place: {}", path_, why);
+    const std::string why =
+        overwrite_ == Overwrite::yes ? put_in_place(temporary_, path_) : put_in_free_place(temporary_, path_);
+    if (!why.empty()) {
+        ::unlink(temporary_.c_str());
+        raise<FileError>("{}: cannot put the finished file in place: {}", path_, why);
+    }
 }
 
 void write_all(const std::string& path, std::string_view bytes, ByteSink::Overwrite overwrite) {

@@ -24,7 +24,8 @@ struct Unit {
 
 constexpr double pi = std::numbers::pi;
 
-// The first unit of a dimension is its base unit. A turn of the joint is 360 deg; a frequency in rad/s is angular.
+// The first unit of a dimension is its base unit. A turn of the joint is 360 deg; a frequency in rad/s is
+// angular.
 constexpr std::array units = {
     Unit{Dimension::time, "s", 1.0},
     Unit{Dimension::time, "sec", 1.0},
@@ -84,7 +85,9 @@ std::string_view trimmed(std::string_view text) {
 // Length of the longest prefix that looks like a decimal number; "1e3" counts, the "e" of "1eV" does not.
 std::size_t number_length(std::string_view text) {
     std::size_t i = 0;
-    const auto digit = [&](std::size_t k) { return k < text.size() && std::isdigit(static_cast<unsigned char>(text[k])); };
+    const auto digit = [&](std::size_t k) {
+        return k < text.size() && std::isdigit(static_cast<unsigned char>(text[k]));
+    };
     if (i < text.size() && (text[i] == '+' || text[i] == '-')) ++i;
     while (digit(i)) ++i;
     if (i < text.size() && text[i] == '.') ++i;
@@ -131,7 +134,8 @@ double parse_quantity(std::string_view text, Dimension dimension, std::string_vi
     const std::string_view unit = trimmed(whole.substr(length));
     const auto understood = [&] {
         const auto names = unit_names(dimension);
-        return names.empty() ? std::string("a plain number") : fmt::format("a number in {}", fmt::join(names, ", "));
+        return names.empty() ? std::string("a plain number")
+                             : fmt::format("a number in {}", fmt::join(names, ", "));
     };
     if (!number || !std::isfinite(*number)) {
         raise<UsageError>("{}: cannot read '{}' as a number; write {}", what, text, understood());

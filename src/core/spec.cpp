@@ -14,7 +14,8 @@ namespace ripplenotch {
 namespace {
 
 const Key* find_key(std::span<const Key> keys, std::string_view name) {
-    const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name; });
+    const auto found =
+        std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name; });
     return found == keys.end() ? nullptr : &*found;
 }
 
@@ -81,7 +82,8 @@ Spec parse_spec(std::string_view text) {
     Spec spec;
     const auto pieces = split(text, ',');
     spec.name = std::string(pieces.front());
-    if (spec.name.empty()) raise<UsageError>("'{}': expected NAME,KEY=VALUE,..., but the name is empty", text);
+    if (spec.name.empty())
+        raise<UsageError>("'{}': expected NAME,KEY=VALUE,..., but the name is empty", text);
     if (spec.name.find('=') != std::string::npos) {
         raise<UsageError>("'{}': expected NAME,KEY=VALUE,..., but it starts with '{}'", text, spec.name);
     }
@@ -127,7 +129,8 @@ Settings::Settings(std::string_view what, const Spec& spec, std::span<const Key>
                 break;
             case KeyKind::list: {
                 std::vector<double> entries;
-                for (const auto piece : split(value, ':')) entries.push_back(checked_number(piece, key, what));
+                for (const auto piece : split(value, ':'))
+                    entries.push_back(checked_number(piece, key, what));
                 numbers_[std::string(key.name)] = std::move(entries);
                 break;
             }

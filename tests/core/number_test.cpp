@@ -30,7 +30,8 @@ TEST_CASE("a number fills its text or is refused") {
     CHECK(parse_number("1,5", ',') == 1.5);
     CHECK(std::isnan(parse_number("nan").value()));
     CHECK(std::isinf(parse_number("-inf").value()));
-    for (const char* junk : {"", "+", "-", "1.5 ", " 1.5", "1.5x", "1,5", "0x10", "+-1", "--1", "1e999", "e5", "."}) {
+    for (const char* junk :
+         {"", "+", "-", "1.5 ", " 1.5", "1.5x", "1,5", "0x10", "+-1", "--1", "1e999", "e5", "."}) {
         INFO(junk);
         CHECK_FALSE(parse_number(junk).has_value());
     }

@@ -11,9 +11,11 @@ using Catch::Matchers::Contains;
 
 TEST_CASE("quantities carry their unit to the base unit") {
     CHECK(parse_quantity("1kHz", Dimension::frequency, "f") == 1000.0);
-    CHECK(parse_quantity("13rad/s", Dimension::frequency, "f") == Approx(13.0 / (2.0 * std::numbers::pi)).epsilon(1e-15));
+    CHECK(parse_quantity("13rad/s", Dimension::frequency, "f") ==
+          Approx(13.0 / (2.0 * std::numbers::pi)).epsilon(1e-15));
     CHECK(parse_quantity("90deg/s", Dimension::speed, "v") == 90.0);
-    CHECK(parse_quantity("0.5236 rad/s", Dimension::speed, "v") == Approx(0.5236 * 57.29577951308232).epsilon(1e-15));
+    CHECK(parse_quantity("0.5236 rad/s", Dimension::speed, "v") ==
+          Approx(0.5236 * 57.29577951308232).epsilon(1e-15));
     CHECK(parse_quantity("5rpm", Dimension::speed, "v") == 30.0);
     CHECK(parse_quantity("200ms", Dimension::time, "t") == Approx(0.2).epsilon(1e-15));
     CHECK(parse_quantity("-1.5e3mNm", Dimension::torque, "t") == Approx(-1.5).epsilon(1e-15));
@@ -35,7 +37,8 @@ TEST_CASE("a header's rad_s is rad/s, and a torque is no speed") {
 TEST_CASE("a refused quantity says what was read and what is understood") {
     CHECK_THROWS_WITH(parse_quantity("5V", Dimension::frequency, "--cutoff"),
                       Contains("--cutoff") && Contains("'5V'") && Contains("'V'") && Contains("rad/s"));
-    CHECK_THROWS_WITH(parse_quantity("fast", Dimension::speed, "--speed"), Contains("'fast'") && Contains("deg/s"));
+    CHECK_THROWS_WITH(parse_quantity("fast", Dimension::speed, "--speed"),
+                      Contains("'fast'") && Contains("deg/s"));
     for (const char* bad : {"", "nan", "inf", "nanHz", "Hz", "1e", "1.2.3Hz"}) {
         INFO(bad);
         CHECK_THROWS_AS(parse_quantity(bad, Dimension::frequency, "f"), UsageError);
@@ -43,18 +46,23 @@ TEST_CASE("a refused quantity says what was read and what is understood") {
 }
 
 TEST_CASE("every unit of every dimension is accepted by its own parser") {
-    for (const auto dimension : {Dimension::time, Dimension::frequency, Dimension::angle, Dimension::speed,
-                                 Dimension::torque, Dimension::torque_rate, Dimension::inertia, Dimension::decibel}) {
+    for (const auto dimension :
+         {Dimension::time, Dimension::frequency, Dimension::angle, Dimension::speed, Dimension::torque,
+          Dimension::torque_rate, Dimension::inertia, Dimension::decibel}) {
         CHECK_FALSE(base_unit(dimension).empty());
         CHECK(unit_factor(dimension, base_unit(dimension)) == 1.0);
         for (const auto name : unit_names(dimension)) {
-            CHECK(parse_quantity("2" + std::string(name), dimension, "x") == 2.0 * unit_factor(dimension, name).value());
+            CHECK(parse_quantity("2" + std::string(name), dimension, "x") ==
+                  2.0 * unit_factor(dimension, name).value());
         }
     }
 }
 
 TEST_CASE("ripple frequency is n Kg |v| / 360") {
-    // 100 motor turns an output turn, 60 deg/s is a sixth of a turn a second: 100 / 6 Hz, twice that for order 2.
-    CHECK(ripple_frequency(Order(1), GearRatio(100), DegPerSec(60)).value() == Approx(100.0 / 6.0).epsilon(1e-15));
-    CHECK(ripple_frequency(Order(2), GearRatio(100), DegPerSec(-60)).value() == Approx(200.0 / 6.0).epsilon(1e-15));
+    // 100 motor turns an output turn, 60 deg/s is a sixth of a turn a second: 100 / 6 Hz, twice that for
+    // order 2.
+    CHECK(ripple_frequency(Order(1), GearRatio(100), DegPerSec(60)).value() ==
+          Approx(100.0 / 6.0).epsilon(1e-15));
+    CHECK(ripple_frequency(Order(2), GearRatio(100), DegPerSec(-60)).value() ==
+          Approx(200.0 / 6.0).epsilon(1e-15));
 }

@@ -11,7 +11,11 @@ using Catch::Matchers::Contains;
 namespace {
 constexpr std::array<std::string_view, 2> modes = {"keep", "reset"};
 const std::array keys = {
-    Key{.name = "cutoff", .dimension = Dimension::frequency, .required = true, .above = 0.0, .help = "where it is -3 dB"},
+    Key{.name = "cutoff",
+        .dimension = Dimension::frequency,
+        .required = true,
+        .above = 0.0,
+        .help = "where it is -3 dB"},
     Key{.name = "order", .default_text = "1", .above = 0.0, .at_most = 20.0},
     Key{.name = "centers", .kind = KeyKind::list, .dimension = Dimension::frequency, .above = 0.0},
     Key{.name = "mode", .kind = KeyKind::choice, .default_text = "keep", .choices = modes},

@@ -31,7 +31,8 @@ inline double step(const Biquad& f, BiquadState& s, double x) noexcept {
     return y;
 }
 
-/// The state in which a constant input x has been present for ever, so that filtering starts without a transient.
+/// The state in which a constant input x has been present for ever, so that filtering starts without a
+/// transient.
 [[nodiscard]] BiquadState settled_at(const Biquad& f, double x) noexcept;
 
 /// Output of a section for a constant input of 1.
@@ -41,8 +42,8 @@ inline double step(const Biquad& f, BiquadState& s, double x) noexcept {
 [[nodiscard]] std::complex<double> response(const Biquad& f, Hertz at, Hertz sample_rate);
 [[nodiscard]] std::complex<double> response(std::span<const Biquad> cascade, Hertz at, Hertz sample_rate);
 
-/// -d(phase)/d(omega) in seconds, from the polynomials themselves (no differencing, finite at a notch's own zero as
-/// long as the zero is not exactly on the circle at `at`).
+/// -d(phase)/d(omega) in seconds, from the polynomials themselves (no differencing, finite at a notch's own
+/// zero as long as the zero is not exactly on the circle at `at`).
 [[nodiscard]] Seconds group_delay(std::span<const Biquad> cascade, Hertz at, Hertz sample_rate);
 
 /// Largest pole radius; below 1 means stable.

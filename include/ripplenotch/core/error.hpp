@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Throw when the user's request cannot be carried out; return a value when the answer is "no". Four types, one helper,
-// one catch in main. A message says what, the value, the limit, and the remedy.
+// Throw when the user's request cannot be carried out; return a value when the answer is "no". Four types,
+// one helper, one catch in main. A message says what, the value, the limit, and the remedy.
 
 #include <fmt/format.h>
 

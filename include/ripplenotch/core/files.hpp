@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Files as the tool promises them: read whole or in pieces, written to a temporary name and renamed, never overwritten
-// unasked, "-" is the pipe.
+// Files as the tool promises them: read whole or in pieces, written to a temporary name and renamed, never
+// overwritten unasked, "-" is the pipe.
 
 #include <cstddef>
 #include <filesystem>
@@ -14,7 +14,8 @@ namespace ripplenotch {
 /// A source of bytes: a file, or standard input when the path is "-".
 class ByteSource {
   public:
-    /// Throws FileError naming the path and the system's reason.
+    /// Throws FileError naming the path and the system's reason, UsageError when "-" is a terminal: nobody
+    /// wants to type a log, and a tool that waits in silence looks broken.
     explicit ByteSource(const std::string& path);
     ~ByteSource();
     ByteSource(const ByteSource&) = delete;
@@ -34,9 +35,9 @@ class ByteSource {
 /// Reads a whole file, or standard input when the path is "-".
 [[nodiscard]] std::string read_all(const std::string& path);
 
-/// Where results go: a file that appears under its name only when finished, or standard output when the path is "-".
-/// Destroying an unfinished sink removes what it wrote. A reader that has gone away (| head) ends the process quietly
-/// by SIGPIPE's default action.
+/// Where results go: a file that appears under its name only when finished, or standard output when the path
+/// is "-". Destroying an unfinished sink removes what it wrote. A reader that has gone away (| head) ends the
+/// process quietly by SIGPIPE's default action.
 class ByteSink {
   public:
     enum class Overwrite { no, yes };

@@ -8,8 +8,9 @@
 
 namespace ripplenotch {
 
-/// Reads one finite or non-finite decimal number that fills `text` entirely (a leading '+' is allowed, white space is
-/// not). Correctly rounded. `decimal_mark` is '.' or ','. Empty when the text is not a number or overflows a double.
+/// Reads one finite or non-finite decimal number that fills `text` entirely (a leading '+' is allowed, white
+/// space is not). Correctly rounded. `decimal_mark` is '.' or ','. Empty when the text is not a number or
+/// overflows a double.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text, char decimal_mark = '.');
 
 /// The shortest text that reads back as the same double, e.g. "0.1", "1e+30", "nan", "-inf".

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Numbers with a unit, as people write them on a command line or in a log's header: "13rad/s", "1kHz", "rad_s".
+// Numbers with a unit, as people write them on a command line or in a log's header: "13rad/s", "1kHz",
+// "rad_s".
 
 #include <optional>
 #include <string>
@@ -28,8 +29,9 @@ enum class Dimension {
 /// Unit names that a dimension understands, the base unit first; for error messages and help.
 [[nodiscard]] std::vector<std::string_view> unit_names(Dimension dimension);
 
-/// Factor that turns a value in `unit` into the base unit, e.g. (speed, "rad/s") -> 57.29...; empty when the unit does
-/// not belong to the dimension. Exact case, because mHz and MHz differ; "rad_s" and "rad/s" are the same.
+/// Factor that turns a value in `unit` into the base unit, e.g. (speed, "rad/s") -> 57.29...; empty when the
+/// unit does not belong to the dimension. Exact case, because mHz and MHz differ; "rad_s" and "rad/s" are the
+/// same.
 [[nodiscard]] std::optional<double> unit_factor(Dimension dimension, std::string_view unit);
 
 /// Reads "12.5", "12.5Hz", "12.5 Hz" into the base unit; a bare number is already in the base unit.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The one way in which methods and motions are written: "name,key=value,key=value". Keys are described by data, so
-// that parsing, checking, help and documentation come from the same table.
+// The one way in which methods and motions are written: "name,key=value,key=value". Keys are described by
+// data, so that parsing, checking, help and documentation come from the same table.
 
 #include <map>
 #include <optional>
@@ -22,11 +22,11 @@ struct Key {
     std::string_view name;
     KeyKind kind = KeyKind::number;
     Dimension dimension = Dimension::none;
-    std::string_view default_text = {};            ///< as the user would write it; empty: no default
+    std::string_view default_text = {};  ///< as the user would write it; empty: no default
     bool required = false;
     std::span<const std::string_view> choices = {};  ///< for KeyKind::choice
-    double above = -1e300;                         ///< numbers and list entries must be > above ...
-    double at_most = 1e300;                        ///< ... and <= at_most, in the base unit
+    double above = -1e300;                           ///< numbers and list entries must be > above ...
+    double at_most = 1e300;                          ///< ... and <= at_most, in the base unit
     std::string_view help = {};
 };
 
@@ -40,16 +40,17 @@ struct Spec {
 /// Splits "name,key=value,..."; throws UsageError on an empty name, a piece without '=', or a repeated key.
 [[nodiscard]] Spec parse_spec(std::string_view text);
 
-/// A specification checked against its keys. Throws UsageError, naming `what` ("method lowpass"), the key, the value,
-/// and what is allowed: unknown key (with the nearest known one), missing required key, wrong unit, out of range.
+/// A specification checked against its keys. Throws UsageError, naming `what` ("method lowpass"), the key,
+/// the value, and what is allowed: unknown key (with the nearest known one), missing required key, wrong
+/// unit, out of range.
 class Settings {
   public:
     Settings(std::string_view what, const Spec& spec, std::span<const Key> keys);
 
-    [[nodiscard]] bool has(std::string_view key) const;                 ///< given or defaulted
-    [[nodiscard]] double number(std::string_view key) const;            ///< in the base unit
-    [[nodiscard]] std::vector<double> list(std::string_view key) const; ///< "25Hz:50Hz" -> {25, 50}
-    [[nodiscard]] std::string text(std::string_view key) const;         ///< KeyKind::choice and KeyKind::text
+    [[nodiscard]] bool has(std::string_view key) const;                  ///< given or defaulted
+    [[nodiscard]] double number(std::string_view key) const;             ///< in the base unit
+    [[nodiscard]] std::vector<double> list(std::string_view key) const;  ///< "25Hz:50Hz" -> {25, 50}
+    [[nodiscard]] std::string text(std::string_view key) const;  ///< KeyKind::choice and KeyKind::text
 
   private:
     std::map<std::string, std::string, std::less<>> texts_;
@@ -58,6 +59,7 @@ class Settings {
 };
 
 /// The entry of `known` nearest to `text` by edit distance, when close enough to be a likely typing error.
-[[nodiscard]] std::optional<std::string> nearest_name(std::string_view text, std::span<const std::string> known);
+[[nodiscard]] std::optional<std::string> nearest_name(std::string_view text,
+                                                      std::span<const std::string> known);
 
 }  // namespace ripplenotch

@@ -10,8 +10,9 @@
 
 namespace ripplenotch {
 
-/// A view of n samples of one joint. Spans have n entries each; `position_deg` is empty when the log has none. Time is
-/// increasing; it need not be uniform, `sample_rate` is the measured mean rate (samples per second without gaps).
+/// A view of n samples of one joint. Spans have n entries each; `position_deg` is empty when the log has
+/// none. Time is increasing; it need not be uniform, `sample_rate` is the measured mean rate (samples per
+/// second without gaps).
 struct TraceView {
     Hertz sample_rate;
     std::span<const double> time_s;
@@ -36,7 +37,9 @@ struct Trace {
     std::vector<double> time_s, velocity_deg_s, torque_nm, position_deg;
 
     [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
-    [[nodiscard]] TraceView view() const { return {sample_rate, time_s, velocity_deg_s, torque_nm, position_deg}; }
+    [[nodiscard]] TraceView view() const {
+        return {sample_rate, time_s, velocity_deg_s, torque_nm, position_deg};
+    }
 };
 
 }  // namespace ripplenotch

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The unit system of the whole tool, stated once: time in seconds, angle in degrees at the joint (output side of the
-// gear), speed in degrees per second at the joint, torque in newton-metres, frequency in hertz. Angles become radians
-// only inside a sine. "order" means cycles per motor (wave generator) revolution; "output order" means cycles per
-// output revolution, so output order = order * gear ratio.
+// The unit system of the whole tool, stated once: time in seconds, angle in degrees at the joint (output side
+// of the gear), speed in degrees per second at the joint, torque in newton-metres, frequency in hertz. Angles
+// become radians only inside a sine. "order" means cycles per motor (wave generator) revolution; "output
+// order" means cycles per output revolution, so output order = order * gear ratio.
 //
-// A scalar that could be mistaken for another has one of these types. An array or a JSON field carries its unit in its
-// name instead: _s, _hz, _deg, _deg_s, _nm, _db, _ms.
+// A scalar that could be mistaken for another has one of these types. An array or a JSON field carries its
+// unit in its name instead: _s, _hz, _deg, _deg_s, _nm, _db, _ms.
 
 #include <cmath>
 #include <compare>
@@ -39,8 +39,8 @@ using Hertz = Quantity<struct HertzTag>;
 using Degrees = Quantity<struct DegreesTag>;
 using DegPerSec = Quantity<struct DegPerSecTag>;
 using NewtonMeters = Quantity<struct NewtonMetersTag>;
-using Order = Quantity<struct OrderTag>;           ///< cycles per motor revolution
-using GearRatio = Quantity<struct GearRatioTag>;   ///< motor revolutions per output revolution
+using Order = Quantity<struct OrderTag>;          ///< cycles per motor revolution
+using GearRatio = Quantity<struct GearRatioTag>;  ///< motor revolutions per output revolution
 
 template <class Tag>
 [[nodiscard]] inline Quantity<Tag> abs(Quantity<Tag> q) {
@@ -56,7 +56,8 @@ constexpr Seconds operator""_s(long double v) { return Seconds(static_cast<doubl
 constexpr Seconds operator""_s(unsigned long long v) { return Seconds(static_cast<double>(v)); }
 }  // namespace literals
 
-/// Ripple frequency of one order at one joint speed: f = n * Kg * |v| / 360 (Kim, Kim, Song 2011, eq. 1 and 3).
+/// Ripple frequency of one order at one joint speed: f = n * Kg * |v| / 360 (Kim, Kim, Song 2011, eq. 1 and
+/// 3).
 [[nodiscard]] inline Hertz ripple_frequency(Order order, GearRatio ratio, DegPerSec speed) {
     return Hertz(order.value() * ratio.value() * std::abs(speed.value()) / 360.0);
 }
