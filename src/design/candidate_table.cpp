@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/design/candidate_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/design/transient.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_bands = 10000;
+constexpr int grid_points = 256;  // over one band, for the worst attenuation
+
+// 12 significant digits: 100 * 27 / 360 stays 7.5, and 0.1 + 2 * 0.1 becomes 0.3.
+double without_dust(double value) { return *parse_number(fmt::format("{:.12g}", value)); }
+
+std::string band_label(int number, DegPerSec from, DegPerSec to) {
+    return fmt::format("band {} ({}-{} deg/s)", number, shortest(from.value()), shortest(to.value()));
+}
+
+void check_spec(const TableSpec& spec) {
+    if (!(spec.gear_ratio.value() > 0.0) || !std::isfinite(spec.gear_ratio.value())) {
+        raise<UsageError>("gear ratio {} is not above 0", shortest(spec.gear_ratio.value()));
+    }
+    if (!(spec.sample_rate.value() > 0.0) || !std::isfinite(spec.sample_rate.value())) {
+        raise<UsageError>("the sample rate is {} Hz; it must be known and above 0 Hz",
+                          shortest(spec.sample_rate.value()));
+    }
+    if (spec.orders.empty()) raise<UsageError>("no orders to notch; the paper's are 1 and 2");
+    for (std::size_t i = 0; i < spec.orders.size(); ++i) {
+        if (!(spec.orders[i].value() > 0.0) || !std::isfinite(spec.orders[i].value())) {
+            raise<UsageError>("order {} is not above 0", shortest(spec.orders[i].value()));
+        }
+        if (i > 0 && !(spec.orders[i - 1] < spec.orders[i])) {
+            raise<UsageError>("order {} does not come after order {}; each order once, lowest first",
+                              shortest(spec.orders[i].value()), shortest(spec.orders[i - 1].value()));
+        }
+    }
+    if (!(spec.settle_band_percent > 0.0 && spec.settle_band_percent < 100.0)) {
+        raise<UsageError>("settling band {} % is outside 0 to 100 %", shortest(spec.settle_band_percent));
+    }
+    if (spec.bands.empty()) raise<UsageError>("no speed bands to design for");
+}
+
+void check_bands(const std::vector<std::pair<DegPerSec, DegPerSec>>& bands) {
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+        const auto [from, to] = bands[i];
+        const std::string label = band_label(static_cast<int>(i) + 1, from, to);
+        if (!(from.value() >= 0.0))
+            raise<UsageError>("{}: bands are on |v|, so they start at 0 or above", label);
+        if (!(from < to) || !std::isfinite(to.value())) {
+            raise<UsageError>("{}: it must end above its start", label);
+        }
+        if (i > 0 && from < bands[i - 1].second) {
+            raise<UsageError>(
+                "{} overlaps {}; bands go upward, each starting where the one before ends or later", label,
+                band_label(static_cast<int>(i), bands[i - 1].first, bands[i - 1].second));
+        }
+    }
+}
+
+// Least attenuation of one order's line while the joint speed runs through the band, both edges included.
+double worst_attenuation_db(std::span<const Biquad> cascade, const TableSpec& spec, Order order,
+                            const Band& band) {
+    double largest_gain = 0.0;
+    for (int i = 0; i <= grid_points; ++i) {
+        const double speed =
+            band.from.value() + (band.to.value() - band.from.value()) * static_cast<double>(i) / grid_points;
+        const Hertz at = ripple_frequency(order, spec.gear_ratio, DegPerSec(speed));
+        largest_gain = std::max(largest_gain, std::abs(response(cascade, at, spec.sample_rate)));
+    }
+    return -20.0 * std::log10(largest_gain);
+}
+
+}  // namespace
+
+std::string_view outside_rule_name(OutsideRule rule) {
+    switch (rule) {
+        case OutsideRule::pass:
+            return "pass";
+        case OutsideRule::hold:
+            return "hold";
+        case OutsideRule::fade:
+            return "fade";
+    }
+    return "pass";
+}
+
+Cascade Band::cascade() const {
+    Cascade sections;
+    for (const CandidateNotch& notch : notches) sections.push_back(notch.section);
+    return sections;
+}
+
+std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(DegPerSec from, DegPerSec to,
+                                                              DegPerSec spacing) {
+    const double a = from.value(), b = to.value(), width = spacing.value();
+    if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(width)) {
+        raise<UsageError>("speed range {}:{}:{} is not finite", shortest(a), shortest(b), shortest(width));
+    }
+    if (!(a >= 0.0))
+        raise<UsageError>("speed range starts at {} deg/s; bands are on |v|, so 0 or above", shortest(a));
+    if (!(a < b)) {
+        raise<UsageError>("speed range {}:{} deg/s is empty; it must end above its start", shortest(a),
+                          shortest(b));
+    }
+    if (!(width > 0.0)) raise<UsageError>("band width {} deg/s is not above 0", shortest(width));
+    const double exact = (b - a) / width;
+    const double count = std::round(exact);
+    if (!(exact < static_cast<double>(most_bands))) {
+        raise<UsageError>("speed range {}:{}:{} makes more than {} bands", shortest(a), shortest(b),
+                          shortest(width), most_bands);
+    }
+    if (count < 1.0 || std::abs(exact - count) > 1e-9 * exact) {
+        const double upward = std::ceil(exact);
+        raise<UsageError>(
+            "speed range {}:{}:{} deg/s does not divide into whole bands ({:.6g} of them); a width of "
+            "{:.6g} deg/s gives {:.0f}",
+            shortest(a), shortest(b), shortest(width), exact, (b - a) / upward, upward);
+    }
+    std::vector<std::pair<DegPerSec, DegPerSec>> bands;
+    double start = a;
+    for (double i = 1.0; i <= count; ++i) {
+        const double end = i == count ? b : without_dust(a + (b - a) * (i / count));
+        bands.emplace_back(DegPerSec(start), DegPerSec(end));
+        start = end;
+    }
+    return bands;
+}
+
+void measure_band(Band& band, const TableSpec& spec) {
+    const Cascade cascade = band.cascade();
+    const StepFigures figures = measure_step(cascade, spec.sample_rate, spec.settle_band_percent);
+    band.dc_delay = group_delay(cascade, Hertz(0.0), spec.sample_rate);
+    band.settle = figures.settle;
+    band.settle_band_percent = spec.settle_band_percent;
+    band.overshoot_percent = figures.overshoot_percent;
+    band.worst_attenuation_db.clear();
+    for (const CandidateNotch& notch : band.notches) {
+        band.worst_attenuation_db.push_back(worst_attenuation_db(cascade, spec, notch.order, band));
+    }
+}
+
+CandidateTable CandidateTable::design(const TableSpec& spec) {
+    check_spec(spec);
+    check_bands(spec.bands);
+    CandidateTable table;
+    table.spec_ = spec;
+    for (const auto& [from, to] : spec.bands) {
+        Band band;
+        band.number = static_cast<int>(table.bands_.size()) + 1;
+        band.from = from;
+        band.to = to;
+        const DegPerSec middle = 0.5 * (from + to);
+        try {
+            for (const Order order : spec.orders) {
+                const Hertz center(without_dust(ripple_frequency(order, spec.gear_ratio, middle).value()));
+                const NotchSpec notch{center, spec.q, spec.depth_db, spec.width};
+                band.notches.push_back({order, notch, design_notch(notch, spec.sample_rate)});
+            }
+            measure_band(band, spec);
+        } catch (const UsageError& error) {
+            raise<UsageError>("{}: {}", band_label(band.number, from, to), error.what());
+        }
+        table.bands_.push_back(std::move(band));
+    }
+    return table;
+}
+
+CandidateTable CandidateTable::from_bands(TableSpec spec, std::vector<Band> bands) {
+    spec.bands.clear();
+    for (const Band& band : bands) spec.bands.emplace_back(band.from, band.to);
+    check_spec(spec);
+    check_bands(spec.bands);
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+        const Band& band = bands[i];
+        const std::string label = band_label(static_cast<int>(i) + 1, band.from, band.to);
+        if (band.number != static_cast<int>(i) + 1) {
+            raise<UsageError>("{}: it is numbered {}; numbers run 1, 2, 3, ...", label, band.number);
+        }
+        if (band.notches.size() != spec.orders.size()) {
+            raise<UsageError>("{}: it has {} notches for {} orders", label, band.notches.size(),
+                              spec.orders.size());
+        }
+        for (std::size_t n = 0; n < band.notches.size(); ++n) {
+            const CandidateNotch& notch = band.notches[n];
+            if (notch.order != spec.orders[n]) {
+                raise<UsageError>("{}: notch {} is for order {}, expected order {}", label, n + 1,
+                                  shortest(notch.order.value()), shortest(spec.orders[n].value()));
+            }
+            if (!(notch.notch.center.value() > 0.0) || !(notch.notch.center < 0.5 * spec.sample_rate)) {
+                raise<UsageError>("{}: notch centre {} Hz is not between 0 and half the sample rate, {} Hz",
+                                  label, shortest(notch.notch.center.value()),
+                                  shortest(0.5 * spec.sample_rate.value()));
+            }
+            if (!(notch.notch.q > 0.0)) {
+                raise<UsageError>("{}: notch Q {} is not above 0", label, shortest(notch.notch.q));
+            }
+            if (!(pole_radius(notch.section) < 1.0)) {
+                raise<UsageError>("{}: the section for order {} is unstable", label,
+                                  shortest(notch.order.value()));
+            }
+        }
+    }
+    CandidateTable table;
+    table.spec_ = std::move(spec);
+    table.bands_ = std::move(bands);
+    return table;
+}
+
+int CandidateTable::find(DegPerSec speed) const noexcept {
+    const DegPerSec magnitude = abs(speed);
+    const auto band = std::lower_bound(bands_.begin(), bands_.end(), magnitude,
+                                       [](const Band& b, DegPerSec v) { return b.to < v; });
+    if (band == bands_.end()) return -2;
+    // Written so that a speed that is not a number finds no band.
+    return band->from < magnitude ? static_cast<int>(band - bands_.begin()) : -1;
+}
+
+}  // namespace ripplenotch
