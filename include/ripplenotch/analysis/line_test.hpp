@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Is a peak of a power spectrum a line, or could noise have made it? One test for spectra in frequency and in
+// order.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ripplenotch {
+
+/// A spectrum of power whose noise, at each bin, is the mean of `averages` independent exponential variables
+/// (chi-square with 2 * averages degrees of freedom) around a floor that varies slowly along the bins.
+struct PowerSpectrum {
+    std::span<const double> power;
+    double averages = 1.0;
+    double bins_per_cell =
+        1.5;                ///< bins that carry one independent value (1.5 for a Hann window without padding)
+    std::size_t first = 0;  ///< bins below are not searched and not used
+};
+
+/// Mean noise power at each bin: running median over about 40 cells to each side, turned into a mean by the
+/// ratio of median and mean of that distribution (ln 2 for one average). Lines narrower than half the window
+/// do not raise it.
+[[nodiscard]] std::vector<double> noise_floor(const PowerSpectrum& spectrum);
+
+struct SignificantPeak {
+    std::size_t bin = 0;
+    double floor = 0.0;        ///< mean noise power here: the larger of a near and a far estimate
+    double false_alarm = 1.0;  ///< chance that noise gives a peak as high as this anywhere in the spectrum
+};
+
+/// Local maxima whose false_alarm is at most the one asked for, in bin order. Each is compared with the
+/// larger of the floors 3 to 12 and 3 to 40 cells away, so that the flank of a broad resonance is no line;
+/// that the floor itself is known from few cells only is part of the test: the ratio follows an F
+/// distribution. Maxima within 5 cells of either end are not judged.
+[[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
+                                                             double false_alarm);
+
+/// Chance that noise exceeds `ratio` times a floor that was itself estimated from `cells` independent cells.
+[[nodiscard]] double exceedance(double ratio, double averages, double cells);
+
+/// Ratio of median to mean of a chi-square variable with 2 * averages degrees of freedom. Source: Choi 1994,
+/// median of the gamma distribution.
+[[nodiscard]] double median_over_mean(double averages);
+
+}  // namespace ripplenotch

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Amplitude of torque against frequency: the paper's windowed DFT, in newton-metres, with its lines and its
+// doubt.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+/// A line of a spectrum, between bins. Amplitudes are zero to peak.
+struct SpectralPeak {
+    double hz = 0.0;
+    double hz_stderr = 0.0;  ///< Cramer-Rao bound at this floor, times 1.53 for the Hann window
+    double amplitude_nm = 0.0;
+    double phase_deg = 0.0;    ///< of cos(2 pi f t + phase), t as in the log
+    double floor_nm = 0.0;     ///< amplitude that noise alone shows here, rms
+    double snr = 0.0;          ///< amplitude_nm / floor_nm
+    double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere in this spectrum
+};
+
+struct SpectrumOptions {
+    std::optional<Seconds> segment;  ///< Welch: length of the pieces, half overlapping; left out: one piece
+    double false_alarm = 0.01;       ///< of `peaks`, for the whole spectrum
+};
+
+/// Bins run from 0 Hz to half the sample rate, all vectors have the same length.
+struct Spectrum {
+    std::vector<double> hz;
+    std::vector<double> amplitude_nm;  ///< a sine on a bin shows its amplitude; rms over pieces
+    std::vector<double> psd_nm2_hz;    ///< one-sided
+    std::vector<double> floor_nm;      ///< noise floor as an amplitude, rms; 0 where it cannot be known
+    std::vector<SpectralPeak> peaks;   ///< strongest first
+    Hertz bin_width;
+    Hertz resolution;  ///< bin_width times 1.5, the noise bandwidth of a Hann window
+    std::size_t pieces = 0;
+    Seconds piece_duration;
+    double trend_removed_to_hz = 0.0;  ///< below, amplitudes are those of what the straight line left
+};
+
+/// Hann window, straight line removed per piece. Samples are taken at their own times, so that a jittered
+/// clock moves no line and makes none (regular clocks use a plain FFT). Throws DataError for fewer than 64
+/// samples. Cost O(n log n). Method: Heinzel, Ruediger, Schilling 2002 (windows and scaling); peaks by
+/// log-parabola, then Newton on the windowed sum itself.
+[[nodiscard]] Spectrum torque_spectrum(const TraceView& trace, const SpectrumOptions& options);
+
+}  // namespace ripplenotch

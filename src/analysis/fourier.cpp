@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/fourier.hpp"
+
+#include <fftw3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <numbers>
+
+namespace ripplenotch {
+namespace {
+
+constexpr double tau = 2.0 * std::numbers::pi;
+
+struct Plan {
+    fftw_plan plan = nullptr;
+    explicit Plan(std::size_t n) {
+        // The arrays only shape the plan: it is always executed on others, of the same alignment.
+        const auto in = std::unique_ptr<double, decltype(&fftw_free)>(fftw_alloc_real(n), fftw_free);
+        const auto out =
+            std::unique_ptr<fftw_complex, decltype(&fftw_free)>(fftw_alloc_complex(n / 2 + 1), fftw_free);
+        plan = fftw_plan_dft_r2c_1d(static_cast<int>(n), in.get(), out.get(), FFTW_ESTIMATE);
+    }
+    ~Plan() { fftw_destroy_plan(plan); }
+    Plan(const Plan&) = delete;
+    Plan& operator=(const Plan&) = delete;
+};
+
+fftw_plan plan_for(std::size_t n) {
+    static std::mutex mutex;
+    static std::map<std::size_t, std::unique_ptr<Plan>> plans;
+    const std::lock_guard lock(mutex);
+    auto& entry = plans[n];
+    if (!entry) entry = std::make_unique<Plan>(n);
+    return entry->plan;
+}
+
+/// Kernel of nonuniform_fourier: `width` grid points wide, on a grid twice as fine as needed.
+constexpr std::size_t width = 10;
+constexpr double beta = 2.30 * static_cast<double>(width);
+
+double kernel(double x) { return std::exp(beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0)); }
+
+/// Transform of the kernel at `phase` radians per half width, by the trapezoid rule in x = sin t, where the
+/// integrand and all its derivatives are negligible at both ends.
+double kernel_transform(double phase) {
+    constexpr int nodes = 40;
+    static const auto table = [] {
+        std::array<std::array<double, 2>, nodes> rows{};  // place, weight
+        for (int i = 0; i < nodes; ++i) {
+            const double t = std::numbers::pi / 2.0 * (i + 0.5) / nodes;
+            rows[static_cast<std::size_t>(i)] = {std::sin(t),
+                                                 std::exp(beta * (std::cos(t) - 1.0)) * std::cos(t)};
+        }
+        return rows;
+    }();
+    double sum = 0.0;
+    for (const auto& [place, weight] : table) sum += weight * std::cos(phase * place);
+    return sum * std::numbers::pi / nodes;
+}
+
+void spread(std::span<const double> where, std::span<const double> value, double spacing,
+            std::span<double> grid) {
+    const auto n = static_cast<double>(grid.size());
+    for (std::size_t j = 0; j < where.size(); ++j) {
+        const double turns = where[j] * spacing;
+        const double at = (turns - std::floor(turns)) * n;  // 0 <= at <= n
+        const double half = static_cast<double>(width) / 2.0;
+        const double first = std::ceil(at - half);
+        auto cell = static_cast<std::size_t>(first < 0.0 ? first + n : first);
+        for (std::size_t i = 0; i < width; ++i, ++cell) {
+            if (cell >= grid.size()) cell -= grid.size();
+            grid[cell] += value[j] * kernel((first + static_cast<double>(i) - at) / half);
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<std::complex<double>> real_fourier(std::span<const double> x) {
+    std::vector<std::complex<double>> result(x.size() / 2 + 1);
+    if (x.empty()) return {};
+    const auto in = std::unique_ptr<double, decltype(&fftw_free)>(fftw_alloc_real(x.size()), fftw_free);
+    const auto out =
+        std::unique_ptr<fftw_complex, decltype(&fftw_free)>(fftw_alloc_complex(result.size()), fftw_free);
+    std::copy(x.begin(), x.end(), in.get());
+    fftw_execute_dft_r2c(plan_for(x.size()), in.get(), out.get());
+    for (std::size_t k = 0; k < result.size(); ++k) result[k] = {out.get()[k][0], out.get()[k][1]};
+    return result;
+}
+
+std::size_t fast_length(std::size_t at_least) {
+    const auto smooth = [](std::size_t n) {
+        for (const std::size_t prime : {2U, 3U, 5U, 7U}) {
+            while (n % prime == 0) n /= prime;
+        }
+        return n == 1;
+    };
+    std::size_t n = std::max<std::size_t>(at_least, 1);
+    while (!smooth(n)) ++n;
+    return n;
+}
+
+std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> where,
+                                                     std::span<const double> value, double spacing,
+                                                     std::size_t count) {
+    if (count == 0) return {};
+    std::vector<double> grid(fast_length(std::max<std::size_t>(4 * count, 4 * width)), 0.0);
+    spread(where, value, spacing, grid);
+    auto sums = real_fourier(grid);
+    sums.resize(count);
+    const double half = static_cast<double>(width) / 2.0;
+    const double step = tau * half / static_cast<double>(grid.size());
+    for (std::size_t k = 0; k < count; ++k) sums[k] /= half * kernel_transform(step * static_cast<double>(k));
+    return sums;
+}
+
+FourierPoint fourier_point(std::span<const double> where, std::span<const double> value, double frequency) {
+    FourierPoint point;
+    // Places are taken from the middle so that the derivatives stay well conditioned; the phase is put back
+    // below.
+    const double middle = where.empty() ? 0.0 : 0.5 * (where.front() + where.back());
+    for (std::size_t j = 0; j < where.size(); ++j) {
+        const double place = where[j] - middle;
+        const double angle = -tau * frequency * place;
+        const std::complex<double> term = value[j] * std::complex<double>(std::cos(angle), std::sin(angle));
+        const std::complex<double> turn(0.0, -tau * place);
+        point.value += term;
+        point.first += turn * term;
+        point.second += turn * turn * term;
+    }
+    const double shift = -tau * frequency * middle;
+    const std::complex<double> back(std::cos(shift), std::sin(shift));
+    return {point.value * back, point.first * back, point.second * back};
+}
+
+double refine_peak(std::span<const double> where, std::span<const double> value, double frequency,
+                   double cell) {
+    const double start = frequency;
+    for (int round = 0; round < 8; ++round) {
+        const FourierPoint at = fourier_point(where, value, frequency);
+        // Half the derivatives of |S|^2. `back` above makes them those of the centred sum: a common phase, no
+        // slope.
+        const double slope = std::real(std::conj(at.value) * at.first);
+        const double curve = std::norm(at.first) + std::real(std::conj(at.value) * at.second);
+        if (!(curve < 0.0)) return frequency;
+        const double step = -slope / curve;
+        const double next = std::clamp(frequency + step, start - cell, start + cell);
+        const bool settled = std::abs(next - frequency) < 1e-9 * cell;
+        frequency = next;
+        if (settled) break;
+    }
+    return frequency;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include <catch2/catch.hpp>
+#include <complex>
+#include <numbers>
+
+#include "analysis/traces.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
+
+using namespace ripplenotch;
+using Catch::Matchers::WithinAbs;
+
+namespace {
+
+std::complex<double> direct_sum(const std::vector<double>& where, const std::vector<double>& value,
+                                double frequency) {
+    std::complex<double> sum;
+    for (std::size_t j = 0; j < where.size(); ++j) {
+        sum += value[j] * std::polar(1.0, -2.0 * std::numbers::pi * frequency * where[j]);
+    }
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("the real transform equals its defining sum at every length, prime lengths included") {
+    const std::size_t n = GENERATE(1U, 2U, 3U, 16U, 97U, 120U);
+    tests::Noise noise(3);
+    std::vector<double> x(n), index(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        x[k] = noise();
+        index[k] = static_cast<double>(k);
+    }
+    const auto sums = real_fourier(x);
+    REQUIRE(sums.size() == n / 2 + 1);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+        const auto expected = direct_sum(index, x, static_cast<double>(k) / static_cast<double>(n));
+        CHECK_THAT(std::abs(sums[k] - expected), WithinAbs(0.0, 1e-12 * static_cast<double>(n)));
+    }
+}
+
+TEST_CASE("a fast length is the next one without large prime factors") {
+    CHECK(fast_length(0) == 1);
+    CHECK(fast_length(11) == 12);
+    CHECK(fast_length(97) == 98);
+    CHECK(fast_length(1021) == 1024);
+}
+
+TEST_CASE("the non-uniform transform equals the direct sum to 1e-9 of the sum of magnitudes") {
+    tests::Noise noise(5);
+    const std::size_t count = GENERATE(1U, 7U, 300U);
+    std::vector<double> where, value;
+    double magnitude = 0.0;
+    for (int j = 0; j < 400; ++j) {
+        where.push_back(3.0 * noise());  // unsorted, negative, crowded
+        value.push_back(noise());
+        magnitude += std::abs(value.back());
+    }
+    const double spacing = 0.37;
+    const auto sums = nonuniform_fourier(where, value, spacing, count);
+    REQUIRE(sums.size() == count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto expected = direct_sum(where, value, spacing * static_cast<double>(k));
+        CHECK_THAT(std::abs(sums[k] - expected), WithinAbs(0.0, 1e-9 * magnitude));
+    }
+}
+
+TEST_CASE("the derivatives of a Fourier sum are those of its centred form") {
+    const std::vector<double> where{0.0, 0.4, 1.1, 2.0}, value{1.0, -2.0, 0.5, 1.5};
+    const double f = 0.8, h = 1e-5;
+    const FourierPoint at = fourier_point(where, value, f);
+    CHECK_THAT(std::abs(at.value - direct_sum(where, value, f)), WithinAbs(0.0, 1e-12));
+    // |S|^2 does not depend on the origin of `where`: its slope is 2 Re(conj(S) S').
+    const double slope =
+        (std::norm(direct_sum(where, value, f + h)) - std::norm(direct_sum(where, value, f - h))) / (2 * h);
+    CHECK_THAT(2.0 * std::real(std::conj(at.value) * at.first), WithinAbs(slope, 1e-6));
+}

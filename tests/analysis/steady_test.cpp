@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include <catch2/catch.hpp>
+
+#include "analysis/traces.hpp"
+#include "ripplenotch/analysis/steady.hpp"
+
+using namespace ripplenotch;
+using Catch::Matchers::WithinAbs;
+
+namespace {
+
+// Rest for 2 s, a ramp of 1 s, 60 deg/s for 3 s, a ramp of 1 s through zero, -30 deg/s for 2 s.
+double staircase(double t) {
+    if (t < 2.0) return 0.0;
+    if (t < 3.0) return 60.0 * (t - 2.0);
+    if (t < 6.0) return 60.0;
+    if (t < 7.0) return 60.0 - 90.0 * (t - 6.0);
+    return -30.0;
+}
+
+}  // namespace
+
+TEST_CASE("steady stretches are found with their speeds, and standstill is called rest") {
+    const bool position = GENERATE(true, false);
+    Trace trace = tests::make_trace({.seconds = 9.0, .speed_deg_s = staircase, .position = position});
+    tests::Noise noise(2);
+    for (double& v : trace.velocity_deg_s) v += 0.5 * noise();
+    const auto found = steady_stretches(trace.view(), {});
+    REQUIRE(found.size() == 3);
+    CHECK(found[0].rest);
+    CHECK_THAT(found[0].duration.value(), WithinAbs(2.0, 0.1));
+    CHECK_FALSE(found[1].rest);
+    CHECK_THAT(found[1].speed.value(),
+               WithinAbs(60.0, 0.3));  // up to 5 % of the ramp's end belongs to the stretch
+    CHECK_THAT(found[1].duration.value(), WithinAbs(3.0, 0.25));
+    CHECK_THAT(found[2].speed.value(), WithinAbs(-30.0, 0.2));
+    CHECK(found[2].first + found[2].count == trace.size());
+    CHECK_FALSE(whole_log_is_steady(trace.view(), found));
+}
+
+TEST_CASE("a log of one speed is one stretch, and its speed carries an error that covers the truth") {
+    Trace trace =
+        tests::make_trace({.seconds = 5.0, .speed_deg_s = [](double) { return 90.0; }, .position = false});
+    tests::Noise noise(4);
+    for (double& v : trace.velocity_deg_s) v += 0.5 * noise();
+    const auto found = steady_stretches(trace.view(), {});
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].count == trace.size());
+    CHECK(whole_log_is_steady(trace.view(), found));
+    CHECK(found[0].speed_error_deg_s < 0.02);  // 0.5 / sqrt(5000) = 0.007
+    CHECK_THAT(found[0].speed.value(), WithinAbs(90.0, 4.0 * found[0].speed_error_deg_s));
+}
+
+TEST_CASE("a slow ramp yields no stretch longer than its band allows") {
+    const Trace trace =
+        tests::make_trace({.seconds = 10.0, .speed_deg_s = [](double t) { return 20.0 + 16.0 * t; }});
+    for (const Stretch& s : steady_stretches(trace.view(), {.at_least = Seconds(0.2)})) {
+        const double change = 16.0 * s.duration.value();
+        CHECK(change <= 2.0 * 0.05 * s.speed.value() * 1.1 + 2.0);
+    }
+    CHECK(steady_stretches(trace.view(), {.at_least = Seconds(2.0)}).empty());
+}
+
+TEST_CASE("a gap in time ends a stretch") {
+    Trace trace = tests::make_trace({.seconds = 4.0, .speed_deg_s = [](double) { return 50.0; }});
+    for (std::size_t k = 2000; k < 4000; ++k) trace.time_s[k] += 1.0;
+    const auto found = steady_stretches(trace.view(), {});
+    REQUIRE(found.size() == 2);
+    CHECK(found[0].count == 2000);
+    CHECK(found[1].first == 2000);
+}
+
+TEST_CASE("a moving mean keeps a straight line as it is") {
+    std::vector<double> line(50);
+    for (std::size_t k = 0; k < line.size(); ++k) line[k] = 2.0 + 3.0 * static_cast<double>(k);
+    const auto mean = moving_mean(line, 9);
+    for (std::size_t k = 0; k < line.size(); ++k) CHECK_THAT(mean[k], WithinAbs(line[k], 1e-9));
+}
