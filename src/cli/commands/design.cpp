@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch design: the table of candidate notch filters.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/speed_bands.hpp"
+#include "cli/table_text.hpp"
+#include "ripplenotch/artifact/table.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 2> width_names = {"analog", "digital"};
+constexpr std::array<std::string_view, 3> rule_names = {"pass", "hold", "fade"};
+constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
+
+struct Request {
+    CommonOptions common;
+    std::optional<double> gear_ratio, depth_db;
+    std::vector<double> orders;
+    std::optional<Hertz> sample_rate, spacing;
+    std::optional<std::string> speed, bands;
+    double q = 0.25, settle_band_percent = 0.5;
+    std::string width = "analog", below = "pass", above = "hold", form;
+};
+
+OutsideRule rule_of(const std::string& name) {
+    if (name == "hold") return OutsideRule::hold;
+    return name == "fade" ? OutsideRule::fade : OutsideRule::pass;
+}
+
+// --spacing is that of the lowest order's centres, which is how the paper states its table: 5 Hz is 18 deg/s
+// at 1:100.
+DegPerSec width_of_spacing(Hertz spacing, const TableSpec& spec) {
+    if (!(spacing.value() > 0.0))
+        raise<UsageError>("--spacing {} Hz is not above 0", shortest(spacing.value()));
+    return DegPerSec(360.0 * spacing.value() / (spec.orders.front().value() * spec.gear_ratio.value()));
+}
+
+std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const Request& request, const TableSpec& spec) {
+    if (request.bands) {
+        if (request.speed || request.spacing) {
+            raise<UsageError>("--bands lists the bands; it cannot be combined with --speed or --spacing");
+        }
+        return parse_speed_bands(*request.bands, "--bands");
+    }
+    if (!request.speed) {
+        raise<UsageError>(
+            "no speeds to design for; give --speed FROM:TO:WIDTH (18:180:18) or --bands FROM:TO,FROM:TO");
+    }
+    const SpeedRange range = parse_speed_range(*request.speed, "--speed");
+    if (range.width && request.spacing) {
+        raise<UsageError>(
+            "--speed {} already says how wide a band is; leave out its third number or --spacing",
+            *request.speed);
+    }
+    if (!range.width && !request.spacing) {
+        raise<UsageError>(
+            "--speed {} does not say how wide a band is; write FROM:TO:WIDTH or add --spacing 5Hz",
+            *request.speed);
+    }
+    return bands_by_spacing(range.from, range.to,
+                            range.width ? *range.width : width_of_spacing(*request.spacing, spec));
+}
+
+TableSpec spec_of(const Request& request) {
+    TableSpec spec;
+    if (!request.gear_ratio)
+        raise<UsageError>("the gear ratio is missing; give --gear-ratio, for example 100");
+    if (!request.sample_rate) {
+        raise<UsageError>("the sample rate is missing; give --sample-rate, for example 1kHz");
+    }
+    if (request.orders.empty()) raise<UsageError>("no orders to notch; give --orders, for example 1,2");
+    spec.gear_ratio = GearRatio(*request.gear_ratio);
+    spec.sample_rate = *request.sample_rate;
+    for (const double order : request.orders) spec.orders.emplace_back(order);
+    std::sort(spec.orders.begin(), spec.orders.end());
+    spec.q = request.q;
+    if (request.depth_db) spec.depth_db = *request.depth_db;
+    spec.width = request.width == "digital" ? WidthRule::digital : WidthRule::analog;
+    spec.settle_band_percent = request.settle_band_percent;
+    spec.below = rule_of(request.below);
+    spec.above = rule_of(request.above);
+    spec.bands = bands_of(request, spec);
+    return spec;
+}
+
+// Asked for by name, else by --json, else by the name of the output file.
+std::string form_of(const Request& request) {
+    if (request.common.json) {
+        if (!request.form.empty() && request.form != "json") {
+            raise<UsageError>("--json and --format {} ask for two different outputs", request.form);
+        }
+        return "json";
+    }
+    if (!request.form.empty()) return request.form;
+    const std::string& path = request.common.output;
+    const auto ends_with = [&path](std::string_view end) {
+        return path.size() > end.size() && path.compare(path.size() - end.size(), end.size(), end) == 0;
+    };
+    return ends_with(".json") ? "json" : ends_with(".csv") ? "csv" : "text";
+}
+
+ExitCode run(const Request& request, const std::string& command_line) {
+    const std::string form = form_of(request);
+    const CandidateTable table = CandidateTable::design(spec_of(request));
+    say_warnings(request.common, alias_warnings(table));
+    const std::string text = form == "json"  ? table_to_json(table, Provenance{{}, command_line})
+                             : form == "csv" ? table_to_csv(table)
+                                             : table_to_text(table);
+    write_all(request.common.output, text, request.common.overwrite());
+    return ExitCode::done;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    auto request = std::make_shared<Request>();
+    options.number("--gear-ratio", request->gear_ratio, Dimension::none, "motor turns per output turn");
+    options.numbers("--orders", request->orders, Dimension::none,
+                    "ripple lines to notch, in cycles per motor turn, e.g. 1,2");
+    options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
+                     "rate at which the filter will run");
+    options.text("--speed", request->speed, "FROM:TO[:WIDTH]",
+                 "bands of equal width in deg/s, e.g. 18:180:18");
+    options.quantity("--spacing", request->spacing, Dimension::frequency,
+                     "instead of WIDTH: distance of the lowest order's centres");
+    options.text("--bands", request->bands, "FROM:TO,...",
+                 "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
+    options.number("--q", request->q, Dimension::none, "centre over -3 dB width; 0.25 is the paper's twin-T");
+    options.number("--depth", request->depth_db, Dimension::decibel,
+                   "attenuation at the centre; a full null when left out");
+    options.choice("--width", request->width, width_names,
+                   "whose width Q is: the analogue prototype's or the sampled "
+                   "filter's");
+    options.number("--settle-band", request->settle_band_percent, Dimension::none,
+                   "per cent of a step within which it counts as settled");
+    options.choice("--below", request->below, rule_names, "rule below the first band");
+    options.choice("--above", request->above, rule_names, "rule above the last band");
+    options.choice("--format", request->form, form_names,
+                   "form of the result (default: by the name of -o, else text)");
+    attach_common(options, request->common);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::design = {
+    .name = "design",
+    .summary = "the table of candidate notch filters",
+    .description =
+        "For each band of joint speed, one notch per order at the frequency f = order * gear ratio * speed / "
+        "360 of the\nband's middle speed, with the delay, settling time and worst attenuation that it "
+        "costs.\nTable 1 of the paper: ripplenotch design --gear-ratio 100 --orders 1,2 --sample-rate 1kHz "
+        "--speed 18:180:18",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "cli/table_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "cli/text_table.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::string listed(const std::vector<Order>& orders) {
+    std::string text = orders.size() == 1 ? "order " : "orders ";
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        if (i > 0) text += i + 1 == orders.size() ? " and " : ", ";
+        text += shortest(orders[i].value());
+    }
+    return text;
+}
+
+std::string plain(double value) { return fmt::format("{:.6g}", value); }
+
+// Where no band applies, in the words of the rule.
+std::string outside_sentence(const CandidateTable& table) {
+    const TableSpec& spec = table.spec();
+    const Band &first = table.bands().front(), &last = table.bands().back();
+    const std::string low = plain(first.from.value()), high = plain(last.to.value());
+    std::string text = first.from.value() > 0.0 ? fmt::format("At {} deg/s and below ", low) : "At rest ";
+    switch (spec.below) {
+        case OutsideRule::pass:
+            text += "the torque passes unfiltered";
+            break;
+        case OutsideRule::hold:
+            text += "the filter last in force stays";
+            break;
+        case OutsideRule::fade:
+            text += fmt::format("band 1 fades out, down to {} deg/s", plain(0.5 * first.from.value()));
+            break;
+    }
+    text += fmt::format("; above {} deg/s ", high);
+    switch (spec.above) {
+        case OutsideRule::pass:
+            text += "it passes unfiltered.";
+            break;
+        case OutsideRule::hold:
+            text += fmt::format("band {} stays in force.", last.number);
+            break;
+        case OutsideRule::fade:
+            text +=
+                fmt::format("band {} fades out, up to {} deg/s.", last.number, plain(1.5 * last.to.value()));
+            break;
+    }
+    for (std::size_t i = 1; i < table.bands().size(); ++i) {
+        if (table.bands()[i - 1].to < table.bands()[i].from) {
+            return text + " Between bands that do not touch, the rule for low speed holds.";
+        }
+    }
+    return text;
+}
+
+std::vector<std::vector<std::string>> title_rows(const TableSpec& spec) {
+    std::vector<std::string> titles = {"band", "speed"}, units = {"", "deg/s"};
+    for (const Order order : spec.orders) {
+        titles.push_back(fmt::format("order {}", shortest(order.value())));
+        units.push_back("Hz");
+    }
+    titles.insert(titles.end(), {"DC delay", "settles", "overshoot"});
+    units.insert(units.end(), {"ms", fmt::format("ms to {} %", plain(spec.settle_band_percent)), "%"});
+    for (const Order order : spec.orders) {
+        titles.push_back(fmt::format("worst {}", shortest(order.value())));
+        units.push_back("dB");
+    }
+    return {titles, units};
+}
+
+std::vector<std::string> band_row(const Band& band) {
+    std::vector<std::string> row = {std::to_string(band.number),
+                                    fmt::format("{}-{}", plain(band.from.value()), plain(band.to.value()))};
+    for (const CandidateNotch& notch : band.notches) row.push_back(plain(notch.notch.center.value()));
+    row.push_back(fmt::format("{:.1f}", 1e3 * band.dc_delay.value()));
+    row.push_back(fmt::format("{:.0f}", 1e3 * band.settle.value()));
+    row.push_back(fmt::format("{:.1f}", band.overshoot_percent));
+    for (const double worst : band.worst_attenuation_db) row.push_back(fmt::format("{:.1f}", worst));
+    return row;
+}
+
+std::string delay_sentence(std::span<const Band> bands) {
+    const auto by_delay = [](const Band& a, const Band& b) { return a.dc_delay < b.dc_delay; };
+    const auto [least, most] = std::minmax_element(bands.begin(), bands.end(), by_delay);
+    const double least_ms = 1e3 * least->dc_delay.value(), most_ms = 1e3 * most->dc_delay.value();
+    if (least == most) return fmt::format("The torque lags by {:.1f} ms.", least_ms);
+    return fmt::format("The torque lags by {:.1f} ms (band {}) to {:.1f} ms (band {}).", least_ms,
+                       least->number, most_ms, most->number);
+}
+
+}  // namespace
+
+std::string table_to_text(const CandidateTable& table) {
+    const TableSpec& spec = table.spec();
+    std::string text = fmt::format(
+        "Candidate notches for gear ratio {}, {}, at {} Hz: {} band{}, Q {} ({}), {}.\n\n",
+        shortest(spec.gear_ratio.value()), listed(spec.orders), shortest(spec.sample_rate.value()),
+        table.bands().size(), table.bands().size() == 1 ? "" : "s", shortest(spec.q),
+        width_rule_name(spec.width),
+        spec.depth_db >= infinite_depth_db ? "full null" : fmt::format("{} dB deep", plain(spec.depth_db)));
+    auto rows = title_rows(spec);
+    for (const Band& band : table.bands()) rows.push_back(band_row(band));
+    text += text_table(rows, "r");
+    text += "\nWorst: the least attenuation of that order's line anywhere in the band. ";
+    return text + delay_sentence(table.bands()) + "\n" + outside_sentence(table) + "\n";
+}
+
+std::vector<std::string> alias_warnings(const CandidateTable& table) {
+    const TableSpec& spec = table.spec();
+    std::vector<std::string> warnings;
+    for (const Band& band : table.bands()) {
+        const Order highest = spec.orders.back();
+        if (ripple_frequency(highest, spec.gear_ratio, band.to) < 0.5 * spec.sample_rate) continue;
+        const double limit = 180.0 * spec.sample_rate.value() / (highest.value() * spec.gear_ratio.value());
+        warnings.push_back(
+            fmt::format("band {} ({}-{} deg/s): order {} passes half the sample rate at {} deg/s and is "
+                        "seen at a lower frequency above that",
+                        band.number, plain(band.from.value()), plain(band.to.value()),
+                        shortest(highest.value()), plain(limit)));
+    }
+    return warnings;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch design as users meet it: Table 1 of the paper in three forms, units, and what is refused."""
+
+import csv
+import io
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+
+PAPER = ["--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18", "--q", "0.25"]
+TABLE_1 = [
+    # band, from, to (deg/s), centre 1, centre 2 (Hz), as printed in the paper
+    (1, "18", "36", "7.5", "15"),
+    (2, "36", "54", "12.5", "25"),
+    (3, "54", "72", "17.5", "35"),
+    (4, "72", "90", "22.5", "45"),
+    (5, "90", "108", "27.5", "55"),
+    (6, "108", "126", "32.5", "65"),
+    (7, "126", "144", "37.5", "75"),
+    (8, "144", "162", "42.5", "85"),
+    (9, "162", "180", "47.5", "95"),
+]
+
+
+def design(*words, stdin=None, folder=None):
+    return subprocess.run([TOOL, "design", *words], capture_output=True, text=True, timeout=60, cwd=folder,
+                          input=stdin, stdin=None if stdin is not None else subprocess.DEVNULL)
+
+
+def with_option(words, name, *values):
+    """PAPER with one option replaced, or left out when no value is given."""
+    at = words.index(name)
+    return words[:at] + ([name, *values] if values else []) + words[at + 2:]
+
+
+class Table1(unittest.TestCase):
+    def test_text_has_the_papers_bands_and_centres(self):
+        done = design(*PAPER)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        rows = [line.split() for line in done.stdout.split("\n") if line.strip()[:1].isdigit()]
+        self.assertEqual([(int(r[0]), *r[1].split("-"), r[2], r[3]) for r in rows], TABLE_1)
+        self.assertIn("At 18 deg/s and below the torque passes unfiltered; above 180 deg/s band 9 stays in force.",
+                      done.stdout)
+
+    def test_csv_has_the_papers_bands_and_centres_under_stable_names(self):
+        done = design(*PAPER, "--format", "csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = list(csv.DictReader(io.StringIO(done.stdout)))
+        self.assertEqual(list(rows[0]), [
+            "number", "speed_from_deg_s", "speed_to_deg_s", "center_1_hz", "center_2_hz", "q", "dc_delay_ms",
+            "settle_ms", "overshoot_percent", "worst_attenuation_1_db", "worst_attenuation_2_db"])
+        self.assertEqual([(int(r["number"]), r["speed_from_deg_s"], r["speed_to_deg_s"], r["center_1_hz"],
+                           r["center_2_hz"]) for r in rows], TABLE_1)
+        for row in rows:
+            self.assertEqual(len(row), 11)
+            for cell in row.values():
+                float(cell)
+
+    def test_json_has_the_papers_bands_and_centres_as_exact_numbers(self):
+        table = json.loads(design(*PAPER, "--json").stdout)
+        self.assertEqual(table["schema"], "ripplenotch/table/1")
+        self.assertEqual(len(table["bands"]), 9)
+        for band, row in zip(table["bands"], TABLE_1):
+            self.assertEqual((band["number"], band["speed_from_deg_s"], band["speed_to_deg_s"],
+                              band["notches"][0]["center_hz"], band["notches"][1]["center_hz"]),
+                             (row[0], *map(float, row[1:])))
+            self.assertEqual(band["settle_band_percent"], 0.5)
+
+    def test_three_ways_to_say_the_same_bands_give_the_same_table(self):
+        by_width = json.loads(design(*PAPER, "--json").stdout)["bands"]
+        spacing = with_option(PAPER, "--speed", "18:180") + ["--spacing", "5Hz"]
+        listed = with_option(PAPER, "--speed") + ["--bands", ",".join(f"{r[1]}:{r[2]}" for r in TABLE_1)]
+        self.assertEqual(json.loads(design(*spacing, "--json").stdout)["bands"], by_width)
+        self.assertEqual(json.loads(design(*listed, "--json").stdout)["bands"], by_width)
+
+    def test_the_same_request_gives_the_same_bytes_and_the_command_line_reproduces_it(self):
+        first = design(*PAPER, "--json").stdout
+        self.assertEqual(first, design(*PAPER, "--json").stdout)
+        words = json.loads(first)["command"].split()
+        self.assertEqual(words[:2], ["ripplenotch", "design"])
+        self.assertEqual(design(*words[2:], "--json").stdout, first)
+
+    def test_the_name_of_the_output_file_chooses_the_form(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("table.json", "table.csv", "table.txt"):
+                done = design(*PAPER, "-o", name, folder=folder)
+                self.assertEqual((done.returncode, done.stdout), (0, ""))
+            read = {p.suffix: p.read_text() for p in pathlib.Path(folder).iterdir()}
+        self.assertEqual(read[".json"], design(*PAPER, "--json").stdout)
+        self.assertEqual(read[".csv"], design(*PAPER, "--format", "csv").stdout)
+        self.assertEqual(read[".txt"], design(*PAPER).stdout)
+
+
+class Units(unittest.TestCase):
+    def bands(self, *words):
+        done = design(*with_option(PAPER, "--speed"), *words, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return [(b["speed_from_deg_s"], b["speed_to_deg_s"]) for b in json.loads(done.stdout)["bands"]]
+
+    def test_a_unit_on_the_last_number_holds_for_all(self):
+        for text in ("0.3:0.6rad/s", "0.3rad/s:0.6rad/s"):
+            (low, high), = self.bands("--bands", text)
+            self.assertAlmostEqual(low, 17.188733853924695, places=9)
+            self.assertAlmostEqual(high, 34.37746770784939, places=9)
+        self.assertEqual(self.bands("--speed", "3:30:3rpm"), self.bands("--speed", "18:180:18"))
+
+    def test_a_list_may_leave_holes_and_use_another_unit_in_each_band(self):
+        self.assertEqual(self.bands("--bands", "18:36,10:20rpm"), [(18, 36), (60, 120)])
+
+    def test_a_mixture_of_numbers_with_and_without_unit_is_refused(self):
+        done = design(*with_option(PAPER, "--speed"), "--speed", "0.3rad/s:3:0.3")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("mixes numbers with and without a unit", done.stderr)
+
+
+class Refusals(unittest.TestCase):
+    def refused(self, words, *parts):
+        done = design(*words)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    def test_a_centre_not_below_half_the_sample_rate(self):
+        self.refused(with_option(PAPER, "--sample-rate", "190Hz"), "band 9 (162-180 deg/s)", "95 Hz",
+                     "not below half the sample rate, 95 Hz")
+
+    def test_q_of_zero_or_less_or_not_a_number(self):
+        self.refused(with_option(PAPER, "--q", "0"), "Q 0 is not above 0")
+        self.refused(with_option(PAPER, "--q", "-1"), "Q -1 is not above 0")
+        self.refused(with_option(PAPER, "--q", "nan"), "nan")
+
+    def test_bands_that_overlap_run_backward_or_are_empty(self):
+        listed = with_option(PAPER, "--speed") + ["--bands"]
+        self.refused(listed + ["18:36,30:60"], "band 2 (30-60 deg/s) overlaps band 1 (18-36 deg/s)")
+        self.refused(listed + ["36:18"], "must end above its start")
+        self.refused(listed + ["18:18"], "must end above its start")
+        self.refused(listed + ["18"], "'18' is not FROM:TO")
+        self.refused(listed + [""], "cannot read ''")
+
+    def test_a_range_that_is_uneven_empty_or_negative(self):
+        self.refused(with_option(PAPER, "--speed", "18:180:20"), "does not divide into whole bands", "18 deg/s gives 9")
+        self.refused(with_option(PAPER, "--speed", "180:18:18"), "must end above its start")
+        self.refused(with_option(PAPER, "--speed", "18:180:0"), "band width 0 deg/s")
+        self.refused(with_option(PAPER, "--speed", "18:180"), "how wide a band is")
+        self.refused(with_option(PAPER, "--speed", "18:180:18:5"), "is not FROM:TO:WIDTH")
+        self.refused(PAPER + ["--spacing", "5Hz"], "already says how wide")
+        self.refused(PAPER + ["--bands", "18:36"], "cannot be combined")
+
+    def test_whatever_is_missing_is_named_with_its_option(self):
+        self.refused(with_option(PAPER, "--gear-ratio"), "--gear-ratio")
+        self.refused(with_option(PAPER, "--orders"), "--orders")
+        self.refused(with_option(PAPER, "--sample-rate"), "--sample-rate")
+        self.refused(with_option(PAPER, "--speed"), "--speed FROM:TO:WIDTH")
+
+    def test_orders_and_ratio_that_make_no_sense(self):
+        self.refused(with_option(PAPER, "--orders", "0,1"), "order 0 is not above 0")
+        self.refused(with_option(PAPER, "--orders", "1,1"), "each order once")
+        self.refused(with_option(PAPER, "--gear-ratio", "-100"), "gear ratio -100")
+
+    def test_a_digital_width_wider_than_the_spectrum(self):
+        self.refused(with_option(PAPER, "--q", "0.1") + ["--width", "digital"], "Hz wide", "analog")
+
+    def test_two_forms_at_once(self):
+        self.refused(PAPER + ["--json", "--format", "csv"], "two different outputs")
+
+
+class Warnings(unittest.TestCase):
+    def test_a_band_that_reaches_beyond_half_the_sample_rate_is_warned_of(self):
+        done = design(*with_option(PAPER, "--sample-rate", "191Hz"))
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("warning: band 9 (162-180 deg/s): order 2 passes half the sample rate at 171.9 deg/s", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
