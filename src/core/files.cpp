@@ -6,10 +6,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "ripplenotch/core/error.hpp"
@@ -78,11 +80,19 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
     }
 }
 
+ByteSource::ByteSource(std::string name, std::shared_ptr<const std::string> bytes, std::size_t piece_size)
+    : name_(std::move(name)), bytes_(std::move(bytes)), piece_size_(piece_size) {}
+
 ByteSource::~ByteSource() {
     if (owns_) ::close(descriptor_);
 }
 
 std::size_t ByteSource::read(char* into, std::size_t size) {
+    if (bytes_) {
+        const std::size_t taken = bytes_->copy(into, std::min(size, piece_size_), given_);
+        given_ += taken;
+        return taken;
+    }
     while (true) {
         const ssize_t got = ::read(descriptor_, into, size);
         if (got >= 0) return static_cast<std::size_t>(got);

@@ -17,6 +17,8 @@ class ByteSource {
     /// Throws FileError naming the path and the system's reason, UsageError when "-" is a terminal: nobody
     /// wants to type a log, and a tool that waits in silence looks broken.
     explicit ByteSource(const std::string& path);
+    /// Bytes already in memory, under a name for messages, given out in pieces of at most `piece_size`.
+    ByteSource(std::string name, std::shared_ptr<const std::string> bytes, std::size_t piece_size = std::size_t(-1));
     ~ByteSource();
     ByteSource(const ByteSource&) = delete;
     ByteSource& operator=(const ByteSource&) = delete;
@@ -28,6 +30,8 @@ class ByteSource {
 
   private:
     std::string name_;
+    std::shared_ptr<const std::string> bytes_;
+    std::size_t piece_size_ = 0, given_ = 0;
     int descriptor_ = -1;
     bool owns_ = false;
 };

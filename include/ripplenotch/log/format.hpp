@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A log format is a record: one file in src/log/formats, one line in formats.def. Law tests run over the whole list.
+// A log format is a record: one file in src/log/formats, one line in formats.def. Law tests run over the
+// whole list.
 
 #include <memory>
 #include <span>
@@ -16,12 +17,13 @@ namespace ripplenotch {
 /// A run of consecutive rows of the chosen joint, in the tool's units, with the bytes they came from.
 /// Reused between calls; the vectors keep their capacity.
 struct RowBlock {
-    std::size_t first_row = 0;   ///< 0-based number of the first row in the log
-    std::vector<double> time_s, velocity_deg_s, torque_nm, position_deg;  ///< equal lengths; position may be empty
-    std::string bytes;           ///< the rows as they stand in the file, line ends included
+    std::size_t first_row = 0;  ///< 0-based number of the first row in the log
+    std::vector<double> time_s, velocity_deg_s, torque_nm,
+        position_deg;   ///< equal lengths; position may be empty
+    std::string bytes;  ///< the rows as they stand in the file, line ends included
     std::vector<std::size_t> torque_begin, torque_end;  ///< per row, offsets into `bytes` of the torque cell
-    std::vector<std::size_t> row_end;                   ///< per row, offset just past the row's last byte of content
-    std::size_t held_bad_values = 0;                    ///< cells replaced because hold_bad_values was set
+    std::vector<std::size_t> row_end;  ///< per row, offset just past the row's last byte of content
+    std::size_t held_bad_values = 0;   ///< cells replaced because hold_bad_values was set
 
     [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
 };
@@ -44,7 +46,7 @@ struct WriteOptions {
     enum class Decimals { shortest, input, fixed };
     Decimals decimals = Decimals::shortest;
     int fixed_decimals = 6;
-    bool append = false;          ///< add a column instead of replacing the torque
+    bool append = false;                          ///< add a column instead of replacing the torque
     std::string append_name = "torque_filtered";  ///< its name; a unit is added as in the torque column
 };
 
@@ -52,7 +54,8 @@ struct WriteOptions {
 class LogWriter {
   public:
     virtual ~LogWriter() = default;
-    /// `torque_nm` has block.size() entries, in newton-metres; it is written in the unit of the torque column.
+    /// `torque_nm` has block.size() entries, in newton-metres; it is written in the unit of the torque
+    /// column.
     virtual void write(const RowBlock& block, std::span<const double> torque_nm) = 0;
     /// Completes the file; nothing appears under its name before. `tail` from the reader.
     virtual void finish(std::string_view tail) = 0;
@@ -60,13 +63,13 @@ class LogWriter {
 
 /// A table of named numeric columns to be written as a new log (simulate, conversions, spectra).
 struct NumberColumn {
-    std::string name;              ///< with its unit: "torque_nm"
+    std::string name;  ///< with its unit: "torque_nm"
     std::vector<double> values;
 };
 
 struct LogFormat {
     std::string_view name, summary;
-    std::span<const std::string_view> extensions;          ///< ".csv", ".txt"
+    std::span<const std::string_view> extensions;  ///< ".csv", ".txt"
     bool binary = false;
     /// True when these first bytes of a file are surely this format.
     bool (*sniff)(std::string_view first_bytes) = nullptr;
@@ -76,7 +79,11 @@ struct LogFormat {
     /// A writer for rows of a log that was read in this same format: other columns pass byte for byte.
     std::unique_ptr<LogWriter> (*rewrite)(std::unique_ptr<ByteSink> sink, const LogReader& reader,
                                           const WriteOptions& options) = nullptr;
-    /// Writes columns of equal length as a new log.
+    /// A writer for rows of a log that was read in another format: time_s, velocity_deg_s, torque_nm and
+    /// position_deg of the chosen joint.
+    std::unique_ptr<LogWriter> (*convert)(std::unique_ptr<ByteSink> sink, const LogReader& reader,
+                                          const WriteOptions& options) = nullptr;
+    /// Writes columns of equal length as a new log; finishing the sink stays with the caller.
     void (*write_columns)(ByteSink& sink, std::span<const NumberColumn> columns) = nullptr;
 };
 

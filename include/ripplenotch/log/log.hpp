@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The front door of the log room: open a log as a stream, or read a whole log into memory with its time base examined.
+// The front door of the log room: open a log as a stream, or read a whole log into memory with its time base
+// examined.
 
 #include <memory>
 #include <string>
@@ -12,10 +13,14 @@
 
 namespace ripplenotch {
 
-/// Opens a path or "-". Format: options.format, else magic bytes, else CSV. Throws FileError, DataError, UsageError.
+/// Opens a path or "-". Format: options.format, else magic bytes, else CSV. Throws FileError, DataError,
+/// UsageError.
 [[nodiscard]] std::unique_ptr<LogReader> open_log(const std::string& path, const ReadOptions& options);
+[[nodiscard]] std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source,
+                                                  const ReadOptions& options);
 
-/// A writer for the rows of `reader` into `path` or "-": byte for byte when formats agree, converted otherwise.
+/// A writer for the rows of `reader` into `path` or "-": byte for byte when formats agree, converted
+/// otherwise.
 [[nodiscard]] std::unique_ptr<LogWriter> rewrite_log(const std::string& path, const LogReader& reader,
                                                      const LogFormat& format, const WriteOptions& options,
                                                      ByteSink::Overwrite overwrite);
@@ -23,13 +28,14 @@ namespace ripplenotch {
 /// A whole log of one joint.
 struct Log {
     Layout layout;
-    Trace trace;               ///< sample_rate is timebase.sample_rate
+    Trace trace;  ///< sample_rate is timebase.sample_rate
     Timebase timebase;
     std::size_t held_bad_values = 0;
 };
 
 /// Reads everything. With options.joint "all" use read_joints.
 [[nodiscard]] Log read_log(const std::string& path, const ReadOptions& options);
+[[nodiscard]] Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 
 /// One Log per joint of the file (only those with a velocity or position and a torque).
 [[nodiscard]] std::vector<Log> read_joints(const std::string& path, const ReadOptions& options);

@@ -15,21 +15,21 @@ namespace ripplenotch {
 
 /// A step longer than the gap limit: samples `row` and `row + 1` belong to different runs.
 struct Gap {
-    std::size_t row = 0;      ///< last row before the gap, 0-based
+    std::size_t row = 0;  ///< last row before the gap, 0-based
     double from_s = 0.0, to_s = 0.0;
 };
 
 struct Timebase {
-    Hertz sample_rate;            ///< (rows - 1) / duration, gaps left out: not 1 / median step
+    Hertz sample_rate;  ///< (rows - 1) / duration, gaps left out: not 1 / median step
     Seconds median_step;
     Seconds shortest_step, longest_step;
-    Seconds jitter;               ///< rms deviation of the steps from their mean, gaps left out
+    Seconds jitter;  ///< rms deviation of the steps from their mean, gaps left out
     std::vector<Gap> gaps;
-    std::size_t repeated_times = 0;    ///< steps of exactly zero
-    std::size_t held_samples = 0;      ///< torque samples equal to the one before, while the joint moves
-    std::size_t longest_hold = 0;      ///< rows
-    /// Change of position divided by integrated velocity, by robust regression over the log; 1 when the clock, the
-    /// velocity unit and the position unit agree. Empty without position or without motion.
+    std::size_t repeated_times = 0;  ///< steps of exactly zero
+    std::size_t held_samples = 0;    ///< torque samples equal to the one before, while the joint moves
+    std::size_t longest_hold = 0;    ///< rows
+    /// Change of position divided by integrated velocity, by robust regression over the log; 1 when the
+    /// clock, the velocity unit and the position unit agree. Empty without position or without motion.
     std::optional<double> clock_factor;
     std::vector<std::string> warnings;  ///< one sentence each, naming factors
 };
@@ -37,7 +37,8 @@ struct Timebase {
 /// A gap is a step of more than `gap_steps` median steps.
 inline constexpr double default_gap_steps = 10.0;
 
-/// `stated_rate` is from --sample-rate; then times are already uniform and only held samples and the clock are checked.
+/// `stated_rate` is from --sample-rate; then times are already uniform and only held samples and the clock
+/// are checked.
 [[nodiscard]] Timebase examine_timebase(const TraceView& trace, double gap_steps = default_gap_steps);
 
 }  // namespace ripplenotch

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+#include "log/csv_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "log/decide_layout.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t piece_size = std::size_t{1} << 20;
+constexpr std::size_t sniff_size = std::size_t{1} << 16;
+enum Slot : std::size_t { time_slot, velocity_slot, torque_slot, position_slot };
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+// Reads on until `size` bytes are there; true when the source ended before.
+bool read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
+    std::size_t have = bytes.size();
+    bytes.resize(size);
+    std::size_t got = 1;
+    while (have < size && got > 0) {
+        got = source.read(bytes.data() + have, size - have);
+        have += got;
+    }
+    bytes.resize(have);
+    return got == 0;
+}
+
+std::size_t line_ends(std::string_view bytes) {
+    return static_cast<std::size_t>(
+        std::count_if(bytes.begin(), bytes.end(), [](char c) { return c == '\n' || c == '\r'; }));
+}
+
+std::string dialect_options(const TextDialect& dialect) {
+    const std::string name = delimiter_name(dialect.rules.delimiter);
+    return fmt::format("--delimiter {} --decimal {}{}", name == ";" ? "';'" : name,
+                       dialect.rules.decimal_mark, dialect.has_header ? "" : " --no-header");
+}
+
+std::string shown(std::string_view text) {
+    return text.size() <= 40 ? std::string(text) : std::string(text.substr(0, 37)) + "...";
+}
+
+}  // namespace
+
+CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
+    : source_(std::move(source)), options_(options) {
+    at_end_ = read_up_to(*source_, first_bytes, sniff_size);
+    // Lines may be long: a verdict on them needs a few whole ones.
+    for (std::size_t size = 2 * sniff_size;
+         !at_end_ && line_ends(first_bytes) < 8 && size <= 8 * longest_line; size *= 2) {
+        at_end_ = read_up_to(*source_, first_bytes, size);
+    }
+    dialect_ = sniff_text(first_bytes, at_end_, source_->name(), options);
+    ColumnFacts facts{dialect_.names, dialect_.units, dialect_.columns, std::move(dialect_.sample),
+                      dialect_options(dialect_)};
+    layout_ = decide_layout(source_->name(), "csv", facts, options);
+    head_ = first_bytes.substr(0, dialect_.data_offset);
+    carry_ = first_bytes.substr(dialect_.data_offset);
+    line_ = dialect_.data_line;
+    plan_columns();
+}
+
+void CsvReader::plan_columns() {
+    const JointColumns& chosen = layout_.chosen;
+    const std::array columns = {chosen.time, chosen.velocity, chosen.torque, chosen.position};
+    for (std::size_t slot = 0; slot < columns.size(); ++slot) {
+        before_[slot] = not_a_number;
+        if (!columns[slot]) continue;
+        wanted_.push_back({*columns[slot], slot});
+        factors_[slot] = layout_.columns[*columns[slot]].factor;
+    }
+    std::sort(wanted_.begin(), wanted_.end(),
+              [](const auto& a, const auto& b) { return a.column < b.column; });
+    parser_.emplace(dialect_.rules, dialect_.columns, wanted_, static_cast<std::size_t>(torque_slot));
+}
+
+// Whole lines into `bytes`, the rest into carry_. False when there is nothing more.
+bool CsvReader::fill(std::string& bytes) {
+    bytes.swap(carry_);
+    carry_.clear();
+    while (true) {
+        const std::size_t end = bytes.rfind(dialect_.line_end);
+        if (end != std::string::npos) {
+            carry_.assign(bytes, end + 1);
+            bytes.resize(end + 1);
+            last_line_complete_ = true;
+            return true;
+        }
+        if (at_end_) {
+            last_line_complete_ = false;
+            return !bytes.empty();
+        }
+        if (bytes.size() > longest_line) {
+            raise<DataError>(
+                "{}:{}: read a line of more than 1 MiB, expected rows of {} cells; check that this is a text "
+                "log",
+                source_->name(), line_, dialect_.columns);
+        }
+        buffer_.resize(piece_size);
+        const std::size_t got = source_->read(buffer_.data(), buffer_.size());
+        at_end_ = got == 0;
+        bytes.append(buffer_.data(), got);
+    }
+}
+
+bool CsvReader::next(RowBlock& block) {
+    block.first_row = rows_;
+    block.bytes.clear();
+    block.held_bad_values = 0;
+    for (auto* values : {&block.time_s, &block.velocity_deg_s, &block.torque_nm, &block.position_deg})
+        values->clear();
+    for (auto* offsets : {&block.torque_begin, &block.torque_end, &block.row_end}) offsets->clear();
+
+    std::string pending;  // comments and blank lines before the first row of the block
+    while (true) {
+        if (!fill(block.bytes)) {
+            if (rows_ == 0) raise<DataError>("{}: read no row, expected rows of numbers", source_->name());
+            tail_ = std::move(pending);
+            block.bytes.clear();
+            return false;
+        }
+        std::size_t begin = pending.size();
+        if (begin > 0) block.bytes.insert(0, pending);
+        while (begin < block.bytes.size()) {
+            const char* const base = block.bytes.data();
+            const void* const found =
+                std::memchr(base + begin, dialect_.line_end, block.bytes.size() - begin);
+            const std::size_t end = found == nullptr
+                                        ? block.bytes.size()
+                                        : static_cast<std::size_t>(static_cast<const char*>(found) - base);
+            take_line(block, begin, end);
+            ++line_;
+            begin = end + 1;
+        }
+        if (block.size() > 0) return true;
+        if (block.bytes.size() > longest_line) {
+            raise<DataError>(
+                "{}:{}: read more than 1 MiB without a row, expected rows of numbers; remove the comments",
+                source_->name(), line_);
+        }
+        pending.swap(block.bytes);
+    }
+}
+
+void CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
+    const char* const base = block.bytes.data();
+    if (end > begin && base[end - 1] == '\r') --end;
+    ParsedRow row;
+    if (!parser_->parse(base + begin, base + end, row)) {
+        const std::string_view line(base + begin, end - begin);
+        if (is_blank_line(line) || is_comment_line(line)) return;
+        if (line == "EOF") {
+            end_mark_seen_ = true;
+            return;
+        }
+        parse_carefully(line, block, row);
+    }
+    if (end_mark_seen_)
+        complain(1,
+                 "read a row after the line EOF, expected the end; remove the line EOF or what follows it");
+    append_row(block, row);
+    block.torque_begin.push_back(
+        row.torque_begin == nullptr ? begin : static_cast<std::size_t>(row.torque_begin - base));
+    block.torque_end.push_back(row.torque_begin == nullptr ? begin
+                                                           : static_cast<std::size_t>(row.torque_end - base));
+    block.row_end.push_back(static_cast<std::size_t>(row.content_end - base));
+}
+
+void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row) {
+    split_cells(line, dialect_.rules.delimiter, split_);
+    const auto& cells = split_.cells;
+    if (split_.unclosed) {
+        complain(cells.back().begin,
+                 "read a quote that is not closed on its line, expected its end; mend or remove the line");
+    }
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (static_cast<unsigned char>(line[i]) < 0x20 && line[i] != '\t' && line[i] != '\f') {
+            complain(i + 1,
+                     fmt::format(
+                         "read the byte 0x{:02x}, expected text; the file is damaged here, remove the line",
+                         static_cast<unsigned>(static_cast<unsigned char>(line[i]))));
+        }
+    }
+    if (cells.size() != dialect_.columns) {
+        const bool cut = !last_line_complete_ && cells.size() < dialect_.columns;
+        complain(cells.empty() ? 1 : cells.back().end + 1,
+                 fmt::format("read {} cells, expected {}; {}", cells.size(), dialect_.columns,
+                             cut ? "the last line is cut off: remove it, e.g. with head -n -1"
+                                 : "mend or remove the line"));
+    }
+    for (const WantedColumn& wanted : wanted_) {
+        const Cell& cell = cells[wanted.column];
+        row.values[wanted.slot] = read_cell(line, cell, wanted.slot, block);
+        if (wanted.slot == torque_slot) {
+            row.torque_begin = line.data() + cell.begin;
+            row.torque_end = line.data() + cell.end;
+        }
+    }
+    const Cell& last = cells.back();
+    row.content_end = line.data() + last.end + (last.quoted ? 1 : 0);
+}
+
+double CsvReader::read_cell(std::string_view line, const Cell& cell, std::size_t slot, RowBlock& block) {
+    const std::string_view text = cell.of(line);
+    const auto number = parse_number(text, dialect_.rules.decimal_mark);
+    if (number && std::isfinite(*number)) return *number;
+    const auto column =
+        std::find_if(wanted_.begin(), wanted_.end(), [&](const WantedColumn& w) { return w.slot == slot; });
+    const std::string name = column_label(dialect_.names, column->column);
+    // "NA", "null" and the like are texts; only what is empty or a nan of arithmetic counts as a missing
+    // value.
+    const bool missing = text.empty() || (number && std::isnan(*number));
+    if (missing && options_.hold_bad_values && slot != time_slot && rows_ > 0) {
+        ++block.held_bad_values;
+        return before_[slot];
+    }
+    std::string remedy = "mend or remove the line";
+    if (missing && slot != time_slot) {
+        remedy = options_.hold_bad_values
+                     ? "the first row has no value before it: remove the line"
+                     : "mend the line, or say --hold-bad-values to repeat the value before";
+    } else if (!number && dialect_.rules.delimiter != ',' &&
+               text.find(dialect_.rules.decimal_mark == '.' ? ',' : '.') != std::string_view::npos) {
+        remedy =
+            fmt::format("mend the line, or say --decimal {}", dialect_.rules.decimal_mark == '.' ? ',' : '.');
+    }
+    complain(cell.begin + 1, fmt::format("read {} in {}, expected a {}number; {}",
+                                         text.empty() ? std::string("nothing") : "'" + shown(text) + "'",
+                                         name, number ? "finite " : "", remedy));
+}
+
+void CsvReader::append_row(RowBlock& block, const ParsedRow& row) {
+    const JointColumns& chosen = layout_.chosen;
+    if (chosen.time) {
+        const double time = row.values[time_slot];
+        if (time < before_[time_slot]) {
+            complain(
+                1,
+                fmt::format(
+                    "read the time {} after {}, expected time to run forward; sort or split the log, or say "
+                    "--sample-rate if the clock is of no use",
+                    shortest(time), shortest(before_[time_slot])));
+        }
+        block.time_s.push_back(time * factors_[time_slot]);
+    } else {
+        block.time_s.push_back(layout_.stated_rate ? static_cast<double>(rows_) / layout_.stated_rate->value()
+                                                   : not_a_number);
+    }
+    block.velocity_deg_s.push_back(chosen.velocity ? row.values[velocity_slot] * factors_[velocity_slot]
+                                                   : not_a_number);
+    block.torque_nm.push_back(chosen.torque ? row.values[torque_slot] * factors_[torque_slot] : not_a_number);
+    if (chosen.position) block.position_deg.push_back(row.values[position_slot] * factors_[position_slot]);
+    before_ = row.values;
+    ++rows_;
+}
+
+void CsvReader::complain(std::size_t column, const std::string& sentence) const {
+    raise<DataError>("{}:{}:{}: {}", source_->name(), line_, column, sentence);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Rows of a text log, a block at a time, in bounded memory.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "log/row_parser.hpp"
+#include "log/text_dialect.hpp"
+#include "ripplenotch/log/format.hpp"
+
+namespace ripplenotch {
+
+class CsvReader : public LogReader {
+  public:
+    CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);
+
+    [[nodiscard]] const Layout& layout() const override { return layout_; }
+    [[nodiscard]] std::string_view head() const override { return head_; }
+    bool next(RowBlock& block) override;
+    [[nodiscard]] std::string_view tail() const override { return tail_; }
+
+    [[nodiscard]] const TextDialect& dialect() const { return dialect_; }
+
+  private:
+    void plan_columns();
+    bool fill(std::string& bytes);
+    void take_line(RowBlock& block, std::size_t begin, std::size_t end);
+    void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
+    double read_cell(std::string_view line, const Cell& cell, std::size_t slot, RowBlock& block);
+    void append_row(RowBlock& block, const ParsedRow& row);
+    [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
+
+    std::unique_ptr<ByteSource> source_;
+    ReadOptions options_;
+    TextDialect dialect_;
+    Layout layout_;
+    std::string head_, tail_;
+    std::vector<char> buffer_;        ///< one piece, as read
+    std::string carry_;               ///< bytes after the last complete line
+    bool at_end_ = false;             ///< the source has no more bytes
+    bool last_line_complete_ = true;  ///< the line being read has its line end
+    bool end_mark_seen_ = false;      ///< a line "EOF"
+    std::size_t line_ = 1;            ///< number of the line being read
+    std::size_t rows_ = 0;
+    std::optional<RowParser> parser_;
+    std::vector<WantedColumn> wanted_;
+    std::array<double, 4> factors_{};
+    std::array<double, 4> before_{};  ///< the row before, as in the file
+    CellSplit split_;
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "log/csv_writer.hpp"
+
+#include <algorithm>
+
+#include "log/unit_text.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+int decimals_of(std::string_view number, char decimal_mark) {
+    const std::size_t mark = number.find(decimal_mark);
+    if (mark == std::string_view::npos) return 0;
+    std::size_t at = mark + 1;
+    while (at < number.size() && number[at] >= '0' && number[at] <= '9') ++at;
+    return static_cast<int>(std::min<std::size_t>(at - mark - 1, 17));
+}
+
+}  // namespace
+
+std::string appended_name(const std::string& wanted, const std::string& torque_name) {
+    const NameAndUnit parts = split_unit(torque_name);
+    if (parts.unit.empty()) return wanted;
+    // Whatever stands between the name and the unit stays: "_Nm", " [Nm]", "(Nm)".
+    const std::size_t at = torque_name.rfind(parts.unit);
+    const std::size_t from = torque_name.find(parts.name) + parts.name.size();
+    return wanted + torque_name.substr(from, at - from) + torque_name.substr(at);
+}
+
+CsvWriter::CsvWriter(std::unique_ptr<ByteSink> sink, const CsvReader& reader, const WriteOptions& options)
+    : sink_(std::move(sink)), options_(options), rules_(reader.dialect().rules) {
+    const auto torque = reader.layout().chosen.torque;
+    if (!torque) raise<UsageError>("{}: there is no torque column to write", reader.layout().source);
+    factor_ = reader.layout().columns[*torque].factor;
+    write_head(reader);
+}
+
+void CsvWriter::write_head(const CsvReader& reader) {
+    const std::string_view head = reader.head();
+    const TextDialect& dialect = reader.dialect();
+    if (!options_.append || !dialect.has_header) {
+        sink_->write(head);
+        return;
+    }
+    const Column& torque = reader.layout().columns[*reader.layout().chosen.torque];
+    std::string name = appended_name(options_.append_name, torque.name);
+    if (dialect.quoted_names || name.find(rules_.delimiter) != std::string::npos) name = '"' + name + '"';
+    std::string unit;
+    if (dialect.unit_row_end > 0) {
+        unit = dialect.units[*reader.layout().chosen.torque];
+        // The unit row's own brackets are copied from the torque's cell.
+        const std::size_t at = head.find(unit, dialect.header_end);
+        if (at != std::string::npos && at > 0 && (head[at - 1] == '[' || head[at - 1] == '(')) {
+            unit = head[at - 1] + unit + (head[at - 1] == '[' ? ']' : ')');
+        }
+    }
+    std::string changed(head.substr(0, dialect.header_end));
+    changed += rules_.delimiter + name;
+    if (dialect.unit_row_end > 0) {
+        changed.append(head, dialect.header_end, dialect.unit_row_end - dialect.header_end);
+        changed += rules_.delimiter + unit;
+        changed.append(head, dialect.unit_row_end);
+    } else {
+        changed.append(head, dialect.header_end);
+    }
+    sink_->write(changed);
+}
+
+void CsvWriter::append_number(double value, std::string_view as_in) {
+    const std::size_t from = text_.size();
+    switch (options_.decimals) {
+        case WriteOptions::Decimals::shortest:
+            append_shortest(text_, value);
+            break;
+        case WriteOptions::Decimals::input:
+            append_fixed(text_, value, decimals_of(as_in, rules_.decimal_mark));
+            break;
+        case WriteOptions::Decimals::fixed:
+            append_fixed(text_, value, options_.fixed_decimals);
+            break;
+    }
+    if (rules_.decimal_mark == '.') return;
+    const std::size_t mark = text_.find('.', from);
+    if (mark != std::string::npos) text_[mark] = rules_.decimal_mark;
+}
+
+void CsvWriter::write(const RowBlock& block, std::span<const double> torque_nm) {
+    text_.clear();
+    const std::string_view bytes = block.bytes;
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+        const std::string_view cell =
+            bytes.substr(block.torque_begin[i], block.torque_end[i] - block.torque_begin[i]);
+        const double value = torque_nm[i] / factor_;
+        if (options_.append) {
+            text_.append(bytes, done, block.row_end[i] - done);
+            text_ += rules_.delimiter;
+            const bool quoted = rules_.delimiter == ',' && rules_.decimal_mark == ',';
+            if (quoted) text_ += '"';
+            append_number(value, cell);
+            if (quoted) text_ += '"';
+            done = block.row_end[i];
+        } else {
+            text_.append(bytes, done, block.torque_begin[i] - done);
+            append_number(value, cell);
+            done = block.torque_end[i];
+        }
+    }
+    text_.append(bytes, done);
+    sink_->write(text_);
+}
+
+void CsvWriter::finish(std::string_view tail) {
+    sink_->write(tail);
+    sink_->finish();
+}
+
+}  // namespace ripplenotch

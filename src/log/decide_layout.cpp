@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: MIT
+#include "log/decide_layout.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "log/column_name.hpp"
+#include "log/unit_text.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array motion_roles = {Role::velocity, Role::torque, Role::position};
+
+// All columns that could be one joint's velocity, torque or position.
+struct JointGroup {
+    std::string key, name;
+    std::map<Role, std::vector<std::size_t>> candidates;
+    [[nodiscard]] bool has(Role role) const { return candidates.count(role) > 0; }
+};
+
+class Decision {
+  public:
+    Decision(const std::string& source, const ColumnFacts& facts, const ReadOptions& options)
+        : source_(source),
+          facts_(facts),
+          options_(options),
+          forced_(layout_detail::read_columns_option(source, facts, options)) {}
+
+    Layout run(const std::string& format) {
+        layout_.source = source_;
+        layout_.format = format;
+        layout_.stated_rate = options_.sample_rate;
+        name_columns();
+        layout_.chosen.time =
+            layout_detail::choose_time(source_, facts_, forced_, options_, layout_.warnings);
+        if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
+        group_joints();
+        choose_joint();
+        state_units();
+        report_repeated_names();
+        layout_.options = layout_detail::options_line(layout_, facts_, options_);
+        return std::move(layout_);
+    }
+
+  private:
+    void name_columns() {
+        for (std::size_t c = 0; c < facts_.columns; ++c) {
+            Column column;
+            column.name = facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c];
+            layout_.columns.push_back(column);
+            names_.push_back(facts_.names.empty() ? ColumnName{} : read_column_name(facts_.names[c]));
+            if (names_[c].unit.empty() && !facts_.units.empty()) {
+                names_[c].unit = facts_.units[c];
+                names_[c].unit_is_sure = !facts_.units[c].empty();
+            }
+            if (forced_.roles[c]) {
+                names_[c].role = *forced_.roles[c];
+                names_[c].reference = false;
+                names_[c].rank = 0;
+                names_[c].current = names_[c].current || is_current_unit(names_[c].unit);
+            }
+        }
+    }
+
+    void group_joints() {
+        collect_groups(false);
+        const auto complete = [this](const JointGroup& group) {
+            const auto has = [&](Role role) { return group.has(role) || forced_.column_of(role); };
+            return has(Role::torque) && (has(Role::velocity) || has(Role::position));
+        };
+        if (groups_.empty() && (forced_.column_of(Role::torque) || forced_.column_of(Role::velocity))) {
+            const auto torque = forced_.column_of(Role::torque);
+            const std::string joint = torque && !forced_.by_place ? names_[*torque].joint : "";
+            groups_.push_back({joint_key(joint), joint, {}});
+        }
+        if (std::none_of(groups_.begin(), groups_.end(), complete) && groups_.size() > 1 && !options_.joint) {
+            // "motor_torque" beside "link_velocity": one joint whose columns are named after different
+            // things.
+            std::array<std::size_t, 3> counts{};
+            for (std::size_t r = 0; r < motion_roles.size(); ++r) {
+                for (const JointGroup& group : groups_) counts[r] += group.has(motion_roles[r]);
+            }
+            if (std::all_of(counts.begin(), counts.end(), [](std::size_t n) { return n <= 1; })) {
+                groups_.clear();
+                collect_groups(true);
+            }
+        }
+        const bool any_complete = std::any_of(groups_.begin(), groups_.end(), complete);
+        if (any_complete) {
+            groups_.erase(std::remove_if(groups_.begin(), groups_.end(),
+                                         [&](const JointGroup& g) { return !complete(g); }),
+                          groups_.end());
+        }
+        for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
+    }
+
+    void collect_groups(bool merge) {
+        for (const bool reference : {false, true}) {
+            for (std::size_t c = 0; c < facts_.columns; ++c) {
+                const ColumnName& name = names_[c];
+                if (forced_.roles[c] || name.reference != reference) continue;
+                if (name.role == Role::other || name.role == Role::time) continue;
+                const std::string key = merge ? "" : joint_key(name.joint);
+                auto group = std::find_if(groups_.begin(), groups_.end(),
+                                          [&](const JointGroup& g) { return g.key == key; });
+                if (group == groups_.end()) {
+                    if (reference && !groups_.empty()) continue;  // a wish alone does not make a joint
+                    groups_.push_back({key, merge ? "" : name.joint, {}});
+                    group = groups_.end() - 1;
+                }
+                group->candidates[name.role].push_back(c);
+            }
+        }
+    }
+
+    // The one column for a role; several equally good ones are an error.
+    std::optional<std::size_t> choose(const JointGroup& group, Role role) {
+        if (const auto forced = forced_.column_of(role)) return forced;
+        const auto found = group.candidates.find(role);
+        if (found == group.candidates.end()) return std::nullopt;
+        const auto cost = [this](std::size_t c) { return names_[c].rank + (names_[c].reference ? 100 : 0); };
+        int lowest = 1000;
+        for (const std::size_t c : found->second) lowest = std::min(lowest, cost(c));
+        std::vector<std::size_t> best, still;
+        for (const std::size_t c : found->second) {
+            if (cost(c) != lowest) continue;
+            const bool moves = facts_.sample.empty() || layout_detail::varies(facts_.sample[c]);
+            (moves ? best : still).push_back(c);
+        }
+        if (best.empty()) best.swap(still);
+        if (best.size() > 1) refuse_tie(role, best);
+        if (!still.empty()) {
+            layout_.warnings.push_back(
+                fmt::format("{} does not change at the start of the log; the {} is taken from {}; --columns "
+                            "{}=NAME decides otherwise",
+                            column_label(facts_.names, still.front()), role_name(role),
+                            column_label(facts_.names, best.front()), role_name(role)));
+        }
+        if (names_[best.front()].reference) {
+            layout_.warnings.push_back(
+                fmt::format("{} is a wish or a model, not a measurement, and the only {} here",
+                            column_label(facts_.names, best.front()), role_name(role)));
+        }
+        return best.front();
+    }
+
+    [[noreturn]] void refuse_tie(Role role, const std::vector<std::size_t>& best) const {
+        std::vector<std::string> labels, choices;
+        for (const std::size_t c : best) {
+            labels.push_back(column_label(facts_.names, c));
+            const bool repeated = std::count(facts_.names.begin(), facts_.names.end(), facts_.names[c]) > 1;
+            choices.push_back(fmt::format("--columns {}={}", role_name(role),
+                                          repeated ? std::to_string(c + 1) : facts_.names[c]));
+        }
+        raise<DataError>("{}: {} could each be the {}; say {}", source_, fmt::join(labels, " and "),
+                         role_name(role), fmt::join(choices, " or "));
+    }
+
+    void choose_joint() {
+        const JointGroup* group = nullptr;
+        if (options_.joint) {
+            for (const JointGroup& candidate : groups_) {
+                if (candidate.key == joint_key(*options_.joint)) group = &candidate;
+            }
+            if (group == nullptr && groups_.size() == 1 && groups_[0].name.empty()) {
+                raise<UsageError>("--joint {}: {} holds one joint without a name; leave --joint out",
+                                  *options_.joint, source_);
+            }
+            if (group == nullptr) {
+                raise<UsageError>("--joint {}: {} has no such joint; it has {}", *options_.joint, source_,
+                                  layout_.joints.empty()
+                                      ? "none with velocity and torque"
+                                      : fmt::format("{}", fmt::join(layout_.joints, ", ")));
+            }
+        } else if (groups_.size() == 1) {
+            group = &groups_.front();
+        } else if (groups_.size() > 1 && forced_.column_of(Role::torque)) {
+            const std::string key = joint_key(names_[*forced_.column_of(Role::torque)].joint);
+            for (const JointGroup& candidate : groups_) {
+                if (candidate.key == key) group = &candidate;
+            }
+        }
+        if (group == nullptr && groups_.size() > 1 && options_.needs_torque) {
+            raise<DataError>(
+                "{}: read {} joints ({}), expected one; say which with --joint {}, or --joint all", source_,
+                groups_.size(), fmt::join(layout_.joints, ", "), layout_.joints.front());
+        }
+        if (group != nullptr) {
+            layout_.chosen.joint = group->name;
+            layout_.chosen.velocity = choose(*group, Role::velocity);
+            layout_.chosen.torque = choose(*group, Role::torque);
+            layout_.chosen.position = choose(*group, Role::position);
+        }
+        for (const JointGroup& each : groups_) give_roles(each, group == &each);
+        if (options_.needs_torque) require_torque_and_velocity();
+    }
+
+    void give_roles(const JointGroup& group, bool chosen) {
+        for (const Role role : motion_roles) {
+            if (chosen) {
+                const auto column = role == Role::velocity ? layout_.chosen.velocity
+                                    : role == Role::torque ? layout_.chosen.torque
+                                                           : layout_.chosen.position;
+                if (column) give_role(*column, role, group.name);
+                continue;
+            }
+            const auto found = group.candidates.find(role);
+            if (found == group.candidates.end()) continue;
+            for (const std::size_t c : found->second) {
+                if (!names_[c].reference) give_role(c, role, group.name);
+            }
+        }
+    }
+
+    void require_torque_and_velocity() const {
+        const auto names = facts_.names.empty()
+                               ? fmt::format("{} columns without names", facts_.columns)
+                               : fmt::format("{}", fmt::join(facts_.names, ", ")).substr(0, 400);
+        for (const auto& [column, role] : {std::pair{layout_.chosen.torque, Role::torque},
+                                           std::pair{layout_.chosen.velocity, Role::velocity}}) {
+            if (column) continue;
+            raise<DataError>(
+                "{}: read {}, expected a {} column; say which it is, with --columns {}=NAME{}", source_,
+                names, role_name(role), role_name(role),
+                facts_.names.empty() ? ", or all by place, with --columns time,velocity,torque" : "");
+        }
+    }
+
+    void give_role(std::size_t c, Role role, const std::string& joint) {
+        Column& column = layout_.columns[c];
+        column.role = role;
+        column.joint = joint;
+        std::string written = names_[c].unit;
+        if (const auto asked = asked_unit(column.name, role)) {
+            const auto usual = usual_unit(*asked, role);
+            if (!usual || !role_factor(role, *usual, 1.0)) {
+                raise<UsageError>("--unit: '{}' is no unit of {}; write one of {}", *asked, role_name(role),
+                                  unit_list(role));
+            }
+            written = *usual;
+        }
+        if (written.empty()) {
+            column.unit_assumed = true;
+            written =
+                role == Role::torque && names_[c].current ? "A" : std::string(base_unit(dimension_of(role)));
+        }
+        const auto usual = usual_unit(written, role);
+        const auto factor =
+            usual ? role_factor(role, *usual, options_.nm_per_ampere.value_or(1.0)) : std::nullopt;
+        if (factor) {
+            column.unit = *usual;
+            column.factor = *factor;
+        } else if (is_chosen(c)) {
+            raise<DataError>(
+                "{}: read {} in '{}', expected a {} in {}; if the header is wrong, say --unit {}={}", source_,
+                column_label(facts_.names, c), written, role_name(role), unit_list(role), role_name(role),
+                base_unit(dimension_of(role)));
+        } else {
+            column.role = Role::other;
+            column.joint.clear();
+        }
+    }
+
+    bool is_chosen(std::size_t c) const {
+        const JointColumns& chosen = layout_.chosen;
+        return chosen.time == c || chosen.velocity == c || chosen.torque == c || chosen.position == c;
+    }
+
+    std::optional<std::string> asked_unit(const std::string& name, Role role) const {
+        for (const std::string& key : {name, std::string(role_name(role))}) {
+            if (const auto found = options_.units.find(key); found != options_.units.end())
+                return found->second;
+        }
+        return std::nullopt;
+    }
+
+    static std::string unit_list(Role role) {
+        std::string list = fmt::format("{}", fmt::join(unit_names(dimension_of(role)), ", "));
+        return role == Role::torque ? list + ", A, mA" : list;
+    }
+
+    // One sentence for all units that nobody stated.
+    void state_units() {
+        std::vector<std::string> taken, asked;
+        for (const auto& column :
+             {layout_.chosen.time, layout_.chosen.velocity, layout_.chosen.torque, layout_.chosen.position}) {
+            if (!column || !layout_.columns[*column].unit_assumed) continue;
+            const Column& c = layout_.columns[*column];
+            taken.push_back(fmt::format("{} as {}", column_label(facts_.names, *column), c.unit));
+            asked.push_back(fmt::format("--unit {}={}", role_name(c.role), c.unit));
+        }
+        if (!taken.empty()) {
+            layout_.warnings.push_back(
+                fmt::format("no unit is stated for what is read: took {}; {} settles it",
+                            fmt::join(taken, ", "), fmt::join(asked, " ")));
+        }
+        for (const auto& [key, unit] : options_.units) require_used_unit(key);
+        const auto torque = layout_.chosen.torque;
+        if (!torque) return;
+        const bool current = is_current_unit(layout_.columns[*torque].unit);
+        if (current && !options_.nm_per_ampere) {
+            layout_.warnings.push_back(
+                fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
+                            "amperes; --kt gives the joint's torque constant in Nm/A",
+                            column_label(facts_.names, *torque)));
+        }
+        if (!current && options_.nm_per_ampere) {
+            layout_.warnings.push_back(fmt::format("--kt has no effect: {} is in {}",
+                                                   column_label(facts_.names, *torque),
+                                                   layout_.columns[*torque].unit));
+        }
+    }
+
+    void require_used_unit(const std::string& key) const {
+        for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position}) {
+            if (key == role_name(role)) return;
+        }
+        for (const Column& column : layout_.columns) {
+            if (column.name == key) return;
+        }
+        raise<UsageError>(
+            "--unit: '{}' is neither a role (time, velocity, torque, position) nor a column of {}", key,
+            source_);
+    }
+
+    void report_repeated_names() {
+        std::set<std::string> seen, told;
+        for (const std::string& name : facts_.names) {
+            if (name.empty() || seen.insert(name).second || !told.insert(name).second) continue;
+            layout_.warnings.push_back(fmt::format("several columns are named '{}'", name));
+        }
+    }
+
+    const std::string& source_;
+    const ColumnFacts& facts_;
+    const ReadOptions& options_;
+    layout_detail::Forced forced_;
+    Layout layout_;
+    std::vector<ColumnName> names_;
+    std::vector<JointGroup> groups_;
+};
+
+}  // namespace
+
+std::string_view role_name(Role role) {
+    switch (role) {
+        case Role::time:
+            return "time";
+        case Role::velocity:
+            return "velocity";
+        case Role::torque:
+            return "torque";
+        case Role::position:
+            return "position";
+        case Role::other:
+            break;
+    }
+    return "other";
+}
+
+Layout decide_layout(const std::string& source, const std::string& format, const ColumnFacts& facts,
+                     const ReadOptions& options) {
+    return Decision(source, facts, options).run(format);
+}
+
+}  // namespace ripplenotch
