@@ -24,12 +24,20 @@ struct RippleLevels {
     std::vector<double> residual_peak_to_peak_nm;   ///< per signal: the same, median over windows
     std::vector<double> ripple_peak_to_peak_nm;     ///< per signal: of the fitted orders alone, largest window
     std::size_t windows = 0;                        ///< how many windows of usable motion were measured
+    std::size_t windows_too_few_samples = 0;        ///< dropped: highest order with under 3 samples a period
+    std::size_t windows_too_slow = 0;               ///< dropped: not a window's turns within 4 s
     double measured_share = 0.0;                    ///< samples in windows / samples seen
 };
 
 /// Feed rows in order; ask at the end. Signals are measured on the same windows, so that ratios are attenuations.
+///
+/// A window is eight motor turns in one direction (at least four where a run ends or turns back). In each, every signal
+/// is fitted by c0 + c1 s + c2 s^2 + sum of a_n cos(n theta) + b_n sin(n theta), s being time and theta the motor angle.
+/// Motor angle: gear ratio times position where there is one, since its error does not grow along a window, whereas a
+/// velocity that is 1 % off detunes order 2 by a sixth of a cycle in eight turns. Position is unwrapped at half turns.
 class RippleMeter {
   public:
+    /// Throws UsageError unless ratio, sample_rate and all orders are above 0 and signals is at least 1.
     RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz sample_rate, std::size_t signals);
     ~RippleMeter();
     RippleMeter(RippleMeter&&) noexcept;
@@ -37,7 +45,7 @@ class RippleMeter {
 
     /// position_deg may be nullptr: then the angle is integrated velocity. `torque_nm` has one value per signal.
     void add(double velocity_deg_s, const double* position_deg, std::span<const double> torque_nm);
-    /// A gap: the window under way is dropped.
+    /// A gap: what comes next does not continue the window under way.
     void split();
     [[nodiscard]] RippleLevels levels() const;
 

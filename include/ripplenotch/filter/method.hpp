@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A filter method is a record: one file in src/filter/methods, one line in methods.def. Law tests run over the list.
+// A filter method is a record: one file in src/filter/methods, one line in methods.def. Law tests run over
+// the list.
 
 #include <cstddef>
 #include <memory>
@@ -22,15 +23,20 @@ struct Samples {
 
 /// One change of filter while running.
 struct Switch {
-    std::size_t sample = 0;      ///< counted from the first sample given to the filter
-    int from_band = 0;           ///< band number, 0 for no filter
+    std::size_t sample = 0;  ///< counted from the first sample given to the filter
+    int from_band = 0;       ///< band number, 0 for no filter
     int to_band = 0;
     double speed_deg_s = 0.0;
-    double jump_nm = 0.0;        ///< output now minus what the old filter would have put out at this sample
+    double jump_nm = 0.0;  ///< output now minus what the old filter would have put out at this sample
 };
 
-/// A running filter of one joint. Causal: output k depends on inputs 0..k only. The first sample after construction and
-/// after restart() starts in the steady state of a constant input, so a constant torque passes unchanged at once.
+/// How many changes a filter lists; later ones are only counted, so that a chattering log takes bounded
+/// memory.
+inline constexpr std::size_t most_listed_switches = 100000;
+
+/// A running filter of one joint. Causal: output k depends on inputs 0..k only. The first sample after
+/// construction and after restart() starts in the steady state of a constant input, so a constant torque
+/// passes unchanged, bit for bit.
 class CausalFilter {
   public:
     virtual ~CausalFilter() = default;
@@ -38,20 +44,23 @@ class CausalFilter {
     virtual void process(const Samples& in, std::span<double> out) = 0;
     /// Forgets the past: the next sample starts settled (after a gap in time).
     virtual void restart() = 0;
-    /// Changes of filter since construction, oldest first; empty for methods that do not switch.
+    /// Changes of filter since construction, oldest first, at most most_listed_switches of them; empty for
+    /// methods that do not switch. The first choice of a run is no change.
     [[nodiscard]] virtual std::span<const Switch> switches() const { return {}; }
+    /// How many changes there were, listed or not.
+    [[nodiscard]] virtual std::size_t switch_count() const { return switches().size(); }
 };
 
 /// What a filter would do to a small torque signal at one constant speed, for delay and attenuation figures.
 struct FrozenFilter {
     Cascade cascade;
-    std::string note;   ///< e.g. "band 5: 90-108 deg/s", "no band: passes"
+    std::string note;  ///< e.g. "band 5: 90-108 deg/s", "no band: passes"
 };
 
 struct Method {
     std::string_view name, summary, source;
     std::span<const Key> keys;
-    bool needs_table = false;    ///< the key "table" names a table.json, loaded by the caller
+    bool needs_table = false;  ///< the key "table" names a table.json, loaded by the caller
     /// `table` is null unless needs_table. Throws UsageError on what cannot be designed at this sample rate.
     std::unique_ptr<CausalFilter> (*start)(const Settings& settings, Hertz sample_rate,
                                            const CandidateTable* table) = nullptr;

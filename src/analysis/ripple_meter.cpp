@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/ripple_meter.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double turns_wanted = 8.0;
+constexpr double turns_needed = 4.0;
+constexpr double longest_window_s = 4.0;
+constexpr double fewest_samples_a_period = 3.0;
+constexpr double reversal_turns = 0.25;     ///< back from the furthest angle by more: the joint has turned round
+constexpr std::size_t most_peaks = 4096;    ///< values kept for the median
+
+// A median of any number of values in bounded memory: every stride-th window is kept, and when the store is full every
+// second one of those.
+struct ThinnedMedian {
+    std::vector<double> values;
+    std::size_t stride = 1, seen = 0;
+
+    void add(double value) {
+        if (seen++ % stride != 0) return;
+        values.push_back(value);
+        if (values.size() < most_peaks) return;
+        for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
+        values.resize(values.size() / 2);
+        stride *= 2;
+    }
+    [[nodiscard]] double median() const {
+        if (values.empty()) return 0.0;
+        auto sorted = values;
+        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+        std::nth_element(sorted.begin(), middle, sorted.end());
+        return *middle;
+    }
+};
+
+// Sums over windows; amplitudes are weighted by rows.
+struct Sums {
+    std::vector<double> amplitude_squared;   ///< [order * signals + signal]
+    std::vector<double> residual_squared;    ///< [signal]
+    std::vector<ThinnedMedian> peak_to_peak;
+    std::vector<double> ripple_peak_to_peak;
+    double turns = 0.0, seconds = 0.0;
+    std::size_t windows = 0, rows = 0, steps = 0, too_few_samples = 0, too_slow = 0;
+};
+
+double spread(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
+
+}  // namespace
+
+struct RippleMeter::State {
+    double ratio;
+    std::vector<double> orders;
+    double sample_rate_hz;
+    std::size_t signals;
+    std::size_t most_rows;
+
+    // The window under way: angles in motor turns from its first row, torques row by row.
+    std::vector<double> turns, torque_nm;
+    double furthest = 0.0;
+    bool has_last = false;
+    double last_velocity = 0.0, last_position = 0.0;
+    std::size_t seen = 0;
+    Sums sums;
+
+    [[nodiscard]] double turned(double velocity_deg_s, const double* position_deg) const {
+        double moved_deg = 0.0;
+        if (position_deg != nullptr) {
+            moved_deg = *position_deg - last_position;
+            if (std::abs(moved_deg) > 180.0) moved_deg -= 360.0 * std::round(moved_deg / 360.0);
+        } else {
+            moved_deg = 0.5 * (last_velocity + velocity_deg_s) / sample_rate_hz;
+        }
+        return ratio * moved_deg / 360.0;
+    }
+
+    void begin(std::span<const double> torque) {
+        turns.assign(1, 0.0);
+        torque_nm.assign(torque.begin(), torque.end());
+        furthest = 0.0;
+    }
+
+    void add(double velocity_deg_s, const double* position_deg, std::span<const double> torque) {
+        ++seen;
+        if (!has_last) {
+            begin(torque);
+        } else {
+            const double angle = turns.back() + turned(velocity_deg_s, position_deg);
+            const double back = furthest < 0.0 ? angle - furthest : furthest - angle;
+            if (back > reversal_turns) {
+                close(sums);
+                begin(torque);
+            } else if (turns.size() == most_rows) {
+                // A joint that stands still has no ripple to measure and is not worth a word.
+                if (!close(sums) && std::abs(furthest) > reversal_turns) ++sums.too_slow;
+                begin(torque);
+            } else {
+                turns.push_back(angle);
+                torque_nm.insert(torque_nm.end(), torque.begin(), torque.end());
+                if (std::abs(angle) > std::abs(furthest)) furthest = angle;
+                if (std::abs(angle) >= turns_wanted) {
+                    measure(turns.size(), sums);
+                    begin(torque);
+                }
+            }
+        }
+        has_last = true;
+        last_velocity = velocity_deg_s;
+        if (position_deg != nullptr) last_position = *position_deg;
+    }
+
+    // A window that ends early still counts up to its last whole turn, if there are enough of them.
+    bool close(Sums& into) const {
+        const double whole = std::floor(std::abs(furthest));
+        if (whole < turns_needed) return false;
+        std::size_t rows = 0;
+        while (rows < turns.size() && std::abs(turns[rows]) < whole) ++rows;
+        measure(std::min(rows + 1, turns.size()), into);
+        return true;
+    }
+
+    void measure(std::size_t rows, Sums& into) const;
+};
+
+// Fits all signals over the first `rows` rows of the window under way.
+void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
+    const double turned_by = std::abs(turns[rows - 1]);
+    const double highest = *std::max_element(orders.begin(), orders.end());
+    const auto n = static_cast<Eigen::Index>(rows);
+    const auto columns = static_cast<Eigen::Index>(3 + 2 * orders.size());
+    if (static_cast<double>(rows - 1) < fewest_samples_a_period * highest * turned_by || n < 2 * columns) {
+        ++into.too_few_samples;
+        return;
+    }
+    Eigen::MatrixXd basis(n, columns);
+    for (Eigen::Index k = 0; k < n; ++k) {
+        const double s = 2.0 * static_cast<double>(k) / static_cast<double>(n - 1) - 1.0;
+        basis(k, 0) = 1.0;
+        basis(k, 1) = s;
+        basis(k, 2) = s * s;
+        for (std::size_t i = 0; i < orders.size(); ++i) {
+            const double phase = 2.0 * std::numbers::pi * orders[i] * turns[static_cast<std::size_t>(k)];
+            basis(k, static_cast<Eigen::Index>(3 + 2 * i)) = std::cos(phase);
+            basis(k, static_cast<Eigen::Index>(4 + 2 * i)) = std::sin(phase);
+        }
+    }
+    const Eigen::MatrixXd normal = basis.transpose() * basis;
+    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+    const auto count = static_cast<Eigen::Index>(signals);
+    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> torque(
+        torque_nm.data(), n, count);
+    const Eigen::MatrixXd fitted = solver.solve(basis.transpose() * torque);
+    const double weight = static_cast<double>(rows);
+    for (std::size_t j = 0; j < signals; ++j) {
+        const auto column = static_cast<Eigen::Index>(j);
+        for (std::size_t i = 0; i < orders.size(); ++i) {
+            const auto row = static_cast<Eigen::Index>(3 + 2 * i);
+            into.amplitude_squared[i * signals + j] +=
+                weight * (std::pow(fitted(row, column), 2) + std::pow(fitted(row + 1, column), 2));
+        }
+        const Eigen::VectorXd detrended = torque.col(column) - basis.leftCols(3) * fitted.col(column).head(3);
+        const Eigen::VectorXd ripple = basis.rightCols(columns - 3) * fitted.col(column).tail(columns - 3);
+        into.residual_squared[j] += detrended.squaredNorm();
+        into.peak_to_peak[j].add(spread(detrended));
+        into.ripple_peak_to_peak[j] = std::max(into.ripple_peak_to_peak[j], spread(ripple));
+    }
+    into.turns += turned_by;
+    into.seconds += static_cast<double>(rows - 1) / sample_rate_hz;
+    into.rows += rows;
+    into.steps += rows - 1;   // the last row of a window is the first of the next
+    ++into.windows;
+}
+
+RippleMeter::RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz sample_rate, std::size_t signals) {
+    if (!(ratio.value() > 0.0)) raise<UsageError>("gear ratio {} is not above 0", shortest(ratio.value()));
+    if (!(sample_rate.value() > 0.0)) {
+        raise<UsageError>("sample rate {} Hz is not above 0 Hz", shortest(sample_rate.value()));
+    }
+    if (orders.empty() || signals == 0) raise<UsageError>("measuring ripple needs at least one order and one signal");
+    state_ = std::make_unique<State>();
+    for (const Order order : orders) {
+        if (!(order.value() > 0.0)) raise<UsageError>("order {} is not above 0", shortest(order.value()));
+        state_->orders.push_back(order.value());
+    }
+    state_->ratio = ratio.value();
+    state_->sample_rate_hz = sample_rate.value();
+    state_->signals = signals;
+    state_->most_rows = static_cast<std::size_t>(std::clamp(longest_window_s * sample_rate.value(), 64.0, 65536.0));
+    state_->sums.amplitude_squared.resize(orders.size() * signals);
+    state_->sums.residual_squared.resize(signals);
+    state_->sums.peak_to_peak.resize(signals);
+    state_->sums.ripple_peak_to_peak.resize(signals);
+}
+
+RippleMeter::~RippleMeter() = default;
+RippleMeter::RippleMeter(RippleMeter&&) noexcept = default;
+RippleMeter& RippleMeter::operator=(RippleMeter&&) noexcept = default;
+
+void RippleMeter::add(double velocity_deg_s, const double* position_deg, std::span<const double> torque_nm) {
+    state_->add(velocity_deg_s, position_deg, torque_nm);
+}
+
+void RippleMeter::split() {
+    if (state_->has_last) static_cast<void>(state_->close(state_->sums));
+    state_->has_last = false;
+}
+
+RippleLevels RippleMeter::levels() const {
+    Sums sums = state_->sums;
+    if (state_->has_last) static_cast<void>(state_->close(sums));
+    const double rows = static_cast<double>(std::max<std::size_t>(sums.rows, 1));
+    RippleLevels levels;
+    for (std::size_t i = 0; i < state_->orders.size(); ++i) {
+        OrderLevel level{.order = state_->orders[i]};
+        if (sums.seconds > 0.0) level.mean_hz = level.order * sums.turns / sums.seconds;
+        for (std::size_t j = 0; j < state_->signals; ++j) {
+            level.amplitude_nm.push_back(std::sqrt(sums.amplitude_squared[i * state_->signals + j] / rows));
+        }
+        levels.orders.push_back(std::move(level));
+    }
+    for (std::size_t j = 0; j < state_->signals; ++j) {
+        levels.residual_rms_nm.push_back(std::sqrt(sums.residual_squared[j] / rows));
+        levels.residual_peak_to_peak_nm.push_back(sums.peak_to_peak[j].median());
+        levels.ripple_peak_to_peak_nm.push_back(sums.ripple_peak_to_peak[j]);
+    }
+    levels.windows = sums.windows;
+    levels.windows_too_few_samples = sums.too_few_samples;
+    levels.windows_too_slow = sums.too_slow;
+    if (state_->seen > 1) {
+        levels.measured_share = static_cast<double>(sums.steps) / static_cast<double>(state_->seen - 1);
+    }
+    return levels;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// Notches that stay where they are: right for a joint that moves at one speed, and for lines that do not
+// follow speed.
+#include <array>
+
+#include "filter/cascade_filter.hpp"
+#include "filter/methods/list.hpp"
+#include "ripplenotch/design/notch.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 2> widths = {"analog", "digital"};
+
+constexpr std::array keys = {
+    Key{.name = "centers",
+        .kind = KeyKind::list,
+        .dimension = Dimension::frequency,
+        .required = true,
+        .above = 0.0,
+        .help = "centre frequencies, e.g. 25Hz:50Hz"},
+    Key{.name = "q",
+        .default_text = "0.25",
+        .above = 0.0,
+        .help = "centre over -3 dB bandwidth; 0.25 is the paper's twin-T"},
+    Key{.name = "depth",
+        .dimension = Dimension::decibel,
+        .above = 0.0,
+        .help = "attenuation at the centre, e.g. 20dB; a full null when not given"},
+    Key{.name = "width",
+        .kind = KeyKind::choice,
+        .default_text = "analog",
+        .choices = widths,
+        .help = "whether Q is that of the analogue prototype (the paper) or of the sampled filter (SciPy's "
+                "iirnotch)"},
+};
+
+Cascade cascade(const Settings& settings, Hertz sample_rate) {
+    NotchSpec spec;
+    spec.q = settings.number("q");
+    if (settings.has("depth")) spec.depth_db = settings.number("depth");
+    spec.width = settings.text("width") == "digital" ? WidthRule::digital : WidthRule::analog;
+    Cascade sections;
+    for (const double center_hz : settings.list("centers")) {
+        spec.center = Hertz(center_hz);
+        sections.push_back(design_notch(spec, sample_rate));
+    }
+    return sections;
+}
+
+std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
+    return std::make_unique<CascadeFilter>(cascade(settings, sample_rate));
+}
+
+FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec) {
+    return {cascade(settings, sample_rate), "notches at " + settings.text("centers")};
+}
+
+}  // namespace
+
+const Method filter_methods::fixed = {
+    .name = "fixed",
+    .summary = "notches at stated frequencies, whatever the speed",
+    .source = "Kim, Kim, Song 2011, eq. 2 (q=0.25)",
+    .keys = keys,
+    .start = start,
+    .frozen = frozen,
+};
+
+}  // namespace ripplenotch

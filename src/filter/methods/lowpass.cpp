@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// What most joints have today, and the rival in the paper.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "filter/cascade_filter.hpp"
+#include "filter/methods/list.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/design/low_pass.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array keys = {
+    Key{.name = "cutoff",
+        .dimension = Dimension::frequency,
+        .required = true,
+        .above = 0.0,
+        .help = "-3 dB frequency, e.g. 13Hz or 13rad/s"},
+    Key{.name = "order",
+        .default_text = "1",
+        .above = 0.0,
+        .at_most = 20.0,
+        .help = "1 (one real pole) to 20"},
+};
+
+Cascade cascade(const Settings& settings, Hertz sample_rate) {
+    const double order = settings.number("order");
+    if (order != std::floor(order))
+        raise<UsageError>("method lowpass, order: {} is not a whole number", shortest(order));
+    return design_low_pass({.cutoff = Hertz(settings.number("cutoff")), .order = static_cast<int>(order)},
+                           sample_rate);
+}
+
+std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
+    return std::make_unique<CascadeFilter>(cascade(settings, sample_rate));
+}
+
+FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec) {
+    return {cascade(settings, sample_rate), fmt::format("low-pass of order {}, {} Hz", settings.text("order"),
+                                                        shortest(settings.number("cutoff")))};
+}
+
+}  // namespace
+
+const Method filter_methods::lowpass = {
+    .name = "lowpass",
+    .summary = "Butterworth low-pass of any order, cut-off in Hz or rad/s",
+    .source = "S. Butterworth 1930; bilinear transform prewarped at the cut-off",
+    .keys = keys,
+    .start = start,
+    .frozen = frozen,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// The paper's method: a table of candidate filters and a supervisor that puts the one for the present speed
+// in force (Kim, Kim, Song 2011, fig. 3 and 4, table 1).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "filter/methods/list.hpp"
+#include "filter/transitions/transition.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/filter/supervisor.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 4> transitions = {"parallel", "keep", "reset", "crossfade"};
+constexpr std::array<std::string_view, 3> rules = {"pass", "hold", "fade"};
+
+constexpr std::array keys = {
+    Key{.name = "table", .kind = KeyKind::text, .required = true, .help = "table.json, as design writes it"},
+    Key{.name = "transition",
+        .kind = KeyKind::choice,
+        .default_text = "parallel",
+        .choices = transitions,
+        .help = "what becomes of the filters' memories at a switch"},
+    Key{.name = "crossfade",
+        .dimension = Dimension::time,
+        .default_text = "50ms",
+        .at_most = 60.0,
+        .help = "how long transition=crossfade blends"},
+    Key{.name = "hysteresis",
+        .dimension = Dimension::speed,
+        .default_text = "0",
+        .help = "a band is left only when the speed is this far outside it"},
+    Key{.name = "dwell",
+        .dimension = Dimension::time,
+        .default_text = "0",
+        .at_most = 3600.0,
+        .help = "shortest time between two switches"},
+    Key{.name = "below",
+        .kind = KeyKind::choice,
+        .choices = rules,
+        .help = "rule below the first band; else the table's"},
+    Key{.name = "above",
+        .kind = KeyKind::choice,
+        .choices = rules,
+        .help = "rule above the last band; else the table's"},
+};
+
+OutsideRule rule(const Settings& settings, std::string_view key, OutsideRule otherwise) {
+    if (!settings.has(key)) return otherwise;
+    const std::string text = settings.text(key);
+    return text == "pass" ? OutsideRule::pass : text == "hold" ? OutsideRule::hold : OutsideRule::fade;
+}
+
+std::size_t samples(const Settings& settings, std::string_view key, Hertz sample_rate) {
+    const double time_s = settings.number(key);
+    if (!(time_s >= 0.0)) raise<UsageError>("method switching, {}: {} s is negative", key, shortest(time_s));
+    // A time that is a whole number of samples but for rounding must not become one more.
+    return static_cast<std::size_t>(std::ceil(time_s * sample_rate.value() - 1e-6));
+}
+
+SupervisorSettings supervisor_settings(const Settings& settings, Hertz sample_rate,
+                                       const CandidateTable& table) {
+    return {.below = rule(settings, "below", table.spec().below),
+            .above = rule(settings, "above", table.spec().above),
+            .hysteresis = DegPerSec(settings.number("hysteresis")),
+            .dwell_samples = samples(settings, "dwell", sample_rate)};
+}
+
+std::unique_ptr<Transition> transition(const Settings& settings, Hertz sample_rate,
+                                       const CandidateTable& table) {
+    Candidates candidates(table.bands());
+    const std::string name = settings.text("transition");
+    if (name == "keep") return make_keep(std::move(candidates));
+    if (name == "reset") return make_reset(std::move(candidates));
+    if (name == "crossfade")
+        return make_crossfade(std::move(candidates), samples(settings, "crossfade", sample_rate));
+    return make_parallel(std::move(candidates));
+}
+
+class SwitchingFilter final : public CausalFilter {
+  public:
+    SwitchingFilter(const CandidateTable& table, const SupervisorSettings& settings,
+                    std::unique_ptr<Transition> transition)
+        : supervisor_(table.bands(), settings), transition_(std::move(transition)) {
+        for (const Band& band : table.bands()) numbers_.push_back(band.number);
+    }
+
+    void process(const Samples& in, std::span<double> out) override {
+        std::size_t at = 0;
+        while (at < out.size()) {
+            if (!started_) {
+                supervisor_.start(in.velocity_deg_s[at]);
+                transition_->start(supervisor_.candidate(), in.torque_nm[at]);
+                started_ = true;
+                at += run(in, out, at, 1);
+                continue;
+            }
+            const std::size_t count = supervisor_.stay(in.velocity_deg_s.subspan(at));
+            at += run(in, out, at, count);
+            if (at == out.size()) break;
+            const int before = supervisor_.candidate();
+            const SpeedRegion left = supervisor_.region();
+            if (supervisor_.move(in.velocity_deg_s[at])) {
+                change(in, out, at, before, left);
+            } else {
+                run(in, out, at, 1);
+            }
+            ++at;
+        }
+        seen_ += out.size();
+    }
+
+    void restart() override { started_ = false; }
+    [[nodiscard]] std::span<const Switch> switches() const override { return ledger_; }
+    [[nodiscard]] std::size_t switch_count() const override { return switch_count_; }
+
+  private:
+    // Samples of one region: the candidate in force, mixed with the raw torque where the rule fades.
+    std::size_t run(const Samples& in, std::span<double> out, std::size_t at, std::size_t count) {
+        if (count == 0) return 0;
+        transition_->run(in.torque_nm.subspan(at, count), out.subspan(at, count));
+        const SpeedRegion& region = supervisor_.region();
+        if (region.fades()) {
+            for (std::size_t k = at; k < at + count; ++k) {
+                out[k] = mixed(region, in.velocity_deg_s[k], in.torque_nm[k], out[k]);
+            }
+        }
+        return count;
+    }
+
+    static double mixed(const SpeedRegion& region, double velocity_deg_s, double raw_nm, double filtered_nm) {
+        const double share = region.share(std::abs(velocity_deg_s));
+        return share == 1.0 ? filtered_nm : raw_nm + share * (filtered_nm - raw_nm);
+    }
+
+    void change(const Samples& in, std::span<double> out, std::size_t at, int before,
+                const SpeedRegion& left) {
+        const double velocity = in.velocity_deg_s[at], raw = in.torque_nm[at];
+        const Change change = transition_->change(supervisor_.candidate(), raw);
+        out[at] = mixed(supervisor_.region(), velocity, raw, change.now_nm);
+        ++switch_count_;
+        if (ledger_.size() == most_listed_switches) return;
+        ledger_.push_back({.sample = seen_ + at,
+                           .from_band = number(before),
+                           .to_band = number(supervisor_.candidate()),
+                           .speed_deg_s = velocity,
+                           .jump_nm = out[at] - mixed(left, velocity, raw, change.unchanged_nm)});
+    }
+
+    [[nodiscard]] int number(int candidate) const {
+        return candidate == no_candidate ? 0 : numbers_[static_cast<std::size_t>(candidate)];
+    }
+
+    Supervisor supervisor_;
+    std::unique_ptr<Transition> transition_;
+    std::vector<int> numbers_;  ///< band numbers by candidate
+    std::vector<Switch> ledger_;
+    std::size_t switch_count_ = 0;
+    std::size_t seen_ = 0;
+    bool started_ = false;
+};
+
+const CandidateTable& required(const CandidateTable* table) {
+    if (table == nullptr) raise<UsageError>("method switching needs table=table.json, as design writes it");
+    return *table;
+}
+
+std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate,
+                                    const CandidateTable* table) {
+    const CandidateTable& candidates = required(table);
+    return std::make_unique<SwitchingFilter>(candidates,
+                                             supervisor_settings(settings, sample_rate, candidates),
+                                             transition(settings, sample_rate, candidates));
+}
+
+// Holding means the band that was passed through last: at a constant speed, the nearest one.
+FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable* table,
+                    DegPerSec speed) {
+    const CandidateTable& candidates = required(table);
+    const auto used = supervisor_settings(settings, sample_rate, candidates);
+    const double at = std::abs(speed.value());
+    const auto bands = candidates.bands();
+    const auto regions = speed_regions(bands, used.below, used.above);
+    const auto region =
+        std::find_if(regions.begin(), regions.end(), [at](const SpeedRegion& r) { return at <= r.to_deg_s; });
+    int candidate = region->candidate;
+    if (region->holds) candidate = region == regions.begin() ? 0 : std::prev(region)->candidate;
+    const double share = region->share(at);
+    if (candidate == no_candidate || share == 0.0) return {{}, "no band: passes"};
+    const Band& band = bands[static_cast<std::size_t>(candidate)];
+    std::string note = fmt::format("band {}: {}-{} deg/s", band.number, shortest(band.from.value()),
+                                   shortest(band.to.value()));
+    if (region->holds) note += ", held outside it";
+    if (share < 1.0)
+        note += fmt::format(", faded to {:.3g} of the output (figures are for the full share)", share);
+    return {band.cascade(), note};
+}
+
+}  // namespace
+
+const Method filter_methods::switching = {
+    .name = "switching",
+    .summary = "the notches of the table's band for the present speed (the paper's method)",
+    .source = "Kim, Kim, Song 2011, fig. 3 and 4, table 1",
+    .keys = keys,
+    .needs_table = true,
+    .start = start,
+    .frozen = frozen,
+};
+
+}  // namespace ripplenotch

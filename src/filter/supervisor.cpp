@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/filter/supervisor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// A range next to a band's edge, under the rule for speeds that no band covers.
+SpeedRegion outside(double from, double to, OutsideRule rule, int edge_candidate, double edge,
+                    double fade_end) {
+    SpeedRegion region{from, to};
+    if (rule == OutsideRule::hold) region.holds = true;
+    if (rule == OutsideRule::fade) {
+        region.candidate = edge_candidate;
+        region.full_deg_s = edge;
+        region.none_deg_s = fade_end;
+    }
+    return region;
+}
+
+}  // namespace
+
+double SpeedRegion::share(double speed_deg_s) const noexcept {
+    if (!fades()) return 1.0;
+    return std::clamp((speed_deg_s - none_deg_s) / (full_deg_s - none_deg_s), 0.0, 1.0);
+}
+
+std::vector<SpeedRegion> speed_regions(std::span<const Band> bands, OutsideRule below, OutsideRule above) {
+    std::vector<SpeedRegion> regions;
+    double reached = -infinity;
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+        const double from = bands[i].from.value(), to = bands[i].to.value();
+        const int candidate = static_cast<int>(i);
+        if (i == 0) {
+            regions.push_back(outside(reached, from, below, candidate, from, from / 2.0));
+        } else if (from > reached) {
+            // Each half of a hole belongs to the band it touches; with `fade` both are at 0 where they meet.
+            const double middle = (reached + from) / 2.0;
+            regions.push_back(outside(reached, middle, below, candidate - 1, reached, middle));
+            regions.push_back(outside(middle, from, below, candidate, from, middle));
+        }
+        regions.push_back({from, to, candidate});
+        reached = to;
+    }
+    const int last = static_cast<int>(bands.size()) - 1;
+    regions.push_back(outside(reached, infinity, above, last, reached, 1.5 * reached));
+    return regions;
+}
+
+Supervisor::Supervisor(std::span<const Band> bands, const SupervisorSettings& settings)
+    : regions_(speed_regions(bands, settings.below, settings.above)),
+      hysteresis_deg_s_(settings.hysteresis.value()),
+      dwell_(settings.dwell_samples) {
+    if (!(hysteresis_deg_s_ >= 0.0)) {
+        raise<UsageError>("method switching, hysteresis: {} deg/s is negative", shortest(hysteresis_deg_s_));
+    }
+}
+
+std::size_t Supervisor::find(double speed_deg_s) const noexcept {
+    const auto holds_speed = [speed_deg_s](const SpeedRegion& region) {
+        return speed_deg_s <= region.to_deg_s;
+    };
+    const auto found = std::find_if(regions_.begin(), regions_.end(), holds_speed);
+    // A speed that is not a number is in no region; the lowest is the one that does least.
+    return found == regions_.end() ? 0 : static_cast<std::size_t>(found - regions_.begin());
+}
+
+int Supervisor::candidate_in(const SpeedRegion& region) const noexcept {
+    return region.holds ? candidate_ : region.candidate;
+}
+
+void Supervisor::enter(std::size_t region) noexcept {
+    at_ = region;
+    low_ = regions_[at_].from_deg_s - hysteresis_deg_s_;
+    high_ = regions_[at_].to_deg_s + hysteresis_deg_s_;
+}
+
+void Supervisor::start(double velocity_deg_s) noexcept {
+    candidate_ = no_candidate;
+    enter(find(std::abs(velocity_deg_s)));
+    candidate_ = candidate_in(region());
+    since_switch_ = dwell_;  // the first choice is no switch: it need not dwell
+}
+
+std::size_t Supervisor::stay(std::span<const double> velocity_deg_s) noexcept {
+    std::size_t count = 0;
+    const auto inside = [&](double velocity) {
+        const double speed = std::abs(velocity);
+        return speed > low_ && speed <= high_;
+    };
+    while (count < velocity_deg_s.size()) {
+        if (!inside(velocity_deg_s[count])) {
+            const bool must_dwell = since_switch_ + count < dwell_;
+            const SpeedRegion& next = regions_[find(std::abs(velocity_deg_s[count]))];
+            if (!must_dwell || candidate_in(next) == candidate_) break;
+        }
+        ++count;
+    }
+    since_switch_ = std::min(since_switch_ + count, dwell_);
+    return count;
+}
+
+bool Supervisor::move(double velocity_deg_s) noexcept {
+    const std::size_t next = find(std::abs(velocity_deg_s));
+    const int before = candidate_;
+    candidate_ = candidate_in(regions_[next]);
+    enter(next);
+    if (candidate_ != before) {
+        since_switch_ = std::min<std::size_t>(1, dwell_);
+    } else {
+        since_switch_ = std::min(since_switch_ + 1, dwell_);
+    }
+    return candidate_ != before;
+}
+
+}  // namespace ripplenotch

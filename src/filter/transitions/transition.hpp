@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What happens to the filters' memories when the supervisor puts another candidate in force. One file per
+// way.
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/core/biquad.hpp"
+#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/filter/supervisor.hpp"
+
+namespace ripplenotch {
+
+/// Output at the sample of a change, and what it would have been without the change.
+struct Change {
+    double now_nm = 0.0;
+    double unchanged_nm = 0.0;
+};
+
+/// Candidates are counted from 0; no_candidate passes the torque. Every call takes the next samples in order.
+class Transition {
+  public:
+    virtual ~Transition() = default;
+    /// Before the first sample of a run: settled at a constant input of `torque_nm`.
+    virtual void start(int candidate, double torque_nm) = 0;
+    /// Samples without a change. `out` has as many entries as `torque_nm`.
+    virtual void run(std::span<const double> torque_nm, std::span<double> out) = 0;
+    /// One sample, at which `candidate` comes into force.
+    virtual Change change(int candidate, double torque_nm) = 0;
+};
+
+/// The candidates' sections, padded with neutral ones to equal length, and which of them are the same filter:
+/// changing to an equal filter must not disturb anything.
+struct Candidates {
+    explicit Candidates(std::span<const Band> bands);
+
+    std::vector<Cascade> cascades;
+    std::size_t sections = 0;  ///< of each cascade
+    std::vector<int> same_as;  ///< lowest candidate with equal coefficients
+
+    [[nodiscard]] bool same(int a, int b) const noexcept;
+};
+
+std::unique_ptr<Transition> make_parallel(Candidates candidates);
+std::unique_ptr<Transition> make_crossfade(Candidates candidates, std::size_t blend_samples);
+std::unique_ptr<Transition> make_keep(Candidates candidates);
+std::unique_ptr<Transition> make_reset(Candidates candidates);
+
+}  // namespace ripplenotch
