@@ -16,11 +16,11 @@ constexpr double turns_wanted = 8.0;
 constexpr double turns_needed = 4.0;
 constexpr double longest_window_s = 4.0;
 constexpr double fewest_samples_a_period = 3.0;
-constexpr double reversal_turns = 0.25;     ///< back from the furthest angle by more: the joint has turned round
-constexpr std::size_t most_peaks = 4096;    ///< values kept for the median
+constexpr double reversal_turns = 0.25;  ///< back from the furthest angle by more: the joint has turned round
+constexpr std::size_t most_peaks = 4096;  ///< values kept for the median
 
-// A median of any number of values in bounded memory: every stride-th window is kept, and when the store is full every
-// second one of those.
+// A median of any number of values in bounded memory: every stride-th window is kept, and when the store is
+// full every second one of those.
 struct ThinnedMedian {
     std::vector<double> values;
     std::size_t stride = 1, seen = 0;
@@ -44,8 +44,8 @@ struct ThinnedMedian {
 
 // Sums over windows; amplitudes are weighted by rows.
 struct Sums {
-    std::vector<double> amplitude_squared;   ///< [order * signals + signal]
-    std::vector<double> residual_squared;    ///< [signal]
+    std::vector<double> amplitude_squared;  ///< [order * signals + signal]
+    std::vector<double> residual_squared;   ///< [signal]
     std::vector<ThinnedMedian> peak_to_peak;
     std::vector<double> ripple_peak_to_peak;
     double turns = 0.0, seconds = 0.0;
@@ -175,16 +175,18 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
     into.turns += turned_by;
     into.seconds += static_cast<double>(rows - 1) / sample_rate_hz;
     into.rows += rows;
-    into.steps += rows - 1;   // the last row of a window is the first of the next
+    into.steps += rows - 1;  // the last row of a window is the first of the next
     ++into.windows;
 }
 
-RippleMeter::RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz sample_rate, std::size_t signals) {
+RippleMeter::RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz sample_rate,
+                         std::size_t signals) {
     if (!(ratio.value() > 0.0)) raise<UsageError>("gear ratio {} is not above 0", shortest(ratio.value()));
     if (!(sample_rate.value() > 0.0)) {
         raise<UsageError>("sample rate {} Hz is not above 0 Hz", shortest(sample_rate.value()));
     }
-    if (orders.empty() || signals == 0) raise<UsageError>("measuring ripple needs at least one order and one signal");
+    if (orders.empty() || signals == 0)
+        raise<UsageError>("measuring ripple needs at least one order and one signal");
     state_ = std::make_unique<State>();
     for (const Order order : orders) {
         if (!(order.value() > 0.0)) raise<UsageError>("order {} is not above 0", shortest(order.value()));
@@ -193,7 +195,8 @@ RippleMeter::RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz s
     state_->ratio = ratio.value();
     state_->sample_rate_hz = sample_rate.value();
     state_->signals = signals;
-    state_->most_rows = static_cast<std::size_t>(std::clamp(longest_window_s * sample_rate.value(), 64.0, 65536.0));
+    state_->most_rows =
+        static_cast<std::size_t>(std::clamp(longest_window_s * sample_rate.value(), 64.0, 65536.0));
     state_->sums.amplitude_squared.resize(orders.size() * signals);
     state_->sums.residual_squared.resize(signals);
     state_->sums.peak_to_peak.resize(signals);
@@ -219,7 +222,8 @@ RippleLevels RippleMeter::levels() const {
     const double rows = static_cast<double>(std::max<std::size_t>(sums.rows, 1));
     RippleLevels levels;
     for (std::size_t i = 0; i < state_->orders.size(); ++i) {
-        OrderLevel level{.order = state_->orders[i]};
+        OrderLevel level;
+        level.order = state_->orders[i];
         if (sums.seconds > 0.0) level.mean_hz = level.order * sums.turns / sums.seconds;
         for (std::size_t j = 0; j < state_->signals; ++j) {
             level.amplitude_nm.push_back(std::sqrt(sums.amplitude_squared[i * state_->signals + j] / rows));

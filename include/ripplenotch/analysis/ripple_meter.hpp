@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Ripple amplitude per order of one or several torque signals along the same motion, in bounded memory: least squares
-// of trend and orders in the motor angle over windows of whole motor turns.
+// Ripple amplitude per order of one or several torque signals along the same motion, in bounded memory: least
+// squares of trend and orders in the motor angle over windows of whole motor turns.
 
 #include <cstddef>
 #include <memory>
@@ -20,21 +20,23 @@ struct OrderLevel {
 
 struct RippleLevels {
     std::vector<OrderLevel> orders;
-    std::vector<double> residual_rms_nm;            ///< per signal: torque minus the window's trend
-    std::vector<double> residual_peak_to_peak_nm;   ///< per signal: the same, median over windows
-    std::vector<double> ripple_peak_to_peak_nm;     ///< per signal: of the fitted orders alone, largest window
-    std::size_t windows = 0;                        ///< how many windows of usable motion were measured
-    std::size_t windows_too_few_samples = 0;        ///< dropped: highest order with under 3 samples a period
-    std::size_t windows_too_slow = 0;               ///< dropped: not a window's turns within 4 s
-    double measured_share = 0.0;                    ///< samples in windows / samples seen
+    std::vector<double> residual_rms_nm;           ///< per signal: torque minus the window's trend
+    std::vector<double> residual_peak_to_peak_nm;  ///< per signal: the same, median over windows
+    std::vector<double> ripple_peak_to_peak_nm;    ///< per signal: of the fitted orders alone, largest window
+    std::size_t windows = 0;                       ///< how many windows of usable motion were measured
+    std::size_t windows_too_few_samples = 0;       ///< dropped: highest order with under 3 samples a period
+    std::size_t windows_too_slow = 0;              ///< dropped: not a window's turns within 4 s
+    double measured_share = 0.0;                   ///< samples in windows / samples seen
 };
 
-/// Feed rows in order; ask at the end. Signals are measured on the same windows, so that ratios are attenuations.
+/// Feed rows in order; ask at the end. Signals are measured on the same windows, so that ratios are
+/// attenuations.
 ///
-/// A window is eight motor turns in one direction (at least four where a run ends or turns back). In each, every signal
-/// is fitted by c0 + c1 s + c2 s^2 + sum of a_n cos(n theta) + b_n sin(n theta), s being time and theta the motor angle.
-/// Motor angle: gear ratio times position where there is one, since its error does not grow along a window, whereas a
-/// velocity that is 1 % off detunes order 2 by a sixth of a cycle in eight turns. Position is unwrapped at half turns.
+/// A window is eight motor turns in one direction (at least four where a run ends or turns back). In each,
+/// every signal is fitted by c0 + c1 s + c2 s^2 + sum of a_n cos(n theta) + b_n sin(n theta), s being time
+/// and theta the motor angle. Motor angle: gear ratio times position where there is one, since its error does
+/// not grow along a window, whereas a velocity that is 1 % off detunes order 2 by a sixth of a cycle in eight
+/// turns. Position is unwrapped at half turns.
 class RippleMeter {
   public:
     /// Throws UsageError unless ratio, sample_rate and all orders are above 0 and signals is at least 1.
@@ -43,7 +45,8 @@ class RippleMeter {
     RippleMeter(RippleMeter&&) noexcept;
     RippleMeter& operator=(RippleMeter&&) noexcept;
 
-    /// position_deg may be nullptr: then the angle is integrated velocity. `torque_nm` has one value per signal.
+    /// position_deg may be nullptr: then the angle is integrated velocity. `torque_nm` has one value per
+    /// signal.
     void add(double velocity_deg_s, const double* position_deg, std::span<const double> torque_nm);
     /// A gap: what comes next does not continue the window under way.
     void split();

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// What every method promises. Settings are made up from the method's own list of keys, so that a new entry of
+// methods.def is tested the day it is listed.
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <set>
+
+#include "filter/tables.hpp"
+#include "ripplenotch/core/error.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::testing;
+
+namespace {
+
+std::string some_number(const Key& key, std::mt19937& engine) {
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(std::max(low, key.above),
+                                                      std::min(high, key.at_most))(engine);
+    };
+    switch (key.dimension) {
+        case Dimension::frequency:
+            return fmt::format("{:.3f}Hz", between(2.0, 120.0));
+        case Dimension::time:
+            return fmt::format("{:.4f}s", between(0.0, 0.2));
+        case Dimension::speed:
+            return fmt::format("{:.3f}deg/s", between(0.0, 5.0));
+        case Dimension::decibel:
+            return fmt::format("{:.2f}dB", between(3.0, 60.0));
+        default:
+            return key.default_text.empty() ? fmt::format("{:.3f}", between(0.2, 4.0))
+                                            : std::string(key.default_text);
+    }
+}
+
+// Specifications of a method: its defaults, every choice of every key, and random numbers.
+std::set<std::string> specifications(const Method& method, unsigned seed) {
+    std::mt19937 engine(seed);
+    std::vector<std::vector<std::string>> variants;
+    const auto build = [&](const Key* varied, std::string_view value, bool all_numbers) {
+        Spec spec{std::string(method.name), {}};
+        for (const Key& key : method.keys) {
+            const std::string name(key.name);
+            if (varied == &key)
+                spec.values.emplace_back(name, value);
+            else if (key.kind == KeyKind::text)
+                spec.values.emplace_back(name, "table.json");
+            else if (key.kind == KeyKind::list && key.required)
+                spec.values.emplace_back(name, some_number(key, engine) + ":" + some_number(key, engine));
+            else if (key.kind == KeyKind::number && (key.required || all_numbers))
+                spec.values.emplace_back(name, some_number(key, engine));
+        }
+        return spec.text();
+    };
+    std::set<std::string> texts = {build(nullptr, {}, false), build(nullptr, {}, true)};
+    for (const Key& key : method.keys) {
+        for (const auto choice : key.choices) {
+            texts.insert(build(&key, choice, false));
+            texts.insert(build(&key, choice, true));
+        }
+    }
+    return texts;
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+template <class Check>
+void for_all_methods(Check check) {
+    const CandidateTable table = paper_table();
+    for (const Method* method : methods()) {
+        for (unsigned seed : {1U, 2U}) {
+            for (const std::string& text : specifications(*method, seed)) {
+                INFO(text);
+                check(text, table);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("methods have a name, a summary, and keys with help, each name once") {
+    std::set<std::string_view> names;
+    for (const Method* method : methods()) {
+        INFO(method->name);
+        CHECK(names.insert(method->name).second);
+        CHECK_FALSE(method->summary.empty());
+        CHECK(method->start != nullptr);
+        CHECK(method->frozen != nullptr);
+        CHECK(&find_method(method->name) == method);
+        std::set<std::string_view> keys;
+        for (const Key& key : method->keys) {
+            CHECK(keys.insert(key.name).second);
+            CHECK_FALSE(key.help.empty());
+            CHECK((key.kind == KeyKind::choice) == !key.choices.empty());
+        }
+        CHECK(method->needs_table == (keys.count("table") == 1));
+    }
+    CHECK_THROWS_WITH(find_method("lowpas"), Catch::Contains("did you mean lowpass?"));
+}
+
+TEST_CASE("a constant torque passes every method bit for bit from the first sample, at any speed") {
+    for_all_methods([](const std::string& text, const CandidateTable& table) {
+        Signals s = wandering(4000, 5);
+        s.torque_nm.assign(4000, -0.512);
+        const auto filter = start(text, &table);
+        CHECK(same_bits(filtered(*filter, s.samples()), s.torque_nm));
+    });
+}
+
+TEST_CASE("any split into blocks gives every method's same bytes") {
+    for_all_methods([](const std::string& text, const CandidateTable& table) {
+        const Signals s = wandering(6000, 7);
+        const auto whole = start(text, &table);
+        const auto expected = filtered(*whole, s.samples());
+        const auto pieces = start(text, &table);
+        std::mt19937 engine(11);
+        std::vector<double> out(6000);
+        for (std::size_t at = 0; at < out.size();) {
+            const std::size_t count =
+                std::min<std::size_t>(std::uniform_int_distribution<std::size_t>(0, 400)(engine), 6000 - at);
+            pieces->process(s.part(at, count), std::span(out).subspan(at, count));
+            at += count;
+        }
+        CHECK(same_bits(out, expected));
+        REQUIRE(pieces->switch_count() == whole->switch_count());
+        REQUIRE(pieces->switches().size() == whole->switches().size());
+        for (std::size_t i = 0; i < whole->switches().size(); ++i) {
+            CHECK(pieces->switches()[i].sample == whole->switches()[i].sample);
+            CHECK(pieces->switches()[i].jump_nm == whole->switches()[i].jump_nm);
+        }
+    });
+}
+
+TEST_CASE("every method is causal: later samples do not change earlier outputs") {
+    for_all_methods([](const std::string& text, const CandidateTable& table) {
+        const Signals s = wandering(3000, 13);
+        Signals other = wandering(3000, 14);
+        for (auto member : {&Signals::velocity_deg_s, &Signals::torque_nm, &Signals::position_deg}) {
+            std::copy_n((s.*member).begin(), 1500, (other.*member).begin());
+        }
+        auto a = filtered(*start(text, &table), s.samples());
+        auto b = filtered(*start(text, &table), other.samples());
+        a.resize(1500);
+        b.resize(1500);
+        CHECK(same_bits(a, b));
+    });
+}
+
+TEST_CASE("after a restart every method gives what a new filter gives") {
+    for_all_methods([](const std::string& text, const CandidateTable& table) {
+        const Signals s = wandering(4000, 17);
+        const auto filter = start(text, &table);
+        filtered(*filter, s.part(0, 2500));
+        filter->restart();
+        CHECK(same_bits(filtered(*filter, s.part(2500, 1500)),
+                        filtered(*start(text, &table), s.part(2500, 1500))));
+    });
+}
+
+TEST_CASE("every method's frozen filter is stable and passes 0 Hz with gain 1") {
+    for_all_methods([](const std::string& text, const CandidateTable& table) {
+        const Spec spec = parse_spec(text);
+        const Method& method = find_method(spec.name);
+        const Settings settings("method", spec, method.keys);
+        for (double speed = -200.0; speed <= 300.0; speed += 12.5) {
+            const FrozenFilter frozen = method.frozen(settings, Hertz(1000.0), &table, DegPerSec(speed));
+            CHECK(pole_radius(frozen.cascade) < 1.0);
+            CHECK(std::abs(response(frozen.cascade, Hertz(0.0), Hertz(1000.0))) == Approx(1.0).margin(1e-9));
+            CHECK_FALSE(frozen.note.empty());
+        }
+    });
+}
+
+TEST_CASE("at one speed every method does what its frozen filter says, once settled") {
+    for_all_methods([](const std::string& text, const CandidateTable& table) {
+        const Spec spec = parse_spec(text);
+        const Method& method = find_method(spec.name);
+        const double speed = 99.0, hz = 31.0;
+        const Cascade cascade =
+            method.frozen(Settings("method", spec, method.keys), Hertz(1000.0), &table, DegPerSec(speed))
+                .cascade;
+        Signals s;
+        const std::size_t count = 20000;
+        for (std::size_t k = 0; k < count; ++k) {
+            s.velocity_deg_s.push_back(speed);
+            s.position_deg.push_back(speed * static_cast<double>(k) / 1000.0);
+            s.torque_nm.push_back(std::cos(2.0 * std::numbers::pi * hz * static_cast<double>(k) / 1000.0));
+        }
+        const auto out = filtered(*start(text, &table), s.samples());
+        const auto gain = response(cascade, Hertz(hz), Hertz(1000.0));
+        double worst = 0.0;
+        for (std::size_t k = count - 2000; k < count; ++k) {
+            const double phase = 2.0 * std::numbers::pi * hz * static_cast<double>(k) / 1000.0;
+            worst = std::max(worst, std::abs(out[k] - (gain * std::polar(1.0, phase)).real()));
+        }
+        CHECK(worst < 1e-8);
+    });
+}
