@@ -14,9 +14,11 @@ namespace {
 
 constexpr double turns_wanted = 8.0;
 constexpr double turns_needed = 4.0;
-constexpr double longest_window_s = 4.0;
+constexpr double longest_window_s = 2.0;  ///< the torque itself is no quadratic for longer
 constexpr double fewest_samples_a_period = 3.0;
 constexpr double reversal_turns = 0.25;  ///< back from the furthest angle by more: the joint has turned round
+constexpr Eigen::Index trend_terms =
+    4;  ///< a cubic: a quadratic leaks into order 2 where a joint turns round
 constexpr std::size_t most_peaks = 4096;  ///< values kept for the median
 
 // A median of any number of values in bounded memory: every stride-th window is kept, and when the store is
@@ -135,7 +137,7 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
     const double turned_by = std::abs(turns[rows - 1]);
     const double highest = *std::max_element(orders.begin(), orders.end());
     const auto n = static_cast<Eigen::Index>(rows);
-    const auto columns = static_cast<Eigen::Index>(3 + 2 * orders.size());
+    const auto columns = trend_terms + static_cast<Eigen::Index>(2 * orders.size());
     if (static_cast<double>(rows - 1) < fewest_samples_a_period * highest * turned_by || n < 2 * columns) {
         ++into.too_few_samples;
         return;
@@ -143,13 +145,12 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
     Eigen::MatrixXd basis(n, columns);
     for (Eigen::Index k = 0; k < n; ++k) {
         const double s = 2.0 * static_cast<double>(k) / static_cast<double>(n - 1) - 1.0;
-        basis(k, 0) = 1.0;
-        basis(k, 1) = s;
-        basis(k, 2) = s * s;
+        double power = 1.0;
+        for (Eigen::Index i = 0; i < trend_terms; ++i, power *= s) basis(k, i) = power;
         for (std::size_t i = 0; i < orders.size(); ++i) {
             const double phase = 2.0 * std::numbers::pi * orders[i] * turns[static_cast<std::size_t>(k)];
-            basis(k, static_cast<Eigen::Index>(3 + 2 * i)) = std::cos(phase);
-            basis(k, static_cast<Eigen::Index>(4 + 2 * i)) = std::sin(phase);
+            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i)) = std::cos(phase);
+            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i + 1)) = std::sin(phase);
         }
     }
     const Eigen::MatrixXd normal = basis.transpose() * basis;
@@ -162,12 +163,14 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
     for (std::size_t j = 0; j < signals; ++j) {
         const auto column = static_cast<Eigen::Index>(j);
         for (std::size_t i = 0; i < orders.size(); ++i) {
-            const auto row = static_cast<Eigen::Index>(3 + 2 * i);
+            const auto row = trend_terms + static_cast<Eigen::Index>(2 * i);
             into.amplitude_squared[i * signals + j] +=
                 weight * (std::pow(fitted(row, column), 2) + std::pow(fitted(row + 1, column), 2));
         }
-        const Eigen::VectorXd detrended = torque.col(column) - basis.leftCols(3) * fitted.col(column).head(3);
-        const Eigen::VectorXd ripple = basis.rightCols(columns - 3) * fitted.col(column).tail(columns - 3);
+        const Eigen::VectorXd detrended =
+            torque.col(column) - basis.leftCols(trend_terms) * fitted.col(column).head(trend_terms);
+        const Eigen::VectorXd ripple =
+            basis.rightCols(columns - trend_terms) * fitted.col(column).tail(columns - trend_terms);
         into.residual_squared[j] += detrended.squaredNorm();
         into.peak_to_peak[j].add(spread(detrended));
         into.ripple_peak_to_peak[j] = std::max(into.ripple_peak_to_peak[j], spread(ripple));

@@ -85,7 +85,7 @@ TEST_CASE("at 90 deg/s the figures are those of two sines worked out by hand") {
     CHECK(levels.orders[1].mean_hz == Approx(50.0).epsilon(1e-9));
     CHECK(levels.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(1e-6));
     CHECK(levels.orders[1].amplitude_nm[0] == Approx(0.0).margin(1e-6));
-    // Exact up to what of eight turns the quadratic trend takes for itself.
+    // Exact up to what of eight turns the trend takes for itself.
     CHECK(levels.residual_rms_nm[0] == Approx(std::sqrt(0.5)).epsilon(0.005));
     CHECK(levels.ripple_peak_to_peak_nm[0] == Approx(2.0).epsilon(0.01));
     CHECK(levels.residual_peak_to_peak_nm[0] == Approx(2.0).epsilon(0.02));
@@ -106,10 +106,10 @@ TEST_CASE("noise alone gives amplitudes of the size that least squares gives noi
     CHECK(levels.residual_rms_nm[0] == Approx(0.1).epsilon(0.02));
 }
 
-TEST_CASE("a trend of the second degree leaves nothing in the residual") {
+TEST_CASE("a trend of the third degree leaves nothing in the residual") {
     Plant plant;
     plant.first_nm = plant.second_nm = 0.0;
-    plant.trend = [](double t) { return 100.0 - 20.0 * t + 3.0 * t * t; };
+    plant.trend = [](double t) { return 100.0 - 20.0 * t + 3.0 * t * t - 0.5 * t * t * t; };
     const RippleLevels levels = measure(constant, 5.0, plant, false);
     CHECK(levels.residual_rms_nm[0] < 1e-9);
     CHECK(levels.orders[0].amplitude_nm[0] < 1e-9);

@@ -25,7 +25,7 @@ struct RippleLevels {
     std::vector<double> ripple_peak_to_peak_nm;    ///< per signal: of the fitted orders alone, largest window
     std::size_t windows = 0;                       ///< how many windows of usable motion were measured
     std::size_t windows_too_few_samples = 0;       ///< dropped: highest order with under 3 samples a period
-    std::size_t windows_too_slow = 0;              ///< dropped: not a window's turns within 4 s
+    std::size_t windows_too_slow = 0;              ///< dropped: not four turns within 2 s
     double measured_share = 0.0;                   ///< samples in windows / samples seen
 };
 
@@ -33,10 +33,10 @@ struct RippleLevels {
 /// attenuations.
 ///
 /// A window is eight motor turns in one direction (at least four where a run ends or turns back). In each,
-/// every signal is fitted by c0 + c1 s + c2 s^2 + sum of a_n cos(n theta) + b_n sin(n theta), s being time
-/// and theta the motor angle. Motor angle: gear ratio times position where there is one, since its error does
-/// not grow along a window, whereas a velocity that is 1 % off detunes order 2 by a sixth of a cycle in eight
-/// turns. Position is unwrapped at half turns.
+/// every signal is fitted by c0 + c1 s + c2 s^2 + c3 s^3 + sum of a_n cos(n theta) + b_n sin(n theta), s
+/// being time and theta the motor angle. Motor angle: gear ratio times position where there is one, since its
+/// error does not grow along a window, whereas a velocity that is 1 % off detunes order 2 by a sixth of a
+/// cycle in eight turns. Position is unwrapped at half turns.
 class RippleMeter {
   public:
     /// Throws UsageError unless ratio, sample_rate and all orders are above 0 and signals is at least 1.
