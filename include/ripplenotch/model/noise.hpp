@@ -2,15 +2,20 @@
 #pragma once
 #include <cstdint>
 #include <random>
+#include <span>
 
 namespace ripplenotch {
 
-/// Normally distributed numbers that are the same on every machine: mt19937_64 (specified by the standard) and our own
-/// transform, because std::normal_distribution differs between libraries.
+/// Which signal a stream of noise belongs to. Each has a stream of its own, so that adding noise to one
+/// signal leaves the noise of another as it was. The numbers are part of what a seed means: never change one.
+enum class NoiseChannel : std::uint64_t { torque = 1, velocity = 2 };
+
+/// Normally distributed numbers that are the same on every machine: mt19937_64 (specified by the standard)
+/// and our own transform, because std::normal_distribution differs between libraries.
 class Noise {
   public:
-    explicit Noise(std::uint64_t seed) : engine_(seed) {}
-    /// Mean 0, standard deviation 1 (Marsaglia polar method).
+    Noise(std::uint64_t seed, NoiseChannel channel);
+    /// Mean 0, standard deviation 1 (Marsaglia's polar method).
     double normal();
     /// Uniform in [0, 1) with 53 random bits.
     double uniform();
@@ -20,5 +25,8 @@ class Noise {
     double spare_ = 0.0;
     bool has_spare_ = false;
 };
+
+/// Adds white noise of the given rms to each value.
+void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel);
 
 }  // namespace ripplenotch

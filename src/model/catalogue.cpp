@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "model/effects.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/spec.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr const Effect* const list[] = {
+#define EFFECT(name) &effects::name,
+#include "model/effects/effects.def"
+#undef EFFECT
+};
+
+constexpr Dimension dimensions[] = {Dimension::time,    Dimension::frequency, Dimension::angle,
+                                    Dimension::speed,   Dimension::torque,    Dimension::torque_rate,
+                                    Dimension::inertia, Dimension::decibel,   Dimension::current};
+
+}  // namespace
+
+std::span<const Effect* const> catalogue() { return list; }
+
+const Effect& find_effect(std::string_view name) {
+    std::vector<std::string> known;
+    for (const Effect* effect : catalogue()) {
+        if (effect->name == name) return *effect;
+        known.emplace_back(effect->name);
+    }
+    const auto near = nearest_name(name, known);
+    raise<UsageError>("there is no effect '{}'{}; effects: {}", name,
+                      near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(known, ", "));
+}
+
+std::optional<std::size_t> find_parameter(const Effect& effect, std::string_view name) {
+    const auto found = std::find_if(effect.parameters.begin(), effect.parameters.end(),
+                                    [&](const Parameter& parameter) { return parameter.name == name; });
+    if (found == effect.parameters.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - effect.parameters.begin());
+}
+
+Dimension dimension_of(const Parameter& parameter) {
+    const auto found = std::find_if(std::begin(dimensions), std::end(dimensions), [&](Dimension dimension) {
+        return base_unit(dimension) == parameter.unit;
+    });
+    return found == std::end(dimensions) ? Dimension::none : *found;
+}
+
+bool allows(const Parameter& parameter, double value) {
+    return std::isfinite(value) && parameter.lower <= value && value <= parameter.upper;
+}
+
+}  // namespace ripplenotch

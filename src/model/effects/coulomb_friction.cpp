@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "model/effects.hpp"
+#include "model/reproducible.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "torque_nm",
+     .unit = "Nm",
+     .help = "friction torque while the joint moves, as the sensor sees it",
+     .start = 0.5,
+     .upper = 1e5,
+     .linear = true},
+    {.name = "width_deg_s",
+     .unit = "deg/s",
+     .help = "speed at which 76 % of it has built up; logs of steady motion do not tell it",
+     .neutral = 0.2,
+     .start = 0.2,
+     .lower = 0.001,
+     .upper = 100.0},
+};
+
+void apply(const Motion& motion, GearRatio, std::span<const double> values, std::span<double> torque_nm) {
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
+        torque_nm[k] += values[0] * smooth_sign(motion.velocity_deg_s[k] / values[1]);
+    }
+}
+
+}  // namespace
+
+const Effect effects::coulomb_friction{
+    .name = "coulomb-friction",
+    .summary = "friction of constant size against the motion, behind the sensor",
+    .equation = "torque = torque_nm * tanh(v / width_deg_s)",
+    .symptom = "a residual that changes sign with the direction of motion and does not depend on the speed",
+    .look_alikes =
+        "offset when the joint moves one way only and never rests; hysteresis, whose step takes an angle to "
+        "build up, when every reversal is quick",
+    .source = "Coulomb; Olsson et al., European Journal of Control 4, 1998, for the smoothed form",
+    .side = Side::joint,
+    .parameters = parameters,
+    .apply = apply,
+};
+
+}  // namespace ripplenotch

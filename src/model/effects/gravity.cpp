@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "model/effects.hpp"
+#include "model/reproducible.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "amplitude_nm",
+     .unit = "Nm",
+     .help = "mass * 9.81 m/s2 * distance of the centre of mass from the axis * cosine of the axis' tilt",
+     .start = 1.0,
+     .upper = 1e5,
+     .linear = true},
+    {.name = "phase_deg",
+     .unit = "deg",
+     .help = "angle of the centre of mass above the horizontal where the joint's position is zero",
+     .lower = -360.0,
+     .upper = 360.0},
+};
+
+void apply(const Motion& motion, GearRatio, std::span<const double> values, std::span<double> torque_nm) {
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
+        torque_nm[k] += values[0] * cos_degrees(motion.position_deg[k] + values[1]);
+    }
+}
+
+}  // namespace
+
+const Effect effects::gravity{
+    .name = "gravity",
+    .summary = "weight of the link about a joint axis that is not vertical",
+    .equation = "torque = amplitude_nm * cos(q + phase_deg)",
+    .symptom =
+        "the same torque at the same position in both directions, at rest too; one cycle per output "
+        "revolution",
+    .look_alikes =
+        "crosstalk of the sensor, once per output revolution: no log of one joint in one mounting tells "
+        "them apart; offset when the travel is below 30 deg",
+    .source = "statics; Taghirad and Belanger, 1998, for the crosstalk",
+    .side = Side::joint,
+    .parameters = parameters,
+    .apply = apply,
+};
+
+}  // namespace ripplenotch

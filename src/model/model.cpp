@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/model/model.hpp"
+
+#include <fmt/ranges.h>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/spec.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::vector<double> stated_values(const Term& term) {
+    std::vector<double> values;
+    for (const auto& value : term.values) values.push_back(value.value());
+    return values;
+}
+
+std::size_t known_parameter(const Effect& effect, const std::string& name) {
+    if (const auto place = find_parameter(effect, name)) return *place;
+    std::vector<std::string> known;
+    for (const Parameter& parameter : effect.parameters) known.emplace_back(parameter.name);
+    const auto near = nearest_name(name, known);
+    raise<UsageError>("effect {} has no parameter '{}'{}; its parameters: {}", effect.name, name,
+                      near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(known, ", "));
+}
+
+}  // namespace
+
+Term parse_term(std::string_view text) {
+    const Spec spec = parse_spec(text);
+    const Effect& effect = find_effect(spec.name);
+    Term term{&effect, std::vector<std::optional<double>>(effect.parameters.size())};
+    for (const auto& [name, value_text] : spec.values) {
+        const std::size_t place = known_parameter(effect, name);
+        const Parameter& parameter = effect.parameters[place];
+        const std::string label = fmt::format("effect {}, {}", effect.name, name);
+        const double value = parse_quantity(value_text, dimension_of(parameter), label);
+        if (!allows(parameter, value)) {
+            raise<UsageError>("{}: {} is not between {} and {} {}", label, value_text,
+                              shortest(parameter.lower), shortest(parameter.upper), parameter.unit);
+        }
+        term.values[place] = value;
+    }
+    return term;
+}
+
+std::vector<std::string> missing_values(const Model& model) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < model.terms.size(); ++i) {
+        const Term& term = model.terms[i];
+        for (std::size_t p = 0; p < term.values.size(); ++p) {
+            if (term.values[p]) continue;
+            names.push_back(
+                fmt::format("effects[{}].{} of {}", i, term.effect->parameters[p].name, term.effect->name));
+        }
+    }
+    return names;
+}
+
+std::vector<double> predict_nm(const Model& model, const Motion& motion) {
+    if (const auto missing = missing_values(model); !missing.empty()) {
+        raise<UsageError>("the model does not state {}; give the value, or fit it to a log first",
+                          fmt::join(missing, ", "));
+    }
+    std::vector<double> torque_nm(motion.size(), 0.0);
+    for (const Side side : {Side::joint, Side::sensor}) {
+        for (const Term& term : model.terms) {
+            if (term.effect->side == side)
+                term.effect->apply(motion, model.gear_ratio, stated_values(term), torque_nm);
+        }
+    }
+    return torque_nm;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The declarations of every motion kind's record, and what their files share.
+
+#include "ripplenotch/model/motion.hpp"
+
+namespace ripplenotch {
+
+/// Most that any motion may ask for; wide enough for any joint, narrow enough that no product overflows.
+inline constexpr double longest_duration_s = 1e6, largest_angle_deg = 1e7, largest_speed_deg_s = 1e5;
+
+/// The keys that every kind has.
+inline constexpr Key duration_key = {.name = "duration",
+                                     .dimension = Dimension::time,
+                                     .required = true,
+                                     .above = 0.0,
+                                     .at_most = longest_duration_s,
+                                     .help = "how long it takes"};
+inline constexpr Key from_key = {
+    .name = "from",
+    .dimension = Dimension::angle,
+    .above = -largest_angle_deg,
+    .at_most = largest_angle_deg,
+    .help = "position at its beginning; without it, where the motion before ended, or 0deg"};
+
+/// Position at which a piece begins. Throws UsageError when `from` contradicts the piece before, naming
+/// `kind`.
+[[nodiscard]] double start_position_deg(std::string_view kind, const Settings& settings,
+                                        const std::optional<MotionState>& before);
+
+namespace motions {
+#define MOTION(name) extern const MotionKind name;
+#include "model/motions/motions.def"
+#undef MOTION
+}  // namespace motions
+
+}  // namespace ripplenotch

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include <numbers>
+
+#include "model/motions.hpp"
+#include "model/reproducible.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Key keys[] = {
+    {.name = "amplitude",
+     .dimension = Dimension::angle,
+     .required = true,
+     .above = 0.0,
+     .at_most = largest_angle_deg,
+     .help = "zero to peak"},
+    {.name = "frequency",
+     .dimension = Dimension::frequency,
+     .required = true,
+     .above = 0.0,
+     .at_most = 1000.0,
+     .help = "swings per second"},
+    {.name = "phase",
+     .dimension = Dimension::angle,
+     .default_text = "-90deg",
+     .above = -largest_angle_deg,
+     .at_most = largest_angle_deg,
+     .help = "phase of the sine at its beginning; -90deg starts from rest"},
+    duration_key,
+    from_key,
+};
+
+MotionPiece make(const Settings& settings, const std::optional<MotionState>& before) {
+    const double from_deg = start_position_deg("sine", settings, before);
+    const double amplitude_deg = settings.number("amplitude");
+    const double frequency_hz = settings.number("frequency");
+    const double phase_deg = settings.number("phase");
+    const double center_deg = from_deg - amplitude_deg * sin_degrees(phase_deg);
+    const double rad_s = 2.0 * std::numbers::pi * frequency_hz;
+    return {Seconds(settings.number("duration")), [=](Seconds elapsed) {
+                const double angle_deg = 360.0 * frequency_hz * elapsed.value() + phase_deg;
+                const double sine = sin_degrees(angle_deg), cosine = cos_degrees(angle_deg);
+                return MotionState{center_deg + amplitude_deg * sine, amplitude_deg * rad_s * cosine,
+                                   -amplitude_deg * rad_s * rad_s * sine};
+            }};
+}
+
+}  // namespace
+
+const MotionKind motions::sine{
+    .name = "sine",
+    .summary = "swing to and fro",
+    .equation = "q(t) = from + amplitude * (sin(360deg * frequency * t + phase) - sin(phase))",
+    .source =
+        "the usual excitation for friction and reversal, e.g. Olsson et al., European Journal of Control 4, "
+        "1998",
+    .keys = keys,
+    .make = make,
+};
+
+}  // namespace ripplenotch
