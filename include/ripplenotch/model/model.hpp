@@ -27,6 +27,9 @@ struct Model {
     bool operator==(const Model&) const = default;
 };
 
+/// Gear ratios that a model may have: above 0, at most this (no gear comes near it).
+inline constexpr GearRatio largest_gear_ratio{1e5};
+
 /// Reads "ripple,order=1,amplitude_nm=0.8,phase_deg=0"; a value may carry any unit of the parameter's
 /// dimension
 /// ("amplitude_nm=800mNm"). Parameters left out stay to be fitted. Throws UsageError: unknown effect or

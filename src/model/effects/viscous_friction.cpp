@@ -27,7 +27,7 @@ const Effect effects::viscous_friction{
     .look_alikes =
         "quadratic-viscous-friction when fewer than three speeds are in the log; coulomb-friction when "
         "there is one speed in each direction",
-    .source = "Olsson et al., European Journal of Control 4, 1998, section 2",
+    .source = "Olsson et al., European Journal of Control 4, 1998",
     .side = Side::joint,
     .parameters = parameters,
     .apply = apply,

@@ -69,7 +69,7 @@ const MotionKind motions::poly6{
         "q(t) = from + (to - from) * (10 u^3 - 15 u^4 + 6 u^5 + 10 asymmetry u^3 (1 - u)^3), u = t / "
         "duration",
     .source =
-        "the paper's move (Kim, Kim, Song, Trans. KSME A, 2011, section 4.3); degree five: Flash and Hogan, "
+        "the paper's move (Kim, Kim, Song, Trans. KSME A, 2011, fig. 11); degree five: Flash and Hogan, "
         "1985",
     .keys = keys,
     .make = make,

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/artifact/simulation.hpp"
+
+#include "artifact/json.hpp"
+#include "artifact/model_json.hpp"
+
+namespace ripplenotch {
+
+std::string write_simulation(const Simulation& simulation, const Provenance& provenance) {
+    Json json = document_head("simulation", provenance);
+    json["rows"] = simulation.rows;
+    json["sample_rate_hz"] = simulation.sample_rate.value();
+    json["duration_s"] = static_cast<double>(simulation.rows) / simulation.sample_rate.value();
+    json["columns"] = simulation.columns;
+    json["motions"] = simulation.motions;
+    json["seed"] = simulation.seed;
+    json["noise_rms_nm"] = simulation.noise_rms.value();
+    json["velocity_noise_rms_deg_s"] = simulation.velocity_noise_rms.value();
+    json["torque_nm"] = {{"min", simulation.torque_min_nm}, {"max", simulation.torque_max_nm}};
+    json["speed_deg_s"] = {{"min", simulation.speed_min_deg_s}, {"max", simulation.speed_max_deg_s}};
+    json["model"] = Json::object();
+    put_model(json["model"], simulation.model);
+    json["output"] = {{"name", simulation.output}, {"sha256", simulation.output_sha256}};
+    return to_text(json);
+}
+
+}  // namespace ripplenotch
