@@ -149,8 +149,8 @@ ExitCode simulate(const SimulateOptions& options) {
     check(options);
     const LogFormat& format = output_format(options.common.output, options.format);
     const Model model = assemble_model(options);
-    const auto columns = make_columns(options, model, make_motion(options.motions, *options.sample_rate));
     ByteSink sink(options.common.output, options.common.overwrite(), format.binary);
+    const auto columns = make_columns(options, model, make_motion(options.motions, *options.sample_rate));
     format.write_columns(sink, columns);
     sink.finish();
     say(options.common, fmt::format("{} rows of {} columns at {} Hz as {}", columns[0].values.size(),
