@@ -96,6 +96,82 @@ class Table1(unittest.TestCase):
         self.assertEqual(read[".txt"], design(*PAPER).stdout)
 
 
+def joint(ratio=100.0, orders=(1.0, 2.0), speeds=(58.6, 179.2), rate=1000.0):
+    """A joint.json with lines of equal strength, as identify writes it."""
+    lines = [{"kind": "order", "order": order, "order_output": order * (ratio or 100.0), "order_output_stderr": 0.1,
+              "hz": None, "amplitude_nm": 0.5, "phase_deg": None, "snr": 20.0, "speed_range_deg_s": list(speeds),
+              "amplitude_by_speed": [], "note": ""} for order in orders]
+    lines.append(dict(lines[0] if lines else {}, kind="tone", order=None, order_output=None, order_output_stderr=None,
+                      hz=50.0, amplitude_nm=0.1, phase_deg=None, snr=9.0, speed_range_deg_s=[0.0, 500.0],
+                      amplitude_by_speed=[], note="mains"))
+    return json.dumps({
+        "schema": "ripplenotch/joint/1", "tool": "ripplenotch", "version": "0", "command": "", "inputs": [],
+        "verdict": "a joint", "conclusive": ratio is not None, "joint": "", "sample_rate_hz": rate,
+        "evidence": "steady stretches",
+        "gear_ratio": {"value": ratio, "stderr": 0.1, "ci95": [99.8, 100.2], "candidates": [], "residuals": []},
+        "lines": lines, "notes": []})
+
+
+class FromJoint(unittest.TestCase):
+    def table(self, text, *words, stderr=""):
+        done = design("-", *words, "--json", stdin=text)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(stderr, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_ratio_orders_and_rate_come_from_the_file(self):
+        self.assertEqual(self.table(joint(), "--speed", "18:180:18")["bands"],
+                         json.loads(design(*PAPER, "--json").stdout)["bands"])
+
+    def test_an_option_wins_over_the_file(self):
+        table = self.table(joint(), "--speed", "18:180:18", "--orders", "2", "--gear-ratio", "50", "--sample-rate", "2kHz")
+        self.assertEqual((table["gear_ratio"], table["orders"], table["sample_rate_hz"]), (50, [2], 2000))
+
+    def test_without_speeds_the_bands_cover_what_was_seen_five_hertz_apart(self):
+        bands = self.table(joint())["bands"]
+        self.assertEqual(bands[0]["speed_from_deg_s"], 58)
+        self.assertGreaterEqual(bands[-1]["speed_to_deg_s"], 179.2)
+        for before, after in zip(bands, bands[1:]):
+            self.assertEqual(before["speed_to_deg_s"], after["speed_from_deg_s"])
+            self.assertAlmostEqual(after["notches"][0]["center_hz"] - before["notches"][0]["center_hz"], 5.0, places=9)
+
+    def test_a_joint_seen_at_one_speed_gets_one_band_around_it(self):
+        band, = self.table(joint(speeds=(90.0, 90.0)))["bands"]
+        self.assertEqual((band["speed_from_deg_s"], band["speed_to_deg_s"]), (81, 99))
+        self.assertEqual(band["notches"][0]["center_hz"], 25.0)
+
+    def test_bands_seen_end_where_the_centre_reaches_half_the_sample_rate(self):
+        table = self.table(joint(rate=125.0), stderr="is not below half the sample rate; the bands end at")
+        centers = [n["center_hz"] for b in table["bands"] for n in b["notches"]]
+        self.assertLess(max(centers), 62.5)
+
+    def test_the_file_is_recorded_with_its_hash(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "joint.json").write_text(joint())
+            table = json.loads(design("joint.json", "--json", folder=folder).stdout)
+        self.assertEqual(table["inputs"][0]["name"], "joint.json")
+        self.assertRegex(table["inputs"][0]["sha256"], "^[0-9a-f]{64}$")
+
+    def test_a_joint_without_a_ratio_asks_for_gear_ratio_and_is_exit_code_3(self):
+        done = design("-", stdin=joint(ratio=None))
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("gear ratio is null", done.stderr)
+        self.assertIn("--gear-ratio", done.stderr)
+        self.assertEqual(self.table(joint(ratio=None), "--gear-ratio", "100")["gear_ratio"], 100)
+
+    def test_a_joint_without_lines_asks_for_orders(self):
+        done = design("-", stdin=joint(orders=()))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no line that follows the speed; give --orders", done.stderr)
+
+    def test_a_file_that_is_no_joint_is_exit_code_3_and_a_missing_one_4(self):
+        done = design("-", stdin="{\"schema\": \"ripplenotch/table/1\"}")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("ripplenotch/joint/1", done.stderr)
+        self.assertEqual(design("-", stdin="rubbish").returncode, 3)
+        self.assertEqual(design("no-such.json").returncode, 4)
+
+
 class Units(unittest.TestCase):
     def bands(self, *words):
         done = design(*with_option(PAPER, "--speed"), *words, "--json")

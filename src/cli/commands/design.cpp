@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include "cli/command.hpp"
+#include "cli/joint_facts.hpp"
 #include "cli/speed_bands.hpp"
 #include "cli/table_text.hpp"
 #include "ripplenotch/artifact/table.hpp"
@@ -22,6 +24,7 @@ constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
 
 struct Request {
     CommonOptions common;
+    std::string joint;
     std::optional<double> gear_ratio, depth_db;
     std::vector<double> orders;
     std::optional<Hertz> sample_rate, spacing;
@@ -43,7 +46,43 @@ DegPerSec width_of_spacing(Hertz spacing, const TableSpec& spec) {
     return DegPerSec(360.0 * spacing.value() / (spec.orders.front().value() * spec.gear_ratio.value()));
 }
 
-std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const Request& request, const TableSpec& spec) {
+// Bands 5 Hz apart in the lowest order, as the paper's, over the speeds at which the lines were seen.
+std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const Request& request, const TableSpec& spec,
+                                                        const JointFacts& joint) {
+    if (!(joint.fastest.value() > 0.0)) {
+        raise<UsageError>("{} has no line that follows the speed; give --speed FROM:TO:WIDTH", joint.source);
+    }
+    const double width = width_of_spacing(request.spacing.value_or(Hertz(5.0)), spec).value();
+    double from = std::floor(joint.slowest.value());
+    double to = joint.fastest.value();
+    // A joint seen at one speed only gets one band around it.
+    if (to - from < width) from = std::max(0.0, 0.5 * (from + to) - 0.5 * width);
+    const double limit_deg_s =
+        180.0 * spec.sample_rate.value() / (spec.orders.back().value() * spec.gear_ratio.value());
+    const double wanted = std::max(1.0, std::ceil((to - from) / width - 1e-9));
+    double count = wanted;
+    while (count > 0.0 && from + (count - 0.5) * width >= limit_deg_s) count -= 1.0;
+    if (count < 1.0) {
+        raise<UsageError>(
+            "{}: order {} is not below half the sample rate, {} Hz, at {:.6g} deg/s, the slowest speed "
+            "seen; choose lower --orders or --speed",
+            joint.source, shortest(spec.orders.back().value()), shortest(0.5 * spec.sample_rate.value()),
+            from + 0.5 * width);
+    }
+    if (count < wanted) {
+        say_warnings(
+            request.common,
+            std::vector{fmt::format(
+                "{}: lines were seen up to {:.6g} deg/s, but from {:.6g} deg/s on order {} "
+                "is not below half the sample rate; the bands end at {:.6g} deg/s",
+                joint.source, to, limit_deg_s, shortest(spec.orders.back().value()), from + count * width)});
+    }
+    to = from + count * width;
+    return bands_by_spacing(DegPerSec(from), DegPerSec(to), DegPerSec(width));
+}
+
+std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const Request& request, const TableSpec& spec,
+                                                      const std::optional<JointFacts>& joint) {
     if (request.bands) {
         if (request.speed || request.spacing) {
             raise<UsageError>("--bands lists the bands; it cannot be combined with --speed or --spacing");
@@ -51,6 +90,7 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const Request& request, co
         return parse_speed_bands(*request.bands, "--bands");
     }
     if (!request.speed) {
+        if (joint) return bands_seen(request, spec, *joint);
         raise<UsageError>(
             "no speeds to design for; give --speed FROM:TO:WIDTH (18:180:18) or --bands FROM:TO,FROM:TO");
     }
@@ -69,25 +109,44 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const Request& request, co
                             range.width ? *range.width : width_of_spacing(*request.spacing, spec));
 }
 
-TableSpec spec_of(const Request& request) {
-    TableSpec spec;
-    if (!request.gear_ratio)
-        raise<UsageError>("the gear ratio is missing; give --gear-ratio, for example 100");
-    if (!request.sample_rate) {
+// Options first, then joint.json, else the option that is missing.
+void fill_joint(TableSpec& spec, const Request& request, const std::optional<JointFacts>& joint) {
+    if (request.gear_ratio) {
+        spec.gear_ratio = GearRatio(*request.gear_ratio);
+    } else {
+        if (!joint) raise<UsageError>("the gear ratio is missing; give --gear-ratio, for example 100");
+        spec.gear_ratio = gear_ratio_of(*joint);
+    }
+    if (!request.sample_rate && !joint) {
         raise<UsageError>("the sample rate is missing; give --sample-rate, for example 1kHz");
     }
-    if (request.orders.empty()) raise<UsageError>("no orders to notch; give --orders, for example 1,2");
-    spec.gear_ratio = GearRatio(*request.gear_ratio);
-    spec.sample_rate = *request.sample_rate;
+    spec.sample_rate = request.sample_rate ? *request.sample_rate : joint->sample_rate;
     for (const double order : request.orders) spec.orders.emplace_back(order);
     std::sort(spec.orders.begin(), spec.orders.end());
+    if (spec.orders.empty() && joint) spec.orders = joint->orders;
+    if (spec.orders.empty()) {
+        raise<UsageError>("no orders to notch{}; give --orders, for example 1,2",
+                          joint ? fmt::format(": {} has no line that follows the speed", joint->source) : "");
+    }
+    // Otherwise --spacing would divide by it before the table is checked.
+    if (!(spec.gear_ratio.value() > 0.0)) {
+        raise<UsageError>("gear ratio {} is not above 0", shortest(spec.gear_ratio.value()));
+    }
+    if (!(spec.orders.front().value() > 0.0)) {
+        raise<UsageError>("order {} is not above 0", shortest(spec.orders.front().value()));
+    }
+}
+
+TableSpec spec_of(const Request& request, const std::optional<JointFacts>& joint) {
+    TableSpec spec;
+    fill_joint(spec, request, joint);
     spec.q = request.q;
     if (request.depth_db) spec.depth_db = *request.depth_db;
     spec.width = request.width == "digital" ? WidthRule::digital : WidthRule::analog;
     spec.settle_band_percent = request.settle_band_percent;
     spec.below = rule_of(request.below);
     spec.above = rule_of(request.above);
-    spec.bands = bands_of(request, spec);
+    spec.bands = bands_of(request, spec, joint);
     return spec;
 }
 
@@ -109,9 +168,15 @@ std::string form_of(const Request& request) {
 
 ExitCode run(const Request& request, const std::string& command_line) {
     const std::string form = form_of(request);
-    const CandidateTable table = CandidateTable::design(spec_of(request));
+    std::optional<JointFacts> joint;
+    Provenance provenance{{}, command_line};
+    if (!request.joint.empty()) {
+        joint = load_joint_facts(request.joint);
+        provenance.inputs.push_back(input_record(request.joint));
+    }
+    const CandidateTable table = CandidateTable::design(spec_of(request, joint));
     say_warnings(request.common, alias_warnings(table));
-    const std::string text = form == "json"  ? table_to_json(table, Provenance{{}, command_line})
+    const std::string text = form == "json"  ? table_to_json(table, provenance)
                              : form == "csv" ? table_to_csv(table)
                                              : table_to_text(table);
     write_all(request.common.output, text, request.common.overwrite());
@@ -120,6 +185,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
 
 std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
+    options.argument("JOINT", request->joint, false, "joint.json from identify; - is standard input");
     options.number("--gear-ratio", request->gear_ratio, Dimension::none, "motor turns per output turn");
     options.numbers("--orders", request->orders, Dimension::none,
                     "ripple lines to notch, in cycles per motor turn, e.g. 1,2");

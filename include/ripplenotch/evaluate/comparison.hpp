@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Several methods side by side: on signals of the tool's own making, or on a log.
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
+
+namespace ripplenotch {
+
+struct OrderAttenuation {
+    double order = 0.0;
+    double hz = 0.0;  ///< of the line; on a log its mean
+    std::optional<double>
+        db;  ///< empty where the line is not below half the sample rate, or was not measured
+};
+
+/// What one method does and costs; what was not asked for or cannot be had is empty.
+struct MethodFigures {
+    std::string method;                              ///< as it would be typed
+    std::string note;                                ///< e.g. "band 4: 72-90 deg/s"
+    std::optional<std::array<double, 4>> settle_ms;  ///< per entry of settle_bands_percent (bench.hpp)
+    std::optional<double> overshoot_percent, ramp_delay_ms, dc_delay_ms;
+    std::vector<OrderAttenuation> attenuation;
+    std::optional<double> ripple_rms_nm;  ///< of the orders alone, over the measured windows
+    std::optional<double> residual_rms_nm,
+        residual_peak_to_peak_nm;  ///< torque minus its trend, as RippleMeter does
+    std::optional<std::size_t> switches;
+};
+
+/// The lines that a comparison looks at; `amplitude_nm` weighs them against each other where there is no log.
+struct RippleLines {
+    GearRatio gear_ratio;
+    std::vector<Order> orders;
+    std::vector<double> amplitude_nm;  ///< one per order, or empty: all alike
+};
+
+/// How a low-pass was made equal to a method.
+struct LowPassMatch {
+    std::string subject;   ///< the method, or "--match-attenuation 22 dB"
+    std::string low_pass;  ///< "lowpass,cutoff=2.1Hz,order=1"
+    std::string matched;   ///< a clause that says what is equal, with numbers
+    int order = 1;
+    Hertz cutoff;
+};
+
+struct Comparison {
+    Hertz sample_rate;
+    DegPerSec speed;  ///< for delays and attenuation; on a log its median moving speed
+    std::optional<double> step_nm, ramp_nm_s;
+    std::optional<RippleLines> lines;
+    std::optional<LowPassMatch> match;
+    std::vector<MethodFigures> methods;
+    bool on_log = false;
+    std::size_t rows = 0, windows = 0;  ///< of the log; windows that RippleMeter measured
+    double measured_share = 0.0;
+};
+
+/// Fills settling, delays and, with lines, attenuations measured with sines. Empty optionals are left out.
+[[nodiscard]] MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, DegPerSec speed,
+                                               std::optional<double> step_nm, std::optional<double> ramp_nm_s,
+                                               const RippleLines* lines);
+
+/// A log in memory; `gap_rows` are the last rows before each gap, ascending.
+struct ComparedLog {
+    TraceView trace;
+    std::span<const std::size_t> gap_rows;
+};
+
+/// Median of |v| over the samples that move: faster than a twentieth of the fastest. 0 for a log at rest.
+[[nodiscard]] DegPerSec median_moving_speed(const TraceView& trace);
+
+/// What the methods leave of the log's ripple: all run over the log together, and are measured on the same
+/// windows.
+struct LogLevels {
+    std::vector<MethodFigures> methods;  ///< one per contender: attenuation, ripple, residual, switches
+    std::size_t windows = 0;
+    double measured_share = 0.0;
+};
+[[nodiscard]] LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
+                                       const RippleLines& lines);
+
+}  // namespace ripplenotch

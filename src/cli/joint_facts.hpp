@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What design and compare take from a joint.json.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+struct JointFacts {
+    std::string source;  ///< for messages
+    std::optional<GearRatio> gear_ratio;
+    std::vector<Order> orders;         ///< of the lines that follow the speed, lowest first, each once
+    std::vector<double> amplitude_nm;  ///< one per order
+    DegPerSec slowest, fastest;        ///< |v| at which those lines were seen; both 0 without lines
+    Hertz sample_rate;
+};
+
+/// Reads joint.json, or standard input when the path is "-". Throws DataError, FileError.
+[[nodiscard]] JointFacts load_joint_facts(const std::string& path);
+
+/// The gear ratio, or a DataError that says why there is none and that --gear-ratio gives one.
+[[nodiscard]] GearRatio gear_ratio_of(const JointFacts& joint);
+
+/// The file with its hash, for the artifact that is made from it. Standard input has no hash: it is gone.
+[[nodiscard]] InputRecord input_record(const std::string& path);
+
+}  // namespace ripplenotch

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/evaluate/bench.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t longest_run = 50'000'000;
+
+// One filter and one signal, run on for as long as somebody wants to see more of it.
+class Run {
+  public:
+    Run(const Contender& contender, Hertz sample_rate, DegPerSec speed)
+        : filter_(contender.start(sample_rate)),
+          method_(contender.text),
+          rate_hz_(sample_rate.value()),
+          speed_deg_s_(speed.value()) {}
+
+    /// Feeds samples until `count` have been; sample k is signal(k).
+    template <class Signal>
+    void extend(std::size_t count, const Signal& signal) {
+        if (count > longest_run) {
+            raise<UsageError>(
+                "{}: the output has not come to rest after {:.3g} samples; it cannot be measured", method_,
+                static_cast<double>(out_.size()));
+        }
+        const std::size_t first = out_.size(), added = count - first;
+        std::vector<double> torque(added), position(added);
+        const std::vector<double> velocity(added, speed_deg_s_);
+        for (std::size_t i = 0; i < added; ++i) {
+            torque[i] = signal(first + i);
+            position[i] = speed_deg_s_ * static_cast<double>(first + i) / rate_hz_;
+        }
+        out_.resize(count);
+        filter_->process({velocity, torque, position}, std::span(out_).subspan(first));
+    }
+    [[nodiscard]] const std::vector<double>& out() const { return out_; }
+
+  private:
+    std::unique_ptr<CausalFilter> filter_;
+    const std::string& method_;
+    double rate_hz_, speed_deg_s_;
+    std::vector<double> out_;
+};
+
+// Half a second at first, then twice as long each time, until the second half of the run is at rest.
+std::size_t first_length(Hertz sample_rate) {
+    return std::max<std::size_t>(64, static_cast<std::size_t>(std::min(0.5 * sample_rate.value(), 1e6)));
+}
+
+// Amplitude of the sine of `omega` radians per sample in y[from, end), beside a constant.
+double sine_amplitude(std::span<const double> y, std::size_t from, double omega) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (std::size_t k = from; k < y.size(); ++k) {
+        const double phase = omega * static_cast<double>(k);
+        const Eigen::Vector3d row(std::cos(phase), std::sin(phase), 1.0);
+        normal += row * row.transpose();
+        right += row * y[k];
+    }
+    const Eigen::Vector3d fit = normal.ldlt().solve(right);
+    return std::hypot(fit[0], fit[1]);
+}
+
+}  // namespace
+
+StepMeasurement Bench::step(NewtonMeters height) const {
+    const double h = height.value();
+    if (!std::isfinite(h) || h == 0.0) raise<UsageError>("a step of {} Nm is no step", h);
+    Run run(contender_, sample_rate_, speed_);
+    // Sample 0 is the rest before the step: filters start settled on their first sample.
+    const auto signal = [h](std::size_t k) { return k == 0 ? 0.0 : h; };
+    const double rest = 0.01 * settle_bands_percent.front() / 100.0;
+    std::size_t count = first_length(sample_rate_);
+    while (true) {
+        run.extend(count, signal);
+        const auto half = run.out().begin() + static_cast<std::ptrdiff_t>(count / 2);
+        if (std::all_of(half, run.out().end(), [&](double y) { return std::abs(y / h - 1.0) <= rest; }))
+            break;
+        count *= 2;
+    }
+    StepMeasurement figures;
+    std::array<std::size_t, 4> settled{};
+    double peak = 1.0;
+    for (std::size_t k = 1; k < count; ++k) {
+        const double y = run.out()[k] / h;
+        peak = std::max(peak, y);
+        for (std::size_t b = 0; b < settled.size(); ++b) {
+            if (!(std::abs(y - 1.0) <= settle_bands_percent[b] / 100.0)) settled[b] = k;
+        }
+    }
+    for (std::size_t b = 0; b < settled.size(); ++b) {
+        figures.settle[b] = Seconds(static_cast<double>(settled[b]) / sample_rate_.value());
+    }
+    // Below a millionth of a per cent it is rounding, not overshoot.
+    figures.overshoot_percent = peak - 1.0 > 1e-8 ? 100.0 * (peak - 1.0) : 0.0;
+    return figures;
+}
+
+Seconds Bench::ramp_delay(double slope_nm_s) const {
+    if (!std::isfinite(slope_nm_s) || slope_nm_s == 0.0)
+        raise<UsageError>("a ramp of {} Nm/s is no ramp", slope_nm_s);
+    const double rise = slope_nm_s / sample_rate_.value();  // per sample
+    const auto signal = [rise](std::size_t k) { return rise * static_cast<double>(k); };
+    Run run(contender_, sample_rate_, speed_);
+    constexpr double rest_s = 1e-8;
+    std::size_t count = first_length(sample_rate_);
+    while (true) {
+        run.extend(count, signal);
+        const auto lag_s = [&](std::size_t k) { return (signal(k) - run.out()[k]) / slope_nm_s; };
+        const double last = lag_s(count - 1);
+        bool at_rest = true;
+        for (std::size_t k = count / 2; k < count && at_rest; ++k)
+            at_rest = std::abs(lag_s(k) - last) <= rest_s;
+        if (at_rest) return Seconds(last);
+        count *= 2;
+    }
+}
+
+std::optional<double> Bench::attenuation_db(Hertz at) const {
+    if (!(at.value() > 0.0) || !(at < 0.5 * sample_rate_)) return std::nullopt;
+    const double omega = 2.0 * std::numbers::pi * (at / sample_rate_);
+    const auto signal = [omega](std::size_t k) { return std::sin(omega * static_cast<double>(k)); };
+    Run run(contender_, sample_rate_, speed_);
+    // Three quarters of a run to settle, one to measure; it must hold a few periods to tell the sine from a
+    // constant.
+    const auto periods = static_cast<std::size_t>(std::min(16.0 * (sample_rate_ / at), 1e7));
+    std::size_t count = std::max(first_length(sample_rate_), periods);
+    double before = std::numeric_limits<double>::infinity();
+    const double least = std::pow(10.0, -most_attenuation_db / 20.0);
+    while (true) {
+        run.extend(count, signal);
+        const double now = sine_amplitude(run.out(), count - count / 4, omega);
+        if (now < least) return most_attenuation_db;
+        if (std::abs(now - before) <= 1e-6 * now + 0.1 * least) return -20.0 * std::log10(now);
+        before = now;
+        count *= 2;
+    }
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/evaluate/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/analysis/ripple_meter.hpp"
+#include "ripplenotch/evaluate/bench.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t block_rows = 4096;
+
+// One method on its way through a log.
+struct Runner {
+    std::unique_ptr<CausalFilter> filter;
+    std::vector<double> out;
+};
+
+double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
+    double power = 0.0;
+    for (const OrderLevel& level : levels.orders) {
+        const double a = level.amplitude_nm[signal];
+        power += 0.5 * a * a;
+    }
+    return std::sqrt(power);
+}
+
+void fill_levels(MethodFigures& figures, const RippleLevels& levels, std::size_t signal) {
+    if (levels.windows == 0) return;
+    for (const OrderLevel& level : levels.orders) {
+        const double before = level.amplitude_nm[0], after = level.amplitude_nm[signal];
+        OrderAttenuation entry{level.order, level.mean_hz, std::nullopt};
+        if (before > 0.0) {
+            entry.db = after > 0.0 ? std::min(20.0 * std::log10(before / after), most_attenuation_db)
+                                   : most_attenuation_db;
+        }
+        figures.attenuation.push_back(entry);
+    }
+    figures.ripple_rms_nm = ripple_rms_nm(levels, signal);
+    figures.residual_rms_nm = levels.residual_rms_nm[signal];
+    figures.residual_peak_to_peak_nm = levels.residual_peak_to_peak_nm[signal];
+}
+
+// Feeds rows [first, first + count) to every method and to the meter; signal 0 is the log's own torque.
+void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView& block) {
+    for (Runner& runner : runners) {
+        runner.out.resize(block.size());
+        runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, runner.out);
+    }
+    std::vector<double> signals(runners.size() + 1);
+    for (std::size_t k = 0; k < block.size(); ++k) {
+        signals[0] = block.torque_nm[k];
+        for (std::size_t i = 0; i < runners.size(); ++i) signals[i + 1] = runners[i].out[k];
+        meter.add(block.velocity_deg_s[k], block.has_position() ? &block.position_deg[k] : nullptr, signals);
+    }
+}
+
+}  // namespace
+
+MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, DegPerSec speed,
+                                 std::optional<double> step_nm, std::optional<double> ramp_nm_s,
+                                 const RippleLines* lines) {
+    MethodFigures figures;
+    figures.method = contender.text;
+    const Bench bench(contender, sample_rate, speed);
+    if (step_nm) {
+        const StepMeasurement step = bench.step(NewtonMeters(*step_nm));
+        figures.settle_ms.emplace();
+        for (std::size_t i = 0; i < step.settle.size(); ++i)
+            (*figures.settle_ms)[i] = 1e3 * step.settle[i].value();
+        figures.overshoot_percent = step.overshoot_percent;
+    }
+    if (ramp_nm_s) figures.ramp_delay_ms = 1e3 * bench.ramp_delay(*ramp_nm_s).value();
+    if (const auto frozen = contender.frozen(sample_rate, speed)) {
+        figures.dc_delay_ms = 1e3 * group_delay(frozen->cascade, Hertz(0.0), sample_rate).value();
+        figures.note = frozen->note;
+    }
+    if (lines != nullptr) {
+        for (const Order order : lines->orders) {
+            const Hertz at = ripple_frequency(order, lines->gear_ratio, speed);
+            figures.attenuation.push_back({order.value(), at.value(), bench.attenuation_db(at)});
+        }
+    }
+    return figures;
+}
+
+DegPerSec median_moving_speed(const TraceView& trace) {
+    double fastest = 0.0;
+    for (const double v : trace.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
+    std::vector<double> moving;
+    for (const double v : trace.velocity_deg_s) {
+        if (std::abs(v) > fastest / 20.0) moving.push_back(std::abs(v));
+    }
+    if (moving.empty()) return DegPerSec(0.0);
+    const auto middle = moving.begin() + static_cast<std::ptrdiff_t>(moving.size() / 2);
+    std::nth_element(moving.begin(), middle, moving.end());
+    return DegPerSec(*middle);
+}
+
+LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
+                         const RippleLines& lines) {
+    std::vector<Runner> runners;
+    for (const Contender& contender : contenders)
+        runners.push_back({contender.start(log.trace.sample_rate), {}});
+    RippleMeter meter(lines.gear_ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);
+    std::size_t at = 0, gap = 0;
+    while (at < log.trace.size()) {
+        std::size_t end = std::min(at + block_rows, log.trace.size());
+        const bool gap_ahead = gap < log.gap_rows.size() && log.gap_rows[gap] < end;
+        if (gap_ahead) end = log.gap_rows[gap] + 1;
+        run_block(runners, meter, log.trace.part(at, end - at));
+        if (gap_ahead) {
+            ++gap;
+            meter.split();
+            for (Runner& runner : runners) runner.filter->restart();
+        }
+        at = end;
+    }
+    const RippleLevels levels = meter.levels();
+    LogLevels result{{}, levels.windows, levels.measured_share};
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+        MethodFigures figures;
+        figures.method = contenders[i].text;
+        fill_levels(figures, levels, i + 1);
+        if (contenders[i].method->needs_table) figures.switches = runners[i].filter->switches().size();
+        result.methods.push_back(std::move(figures));
+    }
+    return result;
+}
+
+}  // namespace ripplenotch

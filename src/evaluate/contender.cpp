@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/evaluate/contender.hpp"
+
+#include <fmt/format.h>
+
+namespace ripplenotch {
+
+std::unique_ptr<CausalFilter> Contender::start(Hertz sample_rate) const {
+    return method->start(settings, sample_rate, table.get());
+}
+
+std::optional<FrozenFilter> Contender::frozen(Hertz sample_rate, DegPerSec speed) const {
+    if (method->frozen == nullptr) return std::nullopt;
+    return method->frozen(settings, sample_rate, table.get(), speed);
+}
+
+Contender make_contender(const Spec& spec, std::shared_ptr<const CandidateTable> table) {
+    const Method& method = find_method(spec.name);
+    return {spec.text(), &method, Settings(fmt::format("method {}", spec.name), spec, method.keys),
+            std::move(table)};
+}
+
+}  // namespace ripplenotch

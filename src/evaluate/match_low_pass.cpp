@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/evaluate/match_low_pass.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/design/low_pass.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double lowest_cutoff = 1e-5, highest_cutoff = 0.49;  // of the sample rate
+constexpr double wanted_precision = 1e-5;
+constexpr std::size_t cutoffs_a_pass = 15;
+
+struct Bracket {
+    double low_hz, high_hz;
+};
+
+// The interval between neighbouring cut-offs in which the ripple passes the target; it rises with the
+// cut-off.
+std::optional<Bracket> tighter(const std::vector<double>& cutoffs_hz, const LogLevels& levels,
+                               double ripple_rms_nm) {
+    for (std::size_t i = 0; i < cutoffs_hz.size(); ++i) {
+        if (*levels.methods[i].ripple_rms_nm < ripple_rms_nm) continue;
+        if (i == 0) return std::nullopt;
+        return Bracket{cutoffs_hz[i - 1], cutoffs_hz[i]};
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> ripple_gain(std::span<const Biquad> cascade, const RippleLines& lines,
+                                  Hertz sample_rate, DegPerSec speed) {
+    double before = 0.0, after = 0.0;
+    for (std::size_t i = 0; i < lines.orders.size(); ++i) {
+        const Hertz at = ripple_frequency(lines.orders[i], lines.gear_ratio, speed);
+        if (!(at.value() > 0.0) || !(at < 0.5 * sample_rate)) continue;
+        const double amplitude = lines.amplitude_nm.empty() ? 1.0 : lines.amplitude_nm[i];
+        before += amplitude * amplitude;
+        after += amplitude * amplitude * std::norm(response(cascade, at, sample_rate));
+    }
+    if (!(before > 0.0)) return std::nullopt;
+    return std::sqrt(after / before);
+}
+
+std::optional<Hertz> cutoff_for_gain(double gain, int order, const RippleLines& lines, Hertz sample_rate,
+                                     DegPerSec speed) {
+    const auto gain_at = [&](double cutoff) {
+        const auto left = ripple_gain(design_low_pass({cutoff * sample_rate, order}, sample_rate), lines,
+                                      sample_rate, speed);
+        if (!left)
+            raise<UsageError>("no ripple line is below half the sample rate, {} Hz",
+                              0.5 * sample_rate.value());
+        return *left;
+    };
+    double low = std::log(1e-6), high = std::log(0.4999);
+    if (!(gain_at(std::exp(low)) <= gain && gain <= gain_at(std::exp(high)))) return std::nullopt;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (gain_at(std::exp(middle)) <= gain ? low : high) = middle;
+    }
+    return Hertz(std::exp(0.5 * (low + high)) * sample_rate.value());
+}
+
+std::optional<Hertz> cutoff_for_ripple(double ripple_rms_nm, int order, const ComparedLog& log,
+                                       const RippleLines& lines) {
+    const double rate_hz = log.trace.sample_rate.value();
+    Bracket bracket{lowest_cutoff * rate_hz, highest_cutoff * rate_hz};
+    // A pass over the log costs about the same for many filters as for one, so each pass cuts the bracket
+    // into many.
+    while (bracket.high_hz / bracket.low_hz > 1.0 + wanted_precision) {
+        std::vector<double> cutoffs_hz;
+        std::vector<Contender> contenders;
+        for (std::size_t i = 0; i <= cutoffs_a_pass; ++i) {
+            const double share = static_cast<double>(i) / static_cast<double>(cutoffs_a_pass);
+            cutoffs_hz.push_back(bracket.low_hz * std::pow(bracket.high_hz / bracket.low_hz, share));
+            const Spec spec{
+                "lowpass",
+                {{"cutoff", fmt::format("{:.17g}Hz", cutoffs_hz.back())}, {"order", std::to_string(order)}}};
+            contenders.push_back(make_contender(spec));
+        }
+        const LogLevels levels = measure_on_log(contenders, log, lines);
+        if (levels.windows == 0) return std::nullopt;
+        const auto next = tighter(cutoffs_hz, levels, ripple_rms_nm);
+        if (!next) return std::nullopt;
+        bracket = *next;
+    }
+    return Hertz(std::sqrt(bracket.low_hz * bracket.high_hz));
+}
+
+Spec low_pass_spec(Hertz cutoff, int order) {
+    return {"lowpass",
+            {{"cutoff", fmt::format("{:.7g}Hz", cutoff.value())}, {"order", std::to_string(order)}}};
+}
+
+}  // namespace ripplenotch
