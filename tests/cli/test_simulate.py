@@ -174,6 +174,20 @@ class Logs(unittest.TestCase):
             self.assertAlmostEqual(a, b, delta=1e-9)
 
 
+    def test_the_clean_torque_of_the_papers_move_is_what_paper_and_pencil_say(self):
+        done = simulate("--model", str(DATA / "paper_model.json"), "--motion", "rest,duration=0.5s,from=90deg",
+                        "--motion", "poly6,to=-90deg,duration=2s", "--motion", "rest,duration=0.5s",
+                        "--sample-rate", "1kHz")
+        for k, row in enumerate(rows(done)):
+            u = min(max((k - 500) / 2000, 0.0), 1.0)
+            position = 90 - 180 * (10 * u**3 - 15 * u**4 + 6 * u**5)
+            acceleration = -180 * (60 * u - 180 * u**2 + 120 * u**3) / 4
+            motor = math.radians(100 * position)
+            torque = 0.992 * math.radians(acceleration) + 0.8 * math.cos(motor) + 0.5 * math.cos(2 * motor)
+            self.assertAlmostEqual(float(row["position_deg"]), position, delta=1e-12)
+            self.assertAlmostEqual(float(row["torque_nm"]), torque, delta=1e-10)
+
+
 class Summary(unittest.TestCase):
     def test_json_describes_the_log_that_was_written(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -232,6 +246,8 @@ class Refusals(unittest.TestCase):
         self.refused(2, ["--ripple", "'1:2:3:4'"], "--gear-ratio", "100", "--ripple", "1:2:3:4", *MOVE)
         self.refused(2, ["ripple, order", "0 is not between"], "--gear-ratio", "100", "--ripple", "0:1Nm", *MOVE)
         self.refused(2, ["inertia", "-1"], "--gear-ratio", "100", "--inertia", "-1", *MOVE)
+        self.refused(2, ["--ripple", "'1:'"], "--gear-ratio", "100", "--ripple", "1:", *MOVE)
+        self.refused(2, ["amplitude_nm", "'2deg'"], "--gear-ratio", "100", "--ripple", "1:2deg", *MOVE)
         self.refused(2, ["did you mean constant?"], *JOINT, "--motion", "constnat,speed=1", "--sample-rate", "1kHz")
         self.refused(2, ["--noise", "-1"], *JOINT, *MOVE, "--noise", "-1")
         self.refused(2, ["--velocity-noise", "-1"], *JOINT, *MOVE, "--velocity-noise", "-1")
@@ -248,8 +264,8 @@ class Refusals(unittest.TestCase):
                      "--model", "-", *MOVE, stdin=model)
 
     def test_a_wrong_model_is_exit_code_3_and_a_missing_one_4(self):
-        self.refused(3, ["schema"], "--model", "-", *MOVE, stdin=b"{}")
-        self.refused(3, ["not JSON"], "--model", "-", *MOVE, stdin=b'{"schema": ')
+        self.refused(3, ["standard input", "schema"], "--model", "-", *MOVE, stdin=b"{}")
+        self.refused(3, ["standard input:1:", "not JSON"], "--model", "-", *MOVE, stdin=b'{"schema": ')
         self.refused(3, ["ripplenotch/joint/1", "ripplenotch/model/1"], "--model", "-", *MOVE,
                      stdin=b'{"schema":"ripplenotch/joint/1"}')
         self.refused(4, ["no-such-model.json"], "--model", "no-such-model.json", *MOVE)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <sstream>
 
 #include "cli/command.hpp"
 #include "ripplenotch/artifact/model.hpp"
@@ -32,31 +33,31 @@ struct SimulateOptions {
     std::function<std::string()> command_line;
 };
 
-/// Decimals beyond this say nothing about a torque, and 10^decimals would no longer be an exact factor.
+// Up to this, an angle of thousands of degrees times 10^decimals is still a whole number that a double holds.
 constexpr double most_decimals = 12.0;
 
 // "1:0.8Nm:0deg" is order, amplitude, phase; the phase may be left out.
 Term parse_ripple(const std::string& text) {
-    const std::size_t first = text.find(':');
-    const std::size_t second = first == std::string::npos ? first : text.find(':', first + 1);
-    if (first == std::string::npos ||
-        text.find(':', second == std::string::npos ? first + 1 : second + 1) != std::string::npos) {
+    std::vector<std::string> pieces;
+    std::istringstream stream(text);
+    for (std::string piece; std::getline(stream, piece, ':');) pieces.push_back(piece);
+    if (pieces.size() == 2) pieces.emplace_back("0deg");
+    if (pieces.size() != 3) {
         raise<UsageError>(
             "--ripple: '{}' is not ORDER:AMPLITUDE or ORDER:AMPLITUDE:PHASE, for example 1:0.8Nm:0deg", text);
     }
-    const std::string amplitude =
-        text.substr(first + 1, second == std::string::npos ? second : second - first - 1);
-    const std::string phase = second == std::string::npos ? "0" : text.substr(second + 1);
     return parse_term(
-        fmt::format("ripple,order={},amplitude_nm={},phase_deg={}", text.substr(0, first), amplitude, phase));
+        fmt::format("ripple,order={},amplitude_nm={},phase_deg={}", pieces[0], pieces[1], pieces[2]));
 }
 
 Model assemble_model(const SimulateOptions& options) {
     Model model;
     if (options.model) {
-        if (options.gear_ratio)
-            raise<UsageError>("--gear-ratio: {} states the gear ratio; change it there", *options.model);
-        model = read_model(read_all(*options.model), *options.model);
+        const std::string source = *options.model == "-" ? "standard input" : *options.model;
+        if (options.gear_ratio) {
+            raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there", source);
+        }
+        model = read_model(read_all(*options.model), source);
     } else {
         if (!options.gear_ratio)
             raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
@@ -159,6 +160,13 @@ ExitCode simulate(const SimulateOptions& options) {
     return ExitCode::done;
 }
 
+template <class Entry>
+std::string names(std::span<const Entry* const> entries) {
+    std::string joined;
+    for (const Entry* entry : entries) joined += fmt::format("{}{}", joined.empty() ? "" : ", ", entry->name);
+    return joined;
+}
+
 std::function<ExitCode()> attach(Options& options) {
     auto o = std::make_shared<SimulateOptions>();
     options.text("--model", o->model, "FILE", "model.json of the joint; - is standard input");
@@ -166,11 +174,14 @@ std::function<ExitCode()> attach(Options& options) {
     options.number("--inertia", o->inertia_kgm2, Dimension::inertia, "adds the effect inertia");
     options.texts("--ripple", o->ripples, "ORDER:AMPLITUDE[:PHASE]",
                   "adds the effect ripple: 1:0.8Nm:0deg; repeatable");
-    options.texts("--effect", o->effects, "NAME,KEY=VALUE,...",
-                  "adds any effect: offset,torque_nm=0.2; repeatable");
+    options.texts(
+        "--effect", o->effects, "NAME,KEY=VALUE,...",
+        fmt::format("adds any effect: offset,torque_nm=0.2; repeatable; effects: {}", names(catalogue())));
     options.texts(
         "--motion", o->motions, "NAME,KEY=VALUE,...",
-        "how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one another");
+        fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one "
+                    "another; motions: {}",
+                    names(motion_kinds())));
     options.quantity("--sample-rate", o->sample_rate, Dimension::frequency, "samples per second");
     options.quantity("--noise", o->noise, Dimension::torque, "rms of white noise on the torque");
     options.quantity("--velocity-noise", o->velocity_noise, Dimension::speed,
