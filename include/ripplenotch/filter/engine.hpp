@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A log of any length through a filter in bounded memory: reader, blocks, filter, writer. Gaps in time split
+// the log into runs that share nothing.
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/analysis/ripple_meter.hpp"
+#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/filter/method.hpp"
+#include "ripplenotch/log/format.hpp"
+#include "ripplenotch/log/timebase.hpp"
+
+namespace ripplenotch {
+
+/// A filter is designed before the log's end is known, so its clock is read off the first rows.
+inline constexpr std::size_t clock_rows = 16384;
+inline constexpr std::size_t most_listed_gaps = 1000;
+inline constexpr double rate_worth_a_word = 0.005;  ///< share by which two rates may differ unmentioned
+inline constexpr double rate_refused = 0.05;  ///< share by which a table's rate may differ from the log's
+
+/// The rate a controller was meant to run at: when the rate, or the period, is within 0.1 % of a number with
+/// two significant digits, that number, so that two logs of one controller get the same coefficients; else
+/// the rate itself. 1000.3 Hz gives 1000 Hz, 124.96 Hz (8.0026 ms) gives 125 Hz, 978.4 Hz stays.
+[[nodiscard]] Hertz nominal_rate(Hertz measured);
+
+/// Empty when a table designed for one rate may run at another without a word; else a warning. Throws
+/// DataError naming both rates and the remedy when they differ by more than rate_refused.
+[[nodiscard]] std::optional<std::string> compare_table_rate(Hertz table, Hertz log,
+                                                            const std::string& source);
+
+struct TimedSwitch {
+    Switch change;
+    double time_s = 0.0;
+};
+
+/// What a whole log turned out to be.
+struct StreamReport {
+    std::size_t rows = 0;
+    Hertz measured_rate;    ///< of the whole log, gaps left out
+    std::vector<Gap> gaps;  ///< the first most_listed_gaps
+    std::size_t gap_count = 0;
+    std::size_t repeated_times = 0;     ///< steps of exactly zero
+    std::size_t held_samples = 0;       ///< torque equal to the one before, while the joint moves
+    std::size_t held_bad_values = 0;    ///< cells replaced because the caller asked for it
+    std::vector<TimedSwitch> switches;  ///< as listed by the filter
+    std::size_t switch_count = 0;
+};
+
+/// One log on its way through a filter.
+class LogStream {
+  public:
+    /// Reads the first clock_rows rows (fewer when they are wide) and measures their rate. A gap is a step of
+    /// more than `gap_steps` median steps. Throws DataError when there is no time and no stated rate, fewer
+    /// than two rows, or time that does not advance.
+    LogStream(std::unique_ptr<LogReader> reader, double gap_steps);
+
+    [[nodiscard]] const LogReader& reader() const { return *reader_; }
+    [[nodiscard]] Hertz measured_rate() const { return measured_rate_; }  ///< of the first rows
+    /// What filters are designed for: the stated rate, else nominal_rate(measured_rate()).
+    [[nodiscard]] Hertz design_rate() const { return design_rate_; }
+
+    /// Carries the whole log through `filter`, once. `writer` and `meter` may be null; the meter gets two
+    /// signals, raw and filtered torque. Throws DataError when time runs backward.
+    StreamReport run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter);
+
+  private:
+    struct Pass;
+    bool next(RowBlock& block);
+
+    std::unique_ptr<LogReader> reader_;
+    std::deque<RowBlock> read_ahead_;
+    Hertz measured_rate_, design_rate_;
+    double gap_s_ = 0.0;  ///< a longer step is a gap
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/filter/engine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double nominal_tolerance = 0.001;
+constexpr std::size_t most_read_ahead_bytes = std::size_t{8}
+                                              << 20;  // wide logs: fewer rows, still a second or so
+
+double two_digits(double value) {
+    const double scale = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+    // Dividing by a whole power of ten is exact where multiplying by a fraction is not: 0.001 s must give
+    // 1000 Hz.
+    return scale < 1.0 ? std::round(value / scale) / std::round(1.0 / scale)
+                       : std::round(value / scale) * scale;
+}
+
+bool near(double a, double b) { return std::abs(a - b) <= nominal_tolerance * b; }
+
+void append(std::vector<double>& to, const std::vector<double>& from, std::size_t count) {
+    to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+std::string per_cent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
+
+}  // namespace
+
+Hertz nominal_rate(Hertz measured) {
+    const double rate = measured.value();
+    if (!(rate > 0.0) || !std::isfinite(rate)) return measured;
+    if (const double round_rate = two_digits(rate); near(rate, round_rate)) return Hertz(round_rate);
+    if (const double period = two_digits(1.0 / rate); near(rate, 1.0 / period)) {
+        const double by_period = 1.0 / period;
+        // 1 / 0.008 is 125 but for rounding.
+        return Hertz(std::abs(by_period - std::round(by_period)) < 1e-9 * by_period ? std::round(by_period)
+                                                                                    : by_period);
+    }
+    return measured;
+}
+
+std::optional<std::string> compare_table_rate(Hertz table, Hertz log, const std::string& source) {
+    const double off = std::abs(log / table - 1.0);
+    if (off <= rate_worth_a_word) return std::nullopt;
+    if (off > rate_refused) {
+        raise<DataError>(
+            "{}: the log runs at {:.6g} Hz, the table was designed for {:.6g} Hz, and its notches would be "
+            "{} off; design the table with "
+            "--sample-rate {:.6g}Hz, or state the log's true rate with --sample-rate",
+            source, log.value(), table.value(), per_cent(off), log.value());
+    }
+    return fmt::format(
+        "{}: the log runs at {:.6g} Hz, the table was designed for {:.6g} Hz: its notches are {} off; design "
+        "the table with "
+        "--sample-rate {:.6g}Hz to have them right",
+        source, log.value(), table.value(), per_cent(off), log.value());
+}
+
+LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : reader_(std::move(reader)) {
+    const std::string& source = reader_->layout().source;
+    Trace head;
+    const std::vector<double>& time_s = head.time_s;
+    std::size_t bytes = 0;
+    while (time_s.size() < clock_rows && bytes < most_read_ahead_bytes) {
+        RowBlock block;
+        if (!reader_->next(block)) break;
+        bytes += block.bytes.size();
+        const std::size_t count = std::min(block.size(), clock_rows - head.size());
+        append(head.time_s, block.time_s, count);
+        append(head.velocity_deg_s, block.velocity_deg_s, count);
+        append(head.torque_nm, block.torque_nm, count);
+        read_ahead_.push_back(std::move(block));
+    }
+    if (time_s.size() < 2) {
+        raise<DataError>("{}: {} of data; filtering needs at least two", source,
+                         time_s.empty() ? "no row" : "one row");
+    }
+    if (const auto stated = reader_->layout().stated_rate) {
+        measured_rate_ = design_rate_ = *stated;
+        gap_s_ = gap_steps / stated->value();
+        return;
+    }
+    if (!std::all_of(time_s.begin(), time_s.end(), [](double t) { return std::isfinite(t); })) {
+        raise<DataError>("{}: no column of time; state the rate of its rows, for example --sample-rate 1kHz",
+                         source);
+    }
+    const Timebase clock = examine_timebase(head.view(), gap_steps);
+    if (!(clock.median_step.value() > 0.0) || !(clock.sample_rate.value() > 0.0)) {
+        raise<DataError>(
+            "{}: time does not advance from row to row (median step {} s in the first {} rows); state the "
+            "rate of its "
+            "rows, for example --sample-rate 1kHz, or name the right column with --columns time=NAME",
+            source, shortest(clock.median_step.value()), time_s.size());
+    }
+    measured_rate_ = clock.sample_rate;
+    design_rate_ = nominal_rate(measured_rate_);
+    gap_s_ = gap_steps * clock.median_step.value();
+}
+
+bool LogStream::next(RowBlock& block) {
+    if (read_ahead_.empty()) return reader_->next(block);
+    block = std::move(read_ahead_.front());
+    read_ahead_.pop_front();
+    return true;
+}
+
+// The state of one pass over the log.
+struct LogStream::Pass {
+    const LogStream& stream;
+    CausalFilter& filter;
+    RippleMeter* meter;
+    StreamReport report{};
+    std::vector<double> out{};
+    double last_time_s = 0.0, last_torque_nm = 0.0;
+    double duration_s = 0.0;  // gaps left out
+    std::size_t steps = 0;
+
+    // Accounts for the step that leads to row k of a block. True when it is a gap.
+    bool step_to(const RowBlock& block, std::size_t k) {
+        const double step_s = block.time_s[k] - last_time_s;
+        if (step_s < 0.0) {
+            raise<DataError>(
+                "{}: data row {}: time runs backward, from {} s to {} s; put the rows in order, or count the "
+                "rows at a stated "
+                "rate with --sample-rate",
+                stream.reader().layout().source, block.first_row + k + 1, shortest(last_time_s),
+                shortest(block.time_s[k]));
+        }
+        if (step_s > stream.gap_s_) {
+            const std::size_t before = block.first_row + k - 1;
+            if (report.gaps.size() < most_listed_gaps)
+                report.gaps.push_back({before, last_time_s, block.time_s[k]});
+            ++report.gap_count;
+            return true;
+        }
+        if (step_s == 0.0) ++report.repeated_times;
+        duration_s += step_s;
+        ++steps;
+        return false;
+    }
+
+    void filter_rows(const RowBlock& block, std::size_t first, std::size_t count) {
+        const auto part = [first, count](const std::vector<double>& values) {
+            return values.empty() ? std::span<const double>{} : std::span(values).subspan(first, count);
+        };
+        filter.process({part(block.velocity_deg_s), part(block.torque_nm), part(block.position_deg)},
+                       std::span(out).subspan(first, count));
+        if (meter == nullptr) return;
+        for (std::size_t k = first; k < first + count; ++k) {
+            const double* position = block.position_deg.empty() ? nullptr : &block.position_deg[k];
+            const std::array torque = {block.torque_nm[k], out[k]};
+            meter->add(block.velocity_deg_s[k], position, torque);
+        }
+    }
+
+    void take(const RowBlock& block) {
+        out.resize(block.size());
+        std::size_t first = 0;
+        for (std::size_t k = 0; k < block.size(); ++k) {
+            const bool any_before = report.rows + k > 0;
+            if (any_before && step_to(block, k)) {
+                filter_rows(block, first, k - first);
+                filter.restart();
+                if (meter != nullptr) meter->split();
+                first = k;
+            } else if (any_before && block.torque_nm[k] == last_torque_nm && block.velocity_deg_s[k] != 0.0) {
+                ++report.held_samples;
+            }
+            last_time_s = block.time_s[k];
+            last_torque_nm = block.torque_nm[k];
+        }
+        filter_rows(block, first, block.size() - first);
+        const auto switches = filter.switches();
+        for (std::size_t i = report.switches.size(); i < switches.size(); ++i) {
+            report.switches.push_back({switches[i], block.time_s[switches[i].sample - report.rows]});
+        }
+        report.rows += block.size();
+        report.held_bad_values += block.held_bad_values;
+    }
+};
+
+StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter) {
+    Pass pass{*this, filter, meter};
+    RowBlock block;
+    while (next(block)) {
+        pass.take(block);
+        if (writer != nullptr) writer->write(block, pass.out);
+    }
+    if (writer != nullptr) writer->finish(reader_->tail());
+    pass.report.switch_count = filter.switch_count();
+    if (pass.duration_s > 0.0)
+        pass.report.measured_rate = Hertz(static_cast<double>(pass.steps) / pass.duration_s);
+    return std::move(pass.report);
+}
+
+}  // namespace ripplenotch
