@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "cli/chosen_method.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ripplenotch/artifact/table.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+
+std::vector<FilterDelay> ChosenMethod::delays(Hertz sample_rate) const {
+    std::vector<FilterDelay> delays;
+    const auto add = [&](int band, DegPerSec from, DegPerSec to) {
+        const FrozenFilter filter = frozen(sample_rate, 0.5 * (from + to));
+        delays.push_back({band, from, to, filter.note, group_delay(filter.cascade, Hertz(0.0), sample_rate)});
+    };
+    if (table == nullptr) {
+        add(0, DegPerSec(0.0), DegPerSec(0.0));
+    } else {
+        for (const Band& band : table->bands()) add(band.number, band.from, band.to);
+    }
+    return delays;
+}
+
+ChosenMethod choose_method(const std::string& spec_text, const std::optional<std::string>& table) {
+    Spec spec = parse_spec(spec_text);
+    ChosenMethod chosen;
+    chosen.method = &find_method(spec.name);
+    const auto named = std::find_if(spec.values.begin(), spec.values.end(),
+                                    [](const auto& entry) { return entry.first == "table"; });
+    if (table) {
+        if (!chosen.method->needs_table) {
+            raise<UsageError>("--table is for methods that switch between bands; method {} has no table",
+                              spec.name);
+        }
+        if (named != spec.values.end())
+            raise<UsageError>("--table and table=... in --method: give one of them");
+        spec.values.insert(spec.values.begin(), {"table", *table});
+    }
+    const std::string what = fmt::format("method {}", spec.name);
+    chosen.settings.emplace(what, spec, chosen.method->keys);
+    chosen.text = spec.text();
+    if (chosen.method->needs_table) {
+        chosen.table_path = chosen.settings->text("table");
+        chosen.table = std::make_shared<const CandidateTable>(load_table(chosen.table_path));
+    }
+    return chosen;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch filter: logs through a method, streaming.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "cli/chosen_method.hpp"
+#include "cli/command.hpp"
+#include "cli/filter_summary.hpp"
+#include "cli/joint_facts.hpp"
+#include "ripplenotch/artifact/metrics.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/filter/engine.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+namespace {
+
+struct Request {
+    CommonOptions common;
+    LogOptions log;
+    std::vector<std::string> logs;
+    std::string method, decimals = "shortest";
+    std::optional<std::string> table, to, metrics, out_directory, joint_file;
+    std::optional<double> gear_ratio;
+    std::vector<double> orders;
+    double gap_steps = default_gap_steps;
+    bool append = false;
+};
+
+/// Where one log comes from and what is made of it.
+struct Job {
+    std::string log, output;
+    std::optional<std::string> metrics;
+};
+
+/// Whose ripple the metrics are about.
+struct Gear {
+    std::optional<GearRatio> ratio;
+    std::vector<Order> orders;
+};
+
+WriteOptions write_options(const Request& request) {
+    WriteOptions options;
+    options.append = request.append;
+    if (request.decimals == "input") {
+        options.decimals = WriteOptions::Decimals::input;
+    } else if (request.decimals != "shortest") {
+        const auto number = parse_number(request.decimals);
+        if (!number || *number < 0.0 || *number > 17.0 || *number != static_cast<int>(*number)) {
+            raise<UsageError>("--decimals: '{}' is none of shortest, input, 0 ... 17", request.decimals);
+        }
+        options.decimals = WriteOptions::Decimals::fixed;
+        options.fixed_decimals = static_cast<int>(*number);
+    }
+    return options;
+}
+
+// Stated, else from the joint file, else from the table.
+Gear gear_of(const Request& request, const ChosenMethod& method) {
+    Gear gear;
+    if (method.table != nullptr) {
+        gear.ratio = method.table->spec().gear_ratio;
+        gear.orders = method.table->spec().orders;
+    }
+    if (request.joint_file) {
+        const JointFacts joint = load_joint_facts(*request.joint_file);
+        if (joint.gear_ratio) gear.ratio = joint.gear_ratio;
+        if (!joint.orders.empty()) gear.orders = joint.orders;
+    }
+    if (request.gear_ratio) gear.ratio = GearRatio(*request.gear_ratio);
+    if (!request.orders.empty()) gear.orders.clear();
+    for (const double order : request.orders) gear.orders.emplace_back(order);
+    if (gear.ratio && gear.orders.empty()) gear.orders = {Order(1.0), Order(2.0)};
+    return gear;
+}
+
+std::vector<Job> jobs_of(const Request& request) {
+    const bool several = request.logs.size() > 1;
+    if (!several && !request.out_directory)
+        return {{request.logs.front(), request.common.output, request.metrics}};
+    if (!request.out_directory) {
+        raise<UsageError>("{} logs need --out-dir DIR, where each gets a file of its own name",
+                          request.logs.size());
+    }
+    if (request.common.output != "-") raise<UsageError>("--out-dir and -o: give one of them");
+    std::vector<Job> jobs;
+    std::set<std::string> names;
+    for (const std::string& log : request.logs) {
+        const std::filesystem::path path(log);
+        if (log == "-") raise<UsageError>("--out-dir: standard input has no name; use -o FILE");
+        if (!names.insert(path.filename().string()).second) {
+            raise<UsageError>("two logs are named {}; filter them into different folders",
+                              path.filename().string());
+        }
+        Job job{log, (std::filesystem::path(*request.out_directory) / path.filename()).string(), {}};
+        if (request.metrics) {
+            job.metrics = (std::filesystem::path(*request.metrics) / path.stem()).string() + ".metrics.json";
+        }
+        jobs.push_back(std::move(job));
+    }
+    std::error_code failed;
+    for (const auto& directory : {request.out_directory, request.metrics}) {
+        if (directory) std::filesystem::create_directories(*directory, failed);
+        if (failed) raise<FileError>("{}: cannot make the folder: {}", *directory, failed.message());
+    }
+    return jobs;
+}
+
+void check(const Request& request) {
+    if (request.method.empty() && !request.table) {
+        raise<UsageError>(
+            "--method is missing, for example --method lowpass,cutoff=13rad/s or --table table.json");
+    }
+    if (request.log.joint == "all") {
+        raise<UsageError>(
+            "--joint all: filter takes one joint at a time; pipe one into the next: filter --joint j1 ... | "
+            "ripplenotch filter --joint j2 ... -");
+    }
+    if (!(request.gap_steps > 1.0))
+        raise<UsageError>("--gap: {} median steps is not above 1", shortest(request.gap_steps));
+    const bool log_on_stdout = request.common.output == "-" && !request.out_directory;
+    if (log_on_stdout && (request.common.json || request.metrics == "-")) {
+        raise<UsageError>(
+            "the filtered log and its metrics would both go to standard output; name a file with -o");
+    }
+    if (request.common.json && request.logs.size() > 1) {
+        raise<UsageError>("--json prints the metrics of one log; for several use --metrics DIR");
+    }
+    if (request.common.json && request.metrics) raise<UsageError>("--json is --metrics -; give one of them");
+}
+
+Provenance provenance_of(const Request& request, const Job& job, const ChosenMethod& method, std::size_t rows,
+                         const std::string& command_line) {
+    Provenance provenance;
+    provenance.command = command_line;
+    provenance.inputs.push_back(input_record(job.log));
+    provenance.inputs.back().rows = rows;
+    if (!method.table_path.empty()) provenance.inputs.push_back(input_record(method.table_path));
+    if (request.joint_file) provenance.inputs.push_back(input_record(*request.joint_file));
+    return provenance;
+}
+
+void run_job(const Request& request, const Job& job, const ChosenMethod& method, const Gear& gear,
+             const std::string& command_line) {
+    LogStream stream(open_log(job.log, request.log.resolve()), request.gap_steps);
+    const Layout& layout = stream.reader().layout();
+    say_layout(request.common, layout);
+    if (method.table != nullptr) {
+        const auto warning =
+            compare_table_rate(method.table->spec().sample_rate, stream.design_rate(), layout.source);
+        if (warning) say_warnings(request.common, {&*warning, 1});
+    }
+    FilterMetrics metrics;
+    metrics.source = layout.source;
+    metrics.joint = layout.chosen.joint;
+    metrics.method = method.text;
+    metrics.sample_rate = stream.design_rate();
+    if (method.table != nullptr) metrics.table_rate = method.table->spec().sample_rate;
+    metrics.gear_ratio = gear.ratio;
+
+    const bool wanted = job.metrics || request.common.json || request.common.verbose;
+    std::optional<RippleMeter> meter;
+    if (wanted && gear.ratio) meter.emplace(*gear.ratio, gear.orders, stream.design_rate(), 2);
+    const auto filter = method.start(stream.design_rate());
+    // Both outputs are opened before the work, so that a name that is taken costs nobody an hour.
+    std::optional<ByteSink> metrics_sink;
+    const std::optional<std::string> metrics_path = request.common.json ? "-" : job.metrics;
+    if (metrics_path) metrics_sink.emplace(*metrics_path, request.common.overwrite());
+    const auto writer = rewrite_log(job.output, stream.reader(), output_format(job.output, request.to),
+                                    write_options(request), request.common.overwrite());
+    metrics.stream = stream.run(*filter, writer.get(), meter ? &*meter : nullptr);
+
+    if (meter) metrics.levels = meter->levels();
+    metrics.delays = method.delays(stream.design_rate());
+    say_warnings(request.common, filter_warnings(metrics));
+    if (wanted && !gear.ratio) {
+        const std::string no_gear =
+            "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file";
+        say_warnings(request.common, {&no_gear, 1});
+    }
+    for (const std::string& line : filter_summary(metrics)) say(request.common, line);
+    if (metrics_sink) {
+        metrics_sink->write(
+            metrics_to_json(metrics, provenance_of(request, job, method, metrics.stream.rows, command_line)));
+        metrics_sink->finish();
+    }
+}
+
+ExitCode run(const Request& request, const std::string& command_line) {
+    check(request);
+    const ChosenMethod method =
+        choose_method(request.method.empty() ? "switching" : request.method, request.table);
+    const Gear gear = gear_of(request, method);
+    for (const Job& job : jobs_of(request)) run_job(request, job, method, gear, command_line);
+    return ExitCode::done;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    auto request = std::make_shared<Request>();
+    options.arguments("LOG", request->logs, true, "logs to filter; - is standard input");
+    options.text("--method", request->method, "SPEC",
+                 "name,key=value,...: switching, fixed, lowpass, none; see docs/methods");
+    options.text("--table", request->table, "FILE",
+                 "table.json of method switching, which is then the default");
+    options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");
+    options.text("--to", request->to, "NAME",
+                 "format of the output: csv, npy (default: by the name of -o, else csv)");
+    options.flag("--append", request->append,
+                 "add the filtered torque as a column instead of replacing the torque");
+    options.text("--decimals", request->decimals, "HOW",
+                 "digits of the filtered torque: shortest (reads back exactly), input (as many as the "
+                 "log's), or a number");
+    options.text("--metrics", request->metrics, "FILE",
+                 "JSON about attenuation, residual, delays, switches, gaps; with --out-dir a folder");
+    options.number("--gear-ratio", request->gear_ratio, Dimension::none,
+                   "for the metrics; switching has it from its table");
+    options.numbers("--orders", request->orders, Dimension::none,
+                    "for the metrics (default: the table's, else 1,2)");
+    options.text("--joint-file", request->joint_file, "FILE",
+                 "joint.json with gear ratio and orders, for the metrics");
+    options.number("--gap", request->gap_steps, Dimension::none,
+                   "a step in time of more than this many median steps starts a new run");
+    attach_log(options, request->log);
+    attach_common(options, request->common);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::filter = {
+    .name = "filter",
+    .summary = "takes the ripple out of logs, streaming",
+    .description =
+        "Replaces the torque column by the filtered torque and leaves every other byte of the log as it is.\n"
+        "ripplenotch filter log.csv --table table.json -o filtered.csv --metrics metrics.json\n"
+        "cat log.csv | ripplenotch filter --method lowpass,cutoff=13rad/s,order=1 - | ripplenotch spectrum -",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What filter says to people, on standard error.
+
+#include <string>
+#include <vector>
+
+#include "ripplenotch/artifact/metrics.hpp"
+
+namespace ripplenotch {
+
+/// Sentences worth a warning: gaps, a clock that changed, ripple that could not be measured.
+[[nodiscard]] std::vector<std::string> filter_warnings(const FilterMetrics& metrics);
+
+/// The metrics in a few lines, for -v.
+[[nodiscard]] std::vector<std::string> filter_summary(const FilterMetrics& metrics);
+
+}  // namespace ripplenotch
