@@ -67,6 +67,16 @@ TEST_CASE("ripple of order n at speed v oscillates at n Kg v / 360") {
     }
 }
 
+TEST_CASE(
+    "the phase of ripple is that of the cosine at position zero, and the ratio and the order both multiply") {
+    // Ratio 100, order 2: a quarter cycle is 360 / 200 / 4 = 0.45 deg of the joint.
+    const Motion m = make_motion("constant,speed=0.45deg/s,duration=4s", 1_Hz);
+    CHECK(predict_nm(model_of({"ripple,order=2,amplitude_nm=3,phase_deg=90"}), m) ==
+          std::vector<double>{0.0, -3.0, 0.0, 3.0});
+    CHECK(predict_nm(model_of({"ripple,order=2,amplitude_nm=3,phase_deg=-90"}), m) ==
+          std::vector<double>{0.0, 3.0, 0.0, -3.0});
+}
+
 TEST_CASE("the ripple of the paper's model, 0.8 and 0.5 Nm, spans 1.96 Nm peak to peak at any speed") {
     // Worked: the maximum is 1.3 at angle 0; the minimum of 0.8 c + 0.5 (2 c^2 - 1) is at c = -0.4: -0.66. At
     // 180 deg/s a cycle has 20 samples, which miss the minimum by up to 9 degrees: 2.4 (9 pi / 180)^2 / 2 =
