@@ -59,6 +59,15 @@ void gather(const PowerSpectrum& s, std::size_t bin, double guard, double reach,
     }
 }
 
+/// The ring's lower side alone, as far as there are bins: spectra of motion fall steeply from their low end.
+void gather_below(const PowerSpectrum& s, std::size_t bin, double guard, double reach,
+                  std::vector<double>& into) {
+    into.clear();
+    const auto inner = static_cast<std::size_t>(std::ceil(guard));
+    const std::size_t outer = std::min(static_cast<std::size_t>(std::ceil(reach)), bin - s.first);
+    for (std::size_t d = inner; d <= outer; ++d) into.push_back(s.power[bin - d]);
+}
+
 double median(std::vector<double>& values) {
     if (values.empty()) return 0.0;
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -74,7 +83,7 @@ LocalFloor floor_around(const PowerSpectrum& s, std::size_t bin, double reach_ce
                         std::vector<double>& scratch) {
     gather(s, bin, guard_cells * s.bins_per_cell, reach_cells * s.bins_per_cell, scratch);
     const double cells = static_cast<double>(scratch.size()) / s.bins_per_cell;
-    return {median(scratch) / median_over_mean(s.averages), cells};
+    return {median(scratch) / median_over_mean(s.averages_at(bin)), cells};
 }
 
 }  // namespace
@@ -97,13 +106,12 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
     const std::size_t n = spectrum.power.size();
     std::vector<double> floor(n, 0.0), scratch;
     if (n <= spectrum.first) return floor;
-    const double to_mean = 1.0 / median_over_mean(spectrum.averages);
     const auto stride = static_cast<std::size_t>(std::max(1.0, far_cells * spectrum.bins_per_cell / 8.0));
     const auto at = [&](std::size_t bin) {
         const std::size_t inside =
             std::clamp(bin, std::min(spectrum.first + stride, n - 1), n - 1 - std::min(stride, n - 1));
         gather(spectrum, std::max(inside, spectrum.first), 0.0, far_cells * spectrum.bins_per_cell, scratch);
-        return std::max(median(scratch) * to_mean, 1e-300);
+        return std::max(median(scratch) / median_over_mean(spectrum.averages_at(bin)), 1e-300);
     };
     // Between places a stride apart the floor runs on a straight line in log power.
     double here = at(spectrum.first);
@@ -131,13 +139,16 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, do
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
         // A cheap sieve with a wide margin: the floors below are seldom less than a quarter of the running
         // one.
-        if (tries * exceedance(4.0 * power[k] / floor[k], spectrum.averages, 1e6) > 1.0) continue;
+        if (tries * exceedance(4.0 * power[k] / floor[k], spectrum.averages_at(k), 1e6) > 1.0) continue;
         const LocalFloor near = floor_around(spectrum, k, near_cells, scratch);
         const LocalFloor far = floor_around(spectrum, k, far_cells, scratch);
-        const double local = std::max(near.power, far.power);
+        gather_below(spectrum, k, guard_cells * spectrum.bins_per_cell, near_cells * spectrum.bins_per_cell,
+                     scratch);
+        const double below = median(scratch) / median_over_mean(spectrum.averages_at(k));
+        const double local = std::max({near.power, far.power, below});
         if (near.cells < fewest_cells || !(local > 0.0)) continue;
         const double chance =
-            std::min(1.0, tries * exceedance(power[k] / local, spectrum.averages, far.cells));
+            std::min(1.0, tries * exceedance(power[k] / local, spectrum.averages_at(k), far.cells));
         if (chance <= false_alarm) peaks.push_back({k, local, chance});
     }
     return peaks;

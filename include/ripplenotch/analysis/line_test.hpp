@@ -17,6 +17,11 @@ struct PowerSpectrum {
     double bins_per_cell =
         1.5;                ///< bins that carry one independent value (1.5 for a Hann window without padding)
     std::size_t first = 0;  ///< bins below are not searched and not used
+    std::span<const double> averages_by_bin = {};  ///< when given, instead of `averages`
+
+    [[nodiscard]] double averages_at(std::size_t bin) const {
+        return averages_by_bin.empty() ? averages : averages_by_bin[bin];
+    }
 };
 
 /// Mean noise power at each bin: running median over about 40 cells to each side, turned into a mean by the

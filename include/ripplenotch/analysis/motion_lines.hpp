@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Lines of a log in any motion: what repeats with the output angle (orders), what repeats with time (tones),
+// and what this motion cannot tell apart.
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/stack.hpp"
+
+namespace ripplenotch {
+
+struct MotionLine {
+    LineKind kind = LineKind::unknown;  ///< order, tone, or unknown: angle and time explain it alike
+    double order_output = 0.0, order_stderr = 0.0;  ///< for kinds order and unknown
+    double hz = 0.0, hz_stderr = 0.0;               ///< for kind tone
+    double amplitude_nm = 0.0;                      ///< zero to peak, rms over sweeps, noise taken off
+    double floor_nm = 0.0;                          ///< what noise alone shows, rms over sweeps
+    double snr = 0.0;                               ///< amplitude_nm / floor_nm
+    double false_alarm = 1.0;                  ///< chance that noise shows such a line anywhere on this axis
+    double gain_angle = 0.0, gain_time = 0.0;  ///< what a line in angle, or in time, explains, in nats
+    std::optional<double> phase_deg;  ///< of cos(order * output angle + phase), when the sweeps agree on it
+    std::vector<AmplitudeAtSpeed> by_speed;  ///< per sweep
+};
+
+struct MotionLinesOptions {
+    SweepRule sweeps;
+    StackRule stack;
+    double false_alarm = 0.01;     ///< chance that noise gives any line at all, orders and tones together
+    double least_share = 1e-4;     ///< of the torque's range: smaller lines are not reported
+    double lowest_tone_hz = 10.0;  ///< slower tones are those of the motion itself
+    std::size_t most_lines = 12;
+};
+
+struct MotionLines {
+    std::vector<MotionLine> lines;  ///< in the order found: clearest first
+    std::size_t sweeps = 0, sweeps_left_out = 0;
+    double turns = 0.0;  ///< output turns that the sweeps cover
+    double resolution_orders = 0.0;
+    double lowest_order = 0.0, highest_order = 0.0;   ///< searched
+    double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
+    bool absolute_angle = false;
+};
+
+/// Takes the clearest line of both axes that does not rest on a single sweep, gives it to the axis that
+/// explains more of it, subtracts it sweep by sweep, and looks again, until noise could have made what is
+/// left. So a tone does not leave orders behind where the speed lingers, nor an order tones.
+[[nodiscard]] MotionLines find_motion_lines(std::span<const TraceView> logs,
+                                            const MotionLinesOptions& options);
+
+}  // namespace ripplenotch

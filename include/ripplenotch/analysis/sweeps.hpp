@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Motion cut into sweeps of one direction, each ready for Fourier sums over angle or over time.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/core/trace.hpp"
+
+namespace ripplenotch {
+
+struct SweepRule {
+    double longest_turns = 2.0;  ///< longer sweeps are cut into half-overlapping pieces of this length
+    double longest_s = 20.0;     ///< ... and of at most this duration
+    double shortest_turns = 0.02;
+    std::size_t fewest_samples = 64;
+    double slowest_share = 0.02;  ///< of the log's highest speed; slower motion belongs to no sweep ...
+    double slowest_deg_s = 0.2;   ///< ... nor does motion slower than this
+    double trend_terms_per_turn =
+        12.0;  ///< smooth part of the torque taken out: this many terms per output turn
+    std::size_t most_samples =
+        300000;  ///< with more, evenly chosen pieces are used, so that the cost is bounded
+    std::size_t most_pieces = 200;
+    double gap_steps = 10.0;
+};
+
+/// One piece of motion. The vectors have the same length.
+struct Sweep {
+    std::size_t log = 0, first = 0;   ///< where its first sample stands
+    std::vector<double> turns;        ///< output angle in turns; absolute where the log has a position
+    std::vector<double> time_s;       ///< from the piece's middle
+    std::vector<double> torque_nm;    ///< trend removed
+    std::vector<double> value;        ///< torque_nm * weight, in Nm turns
+    std::vector<double> weight;       ///< Hann window in angle times the angle that the sample stands for
+    std::vector<double> share_turns;  ///< angle that a sample stands for
+    double weight_sum = 0.0, weight_square_sum = 0.0;
+    double length_turns = 0.0;
+    double duration_s = 0.0;
+    double slow_deg_s = 0.0, quick_deg_s = 0.0;  ///< lower and upper quartile of |speed| under the weight
+    double fast_deg_s = 0.0;                     ///< highest |speed|
+    double mean_deg_s = 0.0;                     ///< signed mean speed under the weight
+    double rate_hz = 0.0;
+
+    /// How many samples of equal weight would know as much: (sum w)^2 / sum w^2.
+    [[nodiscard]] double effective_samples() const { return weight_sum * weight_sum / weight_square_sum; }
+};
+
+struct Sweeps {
+    std::vector<Sweep> pieces;
+    std::size_t pieces_left_out = 0;  ///< because of SweepRule::most_samples or most_pieces
+    bool absolute_angle = true;       ///< all logs have a position, and it agrees with the velocity
+};
+
+/// A part of a sweep with a Hann window of its own; for asking whether a line is there in each half.
+[[nodiscard]] Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count);
+
+/// Angle from position (unwrapped at 360 deg) where there is one that agrees with the velocity, else from
+/// integrated velocity, whose drift does not matter within one sweep. The trend is fitted in angle, under the
+/// same weights: a line and cosines. Cost O(n terms^2).
+[[nodiscard]] Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule);
+
+}  // namespace ripplenotch

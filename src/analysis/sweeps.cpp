@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/sweeps.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ripplenotch/analysis/steady.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double smoothing_s = 0.05;  // of the velocity that cuts and weighs; far shorter than any sweep
+
+std::vector<double> integrated_velocity(const TraceView& log) {
+    std::vector<double> turns(log.size(), 0.0);
+    for (std::size_t k = 1; k < log.size(); ++k) {
+        const double step = log.time_s[k] - log.time_s[k - 1];
+        turns[k] = turns[k - 1] + 0.5 * (log.velocity_deg_s[k] + log.velocity_deg_s[k - 1]) * step / 360.0;
+    }
+    return turns;
+}
+
+/// Position in turns, jumps of more than half a turn between neighbours taken as wrapping.
+std::vector<double> unwrapped_position(const TraceView& log) {
+    std::vector<double> turns(log.size());
+    double offset = 0.0;
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        if (k > 0) {
+            const double jump = log.position_deg[k] - log.position_deg[k - 1];
+            if (std::abs(jump) > 180.0) offset -= std::round(jump / 360.0);
+        }
+        turns[k] = log.position_deg[k] / 360.0 + offset;
+    }
+    return turns;
+}
+
+struct Angle {
+    std::vector<double> turns;
+    bool absolute = false;
+};
+
+/// A position that moves by less than half or more than twice what the velocity says is of something else (a
+/// motor encoder, another joint): then the velocity speaks.
+Angle angle_of(const TraceView& log) {
+    Angle angle{integrated_velocity(log), false};
+    if (!log.has_position()) return angle;
+    std::vector<double> position = unwrapped_position(log);
+    double product = 0.0, square = 0.0;
+    constexpr std::size_t pieces = 200;
+    for (std::size_t b = 0; b < pieces; ++b) {
+        const std::size_t from = (log.size() - 1) * b / pieces, to = (log.size() - 1) * (b + 1) / pieces;
+        const double moved = angle.turns[to] - angle.turns[from];
+        product += moved * (position[to] - position[from]);
+        square += moved * moved;
+    }
+    if (product < 0.5 * square || product > 2.0 * square) return angle;
+    return {std::move(position), true};
+}
+
+struct Span {
+    std::size_t first = 0, end = 0;
+};
+
+/// Runs of samples that move in one direction without a gap in time.
+std::vector<Span> directed_runs(const TraceView& log, std::span<const double> speed, const SweepRule& rule) {
+    double fastest = 0.0;
+    for (const double v : speed) fastest = std::max(fastest, std::abs(v));
+    const double slowest = std::max(rule.slowest_deg_s, rule.slowest_share * fastest);
+    const double gap = rule.gap_steps / log.sample_rate.value();
+    std::vector<Span> runs;
+    int direction = 0;
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        const int here = speed[k] > slowest ? 1 : speed[k] < -slowest ? -1 : 0;
+        const bool jumped = k > 0 && log.time_s[k] - log.time_s[k - 1] > gap;
+        if (here != 0 && (here != direction || jumped)) runs.push_back({k, k});
+        if (here != 0) runs.back().end = k + 1;
+        direction = here;
+    }
+    return runs;
+}
+
+/// Pieces of at most rule.longest_turns and about rule.longest_s, half overlapping, of equal length in angle.
+std::vector<Span> pieces_of(const Span& run, const TraceView& log, std::span<const double> turns,
+                            const SweepRule& rule) {
+    const double start = turns[run.first];
+    const double length = std::abs(turns[run.end - 1] - start);
+    if (length < rule.shortest_turns) return {};
+    const double duration = log.time_s[run.end - 1] - log.time_s[run.first];
+    const double longest = std::min(rule.longest_turns, length * rule.longest_s / std::max(duration, 1e-9));
+    if (length <= longest) return {run};
+    const auto count = static_cast<std::size_t>(std::max(1.0, std::floor(2.0 * length / longest) - 1.0));
+    const double hop = count > 1 ? (length - longest) / static_cast<double>(count - 1) : 0.0;
+    std::vector<Span> pieces;
+    std::size_t from = run.first;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double begin = hop * static_cast<double>(i);
+        while (from < run.end && std::abs(turns[from] - start) < begin) ++from;
+        std::size_t to = from;
+        while (to < run.end && std::abs(turns[to] - start) <= begin + longest) ++to;
+        pieces.push_back({from, to});
+    }
+    return pieces;
+}
+
+/// Takes the smooth part out: constant, slope and cosines over the piece, least squares under the weights.
+void remove_trend(Sweep& sweep, std::span<const double> torque, const SweepRule& rule) {
+    const double start = sweep.turns.front();
+    sweep.torque_nm.resize(torque.size());
+    sweep.value.resize(torque.size());
+    const auto cosines =
+        static_cast<Eigen::Index>(std::lround(rule.trend_terms_per_turn * sweep.length_turns));
+    const Eigen::Index terms = std::max<Eigen::Index>(cosines, 3) + 2;
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(terms, terms);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(terms), row(terms);
+    const auto fill = [&](std::size_t k) {
+        const double u = std::abs(sweep.turns[k] - start) / sweep.length_turns;
+        row[0] = 1.0;
+        row[1] = u - 0.5;
+        // cos(m pi u) by the recurrence of Chebyshev's polynomials.
+        const double c = std::cos(std::numbers::pi * u);
+        double before = 1.0, now = c;
+        for (Eigen::Index m = 2; m < terms; ++m) {
+            row[m] = now;
+            const double next = 2.0 * c * now - before;
+            before = now;
+            now = next;
+        }
+    };
+    for (std::size_t k = 0; k < torque.size(); ++k) {
+        fill(k);
+        normal.selfadjointView<Eigen::Lower>().rankUpdate(row, sweep.weight[k]);
+        right += sweep.weight[k] * torque[k] * row;
+    }
+    normal.diagonal().array() *= 1.0 + 1e-10;  // line and first cosine are nearly parallel
+    const Eigen::VectorXd trend = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    for (std::size_t k = 0; k < torque.size(); ++k) {
+        fill(k);
+        sweep.torque_nm[k] = torque[k] - trend.dot(row);
+        sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
+    }
+}
+
+/// Speeds that a quarter and three quarters of the weight lie below.
+void find_quartiles(Sweep& sweep, std::span<const double> speed) {
+    std::vector<std::pair<double, double>> sorted(speed.size());
+    for (std::size_t k = 0; k < speed.size(); ++k) sorted[k] = {std::abs(speed[k]), sweep.weight[k]};
+    std::sort(sorted.begin(), sorted.end());
+    double sum = 0.0;
+    for (const auto& [value, weight] : sorted) {
+        if (sum < 0.25 * sweep.weight_sum) sweep.slow_deg_s = value;
+        if (sum < 0.75 * sweep.weight_sum) sweep.quick_deg_s = value;
+        sum += weight;
+    }
+}
+
+/// Hann window over the sweep's own length, times the angle that each sample stands for.
+void weigh(Sweep& sweep) {
+    sweep.length_turns = std::abs(sweep.turns.back() - sweep.turns.front());
+    sweep.duration_s = sweep.time_s.back() - sweep.time_s.front();
+    sweep.weight.resize(sweep.turns.size());
+    sweep.weight_sum = sweep.weight_square_sum = 0.0;
+    for (std::size_t k = 0; k < sweep.turns.size(); ++k) {
+        const double u =
+            std::clamp(std::abs(sweep.turns[k] - sweep.turns.front()) / sweep.length_turns, 0.0, 1.0);
+        sweep.weight[k] = (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * u)) * sweep.share_turns[k];
+        sweep.weight_sum += sweep.weight[k];
+        sweep.weight_square_sum += sweep.weight[k] * sweep.weight[k];
+    }
+}
+
+Sweep make_sweep(const TraceView& log, const Span& span, std::span<const double> all_turns,
+                 std::span<const double> all_speed, const SweepRule& rule) {
+    const std::size_t n = span.end - span.first;
+    const double step = 1.0 / log.sample_rate.value();
+    const auto turns = all_turns.subspan(span.first, n);
+    const auto speed = all_speed.subspan(span.first, n);
+    const auto time = log.time_s.subspan(span.first, n);
+    Sweep sweep;
+    sweep.first = span.first;
+    sweep.rate_hz = log.sample_rate.value();
+    sweep.turns.assign(turns.begin(), turns.end());
+    sweep.time_s.resize(n);
+    sweep.share_turns.resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        sweep.time_s[k] = time[k] - 0.5 * (time.front() + time.back());
+        const double before = k > 0 ? time[k] - time[k - 1] : step;
+        const double after = k + 1 < n ? time[k + 1] - time[k] : step;
+        // The smoothed speed gives each sample its share of angle: differences of a held or coarse position
+        // would not.
+        sweep.share_turns[k] =
+            std::abs(speed[k]) * std::clamp(0.5 * (before + after), 0.0, 3.0 * step) / 360.0;
+        sweep.fast_deg_s = std::max(sweep.fast_deg_s, std::abs(speed[k]));
+    }
+    weigh(sweep);
+    if (!(sweep.weight_sum > 0.0)) return sweep;
+    for (std::size_t k = 0; k < n; ++k) sweep.mean_deg_s += sweep.weight[k] * speed[k] / sweep.weight_sum;
+    find_quartiles(sweep, speed);
+    remove_trend(sweep, log.torque_nm.subspan(span.first, n), rule);
+    return sweep;
+}
+
+struct Planned {
+    std::size_t log = 0;
+    Span span;
+};
+
+/// Keeps pieces evenly over all of them until their number and their samples fit.
+std::vector<Planned> within_budget(std::vector<Planned> all, const SweepRule& rule) {
+    std::size_t samples = 0;
+    for (const Planned& piece : all) samples += piece.span.end - piece.span.first;
+    if (samples <= rule.most_samples && all.size() <= rule.most_pieces) return all;
+    const double share = std::min(static_cast<double>(rule.most_samples) / static_cast<double>(samples),
+                                  static_cast<double>(rule.most_pieces) / static_cast<double>(all.size()));
+    std::vector<Planned> kept;
+    double credit = 0.5;
+    for (const Planned& piece : all) {
+        credit += share;
+        if (credit < 1.0) continue;
+        credit -= 1.0;
+        kept.push_back(piece);
+    }
+    if (kept.empty()) kept.push_back(all.front());
+    return kept;
+}
+
+}  // namespace
+
+Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count) {
+    const auto cut = [&](const std::vector<double>& whole) {
+        const auto from = whole.begin() + static_cast<std::ptrdiff_t>(first);
+        return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(count));
+    };
+    Sweep part = sweep;
+    part.first += first;
+    part.turns = cut(sweep.turns);
+    part.time_s = cut(sweep.time_s);
+    part.torque_nm = cut(sweep.torque_nm);
+    part.share_turns = cut(sweep.share_turns);
+    weigh(part);
+    part.value.resize(count);
+    for (std::size_t k = 0; k < count; ++k) part.value[k] = part.torque_nm[k] * part.weight[k];
+    return part;
+}
+
+Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule) {
+    std::vector<Angle> angles;
+    std::vector<std::vector<double>> speeds;
+    std::vector<Planned> planned;
+    Sweeps sweeps;
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+        const TraceView& log = logs[i];
+        const auto width = static_cast<std::size_t>(smoothing_s * log.sample_rate.value()) | 1U;
+        angles.push_back(angle_of(log));
+        speeds.push_back(moving_mean(log.velocity_deg_s, width));
+        for (const Span& run : directed_runs(log, speeds.back(), rule)) {
+            for (const Span& piece : pieces_of(run, log, angles.back().turns, rule)) {
+                if (piece.end - piece.first >= rule.fewest_samples) planned.push_back({i, piece});
+            }
+        }
+        sweeps.absolute_angle = sweeps.absolute_angle && angles.back().absolute;
+    }
+    const std::size_t all = planned.size();
+    planned = within_budget(std::move(planned), rule);
+    sweeps.pieces_left_out = all - planned.size();
+    for (const Planned& piece : planned) {
+        Sweep sweep =
+            make_sweep(logs[piece.log], piece.span, angles[piece.log].turns, speeds[piece.log], rule);
+        sweep.log = piece.log;
+        if (sweep.weight_sum > 0.0) sweeps.pieces.push_back(std::move(sweep));
+    }
+    return sweeps;
+}
+
+}  // namespace ripplenotch

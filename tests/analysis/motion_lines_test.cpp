@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/motion_lines.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "analysis/traces.hpp"
+
+using namespace ripplenotch;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+/// Back and forth with changing speed, as identification trajectories do: two sines without common period.
+double wandering(double t) { return 60.0 * std::sin(0.9 * t) + 35.0 * std::sin(2.3 * t + 1.0); }
+
+MotionLines lines_of(const Trace& trace, double false_alarm = 0.01) {
+    const TraceView view = trace.view();
+    return find_motion_lines({&view, 1}, {.sweeps = {}, .stack = {}, .false_alarm = false_alarm});
+}
+
+const MotionLine* nearest_order(const MotionLines& found, double order) {
+    for (const MotionLine& line : found.lines) {
+        if (line.kind == LineKind::order && std::abs(line.order_output - order) < 0.02 * order) return &line;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("orders are found in a motion that is never steady, with amplitude and phase") {
+    const bool position = GENERATE(true, false);
+    const Trace trace = tests::make_trace({.seconds = 12.0,
+                                           .speed_deg_s = wandering,
+                                           .ripple = {{100.0, 0.8, 0.4}, {200.0, 0.5, -1.0}},
+                                           .noise_nm = 0.2,
+                                           .position = position});
+    const MotionLines found = lines_of(trace);
+    REQUIRE(found.lines.size() == 2);
+    for (const auto& [order, amplitude, phase] :
+         {std::tuple{100.0, 0.8, 0.4}, std::tuple{200.0, 0.5, -1.0}}) {
+        const MotionLine* line = nearest_order(found, order);
+        REQUIRE(line != nullptr);
+        CHECK_THAT(line->order_output, WithinAbs(order, 4.0 * line->order_stderr + 1e-6));
+        CHECK(line->order_stderr < 0.2);
+        CHECK_THAT(line->amplitude_nm, WithinRel(amplitude, 0.05));
+        REQUIRE(line->phase_deg.has_value() == position);
+        if (position) CHECK_THAT(*line->phase_deg, WithinAbs(phase * degrees_per_radian, 8.0));
+    }
+}
+
+TEST_CASE("a tone is not taken for an order, though the speed lingers at its turning points") {
+    const Trace trace = tests::make_trace(
+        {.seconds = 12.0, .speed_deg_s = wandering, .tones = {{26.0, 1.0, 0.0}}, .noise_nm = 0.05});
+    const MotionLines found = lines_of(trace);
+    REQUIRE_FALSE(found.lines.empty());
+    for (const MotionLine& line : found.lines) CHECK(line.kind == LineKind::tone);
+    CHECK_THAT(found.lines.front().hz, WithinAbs(26.0, 0.05));
+}
+
+TEST_CASE("an order and a tone that cross are told apart") {
+    const Trace trace = tests::make_trace({.seconds = 12.0,
+                                           .speed_deg_s = wandering,
+                                           .ripple = {{160.0, 0.5, 0.0}},
+                                           .tones = {{26.0, 0.5, 0.0}},
+                                           .noise_nm = 0.05});
+    const MotionLines found = lines_of(trace);
+    REQUIRE(nearest_order(found, 160.0) != nullptr);
+    CHECK(std::any_of(found.lines.begin(), found.lines.end(), [](const MotionLine& line) {
+        return line.kind == LineKind::tone && std::abs(line.hz - 26.0) < 0.05;
+    }));
+}
+
+TEST_CASE("at one speed, order and tone cannot be told apart, and the line says unknown") {
+    const Trace trace = tests::make_trace({.seconds = 6.0,
+                                           .speed_deg_s = [](double) { return 60.0; },
+                                           .ripple = {{200.0, 0.5, 0.0}},
+                                           .noise_nm = 0.1});
+    const MotionLines found = lines_of(trace);
+    REQUIRE(found.lines.size() == 1);
+    CHECK(found.lines[0].kind == LineKind::unknown);
+    CHECK_THAT(found.lines[0].order_output, WithinRel(200.0, 0.001));
+}
+
+TEST_CASE("noise of any colour, held and coarse samples give orders in at most one log of a hundred") {
+    constexpr int runs = 300;
+    int alarms = 0;
+    for (int run = 0; run < runs; ++run) {
+        const double fast = 20.0 + 10.0 * (run % 7), slow = 5.0 + 5.0 * (run % 5);
+        const auto speed = [=](double t) {
+            return fast * std::sin(1.1 * t + run) + slow * std::sin(2.7 * t);
+        };
+        Trace trace = tests::make_trace({.rate_hz = 500.0,
+                                         .seconds = 8.0,
+                                         .speed_deg_s = speed,
+                                         .noise_nm = 0.3,
+                                         .seed = static_cast<std::uint32_t>(5000 + run)});
+        const int kind = run % 5;
+        auto& x = trace.torque_nm;
+        const double colour = kind == 1 ? 0.9 : kind == 2 ? 0.99 : 0.0;
+        for (std::size_t k = 1; k < x.size(); ++k) x[k] += colour * (x[k - 1] - 10.0);
+        // A lightly damped resonance at 35 Hz (Q = 10) driven by the noise.
+        double a = 0.0, b = 0.0;
+        for (std::size_t k = 0; k < x.size() && kind == 3; ++k) {
+            const double pole = std::exp(-std::numbers::pi * 3.5 / 500.0);
+            const double next = 2.0 * pole * std::cos(2.0 * std::numbers::pi * 35.0 / 500.0) * a -
+                                pole * pole * b + x[k] - 10.0;
+            b = a;
+            a = next;
+            x[k] = 10.0 + next;
+        }
+        for (std::size_t k = 0; k < x.size() && kind == 4; ++k) {
+            // Smooth motion torque, coarse steps, every third sample held.
+            x[k] = std::round((x[k] + 4.0 * std::cos(1.1 * trace.time_s[k])) / 0.13) * 0.13;
+            if (k % 3 == 2) x[k] = x[k - 1];
+        }
+        const MotionLines found = lines_of(trace);
+        alarms += std::any_of(found.lines.begin(), found.lines.end(),
+                              [](const MotionLine& l) { return l.kind == LineKind::order; });
+    }
+    INFO(alarms << " of " << runs);
+    CHECK(alarms <= runs / 100);
+}
