@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/filter/engine.hpp"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "filter/tables.hpp"
+#include "ripplenotch/core/error.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::testing;
+
+namespace {
+
+struct Rows {
+    std::vector<double> time_s, velocity_deg_s, torque_nm;
+};
+
+Rows uniform(std::size_t count, double rate_hz) {
+    Rows rows;
+    const Signals s = wandering(count, 41);
+    for (std::size_t k = 0; k < count; ++k) rows.time_s.push_back(static_cast<double>(k) / rate_hz);
+    rows.velocity_deg_s = s.velocity_deg_s;
+    rows.torque_nm = s.torque_nm;
+    return rows;
+}
+
+/// A log that is in memory, read in blocks of a size of its own.
+class FakeReader final : public LogReader {
+  public:
+    FakeReader(Rows rows, std::size_t block, std::optional<Hertz> stated = {})
+        : rows_(std::move(rows)), block_(block) {
+        layout_.source = "fake.csv";
+        layout_.stated_rate = stated;
+    }
+    [[nodiscard]] const Layout& layout() const override { return layout_; }
+    [[nodiscard]] std::string_view head() const override { return {}; }
+    bool next(RowBlock& block) override {
+        block = RowBlock{};
+        if (at_ == rows_.time_s.size()) return false;
+        const std::size_t count = std::min(block_, rows_.time_s.size() - at_);
+        const auto part = [&](const std::vector<double>& from) {
+            const auto first = from.begin() + static_cast<std::ptrdiff_t>(at_);
+            return std::vector<double>(first, first + static_cast<std::ptrdiff_t>(count));
+        };
+        block.first_row = at_;
+        block.time_s = part(rows_.time_s);
+        block.velocity_deg_s = part(rows_.velocity_deg_s);
+        block.torque_nm = part(rows_.torque_nm);
+        at_ += count;
+        return true;
+    }
+
+  private:
+    Rows rows_;
+    std::size_t block_, at_ = 0;
+    Layout layout_;
+};
+
+class Collector final : public LogWriter {
+  public:
+    void write(const RowBlock& block, std::span<const double> torque_nm) override {
+        REQUIRE(block.size() == torque_nm.size());
+        REQUIRE(block.first_row == values.size());
+        values.insert(values.end(), torque_nm.begin(), torque_nm.end());
+    }
+    void finish(std::string_view) override { finished = true; }
+    std::vector<double> values;
+    bool finished = false;
+};
+
+LogStream stream_of(const Rows& rows, std::size_t block = 1000, std::optional<Hertz> stated = {}) {
+    return LogStream(std::make_unique<FakeReader>(rows, block, stated), default_gap_steps);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a rate near a round number, or with a round period, is taken for what the controller was meant to run "
+    "at") {
+    const std::vector<std::pair<double, double>> cases = {
+        {1000.0, 1000.0}, {1000.3, 1000.0}, {999.6, 1000.0}, {250.01, 250.0},
+        {125.0, 125.0},   {124.96, 125.0},  {62.5, 62.5},    {8000.0, 8000.0},
+        {25.0, 25.0},     {99.97, 100.0},   {333.3, 1.0 / 0.003},  {978.4, 978.4},
+        {984.43, 984.43}, {1002.0, 1002.0}, {0.5, 0.5},      {48000.0, 48000.0}};
+    for (const auto& [measured, expected] : cases) {
+        INFO(measured);
+        CHECK(nominal_rate(Hertz(measured)).value() == expected);
+    }
+}
+
+TEST_CASE("a round rate is reached exactly, whatever rounding the times carry") {
+    for (const double rate : {100.0, 125.0, 200.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0, 10000.0}) {
+        for (const double off : {-5e-4, -1e-9, 0.0, 1e-12, 4e-4}) {
+            INFO(rate << " " << off);
+            CHECK(nominal_rate(Hertz(rate * (1.0 + off))).value() == rate);
+        }
+    }
+}
+
+TEST_CASE("a table's rate may be half a per cent off in silence, five with a warning, and no more") {
+    CHECK_FALSE(compare_table_rate(Hertz(1000.0), Hertz(1004.9), "a.csv"));
+    const auto warning = compare_table_rate(Hertz(1000.0), Hertz(978.28), "a.csv");
+    REQUIRE(warning);
+    CHECK_THAT(*warning,
+               Catch::Contains("a.csv") && Catch::Contains("978.28 Hz") && Catch::Contains("1000 Hz"));
+    CHECK_THROWS_AS(compare_table_rate(Hertz(1000.0), Hertz(500.0), "a.csv"), DataError);
+    CHECK_THROWS_WITH(
+        compare_table_rate(Hertz(1000.0), Hertz(500.0), "a.csv"),
+        Catch::Contains("500 Hz") && Catch::Contains("1000 Hz") && Catch::Contains("--sample-rate 500Hz"));
+}
+
+TEST_CASE("a log comes out as the filter alone would make it, whatever the reader's blocks") {
+    const Rows rows = uniform(40000, 1000.0);
+    const CandidateTable table = paper_table();
+    const auto alone = start("switching,table=t", &table);
+    const auto expected = filtered(*alone, {rows.velocity_deg_s, rows.torque_nm, {}});
+    for (const std::size_t block : {1U, 777U, 16384U, 100000U}) {
+        LogStream stream = stream_of(rows, block);
+        CHECK(stream.design_rate().value() == 1000.0);
+        Collector out;
+        const auto filter = start("switching,table=t", &table);
+        const StreamReport report = stream.run(*filter, &out, nullptr);
+        CHECK(out.finished);
+        CHECK(out.values == expected);
+        CHECK(report.rows == 40000);
+        CHECK(report.gap_count == 0);
+        CHECK(report.measured_rate.value() == Approx(1000.0).epsilon(1e-9));
+        REQUIRE(report.switches.size() == alone->switches().size());
+        CHECK(report.switch_count == alone->switch_count());
+        for (const TimedSwitch& entry : report.switches) {
+            REQUIRE(entry.time_s == rows.time_s[entry.change.sample]);
+        }
+    }
+}
+
+TEST_CASE(
+    "a gap in time splits the run: what follows it is filtered as a log of its own, and the gap is "
+    "reported") {
+    Rows rows = uniform(30000, 1000.0);
+    for (std::size_t k = 12345; k < 30000; ++k) rows.time_s[k] += 0.5;
+    for (std::size_t k = 20000; k < 30000; ++k) rows.time_s[k] += 2.0;
+    for (const std::size_t block : {64U, 5000U, 12345U, 40000U}) {
+        LogStream stream = stream_of(rows, block);
+        Collector out;
+        const auto filter = start("lowpass,cutoff=13rad/s");
+        const StreamReport report = stream.run(*filter, &out, nullptr);
+        REQUIRE(report.gap_count == 2);
+        CHECK(report.gaps[0].row == 12344);
+        CHECK(report.gaps[0].from_s == rows.time_s[12344]);
+        CHECK(report.gaps[0].to_s == rows.time_s[12345]);
+        CHECK(report.gaps[1].row == 19999);
+        CHECK(report.measured_rate.value() == Approx(1000.0).epsilon(1e-9));
+        for (const auto& [first, last] : {std::pair{0, 12345}, {12345, 20000}, {20000, 30000}}) {
+            const std::vector<double> part(rows.torque_nm.begin() + first, rows.torque_nm.begin() + last);
+            const auto fresh = start("lowpass,cutoff=13rad/s");
+            const auto expected = filtered(*fresh, {part, part, {}});
+            CHECK(std::equal(expected.begin(), expected.end(), out.values.begin() + first));
+        }
+    }
+}
+
+TEST_CASE("the rate is the mean over the first rows, not one over the median step") {
+    Rows rows = uniform(20000, 1000.0);
+    // Three steps of 1 ms, then one of 2 ms: the median says 1 kHz, the clock runs at 800 Hz.
+    double t = 0.0;
+    for (std::size_t k = 0; k < 20000; ++k) {
+        rows.time_s[k] = t;
+        t += k % 4 == 3 ? 0.002 : 0.001;
+    }
+    const LogStream stream = stream_of(rows);
+    CHECK(stream.measured_rate().value() == Approx(800.0).epsilon(1e-3));
+    CHECK(stream.design_rate().value() == 800.0);
+}
+
+TEST_CASE(
+    "time that runs backward is an error that names the row; repeated times and held samples are counted") {
+    Rows rows = uniform(20000, 1000.0);
+    rows.time_s[15000] = rows.time_s[14999];
+    rows.torque_nm[15001] = rows.torque_nm[15000];
+    rows.velocity_deg_s[15001] = 30.0;
+    rows.torque_nm[15010] = rows.torque_nm[15009];
+    rows.velocity_deg_s[15010] = 0.0;  // standing still: nothing is held
+    {
+        LogStream stream = stream_of(rows);
+        const auto filter = start("none");
+        const StreamReport report = stream.run(*filter, nullptr, nullptr);
+        CHECK(report.repeated_times == 1);
+        CHECK(report.held_samples == 1);
+    }
+    rows.time_s[17000] = 3.0;
+    LogStream stream = stream_of(rows);
+    const auto filter = start("none");
+    CHECK_THROWS_AS(stream.run(*filter, nullptr, nullptr), DataError);
+    LogStream again = stream_of(rows);
+    CHECK_THROWS_WITH(again.run(*filter, nullptr, nullptr),
+                      Catch::Contains("fake.csv: data row 17001") && Catch::Contains("--sample-rate"));
+}
+
+TEST_CASE("a stated rate is believed; without time or a stated rate, or with one row, nothing is filtered") {
+    Rows rows = uniform(100, 1000.0);
+    CHECK(stream_of(rows, 10, Hertz(978.0)).design_rate().value() == 978.0);
+    Rows timeless = rows;
+    timeless.time_s.assign(100, std::numeric_limits<double>::quiet_NaN());
+    CHECK_THROWS_WITH(stream_of(timeless), Catch::Contains("--sample-rate"));
+    Rows standing = rows;
+    standing.time_s.assign(100, 2.0);
+    CHECK_THROWS_WITH(stream_of(standing), Catch::Contains("time does not advance"));
+    CHECK_THROWS_AS(stream_of(uniform(1, 1000.0)), DataError);
+    CHECK_THROWS_AS(stream_of(Rows{}), DataError);
+}
+
+TEST_CASE("the meter sees raw and filtered torque of every run") {
+    Rows rows;
+    for (std::size_t k = 0; k < 8000; ++k) {
+        const double t = static_cast<double>(k) / 1000.0;
+        rows.time_s.push_back(t < 4.0 ? t : t + 1.0);
+        rows.velocity_deg_s.push_back(90.0);
+        rows.torque_nm.push_back(3.0 + std::sin(2.0 * std::numbers::pi * 25.0 * t));
+    }
+    LogStream stream = stream_of(rows);
+    const std::vector<Order> orders = {Order(1.0)};
+    RippleMeter meter(GearRatio(100.0), orders, stream.design_rate(), 2);
+    // The one-pole low-pass's gain at 25 Hz.
+    const auto filter = start("lowpass,cutoff=13rad/s");
+    stream.run(*filter, nullptr, &meter);
+    const Method& lowpass = find_method("lowpass");
+    const Settings settings("lowpass", parse_spec("lowpass,cutoff=13rad/s"), lowpass.keys);
+    const double gain =
+        std::abs(response(lowpass.frozen(settings, Hertz(1000.0), nullptr, DegPerSec(90.0)).cascade,
+                          Hertz(25.0), Hertz(1000.0)));
+    const RippleLevels levels = meter.levels();
+    CHECK(levels.windows == 24);
+    CHECK(levels.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(1e-3));
+    CHECK(levels.orders[0].amplitude_nm[1] == Approx(gain).epsilon(0.01));
+}
