@@ -30,6 +30,15 @@ void append(std::vector<double>& to, const std::vector<double>& from, std::size_
     to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
+// Digits after the decimal mark of a number as it is written in a log.
+int decimals_of(std::string_view number) {
+    const std::size_t mark = number.find_first_of(".,");
+    if (mark == std::string_view::npos) return 0;
+    std::size_t at = mark + 1;
+    while (at < number.size() && number[at] >= '0' && number[at] <= '9') ++at;
+    return static_cast<int>(std::min<std::size_t>(at - mark - 1, 17));
+}
+
 std::string per_cent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
 
 }  // namespace
@@ -65,30 +74,50 @@ std::optional<std::string> compare_table_rate(Hertz table, Hertz log, const std:
 }
 
 LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : reader_(std::move(reader)) {
-    const std::string& source = reader_->layout().source;
+    const Trace head = read_head();
+    if (head.size() < 2) {
+        raise<DataError>("{}: {} of data; filtering needs at least two", reader_->layout().source,
+                         head.size() == 0 ? "no row" : "one row");
+    }
+    measure_clock(head, gap_steps);
+}
+
+// Which rows count as first depends on the log alone, not on how its bytes arrived: a pipe and a file must
+// give the same coefficients.
+Trace LogStream::read_head() {
     Trace head;
-    const std::vector<double>& time_s = head.time_s;
     std::size_t bytes = 0;
-    while (time_s.size() < clock_rows && bytes < most_read_ahead_bytes) {
+    while (head.size() < clock_rows && bytes < most_read_ahead_bytes) {
         RowBlock block;
         if (!reader_->next(block)) break;
-        bytes += block.bytes.size();
-        const std::size_t count = std::min(block.size(), clock_rows - head.size());
+        std::size_t count = 0;
+        while (count < block.size() && head.size() + count < clock_rows &&
+               (count >= block.row_end.size() || bytes + block.row_end[count] < most_read_ahead_bytes)) {
+            ++count;
+        }
         append(head.time_s, block.time_s, count);
         append(head.velocity_deg_s, block.velocity_deg_s, count);
         append(head.torque_nm, block.torque_nm, count);
+        for (std::size_t k = 0; k < std::min(count, block.torque_end.size()); ++k) {
+            const std::string_view cell =
+                std::string_view(block.bytes)
+                    .substr(block.torque_begin[k], block.torque_end[k] - block.torque_begin[k]);
+            torque_decimals_ = std::max(torque_decimals_.value_or(0), decimals_of(cell));
+        }
+        bytes += block.bytes.size();
         read_ahead_.push_back(std::move(block));
     }
-    if (time_s.size() < 2) {
-        raise<DataError>("{}: {} of data; filtering needs at least two", source,
-                         time_s.empty() ? "no row" : "one row");
-    }
+    return head;
+}
+
+void LogStream::measure_clock(const Trace& head, double gap_steps) {
+    const std::string& source = reader_->layout().source;
     if (const auto stated = reader_->layout().stated_rate) {
         measured_rate_ = design_rate_ = *stated;
         gap_s_ = gap_steps / stated->value();
         return;
     }
-    if (!std::all_of(time_s.begin(), time_s.end(), [](double t) { return std::isfinite(t); })) {
+    if (!std::all_of(head.time_s.begin(), head.time_s.end(), [](double t) { return std::isfinite(t); })) {
         raise<DataError>("{}: no column of time; state the rate of its rows, for example --sample-rate 1kHz",
                          source);
     }
@@ -96,9 +125,9 @@ LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : read
     if (!(clock.median_step.value() > 0.0) || !(clock.sample_rate.value() > 0.0)) {
         raise<DataError>(
             "{}: time does not advance from row to row (median step {} s in the first {} rows); state the "
-            "rate of its "
-            "rows, for example --sample-rate 1kHz, or name the right column with --columns time=NAME",
-            source, shortest(clock.median_step.value()), time_s.size());
+            "rate of "
+            "its rows, for example --sample-rate 1kHz, or name the right column with --columns time=NAME",
+            source, shortest(clock.median_step.value()), head.size());
     }
     measured_rate_ = clock.sample_rate;
     design_rate_ = nominal_rate(measured_rate_);

@@ -64,6 +64,9 @@ class LogStream {
     [[nodiscard]] Hertz measured_rate() const { return measured_rate_; }  ///< of the first rows
     /// What filters are designed for: the stated rate, else nominal_rate(measured_rate()).
     [[nodiscard]] Hertz design_rate() const { return design_rate_; }
+    /// Most digits after the decimal mark in the torque cells of the first rows; empty for logs that are not
+    /// text.
+    [[nodiscard]] std::optional<int> torque_decimals() const { return torque_decimals_; }
 
     /// Carries the whole log through `filter`, once. `writer` and `meter` may be null; the meter gets two
     /// signals, raw and filtered torque. Throws DataError when time runs backward.
@@ -71,11 +74,14 @@ class LogStream {
 
   private:
     struct Pass;
+    Trace read_head();
+    void measure_clock(const Trace& head, double gap_steps);
     bool next(RowBlock& block);
 
     std::unique_ptr<LogReader> reader_;
     std::deque<RowBlock> read_ahead_;
     Hertz measured_rate_, design_rate_;
+    std::optional<int> torque_decimals_;
     double gap_s_ = 0.0;  ///< a longer step is a gap
 };
 

@@ -24,7 +24,7 @@ struct Request {
     LogOptions log;
     std::vector<std::string> logs;
     std::string method, decimals = "shortest";
-    std::optional<std::string> table, to, metrics, out_directory, joint_file;
+    std::optional<std::string> table, output_format, metrics, out_directory, joint_file;
     std::optional<double> gear_ratio;
     std::vector<double> orders;
     double gap_steps = default_gap_steps;
@@ -43,11 +43,14 @@ struct Gear {
     std::vector<Order> orders;
 };
 
-WriteOptions write_options(const Request& request) {
+// One number of digits for the whole column: a log's own cells may leave out trailing zeros.
+WriteOptions write_options(const Request& request, std::optional<int> log_decimals) {
     WriteOptions options;
     options.append = request.append;
     if (request.decimals == "input") {
-        options.decimals = WriteOptions::Decimals::input;
+        if (!log_decimals) return options;
+        options.decimals = WriteOptions::Decimals::fixed;
+        options.fixed_decimals = *log_decimals;
     } else if (request.decimals != "shortest") {
         const auto number = parse_number(request.decimals);
         if (!number || *number < 0.0 || *number > 17.0 || *number != static_cast<int>(*number)) {
@@ -170,8 +173,9 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
     std::optional<ByteSink> metrics_sink;
     const std::optional<std::string> metrics_path = request.common.json ? "-" : job.metrics;
     if (metrics_path) metrics_sink.emplace(*metrics_path, request.common.overwrite());
-    const auto writer = rewrite_log(job.output, stream.reader(), output_format(job.output, request.to),
-                                    write_options(request), request.common.overwrite());
+    const auto writer =
+        rewrite_log(job.output, stream.reader(), output_format(job.output, request.output_format),
+                    write_options(request, stream.torque_decimals()), request.common.overwrite());
     metrics.stream = stream.run(*filter, writer.get(), meter ? &*meter : nullptr);
 
     if (meter) metrics.levels = meter->levels();
@@ -207,7 +211,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.text("--table", request->table, "FILE",
                  "table.json of method switching, which is then the default");
     options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");
-    options.text("--to", request->to, "NAME",
+    options.text("--output-format", request->output_format, "NAME",
                  "format of the output: csv, npy (default: by the name of -o, else csv)");
     options.flag("--append", request->append,
                  "add the filtered torque as a column instead of replacing the torque");
