@@ -8,6 +8,7 @@
 #include "ripplenotch/artifact/identification.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {
 
@@ -16,7 +17,7 @@ JointFacts load_joint_facts(const std::string& path) {
     JointFacts facts;
     facts.source = path == "-" ? "standard input" : path;
     if (found.gear_ratio.value) facts.gear_ratio = GearRatio(*found.gear_ratio.value);
-    facts.sample_rate = found.sample_rate;
+    facts.sample_rate = nominal_rate(found.sample_rate);
     std::map<double, double> amplitude_of;
     for (const Line& line : found.lines) {
         if (line.kind != LineKind::order || !line.order) continue;

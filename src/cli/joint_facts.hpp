@@ -17,7 +17,7 @@ struct JointFacts {
     std::vector<Order> orders;         ///< of the lines that follow the speed, lowest first, each once
     std::vector<double> amplitude_nm;  ///< one per order
     DegPerSec slowest, fastest;        ///< |v| at which those lines were seen; both 0 without lines
-    Hertz sample_rate;
+    Hertz sample_rate;                 ///< nominal: what filter designs for on the same log
 };
 
 /// Reads joint.json, or standard input when the path is "-". Throws DataError, FileError.

@@ -119,7 +119,12 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
         at = end;
     }
     const RippleLevels levels = meter.levels();
-    LogLevels result{{}, levels.windows, levels.measured_share};
+    LogLevels result{{}, levels.windows, levels.measured_share, ""};
+    if (levels.windows == 0) {
+        result.why_none = levels.windows_too_few_samples > 0
+                              ? "the highest order has fewer than three samples a period"
+                              : "the joint does not turn far enough in one direction, or too slowly";
+    }
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         MethodFigures figures;
         figures.method = contenders[i].text;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/design/low_pass.hpp"
 
 namespace ripplenotch {
@@ -18,6 +19,15 @@ constexpr std::size_t cutoffs_a_pass = 15;
 struct Bracket {
     double low_hz, high_hz;
 };
+
+std::string order_list(const RippleLines& lines) {
+    std::string text = lines.orders.size() == 1 ? "order " : "orders ";
+    for (std::size_t i = 0; i < lines.orders.size(); ++i) {
+        if (i > 0) text += i + 1 == lines.orders.size() ? " and " : ", ";
+        text += shortest(lines.orders[i].value());
+    }
+    return text;
+}
 
 // The interval between neighbouring cut-offs in which the ripple passes the target; it rises with the
 // cut-off.
@@ -95,6 +105,57 @@ std::optional<Hertz> cutoff_for_ripple(double ripple_rms_nm, int order, const Co
 Spec low_pass_spec(Hertz cutoff, int order) {
     return {"lowpass",
             {{"cutoff", fmt::format("{:.7g}Hz", cutoff.value())}, {"order", std::to_string(order)}}};
+}
+
+std::optional<double> combined_gain(const MethodFigures& figures, const RippleLines& lines) {
+    double before = 0.0, after = 0.0;
+    for (std::size_t i = 0; i < figures.attenuation.size(); ++i) {
+        if (!figures.attenuation[i].db) continue;
+        const double amplitude = lines.amplitude_nm.empty() ? 1.0 : lines.amplitude_nm[i];
+        before += amplitude * amplitude;
+        after += amplitude * amplitude * std::pow(10.0, -*figures.attenuation[i].db / 10.0);
+    }
+    if (!(before > 0.0)) return std::nullopt;
+    return std::sqrt(after / before);
+}
+
+LowPassMatch match_at_speed(const std::string& subject, double gain, int order, const RippleLines& lines,
+                            Hertz sample_rate, DegPerSec speed) {
+    LowPassMatch match{subject, std::nullopt, "", order, std::nullopt, std::nullopt, std::nullopt};
+    if (gain < complete_null_gain) {
+        match.clause = fmt::format(
+            "no low-pass equals {}: at {:.6g} deg/s it takes the lines out completely; "
+            "--match-attenuation 22dB finds the low-pass of a stated attenuation",
+            subject, speed.value());
+        return match;
+    }
+    match.attenuation_db = -20.0 * std::log10(gain);
+    match.cutoff = cutoff_for_gain(gain, order, lines, sample_rate, speed);
+    if (!match.cutoff) {
+        match.clause = fmt::format("no low-pass of order {} takes {:.2f} dB off the ripple at {:.6g} deg/s",
+                                   order, *match.attenuation_db, speed.value());
+        return match;
+    }
+    match.low_pass = low_pass_spec(*match.cutoff, order).text();
+    match.clause = fmt::format("at an equal ripple attenuation of {:.2f} dB ({} at {:.6g} deg/s, {})",
+                               *match.attenuation_db, order_list(lines), speed.value(),
+                               lines.amplitude_nm.empty() ? "equal amplitudes" : "amplitudes of the joint");
+    return match;
+}
+
+LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int order, const ComparedLog& log,
+                          const RippleLines& lines) {
+    LowPassMatch match{subject, std::nullopt, "", order, std::nullopt, ripple_rms_nm, std::nullopt};
+    match.cutoff = cutoff_for_ripple(ripple_rms_nm, order, log, lines);
+    if (!match.cutoff) {
+        match.clause = fmt::format("no low-pass of order {} leaves {:.3g} Nm rms of ripple on this log",
+                                   order, ripple_rms_nm);
+        return match;
+    }
+    match.low_pass = low_pass_spec(*match.cutoff, order).text();
+    match.clause = fmt::format("at an equal remaining ripple of {:.3g} Nm rms ({} on this log)",
+                               ripple_rms_nm, order_list(lines));
+    return match;
 }
 
 }  // namespace ripplenotch

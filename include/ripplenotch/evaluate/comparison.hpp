@@ -41,13 +41,15 @@ struct RippleLines {
     std::vector<double> amplitude_nm;  ///< one per order, or empty: all alike
 };
 
-/// How a low-pass was made equal to a method.
+/// How a low-pass was made equal to a method, or why none is.
 struct LowPassMatch {
-    std::string subject;   ///< the method, or "--match-attenuation 22 dB"
-    std::string low_pass;  ///< "lowpass,cutoff=2.1Hz,order=1"
-    std::string matched;   ///< a clause that says what is equal, with numbers
+    std::string subject;                  ///< the method, or "22 dB" when the attenuation was given
+    std::optional<std::string> low_pass;  ///< "lowpass,cutoff=2.1Hz,order=1"; empty when none is equal
+    std::string clause;                   ///< "at equal ...", or the sentence that says why there is none
     int order = 1;
-    Hertz cutoff;
+    std::optional<Hertz> cutoff;
+    std::optional<double> ripple_rms_nm;   ///< what was matched on a log ...
+    std::optional<double> attenuation_db;  ///< ... and without one: of all lines together
 };
 
 struct Comparison {
@@ -60,7 +62,17 @@ struct Comparison {
     bool on_log = false;
     std::size_t rows = 0, windows = 0;  ///< of the log; windows that RippleMeter measured
     double measured_share = 0.0;
+
+    /// The method that the others are held against: the first that is neither `none` nor a low-pass, else the
+    /// first that is not `none`. Null when only the control runs.
+    [[nodiscard]] const MethodFigures* subject() const;
+    /// The matched low-pass, else the first low-pass, else the first other method; null when there is no
+    /// other.
+    [[nodiscard]] const MethodFigures* rival() const;
 };
+
+/// One sentence with numbers: how subject and rival differ in settling, delay and ripple.
+[[nodiscard]] std::string verdict(const Comparison& comparison);
 
 /// Fills settling, delays and, with lines, attenuations measured with sines. Empty optionals are left out.
 [[nodiscard]] MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, DegPerSec speed,
@@ -82,6 +94,7 @@ struct LogLevels {
     std::vector<MethodFigures> methods;  ///< one per contender: attenuation, ripple, residual, switches
     std::size_t windows = 0;
     double measured_share = 0.0;
+    std::string why_none;  ///< a clause that says why no window could be measured
 };
 [[nodiscard]] LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
                                        const RippleLines& lines);

@@ -29,4 +29,17 @@ namespace ripplenotch {
 /// "lowpass,cutoff=2.069Hz,order=1": seven digits, so that the printed method is the one measured.
 [[nodiscard]] Spec low_pass_spec(Hertz cutoff, int order);
 
+/// Output over input rms of all lines together, from attenuations that were measured one by one; empty when
+/// none was.
+[[nodiscard]] std::optional<double> combined_gain(const MethodFigures& figures, const RippleLines& lines);
+
+/// Gains below this (140 dB) count as a complete null, which no low-pass equals.
+inline constexpr double complete_null_gain = 1e-7;
+
+/// What --match-lowpass says: the low-pass, or why there is none. `subject` is for the text.
+[[nodiscard]] LowPassMatch match_at_speed(const std::string& subject, double gain, int order,
+                                          const RippleLines& lines, Hertz sample_rate, DegPerSec speed);
+[[nodiscard]] LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int order,
+                                        const ComparedLog& log, const RippleLines& lines);
+
 }  // namespace ripplenotch

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "cli/comparison_view.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "cli/text_table.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/evaluate/bench.hpp"
+
+namespace ripplenotch {
+namespace {
+
+struct ViewColumn {
+    std::string title, unit;
+    std::function<std::string(const MethodFigures&)> cell;  ///< empty text: not measured
+};
+
+std::string fixed(const std::optional<double>& value, int decimals) {
+    return value ? fmt::format("{:.{}f}", *value, decimals) : "";
+}
+
+std::string attenuation(const MethodFigures& figures, std::size_t line) {
+    if (line >= figures.attenuation.size() || !figures.attenuation[line].db) return "";
+    const double db = *figures.attenuation[line].db;
+    if (db >= most_attenuation_db) return fmt::format(">{:.0f}", most_attenuation_db);
+    // A raw signal against itself is 0.0, never -0.0.
+    return fmt::format("{:.1f}", db + 0.0 == 0.0 || std::abs(db) < 0.05 ? 0.0 : db);
+}
+
+std::vector<ViewColumn> columns_of(const Comparison& comparison) {
+    std::vector<ViewColumn> columns;
+    for (std::size_t b = 0; b < settle_bands_percent.size(); ++b) {
+        columns.push_back(
+            {b == 0 ? "settles, ms" : "", fmt::format("to {} %", settle_bands_percent[b]),
+             [b](const MethodFigures& f) { return f.settle_ms ? fixed((*f.settle_ms)[b], 0) : ""; }});
+    }
+    columns.push_back(
+        {"overshoot", "%", [](const MethodFigures& f) { return fixed(f.overshoot_percent, 1); }});
+    columns.push_back({"ramp delay", "ms", [](const MethodFigures& f) { return fixed(f.ramp_delay_ms, 1); }});
+    columns.push_back({"DC delay", "ms", [](const MethodFigures& f) { return fixed(f.dc_delay_ms, 1); }});
+    for (std::size_t i = 0; comparison.lines && i < comparison.lines->orders.size(); ++i) {
+        columns.push_back({fmt::format("order {}", shortest(comparison.lines->orders[i].value())), "dB",
+                           [i](const MethodFigures& f) { return attenuation(f, i); }});
+    }
+    columns.push_back({"ripple", "Nm rms", [](const MethodFigures& f) { return fixed(f.ripple_rms_nm, 4); }});
+    columns.push_back(
+        {"residual", "Nm rms", [](const MethodFigures& f) { return fixed(f.residual_rms_nm, 4); }});
+    columns.push_back(
+        {"", "Nm p-p", [](const MethodFigures& f) { return fixed(f.residual_peak_to_peak_nm, 3); }});
+    columns.push_back({"switches", "",
+                       [](const MethodFigures& f) { return f.switches ? std::to_string(*f.switches) : ""; }});
+    return columns;
+}
+
+std::string rows_of(const Comparison& comparison) {
+    std::vector<std::vector<std::string>> rows = {{"method"}, {""}};
+    for (const MethodFigures& figures : comparison.methods) rows.push_back({figures.method});
+    for (const ViewColumn& column : columns_of(comparison)) {
+        std::vector<std::string> cells;
+        for (const MethodFigures& figures : comparison.methods) cells.push_back(column.cell(figures));
+        if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
+            continue;
+        rows[0].push_back(column.title);
+        rows[1].push_back(column.unit);
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            rows[i + 2].push_back(cells[i].empty() ? "-" : cells[i]);
+    }
+    return text_table(rows, "lr");
+}
+
+std::string conditions(const Comparison& comparison) {
+    std::string text;
+    if (comparison.on_log) {
+        text += fmt::format("Log: {} rows at {:.6g} Hz.", comparison.rows, comparison.sample_rate.value());
+        if (comparison.windows > 0) {
+            text += fmt::format(
+                " Orders, ripple and residual (torque minus its trend) are measured in {} window{}, "
+                "{:.0f} % of the log.",
+                comparison.windows, comparison.windows == 1 ? "" : "s", 100.0 * comparison.measured_share);
+        }
+        text += fmt::format("\nSettling and delays: at {:.6g} deg/s, on", comparison.speed.value());
+    } else {
+        text += fmt::format("At {:.6g} deg/s, sampled at {:.6g} Hz, on", comparison.speed.value(),
+                            comparison.sample_rate.value());
+    }
+    if (comparison.step_nm) text += fmt::format(" a step of {:.6g} Nm", *comparison.step_nm);
+    if (comparison.step_nm && comparison.ramp_nm_s) text += " and";
+    if (comparison.ramp_nm_s) text += fmt::format(" a ramp of {:.6g} Nm/s", *comparison.ramp_nm_s);
+    text += ".\n";
+    for (const MethodFigures& figures : comparison.methods) {
+        if (figures.switches && !figures.note.empty()) {
+            text += fmt::format("{} at this speed: {}.\n", figures.method, figures.note);
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string comparison_view(const Comparison& comparison) {
+    std::string text = verdict(comparison) + "\n\n" + rows_of(comparison) + "\n" + conditions(comparison);
+    if (comparison.match && !comparison.match->low_pass) {
+        std::string sentence = comparison.match->clause;
+        sentence.front() = 'N';  // all of them begin with "no low-pass"
+        text += sentence + ".\n";
+    }
+    return text;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch compare as users meet it: the paper's figures on steps and ramps, logs, the low-pass of equal ripple."""
+
+import json
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+LOG = str(DATA / "paper_90deg_s.csv")
+
+SIGNALS = ["--step", "10Nm", "--ramp", "20Nm/s", "--speed", "90deg/s", "--sample-rate", "1kHz"]
+RIPPLE = ["--gear-ratio", "100", "--orders", "1,2"]
+NOTCHES = "fixed,centers=25Hz:50Hz,q=0.25"
+MISLABELLED = "lowpass,cutoff=13rad/s,order=1"
+AS_PRINTED = "lowpass,cutoff=13Hz,order=1"
+
+
+def run(*words, stdin=None, folder=None):
+    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=60, cwd=folder, input=stdin,
+                          stdin=None if stdin is not None else subprocess.DEVNULL)
+
+
+def methods(*names):
+    return [word for name in names for word in ("--method", name)]
+
+
+def synthetic_log(seconds=20, speed=80.0, rate=1000, ratio=100.0):
+    """CSV with 0.8 Nm of order 1 and 0.5 Nm of order 2 at a constant speed."""
+    rows = ["time_s,velocity_deg_s,torque_nm"]
+    for k in range(seconds * rate):
+        angle = math.radians(ratio * speed * k / rate)
+        rows.append(f"{k / rate:.3f},{speed},{4 + 0.8 * math.sin(angle) + 0.5 * math.cos(2 * angle):.9f}")
+    return "\n".join(rows) + "\n"
+
+
+class Case(unittest.TestCase):
+    def compare(self, *words, **more):
+        done = run("compare", *words, "--json", **more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual(result["schema"], "ripplenotch/comparison/1")
+        return result, {row["method"]: row for row in result["methods"]}
+
+
+class Signals(Case):
+    def test_the_papers_figures_hold(self):
+        result, rows = self.compare(*SIGNALS, *RIPPLE, *methods(NOTCHES, MISLABELLED, AS_PRINTED))
+        self.assertEqual([row["method"] for row in result["methods"]], ["none", NOTCHES, MISLABELLED, AS_PRINTED])
+        self.assertAlmostEqual(rows[NOTCHES]["settle_ms"]["0.5"], 147, delta=1)
+        self.assertAlmostEqual(rows[NOTCHES]["ramp_delay_ms"], 38.0, delta=0.1)
+        self.assertAlmostEqual(rows[MISLABELLED]["settle_ms"]["0.5"], 408, delta=1)
+        self.assertAlmostEqual(rows[MISLABELLED]["ramp_delay_ms"], 76.9, delta=0.1)
+        self.assertAlmostEqual(rows[AS_PRINTED]["settle_ms"]["0.5"], 65, delta=1)
+        self.assertAlmostEqual(rows[AS_PRINTED]["ramp_delay_ms"], 12.2, delta=0.1)
+
+    def test_the_control_is_shown_unasked_and_costs_nothing(self):
+        _, rows = self.compare(*SIGNALS, *RIPPLE, *methods(NOTCHES))
+        self.assertEqual(rows["none"]["settle_ms"], {"0.5": 0, "1": 0, "2": 0, "5": 0})
+        self.assertEqual((rows["none"]["ramp_delay_ms"], rows["none"]["dc_delay_ms"]), (0, 0))
+        for entry in rows["none"]["attenuation_db"]:
+            self.assertAlmostEqual(entry["db"], 0, places=9)
+        result, _ = self.compare(*SIGNALS, *methods(NOTCHES, "none"))
+        self.assertEqual([row["method"] for row in result["methods"]], [NOTCHES, "none"])
+
+    def test_every_method_has_the_promised_fields_and_null_where_nothing_was_asked(self):
+        _, rows = self.compare("--ramp", "20Nm/s", "--sample-rate", "1kHz", *methods(NOTCHES))
+        self.assertEqual(list(rows[NOTCHES]), [
+            "method", "settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "attenuation_db", "ripple_rms_nm",
+            "residual_rms_nm", "residual_peak_to_peak_nm", "switches", "note"])
+        for name in ("settle_ms", "overshoot_percent", "ripple_rms_nm", "residual_rms_nm", "switches"):
+            self.assertIsNone(rows[NOTCHES][name])
+        self.assertEqual(rows[NOTCHES]["attenuation_db"], [])
+
+    def test_ramp_delay_and_dc_delay_agree(self):
+        _, rows = self.compare(*SIGNALS, *methods(NOTCHES, MISLABELLED, "fixed,centers=8Hz,q=3", "lowpass,cutoff=4Hz,order=5"))
+        for row in rows.values():
+            self.assertAlmostEqual(row["ramp_delay_ms"], row["dc_delay_ms"], delta=1e-4)
+
+    def test_the_height_of_a_step_and_the_slope_of_a_ramp_do_not_matter(self):
+        _, rows = self.compare(*SIGNALS, *methods(NOTCHES))
+        _, others = self.compare("--step", "-250mNm", "--ramp", "-3Nm/s", "--speed", "90deg/s", "--sample-rate", "1kHz",
+                                 *methods(NOTCHES))
+        self.assertEqual(rows[NOTCHES]["settle_ms"], others[NOTCHES]["settle_ms"])
+        self.assertAlmostEqual(rows[NOTCHES]["ramp_delay_ms"], others[NOTCHES]["ramp_delay_ms"], places=6)
+
+    def test_the_text_begins_with_a_verdict_in_numbers_and_shows_a_row_per_method(self):
+        done = run("compare", *SIGNALS, *RIPPLE, *methods(NOTCHES, MISLABELLED))
+        lines = done.stdout.split("\n")
+        self.assertEqual(lines[0], f"{NOTCHES} settles 2.8 times faster than {MISLABELLED} (147 against 408 ms to 0.5 %), "
+                                   "lags 38.9 ms less (38.0 against 76.9 ms), and takes more than 200 dB off its weakest "
+                                   "line against 21.7 dB.")
+        for name in ("none", NOTCHES, MISLABELLED):
+            self.assertEqual(sum(line.startswith(name + "  ") for line in lines), 1)
+
+    def test_switching_uses_the_band_of_the_speed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", "table.json", folder=folder)
+            name = "switching,table=table.json"
+            result, rows = self.compare(*SIGNALS, *methods(name), folder=folder)
+            band = json.loads(pathlib.Path(folder, "table.json").read_text())["bands"][3]
+        self.assertEqual(result["orders"], [1, 2])
+        self.assertEqual(result["inputs"][0]["name"], "table.json")
+        self.assertAlmostEqual(rows[name]["dc_delay_ms"], band["dc_delay_ms"], places=9)
+        self.assertAlmostEqual(rows[name]["settle_ms"]["0.5"], band["settle_ms"], places=6)
+        self.assertIn("band 4", rows[name]["note"])
+
+
+class Matching(Case):
+    def test_no_low_pass_equals_a_complete_null_and_that_is_said(self):
+        result, rows = self.compare(*SIGNALS, *RIPPLE, *methods(NOTCHES), "--match-lowpass")
+        self.assertIsNone(result["match"]["low_pass"])
+        self.assertIn("--match-attenuation", result["match"]["matched"])
+        self.assertEqual(len(rows), 2)
+        self.assertIn("No low-pass equals", run("compare", *SIGNALS, *RIPPLE, *methods(NOTCHES), "--match-lowpass").stdout)
+
+    def test_at_a_stated_attenuation_the_low_pass_is_found_and_compared(self):
+        result, rows = self.compare(*SIGNALS, *RIPPLE, *methods(NOTCHES), "--match-attenuation", "22dB")
+        matched = rows[result["match"]["low_pass"]]
+        gains = [10 ** (-entry["db"] / 20) for entry in matched["attenuation_db"]]
+        self.assertAlmostEqual(-20 * math.log10(math.hypot(*gains) / math.sqrt(2)), 22.0, places=3)
+        self.assertIn("at an equal ripple attenuation of 22.00 dB", result["verdict"])
+
+    def test_a_notch_beside_the_line_is_matched_at_the_speed(self):
+        for order in ("1", "4"):
+            result, rows = self.compare(*SIGNALS, *RIPPLE, *methods("fixed,centers=24Hz:48Hz,q=1"), "--match-lowpass",
+                                        "--match-order", order)
+            self.assertEqual(result["match"]["order"], int(order))
+            power = [sum(10 ** (-e["db"] / 10) for e in rows[name]["attenuation_db"])
+                     for name in ("fixed,centers=24Hz:48Hz,q=1", result["match"]["low_pass"])]
+            self.assertAlmostEqual(power[0] / power[1], 1.0, places=5)
+
+    def test_on_a_log_the_matched_low_pass_leaves_the_same_ripple(self):
+        result, rows = self.compare("-", *RIPPLE, *methods("fixed,centers=25Hz:50Hz,q=1"), "--match-lowpass",
+                                    stdin=synthetic_log())
+        low_pass = rows[result["match"]["low_pass"]]
+        self.assertAlmostEqual(low_pass["ripple_rms_nm"] / rows["fixed,centers=25Hz:50Hz,q=1"]["ripple_rms_nm"], 1.0,
+                               delta=1e-4)
+        self.assertIn("on this log", result["verdict"])
+
+    def test_matching_nothing_is_refused(self):
+        for words in ([*SIGNALS, *RIPPLE, *methods(MISLABELLED), "--match-lowpass"],
+                      [*SIGNALS, *methods(NOTCHES), "--match-lowpass"],
+                      [*SIGNALS, *RIPPLE, *methods(NOTCHES), "--match-attenuation", "0dB"]):
+            done = run("compare", *words)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+
+
+class Logs(Case):
+    def test_attenuation_is_measured_on_the_log_itself(self):
+        _, rows = self.compare("-", *RIPPLE, *methods(MISLABELLED), stdin=synthetic_log())
+        for entry, hz in zip(rows[MISLABELLED]["attenuation_db"], (80 / 3.6, 2 * 80 / 3.6)):
+            self.assertAlmostEqual(entry["hz"], hz, places=3)
+            expected = 10 * math.log10(1 + (math.tan(math.pi * hz / 1000) / math.tan(13 / 2 / 1000)) ** 2)
+            self.assertAlmostEqual(entry["db"], expected, delta=0.5)
+        self.assertAlmostEqual(rows["none"]["ripple_rms_nm"], math.hypot(0.8, 0.5) / math.sqrt(2), places=3)
+
+    def test_the_papers_log_loses_its_ripple_in_the_notches(self):
+        result, rows = self.compare(LOG, *RIPPLE, *methods(NOTCHES, MISLABELLED))
+        self.assertAlmostEqual(result["speed_deg_s"], 90, places=6)
+        self.assertGreater(rows["none"]["residual_peak_to_peak_nm"], 1.5)
+        self.assertLess(rows[NOTCHES]["residual_peak_to_peak_nm"], 0.3)
+        self.assertLess(rows[NOTCHES]["residual_rms_nm"], rows["none"]["residual_rms_nm"] / 10)
+        self.assertAlmostEqual(rows[NOTCHES]["settle_ms"]["0.5"], 147, delta=1)
+
+    def test_a_file_and_a_pipe_give_the_same_figures(self):
+        words = [*RIPPLE, *methods(NOTCHES), "--match-lowpass"]
+        from_file, _ = self.compare(LOG, *words)
+        from_pipe, _ = self.compare("-", *words, stdin=pathlib.Path(LOG).read_text())
+        self.assertEqual(from_file["methods"], from_pipe["methods"])
+        self.assertEqual(from_file["verdict"], from_pipe["verdict"])
+
+    def test_switches_are_counted_where_a_method_switches(self):
+        with tempfile.TemporaryDirectory() as folder:
+            table = os.path.join(folder, "table.json")
+            run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", table)
+            name = f"switching,table={table}"
+            _, rows = self.compare(str(DATA / "paper_move_2s.csv"), *methods(name, MISLABELLED))
+        self.assertGreaterEqual(rows[name]["switches"], 16)
+        self.assertIsNone(rows["none"]["switches"])
+        self.assertIsNone(rows[MISLABELLED]["switches"])
+
+    def test_a_table_for_another_rate_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            table = os.path.join(folder, "table.json")
+            run("design", *RIPPLE, "--sample-rate", "500Hz", "--speed", "18:180:18", "-o", table)
+            done = run("compare", LOG, *methods(f"switching,table={table}"))
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("the log runs at 1000 Hz, the table was designed for 500 Hz", done.stderr)
+
+    def test_without_gear_ratio_the_delays_still_come_with_a_warning(self):
+        done = run("compare", LOG, *methods(NOTCHES), "--json")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("the ripple on the log is not measured", done.stderr)
+        row = json.loads(done.stdout)["methods"][1]
+        self.assertIsNone(row["residual_rms_nm"])
+        self.assertAlmostEqual(row["ramp_delay_ms"], 38.0, delta=0.1)
+
+    def test_a_log_at_rest_has_no_ripple_to_measure_and_says_why(self):
+        done = run("compare", str(DATA / "paper_rest.csv"), *RIPPLE, *methods(NOTCHES), "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual(result["windows"], 0)
+        self.assertIsNone(result["methods"][0]["ripple_rms_nm"])
+        self.assertIn("cannot be measured on this log", done.stderr)
+
+
+class Refusals(unittest.TestCase):
+    def refused(self, words, *parts, code=2):
+        done = run("compare", *words)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        self.assertEqual(done.stdout, "")
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    def test_what_is_missing_is_named(self):
+        self.refused(SIGNALS, "--method")
+        self.refused([*methods(NOTCHES), "--sample-rate", "1kHz"], "--step 10Nm")
+        self.refused([*methods(NOTCHES), "--step", "10Nm"], "--sample-rate")
+        self.refused([*methods(NOTCHES), "--step", "10Nm", "--sample-rate", "1kHz", *RIPPLE], "--speed")
+        self.refused([*SIGNALS, *methods(NOTCHES), "--orders", "1"], "add --gear-ratio")
+        self.refused([*SIGNALS, *methods(NOTCHES), "--gear-ratio", "100"], "add --orders")
+        self.refused([*SIGNALS, *methods("switching")], "table")
+
+    def test_what_makes_no_sense_is_named(self):
+        self.refused([*SIGNALS, *methods("fixd,centers=25Hz")], "fixed")
+        self.refused([*SIGNALS, *methods("fixed,centers=600Hz")], "half the sample rate")
+        self.refused([*SIGNALS, *methods("lowpass,cutoff=-1Hz")], "cutoff")
+        self.refused(["--step", "0Nm", "--sample-rate", "1kHz", *methods(NOTCHES)], "no step")
+        self.refused(["--ramp", "0Nm/s", "--sample-rate", "1kHz", *methods(NOTCHES)], "no ramp")
+        self.refused([LOG, "--joint", "all", *methods(NOTCHES)], "--joint all")
+
+    def test_files_that_cannot_be_used(self):
+        self.refused(["no-such.csv", *methods(NOTCHES)], "no-such.csv", code=4)
+        self.refused([*SIGNALS, *methods("switching,table=no-such.json")], "no-such.json", code=4)
+
+
+if __name__ == "__main__":
+    unittest.main()
