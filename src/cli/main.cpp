@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include "cli/command.hpp"
 #include "cli/options_implementation.hpp"
@@ -42,6 +43,28 @@ int complain_unknown_command(const std::string& word) {
         ExitCode::usage, "",
         fmt::format("there is no command '{}'{}; commands: {}", word,
                     near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(names, ", ")));
+}
+
+// CLI11 checks that required arguments are there before it looks at unknown options, and would answer a
+// mistyped option with "LOG is required".
+std::optional<std::string> unknown_option(const CLI::App& command, const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+        if (word == "--") break;
+        const std::string name = word.substr(0, word.find('='));
+        if (name.size() < 3 || name.compare(0, 2, "--") != 0) continue;
+        if (command.get_option_no_throw(name) == nullptr) return name;
+    }
+    return std::nullopt;
+}
+
+std::string unknown_option_message(const CLI::App& command, const std::string& name) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
+    }
+    const auto near = nearest_name(name, known);
+    return fmt::format("there is no option {}{}; see {} {} --help", name,
+                       near ? fmt::format(" (did you mean {}?)", *near) : "", tool_name, command.get_name());
 }
 
 int run(int argc, char** argv) {
@@ -78,6 +101,10 @@ int run(int argc, char** argv) {
             return complain_unknown_command(words.front());
         }
         running = words.front();
+        const CLI::App& chosen = *app.get_subcommand(running);
+        if (const auto unknown = unknown_option(chosen, words)) {
+            return complain(ExitCode::usage, running, unknown_option_message(chosen, *unknown));
+        }
     }
     try {
         app.parse(argc, argv);

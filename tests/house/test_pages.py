@@ -15,6 +15,7 @@ REGISTRIES = {
     "methods": ("src/filter/methods.def", "METHOD"),
     "formats": ("src/log/formats.def", "FORMAT"),
     "effects": ("src/model/effects.def", "EFFECT"),
+    "motions": ("src/model/motions.def", "MOTION"),
 }
 
 
@@ -52,6 +53,11 @@ class Pages(unittest.TestCase):
             self.assertEqual(done.returncode, 2, name)
             self.assertEqual(done.stdout, "")
             self.assertIn("--no-such-option", done.stderr)
+
+    def test_a_mistyped_option_is_answered_with_the_nearest(self):
+        done = run("design", "--gear-ration", "100")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("did you mean --gear-ratio?", done.stderr)
 
     def test_a_mistyped_command_is_answered_with_the_nearest(self):
         done = run("filtre")
