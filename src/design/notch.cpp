@@ -53,11 +53,11 @@ Biquad design_notch(const NotchSpec& spec, Hertz sample_rate) {
     // exactly center / Q hertz apart.
     const double alpha =
         spec.width == WidthRule::analog ? std::sin(omega) / (2.0 * spec.q) : std::tan(omega / (2.0 * spec.q));
-    const double floor_gain = spec.depth_db >= 6000.0 ? 0.0 : std::pow(10.0, -spec.depth_db / 20.0);
+    const double floor_gain = std::pow(10.0, -spec.depth_db / 20.0);  // exactly 0 for infinite_depth_db
     const double scale = 1.0 / (1.0 + alpha);
     Biquad f;
-    f.b0 = floor_gain == 0.0 ? scale : (1.0 + floor_gain * alpha) * scale;
-    f.b2 = floor_gain == 0.0 ? scale : (1.0 - floor_gain * alpha) * scale;
+    f.b0 = (1.0 + floor_gain * alpha) * scale;
+    f.b2 = (1.0 - floor_gain * alpha) * scale;
     f.b1 = f.a1 = -2.0 * scale * c;
     // Equal to (1 - alpha) / (1 + alpha), but tied to the rounded numerator so that the gain at 0 Hz stays 1.
     f.a2 = f.b0 + f.b2 - 1.0;
