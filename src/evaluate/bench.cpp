@@ -13,7 +13,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t longest_run = 50'000'000;
+constexpr std::size_t longest_run = 10'000'000;  // samples; 80 MB of output
+constexpr std::size_t block = 16384;
 
 // One filter and one signal, run on for as long as somebody wants to see more of it.
 class Run {
@@ -32,15 +33,18 @@ class Run {
                 "{}: the output has not come to rest after {:.3g} samples; it cannot be measured", method_,
                 static_cast<double>(out_.size()));
         }
-        const std::size_t first = out_.size(), added = count - first;
-        std::vector<double> torque(added), position(added);
-        const std::vector<double> velocity(added, speed_deg_s_);
-        for (std::size_t i = 0; i < added; ++i) {
-            torque[i] = signal(first + i);
-            position[i] = speed_deg_s_ * static_cast<double>(first + i) / rate_hz_;
+        const std::vector<double> velocity(block, speed_deg_s_);
+        std::vector<double> torque(block), position(block);
+        while (out_.size() < count) {
+            const std::size_t first = out_.size(), added = std::min(block, count - first);
+            for (std::size_t i = 0; i < added; ++i) {
+                torque[i] = signal(first + i);
+                position[i] = speed_deg_s_ * static_cast<double>(first + i) / rate_hz_;
+            }
+            out_.resize(first + added);
+            const auto part = [added](const std::vector<double>& all) { return std::span(all).first(added); };
+            filter_->process({part(velocity), part(torque), part(position)}, std::span(out_).subspan(first));
         }
-        out_.resize(count);
-        filter_->process({velocity, torque, position}, std::span(out_).subspan(first));
     }
     [[nodiscard]] const std::vector<double>& out() const { return out_; }
 

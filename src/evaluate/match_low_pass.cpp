@@ -67,7 +67,7 @@ std::optional<Hertz> cutoff_for_gain(double gain, int order, const RippleLines& 
                               0.5 * sample_rate.value());
         return *left;
     };
-    double low = std::log(1e-6), high = std::log(0.4999);
+    double low = std::log(lowest_cutoff), high = std::log(highest_cutoff);
     if (!(gain_at(std::exp(low)) <= gain && gain <= gain_at(std::exp(high)))) return std::nullopt;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);

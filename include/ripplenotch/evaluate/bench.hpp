@@ -26,7 +26,7 @@ inline constexpr double most_attenuation_db = 200.0;
 
 class Bench {
   public:
-    /// `speed` may be 0. Throws UsageError when a measurement has not come to rest after 5e7 samples.
+    /// `speed` may be 0. Throws UsageError when a measurement has not come to rest after 1e7 samples.
     Bench(const Contender& contender, Hertz sample_rate, DegPerSec speed)
         : contender_(contender), sample_rate_(sample_rate), speed_(speed) {}
 

@@ -10,7 +10,7 @@
 namespace ripplenotch {
 
 /// Without a log. `gain` (0 < gain < 1) is output over input rms of the ripple, all lines together at one
-/// speed; the cut-off that gives it, or empty when no cut-off above 1e-6 sample rates does. Lines not below
+/// speed; the cut-off that gives it, or empty when no cut-off above 1e-5 sample rates does. Lines not below
 /// half the sample rate are left out. Throws UsageError when none is left.
 [[nodiscard]] std::optional<Hertz> cutoff_for_gain(double gain, int order, const RippleLines& lines,
                                                    Hertz sample_rate, DegPerSec speed);
