@@ -134,3 +134,16 @@ TEST_CASE("the moving speed of a log is the median of what moves") {
     for (double& v : log.velocity_deg_s) v = 0.0;
     CHECK(median_moving_speed(log.view()).value() == 0.0);
 }
+
+TEST_CASE("where no low-pass is equal, the match says why and names none") {
+    const LowPassMatch null = match_at_speed("fixed", 0.0, 1, paper_lines, 1000_Hz, 90_deg_s);
+    CHECK_FALSE(null.low_pass.has_value());
+    CHECK_THAT(null.clause, Catch::Contains("completely") && Catch::Contains("--match-attenuation"));
+    const LowPassMatch steep = match_at_speed("120 dB", 1e-6, 1, paper_lines, 1000_Hz, 90_deg_s);
+    CHECK_FALSE(steep.low_pass.has_value());
+    CHECK_THAT(steep.clause, Catch::Contains("120.00 dB") && Catch::Contains("0.01 to 490 Hz"));
+    const Trace log = steady_log(80.0, 0.0);
+    const LowPassMatch loud = match_on_log("fixed", 5.0, 1, {log.view(), {}}, paper_lines);
+    CHECK_FALSE(loud.low_pass.has_value());
+    CHECK_THAT(loud.clause, Catch::Contains("leaves 5 Nm rms"));
+}
