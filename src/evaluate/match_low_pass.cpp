@@ -132,8 +132,11 @@ LowPassMatch match_at_speed(const std::string& subject, double gain, int order, 
     match.attenuation_db = -20.0 * std::log10(gain);
     match.cutoff = cutoff_for_gain(gain, order, lines, sample_rate, speed);
     if (!match.cutoff) {
-        match.clause = fmt::format("no low-pass of order {} takes {:.2f} dB off the ripple at {:.6g} deg/s",
-                                   order, *match.attenuation_db, speed.value());
+        match.clause = fmt::format(
+            "no low-pass of order {} takes {:.2f} dB off the ripple at {:.6g} deg/s (cut-offs from {:.3g} to "
+            "{:.3g} Hz)",
+            order, *match.attenuation_db, speed.value(), lowest_cutoff * sample_rate.value(),
+            highest_cutoff * sample_rate.value());
         return match;
     }
     match.low_pass = low_pass_spec(*match.cutoff, order).text();
@@ -148,8 +151,11 @@ LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int 
     LowPassMatch match{subject, std::nullopt, "", order, std::nullopt, ripple_rms_nm, std::nullopt};
     match.cutoff = cutoff_for_ripple(ripple_rms_nm, order, log, lines);
     if (!match.cutoff) {
-        match.clause = fmt::format("no low-pass of order {} leaves {:.3g} Nm rms of ripple on this log",
-                                   order, ripple_rms_nm);
+        match.clause = fmt::format(
+            "no low-pass of order {} leaves {:.3g} Nm rms of ripple on this log (cut-offs from {:.3g} to "
+            "{:.3g} Hz)",
+            order, ripple_rms_nm, lowest_cutoff * log.trace.sample_rate.value(),
+            highest_cutoff * log.trace.sample_rate.value());
         return match;
     }
     match.low_pass = low_pass_spec(*match.cutoff, order).text();
