@@ -247,6 +247,21 @@ class Refusals(unittest.TestCase):
         self.refused(PAPER + ["--json", "--format", "csv"], "two different outputs")
 
 
+class Limits(unittest.TestCase):
+    def test_a_limit_that_is_broken_is_exit_code_1_with_the_bands_named_and_the_table_written(self):
+        done = design(*PAPER, "--max-delay-ms", "100", "--min-attenuation-db", "23", "--format", "csv")
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stdout, design(*PAPER, "--format", "csv").stdout)
+        self.assertIn("band 1 (18-36 deg/s) delays by 127.3 ms, more than --max-delay-ms 100", done.stderr)
+        self.assertIn("band 1 (18-36 deg/s) takes as little as 18.9 dB off order 1", done.stderr)
+        self.assertIn("off order 2, less than --min-attenuation-db 23", done.stderr)
+        self.assertNotIn("band 2", done.stderr)
+
+    def test_a_limit_that_is_kept_is_exit_code_0(self):
+        done = design(*PAPER, "--max-delay-ms", "128", "--min-attenuation-db", "18")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+
 class Warnings(unittest.TestCase):
     def test_a_band_that_reaches_beyond_half_the_sample_rate_is_warned_of(self):
         done = design(*with_option(PAPER, "--sample-rate", "191Hz"))

@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
 struct Request {
     CommonOptions common;
     std::string joint;
-    std::optional<double> gear_ratio, depth_db;
+    std::optional<double> gear_ratio, depth_db, max_delay_ms, min_attenuation_db;
     std::vector<double> orders;
     std::optional<Hertz> sample_rate, spacing;
     std::optional<std::string> speed, bands;
@@ -166,6 +166,30 @@ std::string form_of(const Request& request) {
     return ends_with(".json") ? "json" : ends_with(".csv") ? "csv" : "text";
 }
 
+// Limits that the caller set: what breaks them is said, and the table is written all the same.
+std::vector<std::string> violations(const Request& request, const CandidateTable& table) {
+    std::vector<std::string> sentences;
+    for (const Band& band : table.bands()) {
+        const std::string label =
+            fmt::format("band {} ({:.6g}-{:.6g} deg/s)", band.number, band.from.value(), band.to.value());
+        const double delay_ms = 1e3 * band.dc_delay.value();
+        if (request.max_delay_ms && !(delay_ms <= *request.max_delay_ms)) {
+            sentences.push_back(fmt::format("{} delays by {:.1f} ms, more than --max-delay-ms {}", label,
+                                            delay_ms, shortest(*request.max_delay_ms)));
+        }
+        for (std::size_t i = 0; request.min_attenuation_db && i < band.notches.size(); ++i) {
+            const double worst_db = band.worst_attenuation_db[i];
+            if (worst_db >= *request.min_attenuation_db) continue;
+            sentences.push_back(
+                fmt::format("{} takes as little as {:.1f} dB off order {}, less than "
+                            "--min-attenuation-db {}",
+                            label, worst_db, shortest(band.notches[i].order.value()),
+                            shortest(*request.min_attenuation_db)));
+        }
+    }
+    return sentences;
+}
+
 ExitCode run(const Request& request, const std::string& command_line) {
     const std::string form = form_of(request);
     std::optional<JointFacts> joint;
@@ -180,7 +204,9 @@ ExitCode run(const Request& request, const std::string& command_line) {
                              : form == "csv" ? table_to_csv(table)
                                              : table_to_text(table);
     write_all(request.common.output, text, request.common.overwrite());
-    return ExitCode::done;
+    const auto broken = violations(request, table);
+    say_warnings(request.common, broken);
+    return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
 }
 
 std::function<ExitCode()> attach(Options& options) {
@@ -207,6 +233,10 @@ std::function<ExitCode()> attach(Options& options) {
                    "per cent of a step within which it counts as settled");
     options.choice("--below", request->below, rule_names, "rule below the first band");
     options.choice("--above", request->above, rule_names, "rule above the last band");
+    options.number("--max-delay-ms", request->max_delay_ms, Dimension::none,
+                   "exit code 1 when a band's DC delay is longer");
+    options.number("--min-attenuation-db", request->min_attenuation_db, Dimension::none,
+                   "exit code 1 when a line is attenuated less anywhere in its band");
     options.choice("--format", request->form, form_names,
                    "form of the result (default: by the name of -o, else text)");
     attach_common(options, request->common);
