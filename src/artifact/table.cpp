@@ -113,7 +113,11 @@ CandidateNotch notch_from_json(const Json& json, const std::string& source, cons
 Band band_from_json(const Json& json, const std::string& source, const std::string& path, TableSpec& spec) {
     Fields fields(json, source, path);
     Band band;
-    band.number = static_cast<int>(fields.number("number"));
+    const double number = fields.number("number");
+    if (number < 1.0 || number > 1e6 || number != std::floor(number)) {
+        raise<DataError>("{} is {}, expected 1, 2, 3, ...", fields.where("number"), shortest(number));
+    }
+    band.number = static_cast<int>(number);
     band.from = DegPerSec(fields.number("speed_from_deg_s"));
     band.to = DegPerSec(fields.number("speed_to_deg_s"));
     const Json& notches = array_at(fields, "notches");

@@ -131,6 +131,69 @@ TEST_CASE("a table with a missing, unknown or mistyped field is refused by the f
                Contains("ripplenotch/table/1"));
 }
 
+namespace {
+
+// Calls `visit` with a pointer to every value inside `json`.
+void every_value(const Json& json, const std::string& pointer,
+                 const std::function<void(const std::string&)>& visit) {
+    if (!pointer.empty()) visit(pointer);
+    if (json.is_object()) {
+        for (const auto& [name, value] : json.items()) every_value(value, pointer + "/" + name, visit);
+    } else if (json.is_array()) {
+        for (std::size_t i = 0; i < json.size(); ++i) {
+            every_value(json[i], pointer + "/" + std::to_string(i), visit);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "whatever one value of a table is changed into, it is loaded whole or refused by name, never anything "
+    "else") {
+    TableSpec spec = paper_spec();
+    spec.bands.resize(2);
+    const Json good = Json::parse(table_to_json(CandidateTable::design(spec), provenance));
+    const std::vector<Json> replacements = {nullptr,
+                                            true,
+                                            -1.0,
+                                            0.0,
+                                            1e-300,
+                                            1e300,
+                                            1.5,
+                                            "x",
+                                            Json::array(),
+                                            Json::object(),
+                                            Json::array({1.0, "y"})};
+    std::size_t tried = 0, refused = 0;
+    every_value(good, "", [&](const std::string& pointer) {
+        for (const Json& replacement : replacements) {
+            Json changed = good;
+            changed[Json::json_pointer(pointer)] = replacement;
+            ++tried;
+            INFO(pointer << " = " << replacement.dump());
+            try {
+                (void)table_from_json(changed.dump(), "table.json");
+            } catch (const DataError& error) {
+                ++refused;
+                CHECK_THAT(error.what(), Catch::StartsWith("table.json"));
+            }
+        }
+    });
+    CHECK(tried > 500);
+    // Accepted are the fields that carry no meaning for a reader (version, command, inputs) and a null for no
+    // depth.
+    CHECK(refused > tried * 8 / 10);
+}
+
+TEST_CASE("a table that ends too early is refused with line and column") {
+    const std::string text = paper_json();
+    for (std::size_t length = 0; length < text.size() - 2; length += 97) {
+        CHECK_THROWS_AS(table_from_json(text.substr(0, length), "table.json"), DataError);
+    }
+    CHECK_THROWS_WITH(table_from_json(text.substr(0, 60), "table.json"), Contains("table.json:3:"));
+}
+
 TEST_CASE("the CSV of Table 1 has the paper's numbers, without dust") {
     const std::string csv = table_to_csv(CandidateTable::design(paper_spec()));
     CHECK_THAT(
