@@ -152,6 +152,11 @@ class FromJoint(unittest.TestCase):
         self.assertEqual(table["inputs"][0]["name"], "joint.json")
         self.assertRegex(table["inputs"][0]["sha256"], "^[0-9a-f]{64}$")
 
+    def test_the_option_line_that_is_said_with_v_gives_the_same_bands(self):
+        done = design("-", "--json", "-v", stdin=joint(ratio=100.03))
+        said = done.stderr.split("designed as if with ")[1].split()
+        self.assertEqual(json.loads(design(*said, "--json").stdout)["bands"], json.loads(done.stdout)["bands"])
+
     def test_a_joint_without_a_ratio_asks_for_gear_ratio_and_is_exit_code_3(self):
         done = design("-", stdin=joint(ratio=None))
         self.assertEqual(done.returncode, 3)

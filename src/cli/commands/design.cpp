@@ -150,6 +150,18 @@ TableSpec spec_of(const Request& request, const std::optional<JointFacts>& joint
     return spec;
 }
 
+// The options that would give this table without a joint.json and without arithmetic.
+std::string option_line(const TableSpec& spec) {
+    std::string orders, bands;
+    for (const Order order : spec.orders) orders += (orders.empty() ? "" : ",") + shortest(order.value());
+    for (const auto& [from, to] : spec.bands) {
+        bands +=
+            fmt::format("{}{}:{}", bands.empty() ? "" : ",", shortest(from.value()), shortest(to.value()));
+    }
+    return fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
+                       shortest(spec.gear_ratio.value()), orders, shortest(spec.sample_rate.value()), bands);
+}
+
 // Asked for by name, else by --json, else by the name of the output file.
 std::string form_of(const Request& request) {
     if (request.common.json) {
@@ -199,6 +211,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
         provenance.inputs.push_back(input_record(request.joint));
     }
     const CandidateTable table = CandidateTable::design(spec_of(request, joint));
+    say(request.common, fmt::format("designed as if with {}", option_line(table.spec())));
     say_warnings(request.common, alias_warnings(table));
     const std::string text = form == "json"  ? table_to_json(table, provenance)
                              : form == "csv" ? table_to_csv(table)
