@@ -35,9 +35,11 @@ Field load_contenders(const std::vector<std::string>& methods, Provenance& prove
 }
 
 std::optional<RippleLines> lines_of(const LinesRequest& request, const Field& field, Provenance& provenance) {
+    std::optional<GearRatio> asked;
+    if (request.gear_ratio) asked = GearRatio(*request.gear_ratio);
     std::optional<JointFacts> joint;
     if (request.joint_file) {
-        joint = load_joint_facts(*request.joint_file);
+        joint = load_joint_facts(*request.joint_file, asked);
         provenance.inputs.push_back(input_record(*request.joint_file));
     }
     RippleLines lines;

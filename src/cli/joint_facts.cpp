@@ -12,16 +12,41 @@
 
 namespace ripplenotch {
 
-JointFacts load_joint_facts(const std::string& path) {
+namespace {
+
+constexpr double whole_order_share = 0.005;
+
+// Order per motor turn of a line that turns with the joint; empty for others. Under another ratio than the
+// file's a line keeps its frequency, so its order follows from what was measured per output turn.
+std::optional<double> order_of(const Line& line, const Identification& found,
+                               std::optional<GearRatio> asked) {
+    // A line that was seen at one speed only is unknown; identify gives it an order when its gear ratio rests
+    // on it.
+    if (line.kind != LineKind::order && !(line.kind == LineKind::unknown && line.order)) return std::nullopt;
+    if (!asked || (found.gear_ratio.value == asked->value() && line.order)) return line.order;
+    if (!line.order_output) return std::nullopt;
+    const double order = *line.order_output / asked->value();
+    const double whole = std::round(2.0 * order) / 2.0;
+    return std::abs(order - whole) <= whole_order_share * order ? whole : order;
+}
+
+}  // namespace
+
+JointFacts load_joint_facts(const std::string& path, std::optional<GearRatio> gear_ratio) {
+    if (gear_ratio && !(gear_ratio->value() > 0.0)) {
+        raise<UsageError>("gear ratio {} is not above 0", gear_ratio->value());
+    }
     const Identification found = load_identification(path);
     JointFacts facts;
     facts.source = path == "-" ? "standard input" : path;
-    if (found.gear_ratio.value) facts.gear_ratio = GearRatio(*found.gear_ratio.value);
+    facts.gear_ratio = gear_ratio;
+    if (!gear_ratio && found.gear_ratio.value) facts.gear_ratio = GearRatio(*found.gear_ratio.value);
     facts.sample_rate = nominal_rate(found.sample_rate);
     std::map<double, double> amplitude_of;
     for (const Line& line : found.lines) {
-        if (line.kind != LineKind::order || !line.order) continue;
-        double& amplitude = amplitude_of[*line.order];
+        const auto order = order_of(line, found, gear_ratio);
+        if (!order) continue;
+        double& amplitude = amplitude_of[*order];
         amplitude = std::max(amplitude, line.amplitude_nm);
         const double a = std::abs(line.speed_from_deg_s), b = std::abs(line.speed_to_deg_s);
         const DegPerSec low(std::min(a, b)), high(std::max(a, b));
@@ -37,9 +62,8 @@ JointFacts load_joint_facts(const std::string& path) {
 
 GearRatio gear_ratio_of(const JointFacts& joint) {
     if (!joint.gear_ratio) {
-        raise<DataError>(
-            "{}: its gear ratio is null, because identify found none; give --gear-ratio and --orders",
-            joint.source);
+        raise<DataError>("{}: its gear ratio is null, because identify found none; give --gear-ratio",
+                         joint.source);
     }
     return *joint.gear_ratio;
 }

@@ -20,8 +20,11 @@ struct JointFacts {
     Hertz sample_rate;                 ///< nominal: what filter designs for on the same log
 };
 
-/// Reads joint.json, or standard input when the path is "-". Throws DataError, FileError.
-[[nodiscard]] JointFacts load_joint_facts(const std::string& path);
+/// Reads joint.json, or standard input when the path is "-". With `gear_ratio` (from --gear-ratio) the orders
+/// are those of the measured lines under that ratio, whole or half where they are within 0.5 % of it. Throws
+/// DataError, FileError, UsageError unless the ratio is above 0.
+[[nodiscard]] JointFacts load_joint_facts(const std::string& path,
+                                          std::optional<GearRatio> gear_ratio = std::nullopt);
 
 /// The gear ratio, or a DataError that says why there is none and that --gear-ratio gives one.
 [[nodiscard]] GearRatio gear_ratio_of(const JointFacts& joint);

@@ -102,7 +102,7 @@ std::string table_to_text(const CandidateTable& table) {
     const TableSpec& spec = table.spec();
     std::string text = fmt::format(
         "Candidate notches for gear ratio {}, {}, at {} Hz: {} band{}, Q {} ({}), {}.\n\n",
-        shortest(spec.gear_ratio.value()), listed(spec.orders), shortest(spec.sample_rate.value()),
+        plain(spec.gear_ratio.value()), listed(spec.orders), plain(spec.sample_rate.value()),
         table.bands().size(), table.bands().size() == 1 ? "" : "s", shortest(spec.q),
         width_rule_name(spec.width),
         spec.depth_db >= infinite_depth_db ? "full null" : fmt::format("{} dB deep", plain(spec.depth_db)));

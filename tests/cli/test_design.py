@@ -124,7 +124,8 @@ class FromJoint(unittest.TestCase):
                          json.loads(design(*PAPER, "--json").stdout)["bands"])
 
     def test_an_option_wins_over_the_file(self):
-        table = self.table(joint(), "--speed", "18:180:18", "--orders", "2", "--gear-ratio", "50", "--sample-rate", "2kHz")
+        table = self.table(joint(), "--speed", "18:180:18", "--orders", "2", "--gear-ratio", "50",
+                           "--sample-rate", "2kHz")
         self.assertEqual((table["gear_ratio"], table["orders"], table["sample_rate_hz"]), (50, [2], 2000))
 
     def test_without_speeds_the_bands_cover_what_was_seen_five_hertz_apart(self):
@@ -134,6 +135,11 @@ class FromJoint(unittest.TestCase):
         for before, after in zip(bands, bands[1:]):
             self.assertEqual(before["speed_to_deg_s"], after["speed_from_deg_s"])
             self.assertAlmostEqual(after["notches"][0]["center_hz"] - before["notches"][0]["center_hz"], 5.0, places=9)
+
+    def test_an_uneven_ratio_gives_bands_of_a_round_width_all_the_same(self):
+        for ratio, width in ((99.99998, 18), (120.57, 15), (1000 / 3, 5.4)):
+            for band in self.table(joint(ratio=ratio))["bands"]:
+                self.assertAlmostEqual(band["speed_to_deg_s"] - band["speed_from_deg_s"], width, places=9)
 
     def test_a_joint_seen_at_one_speed_gets_one_band_around_it(self):
         band, = self.table(joint(speeds=(90.0, 90.0)))["bands"]
@@ -151,6 +157,16 @@ class FromJoint(unittest.TestCase):
             table = json.loads(design("joint.json", "--json", folder=folder).stdout)
         self.assertEqual(table["inputs"][0]["name"], "joint.json")
         self.assertRegex(table["inputs"][0]["sha256"], "^[0-9a-f]{64}$")
+
+    def test_another_ratio_keeps_the_frequencies_of_the_lines(self):
+        found = self.table(joint(ratio=None, orders=(1.0, 2.0)), "--gear-ratio", "50.1", "--speed", "80:100:20")
+        self.assertEqual(found["orders"], [2, 4])
+        uneven = self.table(joint(), "--gear-ratio", "70", "--speed", "80:100:20")
+        self.assertAlmostEqual(uneven["bands"][0]["notches"][0]["center_hz"], 25.0, places=9)
+
+    def test_a_line_seen_at_one_speed_counts_when_the_ratio_rests_on_it(self):
+        text = joint(speeds=(49.6, 49.8)).replace('"kind": "order"', '"kind": "unknown"')
+        self.assertEqual(self.table(text)["orders"], [1, 2])
 
     def test_the_option_line_that_is_said_with_v_gives_the_same_bands(self):
         done = design("-", "--json", "-v", stdin=joint(ratio=100.03))

@@ -46,13 +46,19 @@ DegPerSec width_of_spacing(Hertz spacing, const TableSpec& spec) {
     return DegPerSec(360.0 * spacing.value() / (spec.orders.front().value() * spec.gear_ratio.value()));
 }
 
-// Bands 5 Hz apart in the lowest order, as the paper's, over the speeds at which the lines were seen.
+// Nobody wants bands of 17.9993 deg/s because the gear ratio is known to five digits.
+DegPerSec two_digits(DegPerSec width) {
+    return DegPerSec(*parse_number(fmt::format("{:.1e}", width.value())));
+}
+
+// Bands about 5 Hz apart in the lowest order, as the paper's, over the speeds at which the lines were seen.
 std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const Request& request, const TableSpec& spec,
                                                         const JointFacts& joint) {
     if (!(joint.fastest.value() > 0.0)) {
         raise<UsageError>("{} has no line that follows the speed; give --speed FROM:TO:WIDTH", joint.source);
     }
-    const double width = width_of_spacing(request.spacing.value_or(Hertz(5.0)), spec).value();
+    const double width = request.spacing ? width_of_spacing(*request.spacing, spec).value()
+                                         : two_digits(width_of_spacing(Hertz(5.0), spec)).value();
     double from = std::floor(joint.slowest.value());
     double to = joint.fastest.value();
     // A joint seen at one speed only gets one band around it.
@@ -109,14 +115,16 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const Request& request, co
                             range.width ? *range.width : width_of_spacing(*request.spacing, spec));
 }
 
+std::optional<GearRatio> asked_ratio(const std::optional<double>& value) {
+    return value ? std::optional(GearRatio(*value)) : std::nullopt;
+}
+
 // Options first, then joint.json, else the option that is missing.
 void fill_joint(TableSpec& spec, const Request& request, const std::optional<JointFacts>& joint) {
-    if (request.gear_ratio) {
-        spec.gear_ratio = GearRatio(*request.gear_ratio);
-    } else {
-        if (!joint) raise<UsageError>("the gear ratio is missing; give --gear-ratio, for example 100");
-        spec.gear_ratio = gear_ratio_of(*joint);
+    if (!request.gear_ratio && !joint) {
+        raise<UsageError>("the gear ratio is missing; give --gear-ratio, for example 100");
     }
+    spec.gear_ratio = request.gear_ratio ? GearRatio(*request.gear_ratio) : gear_ratio_of(*joint);
     if (!request.sample_rate && !joint) {
         raise<UsageError>("the sample rate is missing; give --sample-rate, for example 1kHz");
     }
@@ -207,7 +215,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
     std::optional<JointFacts> joint;
     Provenance provenance{{}, command_line};
     if (!request.joint.empty()) {
-        joint = load_joint_facts(request.joint);
+        joint = load_joint_facts(request.joint, asked_ratio(request.gear_ratio));
         provenance.inputs.push_back(input_record(request.joint));
     }
     const CandidateTable table = CandidateTable::design(spec_of(request, joint));
