@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "filter/write_behind.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -219,11 +220,17 @@ struct LogStream::Pass {
 StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter) {
     Pass pass{*this, filter, meter};
     RowBlock block;
-    while (next(block)) {
-        pass.take(block);
-        if (writer != nullptr) writer->write(block, pass.out);
+    if (writer == nullptr) {
+        while (next(block)) pass.take(block);
+    } else {
+        WriteBehind behind(*writer);
+        while (next(block)) {
+            pass.take(block);
+            behind.write(block, pass.out);
+        }
+        behind.join();
+        writer->finish(reader_->tail());
     }
-    if (writer != nullptr) writer->finish(reader_->tail());
     pass.report.switch_count = filter.switch_count();
     if (pass.duration_s > 0.0)
         pass.report.measured_rate = Hertz(static_cast<double>(pass.steps) / pass.duration_s);

@@ -49,3 +49,34 @@ TEST_CASE("fixed decimals round as printf does") {
     std::snprintf(expected, sizeof expected, "%.3f %.0f %.1f", -0.0005, 2.5, 1e15 + 0.3);
     CHECK(out == expected);
 }
+
+TEST_CASE("appended numbers are those of the formatting library and of printf, digit for digit") {
+    std::mt19937_64 engine(19);
+    std::uniform_real_distribution<double> exponent(-9.0, 18.0), mantissa(-10.0, 10.0);
+    std::uniform_int_distribution<int> digits(0, 10);
+    char expected[80];
+    for (int i = 0; i < 300000; ++i) {
+        double value = mantissa(engine) * std::pow(10.0, std::floor(exponent(engine)));
+        const int decimals = digits(engine);
+        // Also numbers with few digits, and halves of the last digit, which are ties for printf.
+        if (i % 3 == 1) value = std::round(value * 1000.0) / 1000.0;
+        if (i % 3 == 2) value = (std::round(value) + 0.5) / std::pow(2.0, digits(engine));
+        std::string out;
+        append_shortest(out, value);
+        REQUIRE(out == shortest(value));
+        out.clear();
+        append_fixed(out, value, decimals);
+        std::snprintf(expected, sizeof expected, "%.*f", decimals, value);
+        REQUIRE(out == expected);
+    }
+    for (const double special :
+         {0.0, -0.0, 1e-4, 1e-5, 9999999999999998.0, 1e16, -1.0, 5e-324, 1.7976931348623157e308}) {
+        std::string out;
+        append_shortest(out, special);
+        CHECK(out == shortest(special));
+    }
+    std::string out;
+    append_fixed(out, -0.0, 2);
+    append_fixed(out, -1e-9, 3);
+    CHECK(out == "-0.00-0.000");
+}
