@@ -79,6 +79,18 @@ void spread(std::span<const double> where, std::span<const double> value, double
     }
 }
 
+std::complex<double> unit_phasor(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+/// True when no place is off an even grid by more than a ten-thousandth of a cycle.
+bool evenly_placed(std::span<const double> where, double step, double frequency) {
+    const double allowed = 1e-4;
+    for (std::size_t j = 0; j < where.size(); ++j) {
+        const double off = where[j] - where.front() - static_cast<double>(j) * step;
+        if (std::abs(off * frequency) > allowed) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 std::vector<std::complex<double>> real_fourier(std::span<const double> x) {
@@ -121,21 +133,27 @@ std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> whe
 
 FourierPoint fourier_point(std::span<const double> where, std::span<const double> value, double frequency) {
     FourierPoint point;
+    if (where.empty()) return point;
     // Places are taken from the middle so that the derivatives stay well conditioned; the phase is put back
     // below.
-    const double middle = where.empty() ? 0.0 : 0.5 * (where.front() + where.back());
+    const double middle = 0.5 * (where.front() + where.back());
+    const double step =
+        where.size() > 1 ? (where.back() - where.front()) / static_cast<double>(where.size() - 1) : 0.0;
+    const bool turning = evenly_placed(where, step, frequency);
+    const std::complex<double> turn_by = unit_phasor(-tau * frequency * step);
+    std::complex<double> phasor;
     for (std::size_t j = 0; j < where.size(); ++j) {
         const double place = where[j] - middle;
-        const double angle = -tau * frequency * place;
-        const std::complex<double> term = value[j] * std::complex<double>(std::cos(angle), std::sin(angle));
-        const std::complex<double> turn(0.0, -tau * place);
-        point.value += term;
-        point.first += turn * term;
-        point.second += turn * turn * term;
+        // On an even grid the phasor turns by a constant; it is set anew before rounding adds up.
+        phasor = turning && j % 256 != 0 ? phasor * turn_by : unit_phasor(-tau * frequency * place);
+        const double weight = value[j], first = weight * place;
+        point.value += weight * phasor;
+        point.first += first * phasor;
+        point.second += first * place * phasor;
     }
-    const double shift = -tau * frequency * middle;
-    const std::complex<double> back(std::cos(shift), std::sin(shift));
-    return {point.value * back, point.first * back, point.second * back};
+    const std::complex<double> back = unit_phasor(-tau * frequency * middle);
+    const std::complex<double> turn(0.0, -tau);
+    return {point.value * back, turn * point.first * back, turn * turn * point.second * back};
 }
 
 double refine_peak(std::span<const double> where, std::span<const double> value, double frequency,

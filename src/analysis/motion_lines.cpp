@@ -168,6 +168,36 @@ double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bi
     return place;
 }
 
+/// Standard error of a place from what the sweeps disagree about: each left out in turn, one Newton step
+/// (jackknife).
+double disagreement(std::span<const Sweep> sweeps, const Stack& stack, double place) {
+    std::vector<std::pair<double, double>> parts;  // slope and curvature of each sweep's power
+    double slope = 0.0, curve = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        const double noise = noise_at(stack, i, place);
+        if (!(noise > 0.0)) continue;
+        const FourierPoint at = fourier_point(places(sweeps[i], stack.axis), sweeps[i].value, place);
+        const double weight = stack.sweep_weights[i] / noise;
+        parts.emplace_back(weight * std::real(std::conj(at.value) * at.first),
+                           weight * (std::norm(at.first) + std::real(std::conj(at.value) * at.second)));
+        slope += parts.back().first;
+        curve += parts.back().second;
+    }
+    double mean = 0.0, square = 0.0, count = 0.0;
+    for (const auto& [own_slope, own_curve] : parts) {
+        if (!(curve - own_curve < 0.0)) continue;
+        const double shift =
+            std::clamp(-(slope - own_slope) / (curve - own_curve), -stack.spacing, stack.spacing);
+        mean += shift;
+        square += shift * shift;
+        count += 1.0;
+    }
+    // Too few sweeps to disagree: amplitude that changes along a sweep moves a line by about a tenth of its
+    // width.
+    if (count < 3.0) return 0.1 * stack.resolution;
+    return std::sqrt(std::max(0.0, (square - mean * mean / count) * (count - 1.0) / count));
+}
+
 /// Fills in what the sweeps say about a line at `place`.
 void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, MotionLine& line) {
     double information = 0.0, weights = 0.0, power = 0.0, noise_power = 0.0, lengths = 0.0;
@@ -195,7 +225,8 @@ void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, Mo
         line.by_speed.push_back(
             {sweep.mean_deg_s, hz, std::abs(amplitude), std::abs(amplitude) / std::sqrt(floor)});
     }
-    const double error = information > 0.0 ? 1.0 / std::sqrt(information) : stack.resolution;
+    const double bound = information > 0.0 ? 1.0 / std::sqrt(information) : stack.resolution;
+    const double error = std::max(bound, disagreement(sweeps, stack, place));
     if (stack.axis == Axis::angle) {
         line.order_output = place;
         line.order_stderr = error;
@@ -247,6 +278,21 @@ double torque_range(std::span<const TraceView> logs) {
         if (low != log.torque_nm.end()) range = std::max(range, *high - *low);
     }
     return range;
+}
+
+/// Amplitude at which a line of median floor reaches the false-alarm rate.
+double detectable(const Stack& stack, double false_alarm) {
+    std::vector<double> floors(
+        stack.floor_nm.begin() + static_cast<std::ptrdiff_t>(std::min(stack.first, stack.floor_nm.size())),
+        stack.floor_nm.end());
+    if (floors.empty()) return 0.0;
+    const auto middle = floors.begin() + static_cast<std::ptrdiff_t>(floors.size() / 2);
+    std::nth_element(floors.begin(), middle, floors.end());
+    const double averages = stack.averages[(stack.first + stack.averages.size()) / 2];
+    const double tries = static_cast<double>(floors.size()) * stack.spacing / stack.resolution;
+    double ratio = 1.0;
+    while (ratio < 1e3 && exceedance(ratio, averages, floor_cells) * tries > false_alarm) ratio *= 1.05;
+    return *middle * std::sqrt(ratio - 1.0);
 }
 
 struct SpeedRange {
@@ -323,6 +369,7 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
         if (round == 0) {
             found.resolution_orders = angle.resolution;
             found.lowest_order = static_cast<double>(angle.first) * angle.spacing;
+            found.detectable_nm = std::max(least_amplitude, detectable(angle, 0.5 * options.false_alarm));
             found.highest_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
         }
         const auto order = clearest(sweeps, angle, taken_orders, 0.0, 0.5 * options.false_alarm);

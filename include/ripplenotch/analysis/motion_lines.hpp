@@ -39,6 +39,7 @@ struct MotionLines {
     std::size_t sweeps = 0, sweeps_left_out = 0;
     double turns = 0.0;  ///< output turns that the sweeps cover
     double resolution_orders = 0.0;
+    double detectable_nm = 0.0;  ///< smallest amplitude that would have been found, median over orders
     double lowest_order = 0.0, highest_order = 0.0;   ///< searched
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
     bool absolute_angle = false;

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The gear ratio as the comb that output orders lie on: order_output = n * Kg, n a small integer.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/analysis/identification.hpp"
+
+namespace ripplenotch {
+
+/// One measurement of a line: at one speed, or over a whole motion.
+struct OrderObservation {
+    double order_output = 0.0;
+    double error = 0.0;  ///< standard error of order_output from the line's own noise
+    double speed_deg_s = 0.0;
+    double speed_share_error = 0.0;  ///< relative standard error of the speed it was divided by
+    double hz = 0.0;
+    std::size_t source = 0;  ///< observations of one source share the speed, and its error
+};
+
+/// A line that turns with the joint, by all its observations.
+struct OrderLine {
+    double order_output = 0.0;
+    double error = 0.0;
+    double snr = 0.0;
+    double amplitude_nm = 0.0;
+    bool certain = true;  ///< false: it may also be a fixed tone
+    std::vector<OrderObservation> observations;
+};
+
+struct GearRatioResult {
+    GearRatioFit fit;
+    std::vector<std::optional<int>>
+        order_of_line;  ///< n of each line under fit.value; empty where it lies off the comb
+    std::vector<std::string> notes;
+};
+
+/// n runs from 1 to 8 for a line on its own and to 16 for lines that a comb explains besides. Every candidate
+/// is scored by how unlikely its matches are by chance, by whether odd lines set it apart from its half, by
+/// what real drives look like (ratios 25 to 320, n = 2 most often alone), by catalogue ratios, and by the
+/// hint; the scores are shares of one. The value is left empty unless one candidate has at least 0.7. Fit:
+/// per source the weighted mean over its lines, then over sources by Huber's weights (k = 1.345), the
+/// scatter's excess over the stated errors widening the interval (Student's t).
+[[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<GearRatio> hint);
+
+}  // namespace ripplenotch

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The paper's way: the lines of each steady stretch, followed over speeds. What keeps its order is an order,
+// what keeps its frequency a tone, what was seen at one speed only is unknown.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/steady.hpp"
+
+namespace ripplenotch {
+
+struct StretchLines {
+    std::size_t log = 0;
+    Stretch stretch;
+    std::vector<SpectralPeak> peaks;
+    double floor_nm = 0.0;  ///< median over the spectrum
+    double bin_hz = 0.0;
+};
+
+/// One peak of one stretch.
+struct Sighting {
+    std::size_t stretch = 0;  ///< index into SteadyLines::stretches
+    double hz = 0.0, hz_error = 0.0;
+    double speed_deg_s = 0.0;  ///< signed; 0 at rest
+    double speed_share_error = 0.0;
+    double amplitude_nm = 0.0, snr = 0.0;
+    [[nodiscard]] double order_output() const;  ///< 360 f / |v|; only where the joint moves
+    [[nodiscard]] double order_error() const;   ///< from the frequency alone
+};
+
+struct SteadyLine {
+    LineKind kind = LineKind::unknown;
+    std::vector<Sighting> sightings;  ///< by stretch
+};
+
+struct SteadyLines {
+    std::vector<StretchLines> stretches;
+    std::vector<SteadyLine> lines;  ///< most widely seen first
+    std::size_t moving = 0, resting = 0;
+    std::size_t speeds = 0;  ///< different |speed| among the moving stretches
+};
+
+/// `false_alarm` is the chance that noise gives any line in any of the stretches.
+[[nodiscard]] SteadyLines find_steady_lines(std::span<const TraceView> logs, const SteadyRule& rule,
+                                            double false_alarm);
+
+}  // namespace ripplenotch

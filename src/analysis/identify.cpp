@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "analysis/verdict.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/gear_ratio.hpp"
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/steady_lines.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+/// A line as it is reported, and as the gear ratio sees it when it may turn with the joint.
+struct Reported {
+    Line line;
+    std::optional<OrderLine> order;
+};
+
+/// Phase against the output angle over all stretches that show the line, when they agree on it.
+std::optional<double> phase_in_angle(std::span<const TraceView> logs, const SteadyLines& steady,
+                                     const SteadyLine& line, double order_output) {
+    std::complex<double> together;
+    double lengths = 0.0;
+    for (const Sighting& seen : line.sightings) {
+        const StretchLines& at = steady.stretches[seen.stretch];
+        const TraceView part = logs[at.log].part(at.stretch.first, at.stretch.count);
+        if (!part.has_position()) return std::nullopt;
+        std::vector<double> turns(part.size()), value(part.size());
+        double mean = 0.0, weights = 0.0;
+        for (const double torque : part.torque_nm) mean += torque / static_cast<double>(part.size());
+        for (std::size_t k = 0; k < part.size(); ++k) {
+            const double u = (static_cast<double>(k) + 0.5) / static_cast<double>(part.size());
+            const double window = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * u);
+            turns[k] = part.position_deg[k] / 360.0;
+            value[k] = window * (part.torque_nm[k] - mean);
+            weights += window;
+        }
+        const std::complex<double> sum = fourier_point(turns, value, order_output).value / weights;
+        together += sum;
+        lengths += 0.5 * seen.amplitude_nm;
+    }
+    constexpr double agreement = 0.7;
+    if (!(lengths > 0.0) || std::abs(together) < agreement * lengths) return std::nullopt;
+    return std::arg(together) * degrees_per_radian;
+}
+
+Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady, const SteadyLine& found) {
+    Reported reported;
+    Line& line = reported.line;
+    line.kind = found.kind;
+    double amplitude = 0.0, hz_top = 0.0, hz_bottom = 0.0;
+    double order_top = 0.0, order_bottom = 0.0, slowest = 1e300, fastest = 0.0;
+    OrderLine order;
+    for (const Sighting& seen : found.sightings) {
+        line.by_speed.push_back({seen.speed_deg_s, seen.hz, seen.amplitude_nm, seen.snr});
+        amplitude += seen.amplitude_nm / static_cast<double>(found.sightings.size());
+        line.snr = std::max(line.snr, seen.snr);
+        slowest = std::min(slowest, std::abs(seen.speed_deg_s));
+        fastest = std::max(fastest, std::abs(seen.speed_deg_s));
+        hz_top += seen.hz / (seen.hz_error * seen.hz_error);
+        hz_bottom += 1.0 / (seen.hz_error * seen.hz_error);
+        if (seen.speed_deg_s == 0.0) continue;
+        const double error = std::hypot(seen.order_error(), seen.order_output() * seen.speed_share_error);
+        order_top += seen.order_output() / (error * error);
+        order_bottom += 1.0 / (error * error);
+        order.observations.push_back({seen.order_output(), seen.order_error(), seen.speed_deg_s,
+                                      seen.speed_share_error, seen.hz, seen.stretch});
+    }
+    line.amplitude_nm = amplitude;
+    line.speed_from_deg_s = slowest;
+    line.speed_to_deg_s = fastest;
+    if (found.kind != LineKind::order) line.hz = hz_top / hz_bottom;
+    if (found.kind == LineKind::tone) {
+        line.note = fastest == 0.0 ? "seen at rest" : "";
+        return reported;
+    }
+    order.order_output = order_top / order_bottom;
+    order.error = 1.0 / std::sqrt(order_bottom);
+    order.snr = line.snr;
+    order.amplitude_nm = amplitude;
+    order.certain = found.kind == LineKind::order;
+    line.order_output = order.order_output;
+    line.order_output_stderr = order.error;
+    if (order.certain) {
+        if (const auto phase = phase_in_angle(logs, steady, found, order.order_output)) {
+            line.phase_deg = *phase;
+            line.phase_known = true;
+        }
+    } else {
+        line.note = "seen at one speed only";
+    }
+    reported.order = std::move(order);
+    return reported;
+}
+
+Reported from_motion(const MotionLines& motion, std::size_t source) {
+    const MotionLine& found = motion.lines[source];
+    Reported reported;
+    Line& line = reported.line;
+    line.kind = found.kind;
+    line.amplitude_nm = found.amplitude_nm;
+    line.snr = found.snr;
+    line.by_speed = found.by_speed;
+    line.speed_from_deg_s = motion.slowest_deg_s;
+    line.speed_to_deg_s = motion.fastest_deg_s;
+    if (found.kind != LineKind::order && found.hz > 0.0) line.hz = found.hz;
+    if (found.kind == LineKind::tone) return reported;
+    line.order_output = found.order_output;
+    line.order_output_stderr = found.order_stderr;
+    if (found.phase_deg) {
+        line.phase_deg = *found.phase_deg;
+        line.phase_known = true;
+    }
+    if (found.kind == LineKind::unknown)
+        line.note = "the speed varies too little to tell an order from a tone";
+    const double speed = 0.5 * (line.speed_from_deg_s + line.speed_to_deg_s);
+    const OrderObservation seen{
+        found.order_output, found.order_stderr, speed, 0.0, found.order_output * speed / 360.0, source};
+    reported.order = OrderLine{found.order_output,
+                               found.order_stderr,
+                               found.snr,
+                               found.amplitude_nm,
+                               found.kind == LineKind::order,
+                               {seen}};
+    return reported;
+}
+
+/// Mains and its multiples, within the doubt about the frequency.
+void name_mains(Line& line) {
+    if (line.kind != LineKind::tone || !line.hz) return;
+    for (const double mains : {50.0, 60.0}) {
+        const double n = std::round(*line.hz / mains);
+        if (n < 1.0 || n > 6.0 || std::abs(*line.hz - n * mains) > 0.004 * n * mains) continue;
+        const std::string name = n == 1.0 ? fmt::format("mains {:.0f} Hz", mains)
+                                          : fmt::format("{:.0f} times mains {:.0f} Hz", n, mains);
+        line.note = line.note.empty() ? name : name + ", " + line.note;
+        return;
+    }
+}
+
+/// Fits the ratio to what may be orders and writes each line's order per motor turn.
+void add_ratio(std::vector<Reported>& reported, const IdentifyOptions& options, Identification& result) {
+    std::vector<OrderLine> orders;
+    std::vector<std::size_t> owner;
+    const bool any_certain = std::any_of(reported.begin(), reported.end(),
+                                         [](const Reported& r) { return r.order && r.order->certain; });
+    for (std::size_t i = 0; i < reported.size(); ++i) {
+        // Where some lines surely turn with the joint, the doubtful ones have no say.
+        if (!reported[i].order || (any_certain && !reported[i].order->certain)) continue;
+        orders.push_back(*reported[i].order);
+        owner.push_back(i);
+    }
+    GearRatioResult ratio = fit_gear_ratio(orders, options.hint);
+    result.gear_ratio = std::move(ratio.fit);
+    for (std::string& note : ratio.notes) result.notes.push_back(std::move(note));
+    for (std::size_t i = 0; i < owner.size(); ++i) {
+        if (const auto n = ratio.order_of_line[i]) reported[owner[i]].line.order = static_cast<double>(*n);
+    }
+}
+
+SteadyRule rule_of(const IdentifyOptions& options) {
+    SteadyRule rule;
+    rule.band_percent = options.steady_band_percent;
+    rule.band_deg_s = options.steady_band_deg_s;
+    rule.at_least = options.steady_for;
+    return rule;
+}
+
+bool has_order(const std::vector<Reported>& reported) {
+    return std::any_of(reported.begin(), reported.end(),
+                       [](const Reported& r) { return r.line.kind == LineKind::order; });
+}
+
+}  // namespace
+
+Identification identify(std::span<const TraceView> logs, const IdentifyOptions& options) {
+    Identification result;
+    Looked looked;
+    double seconds = 0.0, samples = 0.0;
+    for (const TraceView& log : logs) {
+        if (log.size() < fewest_identify_samples) {
+            raise<DataError>("a log has {} samples, at least {} are needed to look for lines", log.size(),
+                             fewest_identify_samples);
+        }
+        seconds += static_cast<double>(log.size()) / log.sample_rate.value();
+        samples += static_cast<double>(log.size());
+    }
+    result.sample_rate = Hertz(seconds > 0.0 ? samples / seconds : 0.0);
+
+    std::vector<Reported> reported;
+    using Evidence = IdentifyOptions::Evidence;
+    // Automatic asks twice, so each way has half of the false alarms allowed.
+    const double false_alarm =
+        options.evidence == Evidence::automatic ? 0.5 * options.false_alarm : options.false_alarm;
+    if (options.evidence != Evidence::order) {
+        looked.steady = find_steady_lines(logs, rule_of(options), false_alarm);
+        for (const SteadyLine& line : looked.steady->lines)
+            reported.push_back(from_steady(logs, *looked.steady, line));
+        result.evidence = "steady stretches";
+    }
+    const bool steady_suffices = has_order(reported);
+    if (options.evidence != Evidence::steady && !steady_suffices) {
+        MotionLinesOptions motion;
+        motion.false_alarm = false_alarm;
+        looked.motion = find_motion_lines(logs, motion);
+        // Where the motion cannot tell either, the stretches' own figures are the sharper ones.
+        const bool motion_tells =
+            std::any_of(looked.motion->lines.begin(), looked.motion->lines.end(),
+                        [](const MotionLine& line) { return line.kind == LineKind::order; });
+        const bool any_unknown = std::any_of(reported.begin(), reported.end(), [](const Reported& r) {
+            return r.line.kind == LineKind::unknown;
+        });
+        if (motion_tells || !any_unknown) {
+            // Tones of the steady stretches stay; what was unknown there is what the motion now explains.
+            std::erase_if(reported, [](const Reported& r) { return r.line.kind != LineKind::tone; });
+            for (std::size_t i = 0; i < looked.motion->lines.size(); ++i) {
+                const MotionLine& line = looked.motion->lines[i];
+                const bool known = line.kind == LineKind::tone &&
+                                   std::any_of(reported.begin(), reported.end(), [&](const Reported& r) {
+                                       return std::abs(*r.line.hz - line.hz) < 4.0 * line.hz_stderr + 0.5;
+                                   });
+                if (!known) reported.push_back(from_motion(*looked.motion, i));
+            }
+            result.evidence = result.evidence.empty() || looked.steady->moving == 0
+                                  ? "order spectrum"
+                                  : "steady stretches and order spectrum";
+        }
+    }
+    add_ratio(reported, options, result);
+    for (Reported& r : reported) {
+        name_mains(r.line);
+        result.lines.push_back(std::move(r.line));
+    }
+    std::stable_sort(result.lines.begin(), result.lines.end(),
+                     [](const Line& a, const Line& b) { return a.amplitude_nm > b.amplitude_nm; });
+    conclude(looked, options, result);
+    return result;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch identify: ripple lines and gear ratio from one or many logs of a joint.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/identify_text.hpp"
+#include "ripplenotch/artifact/identification.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 3> evidence_names = {"automatic", "steady", "order"};
+
+struct Request {
+    CommonOptions common;
+    LogOptions log;
+    std::vector<std::string> logs;
+    std::string evidence = "automatic";
+    std::optional<double> gear_ratio;
+    IdentifyOptions identify;
+    bool require_conclusive = false;
+};
+
+/// All logs of one joint.
+struct Joint {
+    std::string name;
+    std::vector<Log> logs;
+};
+
+std::vector<Joint> read_all_joints(const Request& request, Provenance& provenance) {
+    std::vector<Joint> joints;
+    ReadOptions read = request.log.resolve();
+    const bool each = read.joint && *read.joint == "all";
+    for (const std::string& path : request.logs) {
+        std::vector<Log> logs;
+        if (each) {
+            logs = read_joints(path, read);
+        } else {
+            logs.push_back(read_log(path, read));
+        }
+        provenance.inputs.push_back(
+            {path, path == "-" ? "" : sha256_of_file(path), logs.front().trace.size()});
+        for (Log& log : logs) {
+            say_layout(request.common, log.layout);
+            say_warnings(request.common, log.timebase.warnings);
+            const std::string name = each ? log.trace.joint : logs.front().trace.joint;
+            auto joint = std::find_if(joints.begin(), joints.end(),
+                                      [&](const Joint& j) { return !each || j.name == name; });
+            if (joint == joints.end()) joint = joints.insert(joints.end(), Joint{name, {}});
+            joint->logs.push_back(std::move(log));
+        }
+    }
+    return joints;
+}
+
+Identification identified(const Joint& joint, const Request& request) {
+    std::vector<TraceView> views;
+    for (const Log& log : joint.logs) {
+        if (log.trace.size() < fewest_identify_samples) {
+            raise<DataError>("{}: {} samples, at least {} are needed to look for lines; leave this log out",
+                             log.layout.source, log.trace.size(), fewest_identify_samples);
+        }
+        views.push_back(log.trace.view());
+    }
+    Identification found = identify(views, request.identify);
+    found.joint = joint.name;
+    return found;
+}
+
+void check(Request& request) {
+    request.identify.evidence = request.evidence == "steady"  ? IdentifyOptions::Evidence::steady
+                                : request.evidence == "order" ? IdentifyOptions::Evidence::order
+                                                              : IdentifyOptions::Evidence::automatic;
+    if (request.gear_ratio) {
+        if (!(*request.gear_ratio > 0.0))
+            raise<UsageError>("--gear-ratio {} is not above 0", *request.gear_ratio);
+        request.identify.hint = GearRatio(*request.gear_ratio);
+    }
+    const double rate = request.identify.false_alarm;
+    if (!(rate > 0.0) || rate > 0.5) raise<UsageError>("--false-alarm {} is not between 0 and 0.5", rate);
+    if (!(request.identify.steady_for.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
+    if (!(request.identify.steady_band_percent >= 0.0))
+        raise<UsageError>("--steady-band must not be negative");
+}
+
+bool ends_with_json(const std::string& path) {
+    return path.size() > 5 && path.substr(path.size() - 5) == ".json";
+}
+
+ExitCode run(Request& request, const std::string& command_line) {
+    check(request);
+    Provenance provenance{{}, command_line};
+    std::vector<Identification> found;
+    for (const Joint& joint : read_all_joints(request, provenance))
+        found.push_back(identified(joint, request));
+
+    std::string text;
+    for (const Identification& one : found) text += (text.empty() ? "" : "\n") + identification_report(one);
+    const bool json_file = ends_with_json(request.common.output);
+    if (request.common.json || json_file) {
+        const std::string json = found.size() == 1 ? identification_text(found.front(), provenance)
+                                                   : identifications_text(found, provenance);
+        write_all(request.common.output, json, request.common.overwrite());
+        // The file is for the next command; people still want to read what came out.
+        if (json_file && !request.common.json) write_all("-", text, ByteSink::Overwrite::yes);
+    } else {
+        write_all(request.common.output, text, request.common.overwrite());
+    }
+    const bool conclusive =
+        std::all_of(found.begin(), found.end(), [](const Identification& one) { return one.conclusive; });
+    return conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    const auto request = std::make_shared<Request>();
+    options.arguments("LOG", request->logs, true, "logs of one joint; several are fitted together");
+    options.number("--gear-ratio", request->gear_ratio, Dimension::none,
+                   "what you believe the ratio is; checked against the lines, not believed");
+    options.choice("--evidence", request->evidence, evidence_names,
+                   "steady stretches (the paper's way), order spectrum (any motion), or what suffices");
+    options.number("--false-alarm", request->identify.false_alarm, Dimension::none,
+                   "chance that a log of mere noise gives any line");
+    options.number("--steady-band", request->identify.steady_band_percent, Dimension::none,
+                   "a stretch is steady while its speed stays within this many per cent ...");
+    options.number("--steady-band-speed", request->identify.steady_band_deg_s, Dimension::speed,
+                   "... or within this speed, whichever is wider");
+    options.quantity("--steady-for", request->identify.steady_for, Dimension::time, "for at least this long");
+    options.flag("--require-conclusive", request->require_conclusive,
+                 "exit with code 5 when the logs do not settle it");
+    attach_log(options, request->log);
+    attach_common(options, request->common);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::identify{
+    .name = "identify",
+    .summary = "ripple lines and the gear ratio, from steady speeds or any motion",
+    .description =
+        "Reads logs of time, velocity and torque (position helps) and finds the lines in the torque: orders, "
+        "which turn\n"
+        "with the joint, and fixed tones. Fits f = n * ratio * |v| / 360 to the orders. The answer may be "
+        "that there is\n"
+        "no line, or that these logs cannot tell.\n"
+        "Example: ripplenotch identify 60.csv 120.csv 180.csv -o joint.json",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "cli/identify_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ripplenotch {
+namespace {
+
+std::string range(double from, double to, int digits) {
+    const std::string low = fmt::format("{:.{}g}", from, digits), high = fmt::format("{:.{}g}", to, digits);
+    return low == high ? low : low + "-" + high;
+}
+
+std::string hz_range(const Line& line) {
+    if (line.hz) return fmt::format("{:.5g}", *line.hz);
+    double lowest = 1e300, highest = 0.0;
+    for (const AmplitudeAtSpeed& at : line.by_speed) {
+        lowest = std::min(lowest, at.hz);
+        highest = std::max(highest, at.hz);
+    }
+    return line.by_speed.empty() ? "-" : range(lowest, highest, 4);
+}
+
+std::string row(const Line& line) {
+    return fmt::format("{:<8} {:>5} {:>13} {:>13} {:>10.3g} {:>8} {:>6.1f} {:>12}  {}",
+                       line_kind_name(line.kind), line.order ? fmt::format("{:g}", *line.order) : "-",
+                       line.order_output ? fmt::format("{:.3f}", *line.order_output) : "-", hz_range(line),
+                       line.amplitude_nm,
+                       line.phase_known ? fmt::format("{:.0f}", std::round(line.phase_deg) + 0.0) : "-",
+                       line.snr, range(line.speed_from_deg_s, line.speed_to_deg_s, 3), line.note);
+}
+
+std::string trimmed(std::string text) {
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text;
+}
+
+}  // namespace
+
+std::string identification_report(const Identification& found) {
+    std::string text = found.joint.empty() ? "" : found.joint + ": ";
+    text += found.verdict + "\n";
+    const GearRatioFit& ratio = found.gear_ratio;
+    if (ratio.value) {
+        text += fmt::format("\ngear ratio {:.4f}, standard error {:.2g}, 95 % interval {:.4f} to {:.4f}\n",
+                            *ratio.value, ratio.standard_error, ratio.ci95_low, ratio.ci95_high);
+    }
+    if (!found.lines.empty()) {
+        text += "\n" +
+                trimmed(fmt::format("{:<8} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "kind", "order",
+                                    "output order", "Hz", "amplitude", "phase", "SNR", "speed")) +
+                "\n";
+        text += trimmed(fmt::format("{:<8} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "", "", "per turn",
+                                    "", "Nm", "deg", "", "deg/s")) +
+                "\n";
+        for (const Line& line : found.lines) text += trimmed(row(line)) + "\n";
+    }
+    if (ratio.candidates.size() > (ratio.value ? 1U : 0U)) {
+        text += ratio.value ? "\nrival ratios\n" : "\npossible ratios\n";
+        for (std::size_t i = ratio.value ? 1 : 0; i < ratio.candidates.size(); ++i) {
+            const RatioCandidate& candidate = ratio.candidates[i];
+            text += fmt::format("{:>10.3f}  score {:.3f}  {}\n", candidate.value, candidate.score,
+                                candidate.reason);
+        }
+    }
+    if (!found.notes.empty()) text += "\n";
+    for (const std::string& note : found.notes) text += "note: " + note + "\n";
+    return text;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/gear_ratio.hpp"
+
+#include <array>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "analysis/traces.hpp"
+
+using namespace ripplenotch;
+using Catch::Contains;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+/// A line seen at each speed, each observation with its own error of `error` orders.
+OrderLine line_at(double order_output, double amplitude, double error = 0.01,
+                  std::vector<double> speeds = {60, 120, 180}) {
+    OrderLine line{order_output, error, 50.0, amplitude, true, {}};
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+        line.observations.push_back(
+            {order_output, error, speeds[i], 0.0, order_output * speeds[i] / 360.0, i});
+    }
+    return line;
+}
+
+double best(const GearRatioResult& result) { return result.fit.candidates.at(0).value; }
+
+}  // namespace
+
+TEST_CASE("two lines at 1 : 2 are orders 1 and 2, and the half ratio is named as rival with its reason") {
+    const std::vector lines{line_at(100.0, 0.8), line_at(200.0, 0.5)};
+    const auto result = fit_gear_ratio(lines, std::nullopt);
+    REQUIRE(result.fit.value.has_value());
+    CHECK_THAT(*result.fit.value, WithinAbs(100.0, 1e-6));
+    CHECK(result.order_of_line[0] == 1);
+    CHECK(result.order_of_line[1] == 2);
+    REQUIRE(result.fit.candidates.size() > 1);
+    CHECK_THAT(result.fit.candidates[1].value, WithinRel(50.0, 1e-6));
+    CHECK_THAT(result.fit.candidates[1].reason, Contains("no odd line tells it from 100"));
+    double total = 0.0;
+    for (const auto& candidate : result.fit.candidates) total += candidate.score;
+    CHECK(total <= 1.0 + 1e-12);
+}
+
+TEST_CASE("an odd line decides between a ratio and its double") {
+    // Lines at 2 and 3 times 120: neither 240 nor 360 nor 60 explains both as well.
+    const std::vector lines{line_at(240.0, 0.5), line_at(360.0, 0.2)};
+    CHECK_THAT(best(fit_gear_ratio(lines, std::nullopt)), WithinRel(120.0, 1e-6));
+}
+
+TEST_CASE("a missing fundamental does not halve or double the ratio: lines at 2, 4 and 6 with a weak 1") {
+    const std::vector lines{line_at(240.6, 0.39, 0.1), line_at(481.0, 0.23, 0.1), line_at(721.0, 0.07, 0.2),
+                            line_at(120.0, 0.14, 0.2)};
+    const auto result = fit_gear_ratio(lines, std::nullopt);
+    REQUIRE(result.fit.value.has_value());
+    CHECK_THAT(*result.fit.value, WithinRel(120.2, 0.003));
+}
+
+TEST_CASE("a lone line at 202 is taken for n = 2 of 101, and says why") {
+    const std::vector lines{line_at(202.0, 0.5)};
+    const auto result = fit_gear_ratio(lines, std::nullopt);
+    REQUIRE(result.fit.value.has_value());
+    CHECK_THAT(*result.fit.value, WithinRel(101.0, 1e-6));
+    CHECK_THAT(result.fit.candidates[0].reason, Contains("catalogue"));
+    CHECK_THAT(result.fit.candidates[1].value, WithinRel(202.0, 1e-6));
+}
+
+TEST_CASE("a lone line that nothing explains leaves the ratio open and lists what it could be") {
+    const std::vector lines{line_at(1768.0, 0.06)};
+    const auto result = fit_gear_ratio(lines, std::nullopt);
+    CHECK_FALSE(result.fit.value.has_value());
+    CHECK_FALSE(result.fit.candidates.empty());
+    CHECK_FALSE(result.order_of_line[0].has_value());
+}
+
+TEST_CASE("a hint settles what the lines leave open, and is refused when no line agrees with it") {
+    const std::vector lines{line_at(1768.0, 0.06)};
+    const auto agreed = fit_gear_ratio(lines, GearRatio(221.0));
+    REQUIRE(agreed.fit.value.has_value());
+    CHECK_THAT(*agreed.fit.value, WithinAbs(221.0, 1e-6));
+    CHECK(agreed.order_of_line[0] == 8);
+    CHECK_THAT(agreed.fit.candidates[0].reason, Contains("agrees with the hint 221"));
+
+    const auto refused =
+        fit_gear_ratio(std::vector{line_at(100.0, 0.8), line_at(200.0, 0.5)}, GearRatio(130.0));
+    REQUIRE(refused.fit.value.has_value());
+    CHECK_THAT(*refused.fit.value, WithinAbs(100.0, 1e-6));
+    REQUIRE_FALSE(refused.notes.empty());
+    CHECK_THAT(refused.notes[0], Contains("hint 130 is not supported"));
+}
+
+TEST_CASE("a speed in the wrong unit is named") {
+    // rad/s read as deg/s: every order comes out 57.3 times too large.
+    const double slip = degrees_per_radian;
+    const std::vector lines{line_at(100.0 * slip, 0.8), line_at(200.0 * slip, 0.5)};
+    const auto result = fit_gear_ratio(lines, GearRatio(100.0));
+    REQUIRE_FALSE(result.notes.empty());
+    CHECK_THAT(result.notes[0], Contains("100 if the speed is in rad/s, not deg/s"));
+}
+
+TEST_CASE("one stretch with a wrong speed hardly moves the ratio") {
+    OrderLine line = line_at(100.0, 0.8, 0.01, {20, 40, 60, 80, 100, 120, 140, 160});
+    line.observations[3].order_output = 100.4;
+    const auto result = fit_gear_ratio(std::vector{line, line_at(200.0, 0.5)}, std::nullopt);
+    REQUIRE(result.fit.value.has_value());
+    CHECK_THAT(*result.fit.value, WithinAbs(100.0, 0.02));  // a plain mean is off by 0.05
+    CHECK(result.fit.residuals.size() == 11);
+}
+
+TEST_CASE("the 95 % interval covers the truth in 93 to 97 of a hundred fits") {
+    tests::Noise noise(21);
+    int covered = 0;
+    constexpr int runs = 1000;
+    for (int run = 0; run < runs; ++run) {
+        std::vector<OrderLine> lines{line_at(100.0, 0.8, 0.05), line_at(200.0, 0.5, 0.08)};
+        for (OrderLine& line : lines) {
+            for (auto& seen : line.observations) seen.order_output += seen.error * noise();
+        }
+        const auto result = fit_gear_ratio(lines, std::nullopt);
+        REQUIRE(result.fit.value.has_value());
+        covered += result.fit.ci95_low <= 100.0 && 100.0 <= result.fit.ci95_high;
+    }
+    CHECK(covered >= 930);
+    CHECK(covered <= 985);  // with three sources the scatter can only widen the interval
+}
+
+TEST_CASE("the comb of five published peaks has its base at 40.26 Hz") {
+    // [39.01628, 81.93419, 120.95047, 159.96675, 241.90094] Hz are n = 1, 2, 3, 4, 6; least squares through
+    // the origin: sum n f / sum n^2 = 2657.01 / 66 = 40.2577. Here frequencies stand for orders of a joint at
+    // 360 deg/s.
+    std::vector<OrderLine> lines;
+    for (const double hz : {39.01628, 81.93419, 120.95047, 159.96675, 241.90094})
+        lines.push_back(line_at(hz, 1.0, 0.8, {360}));
+    for (std::size_t i = 0; i < lines.size(); ++i) lines[i].observations[0].source = 0;
+    const auto result = fit_gear_ratio(lines, std::nullopt);
+    CHECK_THAT(best(result), WithinRel(40.2577, 1e-4));
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        CHECK(result.order_of_line[i] == std::array{1, 2, 3, 4, 6}[i]);
+    const std::array expected{-1.24, 1.42, 0.18, -1.06, 0.35};
+    REQUIRE(result.fit.residuals.size() == 5);
+    for (std::size_t i = 0; i < 5; ++i)
+        CHECK_THAT(result.fit.residuals[i].residual_hz, WithinAbs(expected[i], 0.01));
+}
+
+TEST_CASE("no lines, no ratio, no candidates") {
+    const auto result = fit_gear_ratio({}, GearRatio(100.0));
+    CHECK_FALSE(result.fit.value.has_value());
+    CHECK(result.fit.candidates.empty());
+}
