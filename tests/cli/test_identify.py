@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch identify and spectrum as users meet them: the paper's logs, real logs, pipes, files, refusals."""
+
+import json
+import math
+import os
+import pathlib
+import random
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", ""))
+PAPER = [str(DATA / f"paper_{name}.csv") for name in ("rest", "60deg_s", "120deg_s", "180deg_s")]
+
+
+def run(*words, stdin=None, folder=None):
+    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=120, cwd=folder, input=stdin,
+                          stdin=subprocess.DEVNULL if stdin is None else None)
+
+
+def identified(*words):
+    done = run("identify", "--json", "-q", *words)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def orders(found, kinds=("order",)):
+    return [line["order_output"] for line in found["lines"] if line["kind"] in kinds]
+
+
+def log_text(speed, ripple_nm, seconds=4.0, rate=500.0, seed=1):
+    noise = random.Random(seed)
+    rows = ["time_s,velocity_deg_s,torque_nm"]
+    for k in range(int(seconds * rate)):
+        t = k / rate
+        torque = 5.0 + ripple_nm * math.sin(2 * math.pi * 100 * speed / 360 * t) + noise.gauss(0, 0.05)
+        rows.append(f"{t:.4f},{speed},{torque:.6f}")
+    return "\n".join(rows) + "\n"
+
+
+class ThePapersLogs(unittest.TestCase):
+    def test_ratio_orders_and_silence_at_rest(self):
+        found = identified(*PAPER)
+        self.assertEqual(found["schema"], "ripplenotch/joint/1")
+        self.assertAlmostEqual(found["gear_ratio"]["value"], 100.0, delta=0.2)
+        low, high = found["gear_ratio"]["ci95"]
+        self.assertLessEqual(low, 100.0)
+        self.assertGreaterEqual(high, 100.0)
+        self.assertEqual(sorted(line["order"] for line in found["lines"]), [1, 2])
+        self.assertTrue(found["verdict"].endswith("no line at rest."), found["verdict"])
+        self.assertTrue(found["conclusive"])
+        self.assertEqual(len(found["inputs"]), 4)
+        for line in found["lines"]:
+            self.assertEqual(line["kind"], "order")
+            self.assertEqual(len(line["amplitude_by_speed"]), 3)
+            for at in line["amplitude_by_speed"]:
+                self.assertAlmostEqual(at["hz"], line["order"] * 100 * at["speed_deg_s"] / 360, delta=0.02)
+
+    def test_rest_alone_cannot_tell(self):
+        found = identified(PAPER[0])
+        self.assertIsNone(found["gear_ratio"]["value"])
+        self.assertEqual(found["lines"], [])
+        self.assertIn("Cannot tell", found["verdict"])
+
+    def test_the_move_alone(self):
+        found = identified(str(DATA / "paper_move_2s.csv"))
+        self.assertAlmostEqual(found["gear_ratio"]["value"], 100.0, delta=0.05)
+        self.assertEqual(found["evidence"], "order spectrum")
+
+    def test_same_input_same_bytes(self):
+        self.assertEqual(run("identify", "--json", *PAPER).stdout, run("identify", "--json", *PAPER).stdout)
+
+    def test_the_file_is_json_and_the_terminal_gets_the_report(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = run("identify", *PAPER, "-o", "joint.json", folder=folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stderr, "")
+            stored = json.loads((pathlib.Path(folder) / "joint.json").read_text())
+            self.assertEqual(done.stdout.splitlines()[0], stored["verdict"])
+            again = run("identify", *PAPER, "-o", "joint.json", folder=folder)
+            self.assertEqual(again.returncode, 4)
+            self.assertEqual(run("design", "joint.json", "-q", folder=folder).returncode, 0)
+
+
+class Answers(unittest.TestCase):
+    def write(self, folder, name, text):
+        path = pathlib.Path(folder) / name
+        path.write_text(text)
+        return str(path)
+
+    def test_one_speed_is_not_conclusive_and_exits_5_on_request(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = self.write(folder, "one.csv", log_text(83.0, 0.5))
+            self.assertEqual(run("identify", path).returncode, 0)
+            done = run("identify", path, "--require-conclusive")
+            self.assertEqual(done.returncode, 5)
+            self.assertIn("a log at another speed would tell", done.stdout)
+
+    def test_no_ripple_is_a_conclusive_answer(self):
+        with tempfile.TemporaryDirectory() as folder:
+            paths = [self.write(folder, f"{v}.csv", log_text(v, 0.0, seed=v)) for v in (40, 80)]
+            done = run("identify", *paths, "--require-conclusive")
+            self.assertEqual(done.returncode, 0)
+            self.assertTrue(done.stdout.startswith("No ripple: no line above"), done.stdout)
+
+    def test_a_hint_that_no_line_supports_is_not_believed(self):
+        found = identified(*PAPER, "--gear-ratio", "130")
+        self.assertAlmostEqual(found["gear_ratio"]["value"], 100.0, delta=0.2)
+        self.assertTrue(any("hint 130 is not supported" in note for note in found["notes"]))
+
+    def test_equal_speeds_in_other_units_give_the_same_ratio(self):
+        def in_unit(text, unit, factor):
+            rows = text.splitlines()
+            out = [f"time_s,velocity_{unit},torque_nm"]
+            for row in rows[1:]:
+                t, v, x = row.split(",")
+                out.append(f"{t},{float(v) * factor!r},{x}")
+            return "\n".join(out) + "\n"
+
+        with tempfile.TemporaryDirectory() as folder:
+            values = []
+            for unit, factor in (("deg_s", 1.0), ("rad_s", math.pi / 180), ("rpm", 1 / 6)):
+                paths = [self.write(folder, f"{unit}{v}.csv", in_unit(log_text(v, 0.5), unit, factor)) for v in (30, 60)]
+                values.append(identified(*paths)["gear_ratio"]["value"])
+            self.assertAlmostEqual(values[0], values[1], places=6)
+            self.assertAlmostEqual(values[0], values[2], places=6)
+
+    def test_bad_requests_exit_2_and_short_logs_exit_3(self):
+        self.assertEqual(run("identify", *PAPER, "--evidence", "magic").returncode, 2)
+        self.assertEqual(run("identify", *PAPER, "--gear-ratio", "-3").returncode, 2)
+        self.assertEqual(run("identify").returncode, 2)
+        short = run("identify", "-", stdin=log_text(60, 0.5, seconds=0.1))
+        self.assertEqual(short.returncode, 3)
+        self.assertIn("at least 64", short.stderr)
+
+
+class Spectra(unittest.TestCase):
+    def test_a_pipe_ends_in_json_with_peaks_floor_window_and_resolution(self):
+        done = run("spectrum", "-", "--json", stdin=log_text(72.0, 0.5))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["window"], found["domain"]), ("hann", "frequency"))
+        one = found["spectra"][0]
+        self.assertAlmostEqual(one["peaks"][0]["hz"], 20.0, delta=0.01)
+        self.assertAlmostEqual(one["peaks"][0]["amplitude_nm"], 0.5, delta=0.01)
+        self.assertAlmostEqual(one["resolution_hz"], 1.5 / 4.0, delta=1e-6)
+        self.assertGreater(one["noise_floor_nm"], 0.0)
+
+    def test_csv_has_one_row_a_bin(self):
+        rows = run("spectrum", "-", stdin=log_text(72.0, 0.5)).stdout.splitlines()
+        self.assertEqual(rows[0], "frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm")
+        self.assertEqual(len(rows), 1 + 1001)
+        strongest = max(rows[1:], key=lambda row: float(row.split(",")[1]))
+        self.assertAlmostEqual(float(strongest.split(",")[0]), 20.0, delta=0.26)
+
+    def test_stretches_by_number_and_all(self):
+        text = log_text(36.0, 0.5)
+        faster = log_text(72.0, 0.5).splitlines()[1:]
+        text += "".join(f"{float(r.split(',')[0]) + 4:.4f},{','.join(r.split(',')[1:])}\n" for r in faster)
+        found = json.loads(run("spectrum", "-", "--stretch", "all", "--json", stdin=text).stdout)
+        self.assertEqual([s["stretch"] for s in found["spectra"]], [1, 2])
+        self.assertAlmostEqual(found["spectra"][0]["peaks"][0]["hz"], 10.0, delta=0.05)
+        second = run("spectrum", "-", "--stretch", "2", stdin=text).stdout.splitlines()
+        self.assertEqual(second[0], "stretch,speed_deg_s,frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm")
+        self.assertEqual(run("spectrum", "-", "--stretch", "3", stdin=text).returncode, 2)
+        self.assertEqual(run("spectrum", "-", "--stretch", "0", stdin=text).returncode, 2)
+
+    def test_orders_of_a_move(self):
+        found = json.loads(run("spectrum", str(DATA / "paper_move_2s.csv"), "--domain", "order", "--json").stdout)
+        self.assertEqual([round(line["order_output"]) for line in found["lines"]], [100, 200])
+        still = run("spectrum", str(DATA / "paper_rest.csv"), "--domain", "order")
+        self.assertEqual(still.returncode, 3)
+        self.assertIn("nowhere moves", still.stderr)
+
+
+@unittest.skipUnless((LOGS / "README.md").is_file(), "the real logs are not here")
+class RealLogs(unittest.TestCase):
+    def near(self, values, expected, share):
+        self.assertTrue(any(abs(v - expected) <= share * expected for v in values), f"{expected} not in {values}")
+
+    def test_panda(self):
+        for name, expected in (("panda_gaz_j1", (120, 240)), ("panda_gaz_j4", (120, 240, 480))):
+            found = identified(str(LOGS / "gpl3" / f"{name}.csv"))
+            for order in expected:
+                self.near(orders(found), order, 0.01)
+            self.assertAlmostEqual(found["gear_ratio"]["value"], 120.0, delta=1.2)
+            self.assertAlmostEqual(found["gear_ratio"]["candidates"][0]["value"], 120.0, delta=1.2)
+
+    def test_lara_says_that_one_speed_dominates(self):
+        found = identified(str(LOGS / "neura_lara8_j3.csv"))
+        self.near(orders(found, ("order", "unknown")), 202.0, 0.005)
+        self.assertIn("one speed dominates", found["verdict"])
+        self.assertFalse(found["conclusive"])
+
+    def test_ur10_has_nothing_on_any_joint(self):
+        found = identified(str(LOGS / "ur10_unisa_exciting_all.csv"), "--joint", "all")
+        self.assertEqual(found["schema"], "ripplenotch/joints/1")
+        self.assertEqual(len(found["joints"]), 6)
+        for joint in found["joints"]:
+            self.assertEqual(orders(joint), [], joint["joint"])
+            self.assertTrue(joint["verdict"].startswith("No ripple"), joint["verdict"])
+
+    def test_kuka_lines_at_eight_per_motor_turn(self):
+        # The ratios are documented by the source of the logs; the lines stand at 8 times them on every joint.
+        ratios = {"j1": 1798 / 7, "j2": 1872 / 7, "j3": 757 / 3, "j4": 221.0, "j5": 5032 / 21, "j6": 206793 / 1340}
+        for log in ("kuka_kr300_trajA_all", "kuka_kr300_trajB_all"):
+            for joint in identified(str(LOGS / f"{log}.csv"), "--joint", "all")["joints"]:
+                self.near(orders(joint), 8 * ratios[joint["joint"]], 0.003)
+        hinted = identified(str(LOGS / "kuka_kr300_trajB_all.csv"), "--joint", "j4", "--gear-ratio", "221")
+        self.assertAlmostEqual(hinted["gear_ratio"]["value"], 221.0, delta=0.003 * 221)
+        self.assertIn(8, [line["order"] for line in hinted["lines"]])
+
+
+if __name__ == "__main__":
+    unittest.main()
