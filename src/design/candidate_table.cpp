@@ -62,6 +62,36 @@ void check_bands(const std::vector<std::pair<DegPerSec, DegPerSec>>& bands) {
     }
 }
 
+// A row that was read rather than designed.
+void check_stored(const Band& band, int number, const TableSpec& spec) {
+    const std::string label = band_label(number, band.from, band.to);
+    if (band.number != number) {
+        raise<UsageError>("{}: it is numbered {}; numbers run 1, 2, 3, ...", label, band.number);
+    }
+    if (band.notches.size() != spec.orders.size()) {
+        raise<UsageError>("{}: it has {} notches for {} orders", label, band.notches.size(),
+                          spec.orders.size());
+    }
+    for (std::size_t n = 0; n < band.notches.size(); ++n) {
+        const CandidateNotch& notch = band.notches[n];
+        if (notch.order != spec.orders[n]) {
+            raise<UsageError>("{}: notch {} is for order {}, expected order {}", label, n + 1,
+                              shortest(notch.order.value()), shortest(spec.orders[n].value()));
+        }
+        if (!(notch.notch.center.value() > 0.0) || !(notch.notch.center < 0.5 * spec.sample_rate)) {
+            raise<UsageError>("{}: notch centre {} Hz is not between 0 and half the sample rate, {} Hz",
+                              label, shortest(notch.notch.center.value()),
+                              shortest(0.5 * spec.sample_rate.value()));
+        }
+        if (!(notch.notch.q > 0.0))
+            raise<UsageError>("{}: notch Q {} is not above 0", label, shortest(notch.notch.q));
+        if (!(pole_radius(notch.section) < 1.0)) {
+            raise<UsageError>("{}: the section for order {} is unstable", label,
+                              shortest(notch.order.value()));
+        }
+    }
+}
+
 // Least attenuation of one order's line while the joint speed runs through the band, both edges included.
 double worst_attenuation_db(std::span<const Biquad> cascade, const TableSpec& spec, Order order,
                             const Band& band) {
@@ -175,36 +205,7 @@ CandidateTable CandidateTable::from_bands(TableSpec spec, std::vector<Band> band
     for (const Band& band : bands) spec.bands.emplace_back(band.from, band.to);
     check_spec(spec);
     check_bands(spec.bands);
-    for (std::size_t i = 0; i < bands.size(); ++i) {
-        const Band& band = bands[i];
-        const std::string label = band_label(static_cast<int>(i) + 1, band.from, band.to);
-        if (band.number != static_cast<int>(i) + 1) {
-            raise<UsageError>("{}: it is numbered {}; numbers run 1, 2, 3, ...", label, band.number);
-        }
-        if (band.notches.size() != spec.orders.size()) {
-            raise<UsageError>("{}: it has {} notches for {} orders", label, band.notches.size(),
-                              spec.orders.size());
-        }
-        for (std::size_t n = 0; n < band.notches.size(); ++n) {
-            const CandidateNotch& notch = band.notches[n];
-            if (notch.order != spec.orders[n]) {
-                raise<UsageError>("{}: notch {} is for order {}, expected order {}", label, n + 1,
-                                  shortest(notch.order.value()), shortest(spec.orders[n].value()));
-            }
-            if (!(notch.notch.center.value() > 0.0) || !(notch.notch.center < 0.5 * spec.sample_rate)) {
-                raise<UsageError>("{}: notch centre {} Hz is not between 0 and half the sample rate, {} Hz",
-                                  label, shortest(notch.notch.center.value()),
-                                  shortest(0.5 * spec.sample_rate.value()));
-            }
-            if (!(notch.notch.q > 0.0)) {
-                raise<UsageError>("{}: notch Q {} is not above 0", label, shortest(notch.notch.q));
-            }
-            if (!(pole_radius(notch.section) < 1.0)) {
-                raise<UsageError>("{}: the section for order {} is unstable", label,
-                                  shortest(notch.order.value()));
-            }
-        }
-    }
+    for (std::size_t i = 0; i < bands.size(); ++i) check_stored(bands[i], static_cast<int>(i) + 1, spec);
     CandidateTable table;
     table.spec_ = std::move(spec);
     table.bands_ = std::move(bands);

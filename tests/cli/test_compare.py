@@ -209,6 +209,23 @@ class Logs(Case):
         self.assertIn("cannot be measured on this log", done.stderr)
 
 
+REAL = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "")) / "gpl3"
+
+
+@unittest.skipUnless(REAL.is_dir(), "the real logs are not here")
+class RealLogs(Case):
+    def test_a_slow_low_pass_takes_the_ripple_of_a_franka_panda_and_the_matched_one_leaves_the_same(self):
+        for name in ("panda_gaz_j1.csv", "panda_gaz_j4.csv"):
+            result, rows = self.compare(str(REAL / name), "--gear-ratio", "120", "--orders", "1,2",
+                                        *methods("fixed,centers=20Hz:40Hz,q=0.5", MISLABELLED), "--match-lowpass")
+            self.assertGreater(result["windows"], 20)
+            self.assertGreater(rows["none"]["residual_peak_to_peak_nm"], 1.0)
+            for entry in rows[MISLABELLED]["attenuation_db"]:
+                self.assertGreater(entry["db"], 5)
+            matched, subject = rows[result["match"]["low_pass"]], rows["fixed,centers=20Hz:40Hz,q=0.5"]
+            self.assertAlmostEqual(matched["ripple_rms_nm"] / subject["ripple_rms_nm"], 1.0, delta=1e-4)
+
+
 class Refusals(unittest.TestCase):
     def refused(self, words, *parts, code=2):
         done = run("compare", *words)
