@@ -129,7 +129,7 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
         MethodFigures figures;
         figures.method = contenders[i].text;
         fill_levels(figures, levels, i + 1);
-        if (contenders[i].method->needs_table) figures.switches = runners[i].filter->switches().size();
+        if (contenders[i].method->needs_table) figures.switches = runners[i].filter->switch_count();
         result.methods.push_back(std::move(figures));
     }
     return result;

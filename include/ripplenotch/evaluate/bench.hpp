@@ -26,9 +26,11 @@ inline constexpr double most_attenuation_db = 200.0;
 
 class Bench {
   public:
-    /// `speed` may be 0. Throws UsageError when a measurement has not come to rest after 1e7 samples.
+    /// Borrows `contender`; `speed` may be 0. Throws UsageError when a measurement has not come to rest after
+    /// 1e7 samples.
     Bench(const Contender& contender, Hertz sample_rate, DegPerSec speed)
         : contender_(contender), sample_rate_(sample_rate), speed_(speed) {}
+    Bench(const Contender&& gone, Hertz sample_rate, DegPerSec speed) = delete;  // it is borrowed
 
     /// The torque is 0 for ever, and `height` Nm (not 0) from t = 0 on.
     [[nodiscard]] StepMeasurement step(NewtonMeters height) const;
