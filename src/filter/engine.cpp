@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "filter/held_rows.hpp"
 #include "filter/write_behind.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -81,6 +82,9 @@ LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : read
                          head.size() == 0 ? "no row" : "one row");
     }
     measure_clock(head, gap_steps);
+    double fastest = 0.0;
+    for (const double velocity : head.velocity_deg_s) fastest = std::max(fastest, std::abs(velocity));
+    moving_deg_s_ = 0.02 * fastest;
 }
 
 // Which rows count as first depends on the log alone, not on how its bytes arrived: a pipe and a file must
@@ -149,7 +153,8 @@ struct LogStream::Pass {
     RippleMeter* meter;
     StreamReport report{};
     std::vector<double> out{};
-    double last_time_s = 0.0, last_torque_nm = 0.0;
+    double last_time_s = 0.0;
+    HeldRows held{stream.moving_deg_s_};
     double duration_s = 0.0;  // gaps left out
     std::size_t steps = 0;
 
@@ -196,16 +201,15 @@ struct LogStream::Pass {
         std::size_t first = 0;
         for (std::size_t k = 0; k < block.size(); ++k) {
             const bool any_before = report.rows + k > 0;
-            if (any_before && step_to(block, k)) {
+            const bool gap = any_before && step_to(block, k);
+            if (gap) {
                 filter_rows(block, first, k - first);
                 filter.restart();
                 if (meter != nullptr) meter->split();
                 first = k;
-            } else if (any_before && block.torque_nm[k] == last_torque_nm && block.velocity_deg_s[k] != 0.0) {
-                ++report.held_samples;
             }
+            held.add(block, k, any_before && !gap);
             last_time_s = block.time_s[k];
-            last_torque_nm = block.torque_nm[k];
         }
         filter_rows(block, first, block.size() - first);
         const auto switches = filter.switches();
@@ -231,6 +235,7 @@ StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter
         behind.join();
         writer->finish(reader_->tail());
     }
+    pass.report.held_samples = pass.held.count();
     pass.report.switch_count = filter.switch_count();
     if (pass.duration_s > 0.0)
         pass.report.measured_rate = Hertz(static_cast<double>(pass.steps) / pass.duration_s);

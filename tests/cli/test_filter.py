@@ -284,7 +284,7 @@ class RealLogs(Case):
             second = metrics["orders"][1]
             self.assertGreater(second["raw_nm"], 0.25)           # the literature's 0.39 and 0.41 Nm are at other speeds too
             self.assertGreater(second["attenuation_db"], 15.0)
-            self.assertGreater(metrics["held_samples"], 1000)
+            self.assertGreater(metrics["held_samples"], 500)
             self.assertGreater(metrics["windows"]["measured_share"], 0.5)
 
     def test_every_real_log_that_names_torque_passes(self):

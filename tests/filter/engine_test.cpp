@@ -79,10 +79,10 @@ TEST_CASE(
     "a rate near a round number, or with a round period, is taken for what the controller was meant to run "
     "at") {
     const std::vector<std::pair<double, double>> cases = {
-        {1000.0, 1000.0}, {1000.3, 1000.0}, {999.6, 1000.0}, {250.01, 250.0},
-        {125.0, 125.0},   {124.96, 125.0},  {62.5, 62.5},    {8000.0, 8000.0},
-        {25.0, 25.0},     {99.97, 100.0},   {333.3, 1.0 / 0.003},  {978.4, 978.4},
-        {984.43, 984.43}, {1002.0, 1002.0}, {0.5, 0.5},      {48000.0, 48000.0}};
+        {1000.0, 1000.0}, {1000.3, 1000.0}, {999.6, 1000.0},      {250.01, 250.0},
+        {125.0, 125.0},   {124.96, 125.0},  {62.5, 62.5},         {8000.0, 8000.0},
+        {25.0, 25.0},     {99.97, 100.0},   {333.3, 1.0 / 0.003}, {978.4, 978.4},
+        {984.43, 984.43}, {1002.0, 1002.0}, {0.5, 0.5},           {48000.0, 48000.0}};
     for (const auto& [measured, expected] : cases) {
         INFO(measured);
         CHECK(nominal_rate(Hertz(measured)).value() == expected);
@@ -177,10 +177,14 @@ TEST_CASE(
     "time that runs backward is an error that names the row; repeated times and held samples are counted") {
     Rows rows = uniform(20000, 1000.0);
     rows.time_s[15000] = rows.time_s[14999];
-    rows.torque_nm[15001] = rows.torque_nm[15000];
-    rows.velocity_deg_s[15001] = 30.0;
-    rows.torque_nm[15010] = rows.torque_nm[15009];
-    rows.velocity_deg_s[15010] = 0.0;  // standing still: nothing is held
+    const auto hold = [&rows](std::size_t k, double velocity_deg_s, bool torque_too) {
+        rows.velocity_deg_s[k - 1] = rows.velocity_deg_s[k] = velocity_deg_s;
+        if (torque_too) rows.torque_nm[k] = rows.torque_nm[k - 1];
+    };
+    hold(15001, 30.0, true);
+    hold(15011, 0.0, true);                         // standing still: nothing is held
+    hold(15021, 30.0, false);                       // a new torque was measured
+    rows.torque_nm[15031] = rows.torque_nm[15030];  // the velocity moved on
     {
         LogStream stream = stream_of(rows);
         const auto filter = start("none");

@@ -46,7 +46,7 @@ struct StreamReport {
     std::vector<Gap> gaps;  ///< the first most_listed_gaps
     std::size_t gap_count = 0;
     std::size_t repeated_times = 0;     ///< steps of exactly zero
-    std::size_t held_samples = 0;       ///< torque equal to the one before, while the joint moves
+    std::size_t held_samples = 0;       ///< rows that repeat the row before while the joint moves
     std::size_t held_bad_values = 0;    ///< cells replaced because the caller asked for it
     std::vector<TimedSwitch> switches;  ///< as listed by the filter
     std::size_t switch_count = 0;
@@ -82,7 +82,8 @@ class LogStream {
     std::deque<RowBlock> read_ahead_;
     Hertz measured_rate_, design_rate_;
     std::optional<int> torque_decimals_;
-    double gap_s_ = 0.0;  ///< a longer step is a gap
+    double moving_deg_s_ = 0.0;  ///< slower is standing, as far as held samples go
+    double gap_s_ = 0.0;         ///< a longer step is a gap
 };
 
 }  // namespace ripplenotch
