@@ -79,7 +79,10 @@ std::vector<std::vector<std::string>> title_rows(const TableSpec& spec) {
 std::vector<std::string> band_row(const Band& band) {
     std::vector<std::string> row = {std::to_string(band.number),
                                     fmt::format("{}-{}", plain(band.from.value()), plain(band.to.value()))};
-    for (const CandidateNotch& notch : band.notches) row.push_back(plain(notch.notch.center.value()));
+    for (const CandidateNotch& notch : band.notches) {
+        // A measured gear ratio makes 7.49999 of 7.5; the full digits are in the CSV and the JSON.
+        row.push_back(fmt::format("{:.5g}", notch.notch.center.value()));
+    }
     row.push_back(fmt::format("{:.1f}", 1e3 * band.dc_delay.value()));
     row.push_back(fmt::format("{:.0f}", 1e3 * band.settle.value()));
     row.push_back(fmt::format("{:.1f}", band.overshoot_percent));

@@ -193,6 +193,17 @@ class FromJoint(unittest.TestCase):
         self.assertEqual(design("no-such.json").returncode, 4)
 
 
+class PapersChain(unittest.TestCase):
+    def test_from_the_papers_logs_to_its_table(self):
+        data = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+        logs = [str(data / f"paper_{speed}deg_s.csv") for speed in (60, 120, 180)]
+        found = subprocess.run([TOOL, "identify", *logs, "--json"], capture_output=True, text=True, timeout=60)
+        done = design("-", "--speed", "18:180:18", stdin=found.stdout)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [line.split() for line in done.stdout.split("\n") if line.strip()[:1].isdigit()]
+        self.assertEqual([(int(r[0]), *r[1].split("-"), r[2], r[3]) for r in rows], TABLE_1)
+
+
 class Units(unittest.TestCase):
     def bands(self, *words):
         done = design(*with_option(PAPER, "--speed"), *words, "--json")
