@@ -102,7 +102,9 @@ std::optional<std::size_t> choose_time(const std::string& source, const ColumnFa
     }
     // One column called time that is no clock: the reader's own message names the row where it fails.
     if (counters.empty() && broken.size() == 1) return broken[0];
-    std::string why = "no column is named as a time";
+    std::string why = facts.names.empty()
+                          ? "the columns have no names, say what they are with --columns time,velocity,torque"
+                          : "no column is named as a time";
     if (!counters.empty()) {
         why = fmt::format(
             "{} only counts rows (1, 2, 3, ...), which is a row number, or a time whose unit is not "

@@ -89,6 +89,8 @@ void CsvWriter::append_number(double value, std::string_view as_in) {
 void CsvWriter::write(const RowBlock& block, std::span<const double> torque_nm) {
     text_.clear();
     const std::string_view bytes = block.bytes;
+    // Cells whose bad values were replaced do not hold what block.torque_nm says.
+    const bool as_written = options_.decimals != WriteOptions::Decimals::fixed && block.held_bad_values == 0;
     std::size_t done = 0;
     for (std::size_t i = 0; i < block.size(); ++i) {
         const std::string_view cell =
@@ -102,6 +104,8 @@ void CsvWriter::write(const RowBlock& block, std::span<const double> torque_nm) 
             append_number(value, cell);
             if (quoted) text_ += '"';
             done = block.row_end[i];
+        } else if (as_written && torque_nm[i] == block.torque_nm[i]) {
+            continue;  // a value that nobody changed keeps its text
         } else {
             text_.append(bytes, done, block.torque_begin[i] - done);
             append_number(value, cell);

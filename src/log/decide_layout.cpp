@@ -75,8 +75,7 @@ class Decision {
             return has(Role::torque) && (has(Role::velocity) || has(Role::position));
         };
         if (groups_.empty() && (forced_.column_of(Role::torque) || forced_.column_of(Role::velocity))) {
-            const auto torque = forced_.column_of(Role::torque);
-            const std::string joint = torque && !forced_.by_place ? names_[*torque].joint : "";
+            const std::string joint = joint_of_forced();
             groups_.push_back({joint_key(joint), joint, {}});
         }
         if (std::none_of(groups_.begin(), groups_.end(), complete) && groups_.size() > 1 && !options_.joint) {
@@ -98,6 +97,16 @@ class Decision {
                           groups_.end());
         }
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
+    }
+
+    // Columns named one by one belong to a named joint only when their names agree on it.
+    std::string joint_of_forced() const {
+        const auto torque = forced_.column_of(Role::torque);
+        auto motion = forced_.column_of(Role::velocity);
+        if (!motion) motion = forced_.column_of(Role::position);
+        if (forced_.by_place || !torque || !motion) return "";
+        const std::string& joint = names_[*torque].joint;
+        return joint_key(joint) == joint_key(names_[*motion].joint) ? joint : "";
     }
 
     void collect_groups(bool merge) {

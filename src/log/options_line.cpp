@@ -40,10 +40,10 @@ std::string options_line(const Layout& layout, const ColumnFacts& facts, const R
         if (!column) continue;
         const Column& c = layout.columns[*column];
         columns.push_back(fmt::format("{}={}", role_name(c.role), handle(facts, *column)));
-        units.push_back(fmt::format("--unit {}={}", role_name(c.role), c.unit));
+        units.push_back("--unit " + quoted(fmt::format("{}={}", role_name(c.role), c.unit)));
     }
     if (!columns.empty()) words.push_back("--columns " + quoted(fmt::format("{}", fmt::join(columns, ","))));
-    for (const std::string& unit : units) words.push_back(quoted(unit));
+    words.insert(words.end(), units.begin(), units.end());
     if (!layout.chosen.joint.empty()) words.push_back("--joint " + quoted(layout.chosen.joint));
     if (layout.stated_rate) words.push_back("--sample-rate " + shortest(layout.stated_rate->value()) + "Hz");
     if (options.nm_per_ampere) words.push_back("--kt " + shortest(*options.nm_per_ampere));

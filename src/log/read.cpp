@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Whole logs in memory, with their time base examined.
 
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "log/plausibility.hpp"
+#include "log/unwrap.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -14,7 +17,7 @@ void append(std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-Log read_rows(LogReader& reader) {
+Log read_rows(LogReader& reader, const ReadOptions& options) {
     Log log;
     RowBlock block;
     while (reader.next(block)) {
@@ -27,9 +30,20 @@ Log read_rows(LogReader& reader) {
     log.layout = reader.layout();
     log.trace.source = log.layout.source;
     log.trace.joint = log.layout.chosen.joint;
-    if (log.layout.stated_rate) log.trace.sample_rate = *log.layout.stated_rate;
+    if (const auto period = wrap_period(log.trace.position_deg)) {
+        unwrap(log.trace.position_deg, *period);
+        log.layout.warnings.push_back(
+            fmt::format("the position starts again at {:.4g} deg; it was made continuous", *period));
+    }
     log.timebase = examine_timebase(log.trace.view());
-    if (!log.layout.stated_rate) log.trace.sample_rate = log.timebase.sample_rate;
+    if (log.layout.stated_rate) log.timebase.sample_rate = *log.layout.stated_rate;
+    log.trace.sample_rate = log.timebase.sample_rate;
+    const bool timed = log.layout.chosen.time || log.layout.stated_rate;
+    if (options.needs_torque && timed && !(log.trace.sample_rate.value() > 0.0)) {
+        raise<DataError>("{}: read {} over no time at all, expected a time that advances; say --sample-rate",
+                         log.layout.source,
+                         log.trace.size() == 1 ? "one row" : fmt::format("{} rows", log.trace.size()));
+    }
     for (std::string& warning : plausibility_warnings(log.layout, log.trace.view(), log.timebase)) {
         log.layout.warnings.push_back(std::move(warning));
     }
@@ -46,7 +60,7 @@ std::unique_ptr<ByteSource> source_of(const std::string& path,
 
 Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
     const auto reader = open_log(std::move(source), options);
-    return read_rows(*reader);
+    return read_rows(*reader, options);
 }
 
 Log read_log(const std::string& path, const ReadOptions& options) {

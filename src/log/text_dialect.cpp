@@ -85,7 +85,7 @@ struct Score {
     }
 };
 
-Score score(std::string_view bytes, const std::vector<Line>& rows, CellRules rules) {
+Score score(std::string_view bytes, const Line& first, const std::vector<Line>& rows, CellRules rules) {
     Score result{rules};
     std::vector<std::size_t> widths;
     CellSplit split;
@@ -93,13 +93,16 @@ Score score(std::string_view bytes, const std::vector<Line>& rows, CellRules rul
         split_cells(line.of(bytes), rules.delimiter, split);
         widths.push_back(split.cells.size());
     }
+    split_cells(first.of(bytes), rules.delimiter, split);
+    const std::size_t names = split.cells.size();
     std::vector<std::size_t> sorted = widths;
     std::sort(sorted.begin(), sorted.end());
     std::size_t best = 0;
     for (std::size_t i = 0; i < sorted.size();) {
         const auto end = std::upper_bound(sorted.begin(), sorted.end(), sorted[i]);
         const auto count = static_cast<std::size_t>(end - sorted.begin()) - i;
-        if (count > best) best = count, result.columns = sorted[i];
+        // Between widths that are equally common, the one that the first line has too.
+        if (count > best || (count == best && sorted[i] == names)) best = count, result.columns = sorted[i];
         i += count;
     }
     std::size_t cells = 0, good = 0, numbers = 0;
@@ -121,7 +124,8 @@ Score score(std::string_view bytes, const std::vector<Line>& rows, CellRules rul
     return result;
 }
 
-Score best_rules(std::string_view bytes, const std::vector<Line>& rows, const ReadOptions& options) {
+Score best_rules(std::string_view bytes, const Line& first, const std::vector<Line>& rows,
+                 const ReadOptions& options) {
     // In order of preference between equals. A comma that separates can mark decimals only inside quotes.
     constexpr std::array candidates = {CellRules{'\t', '.'}, CellRules{';', '.'},  CellRules{',', '.'},
                                        CellRules{' ', '.'},  CellRules{'\t', ','}, CellRules{';', ','},
@@ -129,7 +133,7 @@ Score best_rules(std::string_view bytes, const std::vector<Line>& rows, const Re
     const bool quotes = bytes.find('"') != std::string_view::npos;
     Score best;
     const auto consider = [&](CellRules rules) {
-        const Score now = score(bytes, rows, rules);
+        const Score now = score(bytes, first, rows, rules);
         // More columns win between readings that are equally good: "1,5;2,5" is two numbers, not one.
         const double margin = now.value() - best.value();
         if (margin > 1e-9 ||
@@ -191,6 +195,13 @@ std::vector<std::string> texts_of(std::string_view line, const CellSplit& split)
     return texts;
 }
 
+// Where a column more would be added: before blanks that end a line of cells separated by blanks.
+std::size_t content_end(std::string_view bytes, const Line& line, char delimiter) {
+    std::size_t end = line.end;
+    while (delimiter == ' ' && end > line.begin && (bytes[end - 1] == ' ' || bytes[end - 1] == '\t')) --end;
+    return end;
+}
+
 void take_sample(std::string_view bytes, const std::vector<Line>& rows, TextDialect& dialect) {
     dialect.sample.assign(dialect.columns, {});
     CellSplit split;
@@ -221,7 +232,7 @@ void try_comment_header(std::string_view bytes, const std::vector<Line>& comment
     // A sentence has as many words as it likes; names are told by a quantity or a unit among them.
     dialect.has_header = dialect.header_in_comment = true;
     dialect.names = texts_of(text, split);
-    dialect.header_end = line.end;
+    dialect.header_end = content_end(bytes, line, dialect.rules.delimiter);
 }
 
 }  // namespace
@@ -254,7 +265,13 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const std::string& so
     dialect.line_end = !line_feeds && bytes.find('\r') != std::string_view::npos ? '\r' : '\n';
 
     std::vector<Line> comments, content;
-    for (const Line& line : lines_of(bytes, whole, dialect.line_end, start)) {
+    const std::vector<Line> lines = lines_of(bytes, whole, dialect.line_end, start);
+    if (!whole && bytes.size() - (lines.empty() ? start : lines.back().next) > longest_line) {
+        raise<DataError>(
+            "{}:{}: read a line of more than 1 MiB, expected rows of numbers; check that this is a text log",
+            source, lines.size() + 1);
+    }
+    for (const Line& line : lines) {
         if (is_blank_line(line.of(bytes))) continue;
         if (is_comment_line(line.of(bytes))) {
             if (content.empty()) comments.push_back(line);
@@ -267,17 +284,19 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const std::string& so
                          whole ? "a file" : "the first 64 kB");
     }
     const std::size_t last = std::min(content.size(), lines_compared);
-    // Two lines at the top may be names and units.
-    const std::size_t skip = std::min<std::size_t>(content.size() > 3 ? 2 : content.size() - 1, 2);
-    const Score rules = best_rules(bytes,
+    // Two lines at the top may be names and units; neither is evidence of how numbers are written.
+    const auto has_digits = [&](const Line& line) {
+        return line.of(bytes).find_first_of("0123456789") != std::string_view::npos;
+    };
+    const std::size_t skip = content.size() == 1 ? 0 : content.size() == 2 || has_digits(content[1]) ? 1 : 2;
+    const Score rules = best_rules(bytes, content.front(),
                                    {content.begin() + static_cast<std::ptrdiff_t>(skip),
                                     content.begin() + static_cast<std::ptrdiff_t>(last)},
                                    options);
     const Line& first = content.front();
     CellSplit split;
     if (rules.columns == 0 || rules.numbers == 0) {
-        split_cells(first.of(bytes), rules.columns > 0 ? rules.rules.delimiter : ',', split);
-        if (content.size() == 1 && has_letters(first.of(bytes))) {
+        if (content.size() <= 2 && has_letters(first.of(bytes)) && !has_digits(content.back())) {
             raise<DataError>(
                 "{}:{}: read only a header, expected rows of numbers under it; check what wrote the file",
                 source, first.number);
@@ -318,26 +337,26 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const std::string& so
         dialect.names = texts_of(first.of(bytes), split);
         dialect.quoted_names =
             std::all_of(split.cells.begin(), split.cells.end(), [](const Cell& c) { return c.quoted; });
-        dialect.header_end = first.end;
+        dialect.header_end = content_end(bytes, first, dialect.rules.delimiter);
         row = 1;
         if (content.size() > 1) {
             split_cells(content[1].of(bytes), dialect.rules.delimiter, split);
             if (is_unit_row(content[1].of(bytes), split)) {
                 for (const std::string& text : texts_of(content[1].of(bytes), split))
                     dialect.units.push_back(bare_unit(text));
-                dialect.unit_row_end = content[1].end;
+                dialect.unit_row_end = content_end(bytes, content[1], dialect.rules.delimiter);
                 row = 2;
             }
         }
         // "a,b,c" over "1,2,3,": the writer ends rows with a delimiter.
         if (dialect.names.size() + 1 == dialect.columns) dialect.names.emplace_back();
-        if (dialect.names.size() == dialect.columns + 1 && dialect.names.back().empty()) dialect.columns += 0;
         if (dialect.names.size() != dialect.columns) {
             raise<DataError>(
                 "{}:{}: read {} names over rows of {} cells, expected as many; mend the header, or say "
                 "--delimiter, or --no-header with --columns",
                 source, first.number, dialect.names.size(), dialect.columns);
         }
+        if (!dialect.units.empty()) dialect.units.resize(dialect.columns);
     } else if (!options.header.has_value()) {
         try_comment_header(bytes, comments, dialect);
     }

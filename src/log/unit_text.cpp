@@ -144,17 +144,15 @@ std::optional<double> role_factor(Role role, std::string_view unit, double nm_pe
 std::optional<std::string> usual_unit(std::string_view written, Role role) {
     const std::string_view text = trimmed(written);
     if (text.empty()) return std::nullopt;
-    if (role == Role::other ? any_role_knows(text) : role_factor(role, text, 1.0).has_value()) {
-        std::string usual(text);
-        if (usual.size() > 2 && usual.compare(usual.size() - 2, 2, "_s") == 0) usual[usual.size() - 2] = '/';
-        return usual;
-    }
     const std::string lower = lower_without_blanks(text);
     if (role == Role::torque && lower == "nm") return "Nm";
     if (role == Role::torque && lower == "mnm") return "mNm";
     for (const Spelling& spelling : spellings) {
         if (lower == spelling.written) return std::string(spelling.usual);
     }
+    // What is left depends on case: mNm, Nm, ms, A.
+    if (role == Role::other ? any_role_knows(text) : role_factor(role, text, 1.0).has_value())
+        return std::string(text);
     return std::nullopt;
 }
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// NumPy array files out: rows of one that was read with other torque values, or new structured ones.
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "log/npy_reader.hpp"
+#include "log/table_writer.hpp"
+
+namespace ripplenotch {
+
+/// Records of a reader with another torque; every other byte passes as it is.
+class NpyWriter : public LogWriter {
+  public:
+    /// Throws UsageError when the torque is an integer and would be rounded (--append adds a float instead).
+    NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, const WriteOptions& options);
+    void write(const RowBlock& block, std::span<const double> torque_nm) override;
+    void finish(std::string_view tail) override;
+
+  private:
+    std::unique_ptr<ByteSink> sink_;
+    NpyField field_;  ///< where the new torque goes, in a record of the output
+    std::size_t record_in_, record_out_;
+    double factor_;
+    bool append_;
+    std::string records_;
+};
+
+/// A structured array of float64 columns whose length is known only at the end: the header is patched in a
+/// file, and the rows are spooled when the target is a pipe.
+class NpyTableWriter : public TableWriter {
+  public:
+    explicit NpyTableWriter(ByteSink& sink) : sink_(sink) {}
+    void begin(std::span<const std::string> names) override;
+    void rows(std::span<const std::span<const double>> columns) override;
+    void end() override;
+
+  private:
+    void put(std::string_view bytes);
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    ByteSink& sink_;
+    std::unique_ptr<std::FILE, Close> spool_;
+    std::string descr_, bytes_;
+    std::size_t rows_ = 0;
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+// Laws over the whole list of formats: a new one is tested the day it is listed.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <set>
+
+#include "log_support.hpp"
+#include "ripplenotch/core/error.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::test;
+
+namespace {
+
+// Numbers of every size and sign, such as a text format could spoil.
+std::vector<NumberColumn> table(std::size_t rows) {
+    std::mt19937_64 random(11);
+    std::vector<NumberColumn> columns = {
+        {"time_s", {}}, {"velocity_deg_s", {}}, {"torque_nm", {}}, {"position_deg", {}}};
+    for (std::size_t i = 0; i < rows; ++i) {
+        const auto any = [&] {
+            const double mantissa = std::ldexp(static_cast<double>(random() >> 11), -53) - 0.5;
+            return std::ldexp(mantissa, static_cast<int>(random() % 120) - 60);
+        };
+        columns[0].values.push_back(92125.377 + static_cast<double>(i) * 0.001);
+        for (std::size_t c = 1; c < 4; ++c) columns[c].values.push_back(any());
+    }
+    columns[2].values[0] = -0.0;
+    columns[2].values[1] = 5e-324;
+    columns[2].values[2] = 1.7976931348623157e308;
+    return columns;
+}
+
+std::string written(const LogFormat& format, const std::vector<NumberColumn>& columns) {
+    const TemporaryPath path(std::string(format.extensions[0]));
+    ByteSink sink(path.string(), ByteSink::Overwrite::yes, format.binary);
+    format.write_columns(sink, columns);
+    sink.finish();
+    return file_bytes(path.string());
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("formats have names, extensions and summaries of their own", "[log]") {
+    std::set<std::string_view> names, extensions;
+    for (const LogFormat* format : log_formats()) {
+        CHECK(names.insert(format->name).second);
+        CHECK_FALSE(format->summary.empty());
+        CHECK_FALSE(format->extensions.empty());
+        for (const auto extension : format->extensions) CHECK(extensions.insert(extension).second);
+        CHECK(&find_log_format(format->name) == format);
+        CHECK(&output_format("log" + std::string(format->extensions[0]), std::nullopt) == format);
+        CHECK(&output_format("x.unknown", format->name) == format);
+    }
+    CHECK(output_format("-", std::nullopt).name == "csv");
+    CHECK(output_format("a.b/log", std::nullopt).name == "csv");
+    CHECK_THROWS_WITH(find_log_format("xls"), Catch::Matchers::Contains("csv"));
+}
+
+TEST_CASE("what a format writes it reads back bit for bit", "[log]") {
+    for (const LogFormat* format : log_formats()) {
+        INFO(format->name);
+        const auto columns = table(3000);
+        const std::string bytes = written(*format, columns);
+        CHECK(bytes == written(*format, columns));
+        const Log log = read_text(bytes);
+        CHECK(log.layout.format == format->name);
+        CHECK(same_bits(log.trace.time_s, columns[0].values));
+        CHECK(same_bits(log.trace.velocity_deg_s, columns[1].values));
+        CHECK(same_bits(log.trace.torque_nm, columns[2].values));
+        CHECK(same_bits(log.trace.position_deg, columns[3].values));
+        CHECK(rewritten(bytes, [](double torque) { return torque; }) == bytes);
+    }
+}
+
+TEST_CASE("exactly one format claims what a format writes", "[log]") {
+    for (const LogFormat* format : log_formats()) {
+        const std::string bytes = written(*format, table(5));
+        for (const LogFormat* other : log_formats())
+            CHECK(other->sniff(bytes.substr(0, 512)) == (other == format));
+    }
+}
+
+TEST_CASE("where the bytes are cut into pieces does not matter", "[log]") {
+    for (const LogFormat* format : log_formats()) {
+        const std::string bytes = written(*format, table(3000));
+        const Log log = read_text(bytes);
+        for (const std::size_t piece :
+             {std::size_t{1}, std::size_t{7}, std::size_t{4096}, std::size_t{65536}}) {
+            INFO(format->name << " in pieces of " << piece);
+            const Log again = read_text(bytes, {}, piece);
+            CHECK(same_bits(again.trace.torque_nm, log.trace.torque_nm));
+            CHECK(same_bits(again.trace.time_s, log.trace.time_s));
+            CHECK(rewritten(
+                      bytes, [](double t) { return 2 * t; }, {}, {}, "", piece) ==
+                  rewritten(bytes, [](double t) { return 2 * t; }));
+        }
+    }
+}
+
+TEST_CASE("every beginning of a good file reads or is refused, and what is read was there", "[log]") {
+    for (const LogFormat* format : log_formats()) {
+        INFO(format->name);
+        const auto columns = table(12);
+        const std::string bytes = written(*format, columns);
+        std::size_t refused = 0;
+        for (std::size_t length = 0; length < bytes.size(); ++length) {
+            try {
+                const Log log = read_text(bytes.substr(0, length));
+                REQUIRE(log.trace.size() <= 12);
+                // The last number of a text may be cut inside its digits; nobody can tell. All others are
+                // right.
+                for (std::size_t i = 0; i + 1 < log.trace.size(); ++i)
+                    REQUIRE(log.trace.torque_nm[i] == columns[2].values[i]);
+            } catch (const DataError& error) {
+                REQUIRE(std::string(error.what()).rfind("log.csv", 0) == 0);
+                ++refused;
+            }
+        }
+        CHECK(refused > bytes.size() / 2);
+    }
+}
+
+TEST_CASE("damaged bytes are read or refused with a message, never worse", "[log]") {
+    std::mt19937_64 random(5);
+    std::vector<std::string> seeds;
+    for (const LogFormat* format : log_formats()) seeds.push_back(written(*format, table(12)));
+    for (const std::string folder : {"/data/dialects", "/tests/log/data"}) {
+        for (const auto& entry : std::filesystem::directory_iterator(RIPPLENOTCH_SOURCE_DIR + folder))
+            seeds.push_back(file_bytes(entry.path().string()));
+    }
+    const std::string telling = ",;\t \"\n\r.-+eE#%/0[]()'{}\\\x93";
+    ReadOptions lenient;
+    lenient.needs_torque = false;
+    std::size_t read = 0, refused = 0;
+    for (int round = 0; round < 6000; ++round) {
+        std::string bytes = seeds[random() % seeds.size()];
+        for (std::uint64_t k = random() % 6 + 1; k > 0 && !bytes.empty(); --k) {
+            const std::size_t at = random() % bytes.size();
+            switch (random() % 5) {
+                case 0:
+                    bytes[at] = static_cast<char>(random());
+                    break;
+                case 1:
+                    bytes[at] = telling[random() % telling.size()];
+                    break;
+                case 2:
+                    bytes.erase(at, random() % 9 + 1);
+                    break;
+                case 3:
+                    bytes.insert(at, 1, telling[random() % telling.size()]);
+                    break;
+                default:
+                    bytes.insert(at, bytes.substr(random() % bytes.size(), random() % 40));
+                    break;
+            }
+        }
+        try {
+            const Log log =
+                read_text(bytes, round % 2 == 0 ? ReadOptions{} : lenient, round % 3 == 0 ? 5 : whole);
+            REQUIRE(log.trace.time_s.size() == log.trace.torque_nm.size());
+            REQUIRE(log.trace.velocity_deg_s.size() == log.trace.torque_nm.size());
+            ++read;
+        } catch (const DataError& error) {
+            REQUIRE(std::string(error.what()).size() < 2000);
+            ++refused;
+        } catch (const UsageError&) {
+            ++refused;
+        }
+    }
+    CHECK(read > 100);
+    CHECK(refused > 1000);
+}
+
+TEST_CASE("pure noise is refused", "[log]") {
+    std::mt19937_64 random(9);
+    for (int round = 0; round < 300; ++round) {
+        std::string bytes(random() % 3000, '\0');
+        for (char& byte : bytes) byte = static_cast<char>(random());
+        CHECK_THROWS_AS(read_text(bytes), DataError);
+    }
+}
+
+TEST_CASE("a growing array is finished in a file and through a pipe alike", "[log]") {
+    const LogFormat& npy = find_log_format("npy");
+    for (const std::size_t rows : {std::size_t{3}, std::size_t{40000}}) {
+        const std::string bytes = written(npy, table(rows));
+        CHECK(bytes.find("(" + std::to_string(rows) + ",)") != std::string::npos);
+    }
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Logs from memory, in pieces of any size, and rewritten through a temporary file.
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch::test {
+
+inline constexpr std::size_t whole = std::size_t(-1);
+
+inline std::unique_ptr<ByteSource> in_memory(const std::string& bytes, std::size_t piece = whole) {
+    return std::make_unique<ByteSource>("log.csv", std::make_shared<const std::string>(bytes), piece);
+}
+
+inline Log read_text(const std::string& bytes, const ReadOptions& options = {}, std::size_t piece = whole) {
+    return read_log(in_memory(bytes, piece), options);
+}
+
+/// The message of the DataError that reading throws; empty when it reads.
+inline std::string complaint(const std::string& bytes, const ReadOptions& options = {}) {
+    try {
+        read_text(bytes, options);
+    } catch (const DataError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+inline ReadOptions with_columns(std::vector<std::string> columns) {
+    ReadOptions options;
+    options.columns = std::move(columns);
+    return options;
+}
+
+/// A path in the temporary folder that is gone afterwards.
+class TemporaryPath {
+  public:
+    explicit TemporaryPath(const std::string& extension = ".csv") {
+        static int made = 0;
+        path_ =
+            std::filesystem::temp_directory_path() /
+            ("ripplenotch-log-test-" + std::to_string(::getpid()) + "-" + std::to_string(made++) + extension);
+    }
+    ~TemporaryPath() {
+        std::error_code ignored;
+        std::filesystem::remove(path_, ignored);
+    }
+    TemporaryPath(const TemporaryPath&) = delete;
+    TemporaryPath& operator=(const TemporaryPath&) = delete;
+    [[nodiscard]] std::string string() const { return path_.string(); }
+
+  private:
+    std::filesystem::path path_;
+};
+
+using TorqueMap = std::function<double(double)>;
+
+/// The bytes of a log whose torque was mapped, written in `format` ("" for its own).
+inline std::string rewritten(const std::string& bytes, const TorqueMap& map, const WriteOptions& write = {},
+                             const ReadOptions& read = {}, const std::string& format = "",
+                             std::size_t piece = whole) {
+    const TemporaryPath out;
+    const auto reader = open_log(in_memory(bytes, piece), read);
+    const auto writer =
+        rewrite_log(out.string(), *reader, find_log_format(format.empty() ? reader->layout().format : format),
+                    write, ByteSink::Overwrite::yes);
+    RowBlock block;
+    std::vector<double> torque;
+    while (reader->next(block)) {
+        torque.resize(block.size());
+        for (std::size_t i = 0; i < block.size(); ++i) torque[i] = map(block.torque_nm[i]);
+        writer->write(block, torque);
+    }
+    writer->finish(reader->tail());
+    return read_all(out.string());
+}
+
+inline std::string file_bytes(const std::string& path) { return read_all(path); }
+
+}  // namespace ripplenotch::test
