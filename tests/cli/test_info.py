@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""info as users meet it: the JSON fields, several joints, a wrong clock, logs that lack something, real robots' logs."""
+
+import json
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "no-such-folder"))
+
+
+def run(*words, data=None):
+    return subprocess.run([TOOL, *map(str, words)], capture_output=True, input=data, timeout=60)
+
+
+def info(*words, data=None):
+    done = run("info", "--json", *words, data=data)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def swing(clock=1.0, rows=4000, torque=True):
+    """A joint that swings by 100 deg, sampled at 500 Hz, its clock stretched by a factor."""
+    lines = ["time_s,velocity_deg_s,position_deg" + (",torque_nm" if torque else "")]
+    for k in range(rows):
+        t = k / 500
+        cells = [t * clock, 90 * math.cos(0.9 * t), 100 * math.sin(0.9 * t)]
+        if torque:
+            cells.append(3 * math.sin(2.1 * t))
+        lines.append(",".join(f"{cell:.6f}" for cell in cells))
+    return ("\n".join(lines) + "\n").encode()
+
+
+class Fields(unittest.TestCase):
+    def test_the_fields_that_other_tools_rely_on(self):
+        got = info("-", data=swing())
+        self.assertEqual(got["schema"], "ripplenotch/info/1")
+        self.assertEqual(got["rows"], 4000)
+        self.assertAlmostEqual(got["duration_s"], 7.998, places=9)
+        self.assertAlmostEqual(got["sample_rate_hz"], 500.0, places=6)
+        self.assertLess(got["jitter_ms"], 1e-6)
+        self.assertEqual(got["gaps"], [])
+        self.assertEqual(got["held_samples"], 0)
+        self.assertAlmostEqual(got["clock_factor"], 1.0, places=4)
+        self.assertEqual(got["format"], "csv")
+        self.assertEqual([c["role"] for c in got["columns"]], ["time", "velocity", "position", "torque"])
+        self.assertEqual([c["unit"] for c in got["columns"]], ["s", "deg/s", "deg", "Nm"])
+        self.assertEqual([c["joint"] for c in got["columns"]], [None] * 4)
+        self.assertAlmostEqual(got["speed_deg_s"]["max"], 90.0, places=3)
+        self.assertEqual(got["warnings"], [])
+        self.assertIn("--columns time=time_s,velocity=velocity_deg_s,torque=torque_nm", got["options"])
+        self.assertTrue(all(use["possible"] for use in got["uses"]))
+
+    def test_the_same_log_gives_the_same_bytes(self):
+        self.assertEqual(run("info", "--json", "-", data=swing()).stdout, run("info", "--json", "-", data=swing()).stdout)
+
+    def test_a_wrong_nominal_clock_is_a_warning_that_names_the_factor(self):
+        got = info("-", data=swing(clock=1 / 1.47))
+        self.assertAlmostEqual(got["clock_factor"], 1.47, delta=0.003)
+        self.assertEqual(len(got["warnings"]), 1)
+        self.assertIn("1.47", got["warnings"][0])
+        self.assertIn("the sample rate is then 500 Hz, not 735 Hz", got["warnings"][0])
+        text = run("info", "-", data=swing(clock=1 / 1.47)).stdout.decode()
+        self.assertIn("1.47", text.split("warnings")[1])
+
+    def test_a_stated_rate_is_checked_as_well(self):
+        got = info("-", "--sample-rate", "735Hz", data=swing())
+        self.assertEqual(got["sample_rate_hz"], 735)
+        self.assertAlmostEqual(got["clock_factor"], 1.47, delta=0.003)
+
+    def test_a_gap_is_listed_and_left_out_of_the_rate(self):
+        rows = swing().decode().splitlines()
+        late = [f"{float(r.split(',')[0]) + 5:.6f}," + r.split(",", 1)[1] for r in rows[2001:]]
+        got = info("-", data=("\n".join(rows[:2001] + late) + "\n").encode())
+        self.assertEqual(len(got["gaps"]), 1)
+        self.assertEqual(got["gaps"][0]["row"], 1999)
+        self.assertAlmostEqual(got["gaps"][0]["to_s"] - got["gaps"][0]["from_s"], 5.002, places=6)
+        self.assertAlmostEqual(got["sample_rate_hz"], 500.0, places=6)
+
+    def test_several_logs_are_one_object(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("a.csv", "b.csv"):
+                pathlib.Path(folder, name).write_bytes(swing())
+            got = info(pathlib.Path(folder, "a.csv"), pathlib.Path(folder, "b.csv"))
+            self.assertEqual([log["rows"] for log in got["logs"]], [4000, 4000])
+            self.assertEqual(len(got["inputs"][0]["sha256"]), 64)
+
+
+class Joints(unittest.TestCase):
+    def test_all_joints_are_described_without_asking(self):
+        got = info(SOURCE / "data/dialects/named_joints.csv")
+        self.assertEqual([joint["joint"] for joint in got["joints"]], ["shoulder_pan_joint", "wrist_1_joint"])
+        self.assertEqual([c["role"] for c in got["columns"]], ["time", "velocity", "torque", "velocity", "torque", "other"])
+        self.assertEqual(got["speed_deg_s"], {"min": -60.5, "max": 60.5})
+        self.assertEqual(run("info", "--joint", "wrist_2_joint", SOURCE / "data/dialects/named_joints.csv").returncode, 2)
+
+    def test_one_joint_when_asked(self):
+        got = info(SOURCE / "data/dialects/named_joints.csv", "--joint", "wrist_1_joint")
+        self.assertEqual([joint["joint"] for joint in got["joints"]], ["wrist_1_joint"])
+
+
+class Lacking(unittest.TestCase):
+    def test_a_log_without_torque_is_described(self):
+        got = info("-", data=swing(torque=False))
+        self.assertAlmostEqual(got["clock_factor"], 1.0, places=4)
+        self.assertIsNone(got["joints"][0]["torque_nm"])
+        self.assertEqual({use["name"]: use["possible"] for use in got["uses"]},
+                         {"spectrum": False, "identify": False, "filter": False, "clock-check": True})
+
+    def test_a_log_without_time_or_header_is_described(self):
+        for name in ("no_time", "no_header"):
+            got = info(SOURCE / f"data/dialects/{name}.csv")
+            self.assertEqual(got["rows"], 12)
+            self.assertIsNone(got["sample_rate_hz"])
+            self.assertIn("--sample-rate", " ".join(got["warnings"]))
+        got = info(SOURCE / "data/dialects/no_header.csv", "--columns", "time,velocity,torque")
+        self.assertAlmostEqual(got["sample_rate_hz"], 100.0, places=6)
+
+
+class Dialects(unittest.TestCase):
+    def test_every_dialect_passes_the_filter_byte_for_byte(self):
+        more = {"no_header": ["--columns", "time,velocity,torque"], "no_time": ["--sample-rate", "100Hz"],
+                "libfranka_style": ["--joint", "0", "--unit", "time=ms"], "named_joints": ["--joint", "wrist_1_joint"]}
+        for path in sorted((SOURCE / "data/dialects").glob("*.csv")):
+            with self.subTest(path.name):
+                done = run("filter", path, "--method", "none", "-q", *more.get(path.stem, []))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(done.stdout, path.read_bytes())
+
+    def test_the_option_line_of_verbose_forces_the_same_reading(self):
+        path = SOURCE / "data/dialects/semicolon_decimal_comma_crlf.csv"
+        line = run("info", "-v", path).stderr.decode().split("read as if with ")[1].strip()
+        again = subprocess.run(f"'{TOOL}' info --json '{path}' {line}", shell=True, capture_output=True, timeout=60)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(json.loads(again.stdout)["options"], line)
+
+
+@unittest.skipUnless(LOGS.is_dir(), "the folder of real logs is not here")
+class RealLogs(unittest.TestCase):
+    def test_every_real_log_is_understood(self):
+        expected = {  # rows, rate, joints, joints whose clock can be checked
+            "kuka_kr300_trajA_all.csv": (2501, 250.0, 6), "kuka_kr300_trajB_all.csv": (2501, 250.0, 6),
+            "neura_lara8_j3.csv": (1832, 249.064, 1), "ur10_unisa_exciting_all.csv": (3441, 125.0, 6),
+            "ur3e_rad_L1L2_j345.csv": (65, 25.0, 3), "gpl3/panda_gaz_j1.csv": (20544, 978.28, 1),
+            "gpl3/panda_gaz_j4.csv": (20544, 978.28, 1), "raw/neura_lara8_0.5_original.csv": (216, 486.487, 6),
+            "raw/neura_lara8_validate_original.csv": (1832, 249.064, 6),
+            "raw/ur3e_rad_L1L2_original_CR_line_ends.csv": (65, 25.0, 6),
+        }
+        for name, (rows, rate, joints) in expected.items():
+            with self.subTest(name):
+                got = info(LOGS / name)
+                self.assertEqual(got["rows"], rows)
+                self.assertAlmostEqual(got["sample_rate_hz"], rate, delta=0.01)
+                self.assertEqual(len(got["joints"]), joints)
+                self.assertAlmostEqual(got["clock_factor"], 1.0, delta=0.015)
+                self.assertFalse([w for w in got["warnings"] if "clock is wrong" in w])
+
+    def test_raw_logs_without_units_say_so_and_suspect_radians(self):
+        for name in ("raw/neura_lara8_validate_original.csv", "raw/ur3e_rad_L1L2_original_CR_line_ends.csv"):
+            warnings = " ".join(info(LOGS / name)["warnings"])
+            self.assertIn("no unit is stated", warnings)
+            self.assertIn("may be radians", warnings)
+
+
+if __name__ == "__main__":
+    unittest.main()
