@@ -51,8 +51,8 @@ void add_levels(Json& json, const FilterMetrics& metrics) {
 
 Json delay_to_json(const FilterDelay& delay) {
     Json json;
-    if (delay.band > 0) {
-        json["band"] = delay.band;
+    if (delay.band > 0) json["band"] = delay.band;
+    if (delay.to.value() > 0.0) {
         json["speed_from_deg_s"] = delay.from.value();
         json["speed_to_deg_s"] = delay.to.value();
     }

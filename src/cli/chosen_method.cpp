@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cli/joint_keys.hpp"
 #include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -16,7 +17,10 @@ std::vector<FilterDelay> ChosenMethod::delays(Hertz sample_rate) const {
         const FrozenFilter filter = frozen(sample_rate, 0.5 * (from + to));
         delays.push_back({band, from, to, filter.note, group_delay(filter.cascade, Hertz(0.0), sample_rate)});
     };
-    if (table == nullptr) {
+    if (has_key(*method, "gear-ratio")) {
+        for (const double speed : {5.0, 10.0, 20.0, 50.0, 100.0, 200.0})
+            add(0, DegPerSec(speed), DegPerSec(speed));
+    } else if (table == nullptr) {
         add(0, DegPerSec(0.0), DegPerSec(0.0));
     } else {
         for (const Band& band : table->bands()) add(band.number, band.from, band.to);
@@ -24,7 +28,8 @@ std::vector<FilterDelay> ChosenMethod::delays(Hertz sample_rate) const {
     return delays;
 }
 
-ChosenMethod choose_method(const std::string& spec_text, const std::optional<std::string>& table) {
+ChosenMethod choose_method(const std::string& spec_text, const std::optional<std::string>& table,
+                           const GearOptions& gear) {
     Spec spec = parse_spec(spec_text);
     ChosenMethod chosen;
     chosen.method = &find_method(spec.name);
@@ -39,6 +44,8 @@ ChosenMethod choose_method(const std::string& spec_text, const std::optional<std
             raise<UsageError>("--table and table=... in --method: give one of them");
         spec.values.insert(spec.values.begin(), {"table", *table});
     }
+    fill_from_options(spec, *chosen.method, gear);
+    chosen.joint_path = spell_out_joint(spec, *chosen.method);
     const std::string what = fmt::format("method {}", spec.name);
     chosen.settings.emplace(what, spec, chosen.method->keys);
     chosen.text = spec.text();

@@ -13,12 +13,20 @@
 
 namespace ripplenotch {
 
+/// What the command line says about the gear outside --method; fills keys of the method that it leaves out.
+struct GearOptions {
+    std::optional<double> gear_ratio;
+    std::vector<double> orders;
+    std::optional<std::string> joint_file;
+};
+
 struct ChosenMethod {
     const Method* method = nullptr;
-    std::string text;                  ///< as it would be typed again
+    std::string text;  ///< as it would be typed again; what joint=... stood for is spelled out
     std::optional<Settings> settings;  ///< always there after choose_method
     std::string table_path;            ///< empty when the method needs no table
     std::shared_ptr<const CandidateTable> table;
+    std::string joint_path;  ///< of joint=...; empty when not given
 
     [[nodiscard]] std::unique_ptr<CausalFilter> start(Hertz sample_rate) const {
         return method->start(*settings, sample_rate, table.get());
@@ -26,13 +34,15 @@ struct ChosenMethod {
     [[nodiscard]] FrozenFilter frozen(Hertz sample_rate, DegPerSec speed) const {
         return method->frozen(*settings, sample_rate, table.get(), speed);
     }
-    /// Of every band when the method has a table, else of its filter.
+    /// Of every band when the method has a table, at typical speeds when it follows the gear, else of its
+    /// filter.
     [[nodiscard]] std::vector<FilterDelay> delays(Hertz sample_rate) const;
 };
 
 /// `spec_text` as --method takes it; `table` is a table.json for methods that need one and name none. Throws
-/// UsageError on a bad specification, and what load_table throws.
+/// UsageError on a bad specification, and what load_table and load_identification throw.
 [[nodiscard]] ChosenMethod choose_method(const std::string& spec_text,
-                                         const std::optional<std::string>& table);
+                                         const std::optional<std::string>& table,
+                                         const GearOptions& gear = {});
 
 }  // namespace ripplenotch

@@ -11,7 +11,8 @@
 
 namespace ripplenotch {
 
-Field load_contenders(const std::vector<std::string>& methods, Provenance& provenance) {
+Field load_contenders(const std::vector<std::string>& methods, const LinesRequest& gear,
+                      Provenance& provenance) {
     if (methods.empty()) {
         raise<UsageError>(
             "nothing to compare; give --method, for example --method fixed,centers=25Hz:50Hz,q=0.25 "
@@ -19,14 +20,21 @@ Field load_contenders(const std::vector<std::string>& methods, Provenance& prove
     }
     Field field;
     std::vector<std::string> recorded;
+    // The joint file of the options is recorded with the lines.
+    if (gear.joint_file) recorded.push_back(*gear.joint_file);
+    const auto record = [&](const std::string& path) {
+        if (path.empty() || std::find(recorded.begin(), recorded.end(), path) != recorded.end()) return;
+        recorded.push_back(path);
+        provenance.inputs.push_back(input_record(path));
+    };
     const auto add = [&](const std::string& text) {
-        const ChosenMethod chosen = choose_method(text, std::nullopt);
+        const ChosenMethod chosen =
+            choose_method(text, std::nullopt, {gear.gear_ratio, gear.orders, gear.joint_file});
         field.contenders.push_back({chosen.text, chosen.method, *chosen.settings, chosen.table});
+        record(chosen.joint_path);
         if (!chosen.table) return;
         if (!field.table) field.table = chosen.table;
-        if (std::find(recorded.begin(), recorded.end(), chosen.table_path) != recorded.end()) return;
-        recorded.push_back(chosen.table_path);
-        provenance.inputs.push_back(input_record(chosen.table_path));
+        record(chosen.table_path);
     };
     const auto is_control = [](const std::string& text) { return parse_spec(text).name == "none"; };
     if (std::none_of(methods.begin(), methods.end(), is_control)) add("none");
@@ -43,6 +51,10 @@ std::optional<RippleLines> lines_of(const LinesRequest& request, const Field& fi
         provenance.inputs.push_back(input_record(*request.joint_file));
     }
     RippleLines lines;
+    const auto follows =
+        std::find_if(field.contenders.begin(), field.contenders.end(),
+                     [](const Contender& contender) { return contender.settings.has("gear-ratio"); });
+    const bool one_follows = follows != field.contenders.end();
     if (request.gear_ratio) {
         if (!(*request.gear_ratio > 0.0))
             raise<UsageError>("gear ratio {} is not above 0", *request.gear_ratio);
@@ -51,6 +63,8 @@ std::optional<RippleLines> lines_of(const LinesRequest& request, const Field& fi
         lines.gear_ratio = gear_ratio_of(*joint);
     } else if (field.table) {
         lines.gear_ratio = field.table->spec().gear_ratio;
+    } else if (one_follows) {
+        lines.gear_ratio = GearRatio(follows->settings.number("gear-ratio"));
     }
     if (!request.orders.empty()) {
         for (const double order : request.orders) {
@@ -63,6 +77,9 @@ std::optional<RippleLines> lines_of(const LinesRequest& request, const Field& fi
         lines.amplitude_nm = joint->amplitude_nm;
     } else if (field.table) {
         lines.orders = field.table->spec().orders;
+    } else if (one_follows) {
+        for (const double order : follows->settings.list("orders")) lines.orders.emplace_back(order);
+        std::sort(lines.orders.begin(), lines.orders.end());
     }
     const bool has_ratio = lines.gear_ratio.value() > 0.0;
     if (has_ratio == lines.orders.empty()) {

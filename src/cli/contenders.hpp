@@ -18,17 +18,19 @@ struct Field {
     std::shared_ptr<const CandidateTable> table;  ///< of the first method that needs one
 };
 
-/// Throws UsageError when `methods` is empty or one of them is wrong, and what load_table throws.
-[[nodiscard]] Field load_contenders(const std::vector<std::string>& methods, Provenance& provenance);
-
 struct LinesRequest {
     std::optional<double> gear_ratio;
     std::vector<double> orders;
     std::optional<std::string> joint_file;
 };
 
-/// Options first, then the joint file, then the table of a method. Empty when nothing says where the ripple
-/// is; throws UsageError when only one of gear ratio and orders is known.
+/// Throws UsageError when `methods` is empty or one of them is wrong, and what load_table and
+/// load_identification throw. `gear` fills what methods that follow the gear are not given.
+[[nodiscard]] Field load_contenders(const std::vector<std::string>& methods, const LinesRequest& gear,
+                                    Provenance& provenance);
+
+/// Options first, then the joint file, then the table of a method, then a method that follows the gear. Empty
+/// when nothing says where the ripple is; throws UsageError when only one of gear ratio and orders is known.
 [[nodiscard]] std::optional<RippleLines> lines_of(const LinesRequest& request, const Field& field,
                                                   Provenance& provenance);
 

@@ -20,8 +20,12 @@ std::string delay_line(const std::vector<FilterDelay>& delays) {
     const auto by_delay = [](const FilterDelay& a, const FilterDelay& b) { return a.dc_delay < b.dc_delay; };
     const auto [least, most] = std::minmax_element(delays.begin(), delays.end(), by_delay);
     if (delays.size() == 1) return fmt::format("delay at 0 Hz: {:.1f} ms", 1e3 * least->dc_delay.value());
-    return fmt::format("delay at 0 Hz: {:.1f} ms (band {}) to {:.1f} ms (band {})",
-                       1e3 * least->dc_delay.value(), least->band, 1e3 * most->dc_delay.value(), most->band);
+    const auto where = [](const FilterDelay& delay) {
+        return delay.band > 0 ? fmt::format("band {}", delay.band)
+                              : fmt::format("at {:g} deg/s", delay.from.value());
+    };
+    return fmt::format("delay at 0 Hz: {:.1f} ms ({}) to {:.1f} ms ({})", 1e3 * least->dc_delay.value(),
+                       where(*least), 1e3 * most->dc_delay.value(), where(*most));
 }
 
 }  // namespace

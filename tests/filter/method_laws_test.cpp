@@ -19,6 +19,7 @@ std::string some_number(const Key& key, std::mt19937& engine) {
         return std::uniform_real_distribution<double>(std::max(low, key.above),
                                                       std::min(high, key.at_most))(engine);
     };
+    if (key.name == "gear-ratio") return fmt::format("{:.3f}", between(60.0, 140.0));
     switch (key.dimension) {
         case Dimension::frequency:
             return fmt::format("{:.3f}Hz", between(2.0, 120.0));

@@ -16,7 +16,8 @@ namespace ripplenotch {
 /// Delay of a filter that can come into force: of the only one, or of one band.
 struct FilterDelay {
     int band = 0;        ///< 0 when the method has no bands
-    DegPerSec from, to;  ///< of the band
+    DegPerSec from, to;  ///< of the band, or twice the speed of a filter that follows it; both 0 for one that
+                         ///< does neither
     std::string filter;  ///< what it is, in words
     Seconds dc_delay;    ///< group delay at 0 Hz at the log's rate; a ramp comes late by this
 };

@@ -191,7 +191,7 @@ Comparison compare_on_log(const Request& request, const Field& field, std::optio
 
 ExitCode run(const Request& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
-    const Field field = load_contenders(request.methods, provenance);
+    const Field field = load_contenders(request.methods, request.lines, provenance);
     auto lines = lines_of(request.lines, field, provenance);
     const Comparison comparison = request.log.empty()
                                       ? compare_on_signals(request, field, std::move(lines))

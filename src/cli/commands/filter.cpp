@@ -62,7 +62,7 @@ WriteOptions write_options(const Request& request, std::optional<int> log_decima
     return options;
 }
 
-// Stated, else from the joint file, else from the table.
+// Stated, else the method's own, else from the joint file, else from the table.
 Gear gear_of(const Request& request, const ChosenMethod& method) {
     Gear gear;
     if (method.table != nullptr) {
@@ -73,6 +73,12 @@ Gear gear_of(const Request& request, const ChosenMethod& method) {
         const JointFacts joint = load_joint_facts(*request.joint_file);
         if (joint.gear_ratio) gear.ratio = joint.gear_ratio;
         if (!joint.orders.empty()) gear.orders = joint.orders;
+    }
+    const Settings& settings = *method.settings;
+    if (settings.has("gear-ratio")) {
+        gear.ratio = GearRatio(settings.number("gear-ratio"));
+        gear.orders.clear();
+        for (const double order : settings.list("orders")) gear.orders.emplace_back(order);
     }
     if (request.gear_ratio) gear.ratio = GearRatio(*request.gear_ratio);
     if (!request.orders.empty()) gear.orders.clear();
@@ -143,7 +149,9 @@ Provenance provenance_of(const Request& request, const Job& job, const ChosenMet
     provenance.inputs.push_back(input_record(job.log));
     provenance.inputs.back().rows = rows;
     if (!method.table_path.empty()) provenance.inputs.push_back(input_record(method.table_path));
-    if (request.joint_file) provenance.inputs.push_back(input_record(*request.joint_file));
+    if (!method.joint_path.empty()) provenance.inputs.push_back(input_record(method.joint_path));
+    if (request.joint_file && *request.joint_file != method.joint_path)
+        provenance.inputs.push_back(input_record(*request.joint_file));
     return provenance;
 }
 
@@ -197,7 +205,8 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
 ExitCode run(const Request& request, const std::string& command_line) {
     check(request);
     const ChosenMethod method =
-        choose_method(request.method.empty() ? "switching" : request.method, request.table);
+        choose_method(request.method.empty() ? "switching" : request.method, request.table,
+                      {request.gear_ratio, request.orders, request.joint_file});
     const Gear gear = gear_of(request, method);
     for (const Job& job : jobs_of(request)) run_job(request, job, method, gear, command_line);
     return ExitCode::done;
@@ -207,7 +216,7 @@ std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
     options.arguments("LOG", request->logs, true, "logs to filter; - is standard input");
     options.text("--method", request->method, "SPEC",
-                 "name,key=value,...: switching, fixed, lowpass, none; see docs/methods");
+                 "name,key=value,...: switching, tracking, fixed, lowpass, none; see docs/methods");
     options.text("--table", request->table, "FILE",
                  "table.json of method switching, which is then the default");
     options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");
@@ -221,11 +230,11 @@ std::function<ExitCode()> attach(Options& options) {
     options.text("--metrics", request->metrics, "FILE",
                  "JSON about attenuation, residual, delays, switches, gaps; with --out-dir a folder");
     options.number("--gear-ratio", request->gear_ratio, Dimension::none,
-                   "for the metrics; switching has it from its table");
+                   "for methods that follow the gear, and the metrics; switching has it from its table");
     options.numbers("--orders", request->orders, Dimension::none,
-                    "for the metrics (default: the table's, else 1,2)");
+                    "the same (default for the metrics: the method's, else 1,2)");
     options.text("--joint-file", request->joint_file, "FILE",
-                 "joint.json with gear ratio and orders, for the metrics");
+                 "joint.json with gear ratio and orders, for the same");
     options.number("--gap", request->gap_steps, Dimension::none,
                    "a step in time of more than this many median steps starts a new run");
     attach_log(options, request->log);

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+// One notch per order, retuned at every sample from the joint speed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "filter/methods/list.hpp"
+#include "filter/ripple_keys.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/state_variable.hpp"
+#include "ripplenotch/design/notch.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 3> composites = {"single", "double", "triple"};
+constexpr std::array<std::string_view, 2> low_rules = {"fade", "park"};
+
+constexpr std::array keys = {
+    gear_ratio_key,
+    orders_key,
+    joint_key,
+    Key{.name = "q", .default_text = "2.5", .above = 0.0, .help = "centre over -3 dB width of each order"},
+    Key{.name = "depth",
+        .dimension = Dimension::decibel,
+        .above = 0.0,
+        .help = "attenuation at the centre, e.g. 40dB; a full null when not given"},
+    Key{.name = "weights",
+        .kind = KeyKind::list,
+        .at_most = 1.0,
+        .help = "share of each order that is taken out, one per order, e.g. 1:0.5"},
+    Key{.name = "composite",
+        .kind = KeyKind::choice,
+        .default_text = "single",
+        .choices = composites,
+        .help = "how many narrower notches side by side make up one of this width"},
+    Key{.name = "min",
+        .dimension = Dimension::frequency,
+        .default_text = "4Hz",
+        .above = 0.0,
+        .help = "no centre goes below this"},
+    Key{.name = "fade",
+        .dimension = Dimension::frequency,
+        .default_text = "1.5Hz",
+        .help = "low=fade: the share rises from 0 at min to all of it at min + fade"},
+    Key{.name = "low",
+        .kind = KeyKind::choice,
+        .default_text = "fade",
+        .choices = low_rules,
+        .help = "slower than min: fade (out above it already) or park (the centre stays at min, the depth "
+                "ends at a quarter of it)"},
+    Key{.name = "speed-lowpass",
+        .dimension = Dimension::frequency,
+        .above = 0.0,
+        .help = "first-order low-pass on the speed; none when not given"},
+    Key{.name = "slew",
+        .above = 0.0,
+        .at_most = 1.0,
+        .help = "largest change of a centre from one sample to the next, as a share, e.g. 0.05; unlimited "
+                "when not given"},
+};
+
+// Lines near half the sample rate cannot be notched; the share falls to nothing before they get there.
+constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
+
+struct Plan {
+    RippleOrders ripple;
+    std::vector<double> weights;
+    std::vector<double> spread;  ///< centres of the composite's notches, relative to the order's
+    double sample_rate_hz = 0.0;
+    double q_each = 0.0;
+    double depth_gain = 0.0;  ///< at the centre, with full share
+    double min_hz = 0.0, fade_hz = 0.0;
+    bool parks = false;
+    double speed_pole = 0.0;  ///< of the low-pass on the speed, 0 for none
+    double slew = 1.0;
+
+    /// Where the notch of a line at `hz` is put.
+    [[nodiscard]] double center_hz(double hz) const noexcept {
+        return std::clamp(hz, min_hz, none_above_rate * sample_rate_hz);
+    }
+    [[nodiscard]] double high_share(double hz) const noexcept {
+        const double full = full_below_rate * sample_rate_hz, none = none_above_rate * sample_rate_hz;
+        return std::clamp((none - hz) / (none - full), 0.0, 1.0);
+    }
+    /// What is left of the line at the centre, for a line at `hz`.
+    [[nodiscard]] double left_at_center(std::size_t line, double hz) const noexcept {
+        double share = weights[line] * high_share(hz);
+        double gain = depth_gain;
+        if (parks) {
+            // The square root of the gain moves linearly, as ArduPilot has it.
+            const double on = std::clamp((hz / min_hz - 0.25) / 0.75, 0.0, 1.0);
+            const double root = 1.0 - on * (1.0 - std::sqrt(depth_gain));
+            gain = root * root;
+        } else if (fade_hz > 0.0) {
+            share *= std::clamp((hz - min_hz) / fade_hz, 0.0, 1.0);
+        } else if (hz < min_hz) {
+            share = 0.0;
+        }
+        return 1.0 - share * (1.0 - gain);
+    }
+};
+
+// n notches of bandwidth B/n side by side have the width of one of bandwidth B. ArduPilot's definition of the
+// bandwidth, B = 2 (f - f_low) with f_low the lower -3 dB edge: Q = f f_low / (f^2 - f_low^2).
+double q_of_each(double q, double count) {
+    const double low = (std::sqrt(1.0 + 4.0 * q * q) - 1.0) / (2.0 * q);  // f_low / f
+    const double each = 1.0 - (1.0 - low) / count;
+    return each / (1.0 - each * each);
+}
+
+std::vector<double> spread_of(double q, std::size_t count) {
+    if (count == 1) return {1.0};
+    const double low = (std::sqrt(1.0 + 4.0 * q * q) - 1.0) / (2.0 * q);
+    const double aside = 2.0 * (1.0 - low) / 32.0;
+    if (count == 2) return {1.0 - aside, 1.0 + aside};
+    return {1.0 - aside, 1.0, 1.0 + aside};
+}
+
+Plan plan(const Settings& settings, Hertz sample_rate) {
+    Plan p;
+    p.ripple = ripple_orders("tracking", settings);
+    p.weights = per_order("tracking", settings, "weights", p.ripple, 1.0);
+    p.sample_rate_hz = sample_rate.value();
+    const double q = settings.number("q");
+    const std::string composite = settings.text("composite");
+    const std::size_t count = composite == "triple" ? 3 : composite == "double" ? 2 : 1;
+    p.q_each = q_of_each(q, static_cast<double>(count));
+    p.spread = spread_of(q, count);
+    if (settings.has("depth")) p.depth_gain = std::pow(10.0, -settings.number("depth") / 20.0);
+    p.min_hz = settings.number("min");
+    p.fade_hz = settings.number("fade");
+    p.parks = settings.text("low") == "park";
+    if (!(p.min_hz < full_below_rate * p.sample_rate_hz)) {
+        raise<UsageError>("method tracking, min: {} Hz is not below {} Hz, which is {} of the sample rate",
+                          shortest(p.min_hz), shortest(full_below_rate * p.sample_rate_hz),
+                          shortest(full_below_rate));
+    }
+    if (!(p.fade_hz >= 0.0))
+        raise<UsageError>("method tracking, fade: {} Hz is negative", shortest(p.fade_hz));
+    for (const double weight : p.weights) {
+        if (!(weight >= 0.0)) raise<UsageError>("method tracking, weights: {} is negative", shortest(weight));
+    }
+    if (settings.has("speed-lowpass")) {
+        const double cutoff_hz = settings.number("speed-lowpass");
+        p.speed_pole = std::exp(-2.0 * std::numbers::pi * cutoff_hz / p.sample_rate_hz);
+    }
+    if (settings.has("slew")) p.slew = settings.number("slew");
+    return p;
+}
+
+class TrackingFilter final : public CausalFilter {
+  public:
+    explicit TrackingFilter(Plan plan) : plan_(std::move(plan)), lines_(plan_.ripple.orders.size()) {
+        for (Line& line : lines_) line.notches.resize(plan_.spread.size());
+    }
+
+    void process(const Samples& in, std::span<double> out) override {
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            if (!started_) start(in.velocity_deg_s[k], in.torque_nm[k]);
+            follow(in.velocity_deg_s[k]);
+            double y = in.torque_nm[k] - origin_nm_;
+            for (Line& line : lines_) {
+                for (Notch& notch : line.notches) y -= line.taken * step(notch.tuning, notch.state, y);
+            }
+            out[k] = origin_nm_ + y;
+        }
+    }
+    void restart() override { started_ = false; }
+
+  private:
+    struct Notch {
+        BandPassTuning tuning;
+        BandPassState state;
+    };
+    struct Line {
+        double center_hz = 0.0;
+        double taken = 0.0;  ///< share of the band-pass that is subtracted
+        std::vector<Notch> notches;
+    };
+
+    void start(double velocity_deg_s, double torque_nm) {
+        started_ = true;
+        origin_nm_ = torque_nm;
+        speed_deg_s_ = velocity_deg_s;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            tune(i, plan_.center_hz(plan_.ripple.hz(i, velocity_deg_s)));
+            for (Notch& notch : lines_[i].notches) notch.state = {};
+        }
+        tuned_for_deg_s_ = std::nan("");
+    }
+
+    // Signed speed is smoothed, so that a joint that turns round goes through zero.
+    void follow(double velocity_deg_s) {
+        speed_deg_s_ = velocity_deg_s + plan_.speed_pole * (speed_deg_s_ - velocity_deg_s);
+        if (speed_deg_s_ == tuned_for_deg_s_) return;
+        bool arrived = true;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const double hz = plan_.ripple.hz(i, speed_deg_s_);
+            const double wanted = plan_.center_hz(hz), now = lines_[i].center_hz;
+            double center = wanted;
+            if (plan_.slew < 1.0)
+                center = std::clamp(wanted, now * (1.0 - plan_.slew), now / (1.0 - plan_.slew));
+            arrived = arrived && center == wanted;
+            if (center != now) tune(i, center);
+            lines_[i].taken = 1.0 - plan_.left_at_center(i, hz);
+        }
+        tuned_for_deg_s_ = arrived ? speed_deg_s_ : std::nan("");
+    }
+
+    void tune(std::size_t line, double center_hz) {
+        lines_[line].center_hz = center_hz;
+        for (std::size_t j = 0; j < plan_.spread.size(); ++j) {
+            const double at = std::numbers::pi * center_hz * plan_.spread[j] / plan_.sample_rate_hz;
+            lines_[line].notches[j].tuning = BandPassTuning::at(std::tan(at), plan_.q_each);
+        }
+    }
+
+    Plan plan_;
+    std::vector<Line> lines_;
+    double origin_nm_ = 0.0, speed_deg_s_ = 0.0;
+    double tuned_for_deg_s_ = 0.0;  ///< nothing to do while the speed is this
+    bool started_ = false;
+};
+
+std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
+    return std::make_unique<TrackingFilter>(plan(settings, sample_rate));
+}
+
+FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec speed) {
+    const Plan p = plan(settings, sample_rate);
+    FrozenFilter filter;
+    for (std::size_t i = 0; i < p.ripple.orders.size(); ++i) {
+        const double hz = p.ripple.hz(i, speed.value());
+        const double left = p.left_at_center(i, hz);
+        if (left >= 1.0) continue;
+        for (const double relative : p.spread) {
+            NotchSpec notch{.center = Hertz(p.center_hz(hz) * relative), .q = p.q_each};
+            if (left > 0.0) notch.depth_db = -20.0 * std::log10(left);
+            filter.cascade.push_back(design_notch(notch, sample_rate));
+        }
+        filter.note +=
+            fmt::format("{}{:.4g} Hz", filter.note.empty() ? "notches at " : ", ", p.center_hz(hz));
+        if (left > p.depth_gain) filter.note += fmt::format(" (gain {:.3g} at the centre)", left);
+    }
+    if (filter.note.empty()) filter.note = "too slow for any notch: passes";
+    return filter;
+}
+
+}  // namespace
+
+const Method filter_methods::tracking = {
+    .name = "tracking",
+    .summary = "one notch per order, retuned at every sample from the joint speed",
+    .source =
+        "trapezoidal state-variable form (Zavalishin); weight and fade as Betaflight's rpm_filter, parking "
+        "and composite notches as ArduPilot's harmonic notch",
+    .keys = keys,
+    .start = start,
+    .frozen = frozen,
+};
+
+}  // namespace ripplenotch

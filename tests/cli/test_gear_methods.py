@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""Methods that follow the gear: where they get it from, on the command line."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+MOVE = DATA / "paper_move_2s.csv"
+
+
+def joint(ratio=100.0, orders=(1.0, 2.0), amplitudes=(0.8, 0.5), phases=(0.0, 0.0)):
+    """A joint.json with lines that follow the motor, and a tone, as identify writes it."""
+    lines = [
+        {"kind": "order", "order": n, "order_output": n * 100.0, "order_output_stderr": None, "hz": None,
+         "amplitude_nm": a, "phase_deg": p, "snr": 20.0, "speed_range_deg_s": [-171, -10], "amplitude_by_speed": []}
+        for n, a, p in zip(orders, amplitudes, phases)
+    ]
+    lines.append({"kind": "tone", "order": None, "order_output": None, "order_output_stderr": None, "hz": 50.0,
+                  "amplitude_nm": 0.1, "phase_deg": None, "snr": 9.0, "speed_range_deg_s": [0, 1],
+                  "amplitude_by_speed": []})
+    return json.dumps({
+        "schema": "ripplenotch/joint/1", "tool": "ripplenotch", "version": "0", "command": "", "inputs": [],
+        "verdict": "", "conclusive": True, "joint": "", "sample_rate_hz": 1000.0, "evidence": "order spectrum",
+        "gear_ratio": {"value": ratio, "stderr": 0.01, "ci95": [99.9, 100.1], "candidates": []},
+        "lines": lines, "notes": []})
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        (self.folder / "joint.json").write_text(joint())
+
+    def run_tool(self, *words):
+        return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, cwd=self.folder, timeout=120)
+
+    def good(self, *words):
+        done = self.run_tool(*words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def filtered(self, *words):
+        self.good("filter", MOVE, *words, "-o", "out.csv", "--metrics", "out.json", "--force")
+        return (self.folder / "out.csv").read_bytes(), json.loads((self.folder / "out.json").read_text())
+
+
+class WhereTheGearComesFrom(Case):
+    def test_keys_options_and_joint_file_give_the_same_bytes(self):
+        by_keys, metrics = self.filtered("--method", "tracking,gear-ratio=100,orders=1:2")
+        self.assertEqual([100.0, [1, 2]], [metrics["gear_ratio"], [o["order"] for o in metrics["orders"]]])
+        for words in (["--method", "tracking", "--gear-ratio", 100, "--orders", "1,2"],
+                      ["--method", "tracking,joint=joint.json"], ["--method", "tracking", "--joint-file", "joint.json"],
+                      ["--method", "tracking,joint=joint.json,gear-ratio=100"]):
+            self.assertEqual(self.filtered(*words)[0], by_keys, words)
+
+    def test_metrics_spell_out_what_the_joint_file_said_and_record_it(self):
+        _, metrics = self.filtered("--method", "tracking,q=3,joint=joint.json")
+        self.assertEqual(metrics["method"], "tracking,q=3,gear-ratio=100,orders=1:2")
+        self.assertEqual(metrics["inputs"][1]["name"], "joint.json")
+        again, _ = self.filtered("--method", metrics["method"])
+        self.assertEqual(again, self.filtered("--method", "tracking,q=3,joint=joint.json")[0])
+
+    def test_keys_that_are_given_win_over_the_joint_file(self):
+        _, metrics = self.filtered("--method", "tracking,orders=2,joint=joint.json")
+        self.assertEqual(metrics["method"], "tracking,orders=2,gear-ratio=100")
+
+    def test_without_a_gear_it_says_what_to_give(self):
+        done = self.run_tool("filter", MOVE, "--method", "tracking")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("gear-ratio", done.stderr)
+        self.assertIn("joint=joint.json", done.stderr)
+
+    def test_a_joint_file_that_found_nothing_is_refused_with_the_way_out(self):
+        (self.folder / "nothing.json").write_text(joint(ratio=None))
+        done = self.run_tool("filter", MOVE, "--method", "tracking,joint=nothing.json")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("give gear-ratio=", done.stderr)
+        (self.folder / "no_lines.json").write_text(joint(orders=()))
+        done = self.run_tool("filter", MOVE, "--method", "tracking,joint=no_lines.json")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("give orders=", done.stderr)
+        self.assertFalse((self.folder / "out.csv").exists())
+
+    def test_compare_knows_the_lines_from_the_method_alone(self):
+        done = self.good("compare", MOVE, "--method", "tracking,gear-ratio=100,orders=1:2", "--json")
+        figures = json.loads(done.stdout)["methods"][1]
+        self.assertEqual([1, 2], [line["order"] for line in figures["attenuation_db"]])
+
+
+class Delay(Case):
+    def test_the_delay_of_a_tracking_notch_is_listed_by_speed_and_falls_with_it(self):
+        _, metrics = self.filtered("--method", "tracking,gear-ratio=100,orders=1:2")
+        speeds = [entry["speed_from_deg_s"] for entry in metrics["delays"]]
+        delays = [entry["dc_delay_ms"] for entry in metrics["delays"]]
+        self.assertEqual(speeds, [5, 10, 20, 50, 100, 200])
+        self.assertEqual(delays[2:], sorted(delays[2:], reverse=True))
+        self.assertAlmostEqual(delays[4], 1.5 / (2 * 3.14159265 * 27.7778 * 2.5) * 1e3, delta=0.05)
+
+
+if __name__ == "__main__":
+    unittest.main()
