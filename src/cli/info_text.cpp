@@ -21,7 +21,7 @@ std::string range_text(const std::optional<Range>& range) {
 std::string first_sentence(const LogInfo& log) {
     std::string text = fmt::format("{}: {} rows", log.source, log.rows);
     if (log.duration_s && log.timebase.sample_rate.value() > 0.0) {
-        text += fmt::format(" over {:.4g} s at {:.5g} Hz", *log.duration_s, log.timebase.sample_rate.value());
+        text += fmt::format(" over {:.6g} s at {:.5g} Hz", *log.duration_s, log.timebase.sample_rate.value());
     } else {
         text += " without a clock";
     }
