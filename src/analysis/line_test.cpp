@@ -10,6 +10,8 @@ namespace {
 constexpr double guard_cells = 3.0;  // the main lobe of a Hann line and its first side lobe
 constexpr double near_cells = 12.0;
 constexpr double far_cells = 40.0;
+constexpr double inner_from_cells = 2.0;  // noise through a lightly damped resonance is only a few cells wide
+constexpr double inner_to_cells = 5.0;
 constexpr double fewest_cells = 4.0;
 // Maxima are looked for among correlated bins: about this many independent tries per cell. With it, white
 // noise raises a false alarm somewhat less often than allowed.
@@ -145,7 +147,10 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, do
         gather_below(spectrum, k, guard_cells * spectrum.bins_per_cell, near_cells * spectrum.bins_per_cell,
                      scratch);
         const double below = median(scratch) / median_over_mean(spectrum.averages_at(k));
-        const double local = std::max({near.power, far.power, below});
+        gather(spectrum, k, inner_from_cells * spectrum.bins_per_cell,
+               inner_to_cells * spectrum.bins_per_cell, scratch);
+        const double inner = median(scratch) / median_over_mean(spectrum.averages_at(k));
+        const double local = std::max({near.power, far.power, below, inner});
         if (near.cells < fewest_cells || !(local > 0.0)) continue;
         const double chance =
             std::min(1.0, tries * exceedance(power[k] / local, spectrum.averages_at(k), far.cells));

@@ -361,11 +361,16 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
     for (const Sweep& sweep : sweeps) found.turns += sweep.length_turns;
 
     std::vector<double> taken_orders, taken_hz;
+    Stack angle, time;
+    bool changed = true;
     const double least_amplitude = options.least_share * torque_range(logs);
     for (std::size_t round = 0; round < 2 * options.most_lines && found.lines.size() < options.most_lines;
          ++round) {
-        const Stack angle = stack_sweeps(sweeps, Axis::angle, options.stack);
-        const Stack time = stack_sweeps(sweeps, Axis::time, options.stack);
+        if (changed) {
+            angle = stack_sweeps(sweeps, Axis::angle, options.stack);
+            time = stack_sweeps(sweeps, Axis::time, options.stack);
+            changed = false;
+        }
         if (round == 0) {
             found.resolution_orders = angle.resolution;
             found.lowest_order = static_cast<double>(angle.first) * angle.spacing;
@@ -415,6 +420,7 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
             line.hz_stderr = time.resolution;
         }
         subtract(sweeps, stack.axis, place);
+        changed = true;
         found.lines.push_back(std::move(line));
     }
     return found;

@@ -110,14 +110,14 @@ SpectralPeak measure_peak(const std::vector<Piece>& pieces, const std::vector<do
     SpectralPeak peak;
     peak.hz = weights > 0.0 ? mean / weights : start;
     peak.amplitude_nm = std::sqrt(square / static_cast<double>(pieces.size()));
-    peak.floor_nm = std::sqrt(found.floor);
+    peak.floor_nm = spectrum.floor_nm[k];  // the test's own floor leans to the safe side
     peak.snr = peak.amplitude_nm / peak.floor_nm;
     peak.false_alarm = found.false_alarm;
     const double phase = std::arg(strongest) - 2.0 * std::numbers::pi * peak.hz * strongest_middle;
     peak.phase_deg = std::remainder(phase * degrees_per_radian, 360.0);
     // var f = 3 S / (pi^2 A^2 T^3) for one-sided noise density S; floor^2 = 2 S * noise bandwidth.
     const double duration = spectrum.piece_duration.value();
-    const double density = found.floor / (2.0 * hann_noise_bandwidth * bin_width);
+    const double density = peak.floor_nm * peak.floor_nm / (2.0 * hann_noise_bandwidth * bin_width);
     const double bound =
         std::sqrt(3.0 * density / (peak.amplitude_nm * peak.amplitude_nm * duration * duration * duration)) /
         std::numbers::pi;

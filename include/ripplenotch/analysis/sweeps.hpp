@@ -21,7 +21,7 @@ struct SweepRule {
         12.0;  ///< smooth part of the torque taken out: this many terms per output turn
     std::size_t most_samples =
         300000;  ///< with more, evenly chosen pieces are used, so that the cost is bounded
-    std::size_t most_pieces = 200;
+    std::size_t most_pieces = 100;
     double gap_steps = 10.0;
 };
 
