@@ -168,6 +168,37 @@ TEST_CASE("too short a log is refused with the number needed") {
     CHECK_THROWS_WITH(identify_all({trace}), Contains("at least 64"));
 }
 
+TEST_CASE(
+    "noise and fixed tones, at steady speeds or back and forth, give an order in at most one set of logs of "
+    "a hundred") {
+    constexpr int runs = 200;
+    int alarms = 0;
+    for (int run = 0; run < runs; ++run) {
+        const double fast = 30.0 + 10.0 * (run % 10);
+        const bool steady = run % 2 == 0;
+        std::vector<Trace> logs;
+        for (int j = 0; j < (steady ? 3 : 1); ++j) {
+            tests::TraceRecipe recipe;
+            recipe.rate_hz = 500.0;
+            recipe.seconds = steady ? 3.0 : 8.0;
+            recipe.noise_nm = 0.2;
+            recipe.seed = static_cast<std::uint32_t>(9000 + 7 * run + j);
+            recipe.speed_deg_s = [=](double t) {
+                return steady ? fast + 17.0 * j : fast * std::sin(0.8 * t + run);
+            };
+            if (run % 5 == 4) recipe.tones = {{17.3, 0.5, 0.0}, {50.0, 0.3, 1.0}};
+            if (run % 5 == 3) recipe.jitter_steps = 0.15;
+            logs.push_back(tests::make_trace(recipe));
+            auto& x = logs.back().torque_nm;
+            const double colour = run % 5 == 1 ? 0.9 : run % 5 == 2 ? 0.99 : 0.0;
+            for (std::size_t k = 1; k < x.size(); ++k) x[k] += colour * (x[k - 1] - 10.0);
+        }
+        alarms += lines_of(identify_all(logs), LineKind::order).empty() ? 0 : 1;
+    }
+    INFO(alarms << " of " << runs);
+    CHECK(alarms <= runs / 100);
+}
+
 TEST_CASE("a million samples are identified within two seconds") {
     const Trace trace = at_speed(60, 1, 1000.0);
     const auto start = std::chrono::steady_clock::now();

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the analysis room: what the sweeps say about one line at a place on an axis.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/analysis/motion_lines.hpp"
+
+namespace ripplenotch {
+
+/// Independent cells behind a sweep's own noise floor.
+inline constexpr double floor_cells = 80.0;
+
+/// What one line at each bin explains beyond noise: weighted sum over sweeps of power over noise, less one
+/// each.
+double gain_at(const Stack& stack, std::size_t bin);
+
+/// What a line explains beyond noise, in nats: weighted sum over sweeps of power over noise, less one each.
+/// Sweeps weigh by what they know, the best of them 1.
+double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place);
+
+/// True when a line is seen even without the sweep that shows it best: a burst, or another joint's ripple
+/// that passes by, fills one sweep. Where one sweep is most of the log, its halves count as two.
+bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place);
+
+/// Place of the maximum of the summed power near a bin, all sweeps together, by Newton steps.
+double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin);
+
+/// Fills in what the sweeps say about a line at `place`.
+void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, MotionLine& line);
+
+/// Takes a line out of each sweep with the amplitude and phase that it has there.
+void subtract(std::vector<Sweep>& sweeps, Axis axis, double place);
+
+}  // namespace ripplenotch
