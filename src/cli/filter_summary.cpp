@@ -42,7 +42,12 @@ std::vector<std::string> filter_warnings(const FilterMetrics& metrics) {
             first.from_s, first.to_s, first.row + 1, stream.gap_count == 1 ? "it" : "each"));
     }
     const double measured = stream.measured_rate.value(), used = metrics.sample_rate.value();
-    if (measured > 0.0 && std::abs(measured / used - 1.0) > rate_worth_a_word) {
+    // A table's notches are where its own rate puts them; what counts is the rate of the whole log.
+    if (metrics.table_rate && measured > 0.0) {
+        const auto warning =
+            table_rate_warning(*metrics.table_rate, nominal_rate(stream.measured_rate), metrics.source);
+        if (warning) warnings.push_back(*warning);
+    } else if (measured > 0.0 && std::abs(measured / used - 1.0) > rate_worth_a_word) {
         warnings.push_back(
             fmt::format("{}: the first rows run at {:.6g} Hz, which the filter was started with, the whole "
                         "log at {:.6g} Hz; its clock "

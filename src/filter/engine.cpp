@@ -58,21 +58,29 @@ Hertz nominal_rate(Hertz measured) {
     return measured;
 }
 
-std::optional<std::string> compare_table_rate(Hertz table, Hertz log, const std::string& source) {
+void refuse_table_rate(Hertz table, Hertz log, const std::string& source) {
+    const double off = std::abs(log / table - 1.0);
+    if (off <= rate_refused) return;
+    raise<DataError>(
+        "{}: the log runs at {:.6g} Hz, the table was designed for {:.6g} Hz, and its notches would be {} "
+        "off; design "
+        "the table with --sample-rate {:.6g}Hz, or state the log's true rate with --sample-rate",
+        source, log.value(), table.value(), per_cent(off), log.value());
+}
+
+std::optional<std::string> table_rate_warning(Hertz table, Hertz log, const std::string& source) {
     const double off = std::abs(log / table - 1.0);
     if (off <= rate_worth_a_word) return std::nullopt;
-    if (off > rate_refused) {
-        raise<DataError>(
-            "{}: the log runs at {:.6g} Hz, the table was designed for {:.6g} Hz, and its notches would be "
-            "{} off; design the table with "
-            "--sample-rate {:.6g}Hz, or state the log's true rate with --sample-rate",
-            source, log.value(), table.value(), per_cent(off), log.value());
-    }
     return fmt::format(
         "{}: the log runs at {:.6g} Hz, the table was designed for {:.6g} Hz: its notches are {} off; design "
-        "the table with "
-        "--sample-rate {:.6g}Hz to have them right",
+        "the table "
+        "with --sample-rate {:.6g}Hz to have them right",
         source, log.value(), table.value(), per_cent(off), log.value());
+}
+
+std::optional<std::string> compare_table_rate(Hertz table, Hertz log, const std::string& source) {
+    refuse_table_rate(table, log, source);
+    return table_rate_warning(table, log, source);
 }
 
 LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : reader_(std::move(reader)) {

@@ -29,8 +29,14 @@ inline constexpr double rate_refused = 0.05;  ///< share by which a table's rate
 /// the rate itself. 1000.3 Hz gives 1000 Hz, 124.96 Hz (8.0026 ms) gives 125 Hz, 978.4 Hz stays.
 [[nodiscard]] Hertz nominal_rate(Hertz measured);
 
-/// Empty when a table designed for one rate may run at another without a word; else a warning. Throws
-/// DataError naming both rates and the remedy when they differ by more than rate_refused.
+/// Throws DataError naming both rates and the remedy when a table's rate differs from the log's by more than
+/// rate_refused.
+void refuse_table_rate(Hertz table, Hertz log, const std::string& source);
+/// A warning when they differ by more than rate_worth_a_word.
+[[nodiscard]] std::optional<std::string> table_rate_warning(Hertz table, Hertz log,
+                                                            const std::string& source);
+
+/// Both in turn, for a log whose rate is known from the start.
 [[nodiscard]] std::optional<std::string> compare_table_rate(Hertz table, Hertz log,
                                                             const std::string& source);
 

@@ -161,9 +161,7 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
     const Layout& layout = stream.reader().layout();
     say_layout(request.common, layout);
     if (method.table != nullptr) {
-        const auto warning =
-            compare_table_rate(method.table->spec().sample_rate, stream.design_rate(), layout.source);
-        if (warning) say_warnings(request.common, {&*warning, 1});
+        refuse_table_rate(method.table->spec().sample_rate, stream.design_rate(), layout.source);
     }
     FilterMetrics metrics;
     metrics.source = layout.source;
