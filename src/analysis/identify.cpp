@@ -217,7 +217,7 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
         const bool any_unknown = std::any_of(reported.begin(), reported.end(), [](const Reported& r) {
             return r.line.kind == LineKind::unknown;
         });
-        if (motion_tells || !any_unknown) {
+        if (looked.motion->sweeps > 0 && (motion_tells || !any_unknown)) {
             // Tones of the steady stretches stay; what was unknown there is what the motion now explains.
             std::erase_if(reported, [](const Reported& r) { return r.line.kind != LineKind::tone; });
             for (std::size_t i = 0; i < looked.motion->lines.size(); ++i) {

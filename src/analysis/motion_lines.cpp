@@ -55,13 +55,17 @@ Candidate best_between(const Stack& stack, double from, double to) {
     return best;
 }
 
-double torque_range(std::span<const TraceView> logs) {
-    double range = 0.0;
+/// Smaller lines are not reported: a share of the torque's range, and in any case what rounding makes of a
+/// constant.
+double least_amplitude_of(std::span<const TraceView> logs, double share) {
+    double range = 0.0, largest = 0.0;
     for (const TraceView& log : logs) {
         const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
-        if (low != log.torque_nm.end()) range = std::max(range, *high - *low);
+        if (low == log.torque_nm.end()) continue;
+        range = std::max(range, *high - *low);
+        largest = std::max({largest, std::abs(*low), std::abs(*high)});
     }
-    return range;
+    return std::max(share * range, 1e-9 * largest);
 }
 
 /// Amplitude at which a line of median floor reaches the false-alarm rate.
@@ -147,7 +151,7 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
     std::vector<double> taken_orders, taken_hz;
     Stack angle, time;
     bool changed = true;
-    const double least_amplitude = options.least_share * torque_range(logs);
+    const double least_amplitude = least_amplitude_of(logs, options.least_share);
     for (std::size_t round = 0; round < 2 * options.most_lines && found.lines.size() < options.most_lines;
          ++round) {
         if (changed) {

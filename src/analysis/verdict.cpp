@@ -35,7 +35,8 @@ bool from_motion(const Identification& result) {
 
 /// "from 3 steady stretches at 60 to 180 deg/s"
 std::string basis(const Looked& looked, const Identification& result) {
-    if (from_motion(result) && looked.motion) {
+    const bool no_stretch = !looked.steady || looked.steady->moving == 0;
+    if (looked.motion && (from_motion(result) || no_stretch)) {
         return fmt::format("{} over {:.3g} output turns at {}", plural(looked.motion->sweeps, "sweep"),
                            looked.motion->turns,
                            speeds(looked.motion->slowest_deg_s, looked.motion->fastest_deg_s));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
+#include <ctime>
 
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/identification.hpp"
@@ -129,6 +129,13 @@ TEST_CASE("a joint without ripple: surely nothing, with the amplitude that would
     CHECK_THAT(found.verdict, Contains("No ripple: no line above"));
 }
 
+TEST_CASE("a torque that never changes has no lines, whatever rounding leaves of it") {
+    const Identification found =
+        identify_all({at_speed(60, 1, 3, {}, {}, 0.0), at_speed(90, 1, 3, {}, {}, 0.0)});
+    CHECK(found.lines.empty());
+    CHECK_THAT(found.verdict, Contains("No ripple"));
+}
+
 TEST_CASE("a joint at rest: cannot tell") {
     const Identification found = identify_all({at_speed(0, 1)});
     CHECK(found.lines.empty());
@@ -199,12 +206,12 @@ TEST_CASE(
     CHECK(alarms <= runs / 100);
 }
 
-TEST_CASE("a million samples are identified within two seconds") {
+TEST_CASE("a million samples are identified in seconds") {
     const Trace trace = at_speed(60, 1, 1000.0);
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     const Identification found = identify_all({trace});
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     CHECK(found.lines.size() == 2);
-    WARN("identify, 1e6 samples at one speed: " << seconds << " s");
-    CHECK(seconds < 8.0);  // 2 s is the aim on an idle machine; tests share theirs
+    WARN("identify, 1e6 samples at one speed: " << seconds << " s of processor time");
+    CHECK(seconds < 4.0);  // processor time; 2 s is the aim of an optimised build on an idle machine
 }
