@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -26,6 +24,11 @@ constexpr Dimension dimensions[] = {Dimension::time,    Dimension::frequency, Di
 
 std::span<const Effect* const> catalogue() { return list; }
 
+std::string_view side_name(Side side) {
+    constexpr std::string_view names[] = {"motion", "ripple", "joint", "sensor", "converter"};
+    return names[static_cast<std::size_t>(side)];
+}
+
 const Effect& find_effect(std::string_view name) {
     std::vector<std::string> known;
     for (const Effect* effect : catalogue()) {
@@ -33,8 +36,8 @@ const Effect& find_effect(std::string_view name) {
         known.emplace_back(effect->name);
     }
     const auto near = nearest_name(name, known);
-    raise<UsageError>("there is no effect '{}'{}; effects: {}", name,
-                      near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(known, ", "));
+    raise<UsageError>("there is no effect '{}'{}; 'ripplenotch effects' lists them", name,
+                      near ? fmt::format(" (did you mean {}?)", *near) : "");
 }
 
 std::optional<std::size_t> find_parameter(const Effect& effect, std::string_view name) {

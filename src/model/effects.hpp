@@ -1,11 +1,49 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The declarations of every effect's record; seen by the effects' own files and by the catalogue alone.
+// The declarations of every effect's record, and what their files share; seen by the effects' own files and
+// by the catalogue alone.
 
 #include "ripplenotch/model/effect.hpp"
 
-namespace ripplenotch::effects {
+namespace ripplenotch {
+
+// Parameters that several effects have, with one meaning and one set of bounds.
+
+/// Width of the step that a friction makes at standstill.
+inline constexpr Parameter width_parameter = {.name = "width_deg_s",
+                                              .unit = "deg/s",
+                                              .help = "speed at which 76 % of it has built up",
+                                              .neutral = 0.2,
+                                              .start = 0.2,
+                                              .lower = 0.001,
+                                              .upper = 100.0,
+                                              .logarithmic = true,
+                                              .left_out = LeftOut::assumed};
+
+/// Which ripple terms an effect changes.
+inline constexpr Parameter ripple_order_parameter = {
+    .name = "order",
+    .unit = "",
+    .help = "of the ripple that it changes, in cycles per motor revolution; 0 is every order",
+    .upper = 1000.0,
+    .left_out = LeftOut::assumed};
+[[nodiscard]] inline bool concerns(Order order, double parameter) {
+    return parameter == 0.0 || parameter == order.value();
+}
+
+/// Which run of chance; a whole number.
+inline constexpr Parameter seed_parameter = {.name = "seed",
+                                             .unit = "",
+                                             .help = "which of the possible logs; its whole part counts",
+                                             .neutral = 1.0,
+                                             .start = 1.0,
+                                             .upper = 2147483647.0,
+                                             .left_out = LeftOut::assumed};
+
+namespace effects {
 #define EFFECT(name) extern const Effect name;
 #include "model/effects/effects.def"
 #undef EFFECT
-}  // namespace ripplenotch::effects
+}  // namespace effects
+
+}  // namespace ripplenotch

@@ -10,12 +10,6 @@
 namespace ripplenotch {
 namespace {
 
-std::vector<double> stated_values(const Term& term) {
-    std::vector<double> values;
-    for (const auto& value : term.values) values.push_back(value.value());
-    return values;
-}
-
 std::size_t known_parameter(const Effect& effect, const std::string& name) {
     if (const auto place = find_parameter(effect, name)) return *place;
     std::vector<std::string> known;
@@ -45,32 +39,27 @@ Term parse_term(std::string_view text) {
     return term;
 }
 
+std::vector<double> values_of(const Term& term) {
+    std::vector<double> values;
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        const Parameter& parameter = term.effect->parameters[p];
+        values.push_back(parameter.left_out == LeftOut::assumed ? term.values[p].value_or(parameter.start)
+                                                                : term.values[p].value());
+    }
+    return values;
+}
+
 std::vector<std::string> missing_values(const Model& model) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < model.terms.size(); ++i) {
         const Term& term = model.terms[i];
         for (std::size_t p = 0; p < term.values.size(); ++p) {
-            if (term.values[p]) continue;
-            names.push_back(
-                fmt::format("effects[{}].{} of {}", i, term.effect->parameters[p].name, term.effect->name));
+            const Parameter& parameter = term.effect->parameters[p];
+            if (term.values[p] || parameter.left_out == LeftOut::assumed) continue;
+            names.push_back(fmt::format("effects[{}].{} of {}", i, parameter.name, term.effect->name));
         }
     }
     return names;
-}
-
-std::vector<double> predict_nm(const Model& model, const Motion& motion) {
-    if (const auto missing = missing_values(model); !missing.empty()) {
-        raise<UsageError>("the model does not state {}; give the value, or fit it to a log first",
-                          fmt::join(missing, ", "));
-    }
-    std::vector<double> torque_nm(motion.size(), 0.0);
-    for (const Side side : {Side::joint, Side::sensor}) {
-        for (const Term& term : model.terms) {
-            if (term.effect->side == side)
-                term.effect->apply(motion, model.gear_ratio, stated_values(term), torque_nm);
-        }
-    }
-    return torque_nm;
 }
 
 }  // namespace ripplenotch

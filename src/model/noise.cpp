@@ -41,10 +41,18 @@ double Noise::normal() {
     return x * stretch;
 }
 
-void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel) {
+void add_noise(std::span<double> values, double rms, double correlation, std::uint64_t seed,
+               NoiseChannel channel) {
     if (rms == 0.0) return;
     Noise noise(seed, channel);
-    for (double& value : values) value += rms * noise.normal();
+    // The first number is drawn from where the process settles, so that the rms is the same from the start.
+    const double fresh = std::sqrt(1.0 - correlation * correlation);
+    double state = 0.0, share = 1.0;
+    for (double& value : values) {
+        state = correlation * state + share * noise.normal();
+        share = fresh;
+        value += rms * state;
+    }
 }
 
 }  // namespace ripplenotch

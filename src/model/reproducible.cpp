@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "model/reproducible.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -112,6 +113,11 @@ double exponential(double x) {
     const double power = nearest_integer(x / std::numbers::ln2);
     const double rest = (x - power * ln2_high) - power * ln2_low;
     return std::ldexp(polynomial(exponential_terms, rest), static_cast<int>(power));
+}
+
+double power(double x, double p) {
+    if (p == 1.0 || x < 1e-300) return x < 1e-300 ? 0.0 : x;
+    return exponential(std::clamp(p * natural_log(x), -690.0, 690.0));
 }
 
 double smooth_sign(double x) {

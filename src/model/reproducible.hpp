@@ -17,6 +17,10 @@ namespace ripplenotch {
 /// e to the power x for -700 <= x <= 700; relative error below 1e-15.
 [[nodiscard]] double exponential(double x);
 
+/// x to the power p for x >= 0 and p > 0, where the result is within 1e-300 and 1e300; 0 for x below 1e-300.
+/// A power of 1 is exact.
+[[nodiscard]] double power(double x, double p);
+
 /// Hyperbolic tangent of any finite number, odd to the last bit; absolute error below 1e-15.
 [[nodiscard]] double smooth_sign(double x);
 

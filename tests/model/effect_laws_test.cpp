@@ -3,65 +3,39 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <fstream>
-#include <random>
 #include <regex>
 #include <set>
 #include <sstream>
 
+#include "effects_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/model/motion.hpp"
 
 using namespace ripplenotch;
-using namespace ripplenotch::literals;
+using namespace ripplenotch::fixture;
 using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr GearRatio ratio{100.0};
-
-// Rest, both directions, slow and fast, reversal: something for every effect to act on.
-const Motion& rich_motion() {
-    static const std::vector<std::string> specs = {
-        "rest,duration=0.3s,from=20deg", "poly6,to=-70deg,duration=1s", "rest,duration=0.2s",
-        "ramp,to-speed=100deg/s,duration=0.5s",
-        "sine,amplitude=30deg,frequency=0.8Hz,duration=1.5s,phase=0deg"};
-    static const Motion motion = make_motion(specs, 500_Hz);
-    return motion;
-}
-
-std::vector<double> neutral_values(const Effect& effect) {
-    std::vector<double> values;
-    for (const Parameter& parameter : effect.parameters) values.push_back(parameter.neutral);
+// Noise on the torque, so that converters find something to change everywhere.
+const std::vector<double>& noise_nm() {
+    static const std::vector<double> values = [] {
+        std::mt19937_64 engine(5);
+        std::uniform_real_distribution<double> torque(-3.0, 3.0);
+        std::vector<double> drawn(rich_motion().size());
+        for (double& value : drawn) value = torque(engine);
+        return drawn;
+    }();
     return values;
 }
 
-// Within the bounds, and within a factor of ten of the first guess: where fits take place.
-std::vector<double> random_values(const Effect& effect, std::mt19937_64& engine) {
-    std::vector<double> values;
-    std::uniform_real_distribution<double> unit(0.0, 1.0);
-    for (const Parameter& parameter : effect.parameters) {
-        const double reach = 10.0 * std::max(std::abs(parameter.start), 1e-2);
-        const double low = std::max(parameter.lower, -reach), high = std::min(parameter.upper, reach);
-        values.push_back(low + (high - low) * unit(engine));
-    }
-    return values;
+std::vector<double> measured(const Model& model, const Motion& motion = rich_motion()) {
+    return measure_nm(model, motion, std::span(noise_nm()).first(motion.size()));
 }
 
-std::vector<double> some_torque(std::size_t count) {
-    std::mt19937_64 engine(5);
-    std::uniform_real_distribution<double> torque(-3.0, 3.0);
-    std::vector<double> values(count);
-    for (double& value : values) value = torque(engine);
-    return values;
-}
-
-std::vector<double> applied(const Effect& effect, const std::vector<double>& values,
-                            std::vector<double> torque_nm) {
-    effect.apply(rich_motion(), ratio, values, torque_nm);
-    return torque_nm;
+std::vector<double> measured(const Effect& effect, const std::vector<double>& values) {
+    return measured(with(base_model(), effect, values));
 }
 
 std::string page_of(const Effect& effect) {
@@ -81,21 +55,47 @@ TEST_CASE("effects have unique names in kebab-case, are found by them, and descr
         CHECK(std::regex_match(name, std::regex("[a-z]+(-[a-z]+)*")));
         CHECK(seen.insert(name).second);
         CHECK(&find_effect(name) == effect);
-        for (const auto text :
-             {effect->summary, effect->equation, effect->symptom, effect->look_alikes, effect->source}) {
+        for (const auto text : {effect->summary, effect->equation, effect->symptom, effect->source}) {
             CHECK(!text.empty());
         }
         CHECK(!effect->parameters.empty());
-        CHECK(effect->apply != nullptr);
+        const bool is_motion = effect->side == Side::motion, is_ripple = effect->side == Side::ripple;
+        CHECK((effect->change_motion != nullptr) == is_motion);
+        CHECK((effect->change_ripple != nullptr) == is_ripple);
+        CHECK((effect->apply != nullptr) == !(is_motion || is_ripple));
+        CHECK((!effect->chance || effect->side == Side::converter));
+        CHECK((!effect->bears_load || effect->side == Side::joint));
+        if (effect->ripple_order) CHECK(effect->parameters[*effect->ripple_order].name == "order");
+        if (effect->polar) {
+            CHECK(effect->parameters[effect->polar->size].linear);
+            CHECK(effect->parameters[effect->polar->phase].unit == "deg");
+        }
     }
-    CHECK(seen.size() >= 6);
+    CHECK(seen.size() == 27);
     CHECK_THROWS_WITH(find_effect("rippel"),
-                      Contains("did you mean ripple?") && Contains("coulomb-friction"));
+                      Contains("did you mean ripple?") && Contains("ripplenotch effects"));
+}
+
+TEST_CASE("look-alikes are effects of the catalogue, or are said in words, and each says what decides") {
+    for (const Effect* effect : catalogue()) {
+        CAPTURE(effect->name);
+        CHECK(!effect->look_alikes.empty());
+        std::set<std::string_view> seen;
+        for (const LookAlike& other : effect->look_alikes) {
+            CAPTURE(other.name);
+            CHECK(seen.insert(other.name).second);
+            CHECK(other.name != effect->name);
+            if (other.name.find(' ') == std::string_view::npos) CHECK_NOTHROW(find_effect(other.name));
+            CHECK(!other.when.empty());
+            CHECK(!other.told_by.empty());
+        }
+    }
 }
 
 TEST_CASE(
     "parameters have unique names that end in their unit, and bounds around neutral value and first guess") {
-    const std::regex ends_in_unit(".*_(nm|deg|deg_s|kgm2|hz|s|ms|percent|nm_per_deg_s|nm_s)");
+    const std::regex ends_in_unit(
+        ".*_(nm|deg|deg_s|kgm2|hz|s|percent|percent_per_nm|nm_per_deg_s|nm_per_deg2_s2|nm_s)");
     for (const Effect* effect : catalogue()) {
         std::set<std::string> seen;
         for (const Parameter& parameter : effect->parameters) {
@@ -106,6 +106,7 @@ TEST_CASE(
             CHECK(std::regex_match(name, ends_in_unit) == !parameter.unit.empty());
             CHECK(!parameter.help.empty());
             CHECK(parameter.lower < parameter.upper);
+            CHECK((!parameter.logarithmic || parameter.lower > 0.0));
             CHECK(allows(parameter, parameter.neutral));
             CHECK(allows(parameter, parameter.start));
             CHECK(allows(parameter, parameter.lower));
@@ -117,27 +118,33 @@ TEST_CASE(
 }
 
 TEST_CASE("neutral values change nothing, to the last bit") {
-    const auto torque = some_torque(rich_motion().size());
+    const auto without = measured(base_model());
     for (const Effect* effect : catalogue()) {
         CAPTURE(effect->name);
-        CHECK(applied(*effect, neutral_values(*effect), torque) == torque);
+        CHECK(measured(*effect, neutral_values(*effect)) == without);
     }
 }
 
 TEST_CASE("an effect with its first guess, or a larger amplitude, does change something") {
-    const auto torque = some_torque(rich_motion().size());
+    const auto without = measured(base_model());
     for (const Effect* effect : catalogue()) {
         CAPTURE(effect->name);
-        std::vector<double> values;
-        for (const Parameter& p : effect->parameters)
-            values.push_back(p.start == p.neutral && p.linear ? p.neutral + 1.0 : p.start);
-        CHECK(applied(*effect, values, torque) != torque);
+        CHECK(measured(*effect, active_values(*effect)) != without);
+    }
+}
+
+TEST_CASE("an effect does not act on what is not on its side") {
+    const Model empty{GearRatio(100.0), {}};
+    for (const Effect* effect : catalogue()) {
+        CAPTURE(effect->name);
+        const auto alone = predict_nm(with(empty, *effect, active_values(*effect)), rich_motion());
+        const bool adds = std::any_of(alone.begin(), alone.end(), [](double value) { return value != 0.0; });
+        CHECK(adds == (effect->side == Side::joint && !effect->uses_load));
     }
 }
 
 TEST_CASE("finite torque stays finite at random values and at every corner of the bounds") {
     std::mt19937_64 engine(6);
-    const auto torque = some_torque(rich_motion().size());
     for (const Effect* effect : catalogue()) {
         CAPTURE(effect->name);
         std::vector<std::vector<double>> trials;
@@ -150,31 +157,34 @@ TEST_CASE("finite torque stays finite at random values and at every corner of th
             }
         }
         for (const auto& values : trials) {
-            for (const double value : applied(*effect, values, torque)) REQUIRE(std::isfinite(value));
+            const auto torque = measured(*effect, values);
+            REQUIRE(
+                std::all_of(torque.begin(), torque.end(), [](double value) { return std::isfinite(value); }));
         }
     }
 }
 
 TEST_CASE("a parameter declared linear changes the torque in proportion, one that is not does not") {
     std::mt19937_64 engine(7);
-    const std::vector<double> zero(rich_motion().size(), 0.0);
     for (const Effect* effect : catalogue()) {
         for (std::size_t p = 0; p < effect->parameters.size(); ++p) {
+            if (effect->parameters[p].left_out != LeftOut::fitted) continue;
             CAPTURE(effect->name, effect->parameters[p].name);
             double scale = 0.0, error = 0.0;
-            for (int trial = 0; trial < 5; ++trial) {
+            for (int trial = 0; trial < 8; ++trial) {
                 auto low = random_values(*effect, engine), middle = low, high = low;
                 high[p] = random_values(*effect, engine)[p];
                 middle[p] = 0.5 * (low[p] + high[p]);
-                const auto a = applied(*effect, low, zero), b = applied(*effect, middle, zero),
-                           c = applied(*effect, high, zero);
-                for (std::size_t k = 0; k < zero.size(); ++k) {
+                const auto a = measured(*effect, low), b = measured(*effect, middle),
+                           c = measured(*effect, high);
+                for (std::size_t k = 0; k < a.size(); ++k) {
                     scale = std::max(scale, std::abs(c[k] - a[k]));
                     error = std::max(error, std::abs(b[k] - 0.5 * (a[k] + c[k])));
                 }
             }
+            REQUIRE(scale > 0.0);
             if (effect->parameters[p].linear) {
-                CHECK(error <= 1e-12 * scale);
+                CHECK(error <= 1e-11 * std::max(scale, 1.0));
             } else {
                 CHECK(error > 1e-6 * scale);
             }
@@ -182,27 +192,68 @@ TEST_CASE("a parameter declared linear changes the torque in proportion, one tha
     }
 }
 
-TEST_CASE(
-    "a joint effect adds the same torque whatever is there already, and each sample depends on no later "
-    "one") {
-    std::mt19937_64 engine(8);
-    const auto torque = some_torque(rich_motion().size());
-    const std::vector<double> zero(torque.size(), 0.0);
+TEST_CASE("size and phase of a polar effect are the polar form of two linear parameters") {
+    std::mt19937_64 engine(11);
     for (const Effect* effect : catalogue()) {
-        if (effect->side != Side::joint) continue;
+        if (!effect->polar) continue;
         CAPTURE(effect->name);
-        const auto values = random_values(*effect, engine);
-        const auto alone = applied(*effect, values, zero), on_top = applied(*effect, values, torque);
-        for (std::size_t k = 0; k < zero.size(); ++k)
-            REQUIRE(on_top[k] - torque[k] == Approx(alone[k]).margin(1e-11));
-        Motion half = rich_motion();
-        for (auto* column :
-             {&half.time_s, &half.position_deg, &half.velocity_deg_s, &half.acceleration_deg_s2}) {
-            column->resize(zero.size() / 2);
+        auto values = random_values(*effect, engine);
+        const auto torque_at = [&](double size, double phase_deg) {
+            values[effect->polar->size] = size;
+            values[effect->polar->phase] = phase_deg;
+            return measured(*effect, values);
+        };
+        const auto none = torque_at(0.0, 0.0), cosine = torque_at(1.0, 0.0), sine = torque_at(1.0, 90.0),
+                   both = torque_at(5.0, 36.86989764584402);  // 4 cosines, 3 sines
+        for (std::size_t k = 0; k < none.size(); ++k) {
+            const double expected = none[k] + 4.0 * (cosine[k] - none[k]) + 3.0 * (sine[k] - none[k]);
+            REQUIRE(both[k] == Approx(expected).margin(1e-11));
         }
-        std::vector<double> first_half(half.size(), 0.0);
-        effect->apply(half, ratio, values, first_half);
-        CHECK(std::equal(first_half.begin(), first_half.end(), alone.begin()));
+    }
+}
+
+TEST_CASE("no torque depends on a later sample, but for the interpolation inside the sensor") {
+    std::mt19937_64 engine(8);
+    const Motion half = first_part(rich_motion(), rich_motion().size() / 2);
+    for (const Effect* effect : catalogue()) {
+        if (effect->side == Side::sensor) continue;
+        CAPTURE(effect->name);
+        const Model model = with(base_model(), *effect, random_values(*effect, engine));
+        const auto whole = measured(model), first_half = measured(model, half);
+        CHECK(std::equal(first_half.begin(), first_half.end(), whole.begin()));
+    }
+}
+
+TEST_CASE("sensor and converter act on a sum as the sum of their actions where they say so, and only there") {
+    std::mt19937_64 engine(9);
+    const Motion& motion = rich_motion();
+    const Situation situation{.motion = motion, .ratio = GearRatio(100.0)};
+    const auto first = predict_nm(base_model(), motion);
+    for (const Effect* effect : catalogue()) {
+        if (effect->side != Side::sensor && effect->side != Side::converter) continue;
+        CAPTURE(effect->name);
+        const auto values = active_values(*effect);
+        auto a = first, b = noise_nm(), sum = first, none = std::vector<double>(motion.size(), 0.0);
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += b[k];
+        for (auto* torque : {&a, &b, &sum, &none}) effect->apply(situation, values, *torque);
+        for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += none[k] - a[k] - b[k];
+        const double error = largest_difference(sum, std::vector<double>(sum.size(), 0.0));
+        CHECK((error < 1e-12) == effect->linear_in_torque);
+    }
+}
+
+TEST_CASE("what is expected holds no chance, and what is chance goes with its seed") {
+    for (const Effect* effect : catalogue()) {
+        if (!effect->chance) continue;
+        CAPTURE(effect->name);
+        auto values = active_values(*effect);
+        CHECK(predict_nm(with(base_model(), *effect, values), rich_motion()) ==
+              predict_nm(base_model(), rich_motion()));
+        const auto once = measured(*effect, values);
+        CHECK(measured(*effect, values) == once);
+        values.back() += 1.0;
+        REQUIRE(effect->parameters.back().name == "seed");
+        CHECK(measured(*effect, values) != once);
     }
 }
 
@@ -211,9 +262,11 @@ TEST_CASE("every effect has a page that agrees with its record") {
         CAPTURE(effect->name);
         const std::string page = page_of(*effect);
         REQUIRE(!page.empty());
-        for (const auto text :
-             {effect->summary, effect->equation, effect->symptom, effect->look_alikes, effect->source}) {
+        for (const auto text : {effect->summary, effect->equation, effect->symptom, effect->source}) {
             CHECK_THAT(page, Contains(std::string(text)));
+        }
+        for (const LookAlike& other : effect->look_alikes) {
+            CHECK_THAT(page, Contains(fmt::format("| {} | {} |", other.when, other.told_by)));
         }
         for (const Parameter& p : effect->parameters) {
             CHECK_THAT(page, Contains(fmt::format("| `{}` | {} | {} | {} | {} to {} | {} | {} |", p.name,

@@ -22,20 +22,18 @@ Model model_of(std::initializer_list<std::string_view> terms) {
 }
 
 // A sensor that doubles and a sensor that adds one: their order shows.
-Effect sensor(void (*apply)(const Motion&, GearRatio, std::span<const double>, std::span<double>)) {
+Effect sensor(void (*apply)(const Situation&, std::span<const double>, std::span<double>)) {
     Effect effect{};
     effect.side = Side::sensor;
     effect.apply = apply;
     return effect;
 }
-const Effect doubling =
-    sensor([](const Motion&, GearRatio, std::span<const double>, std::span<double> torque_nm) {
-        for (double& t : torque_nm) t *= 2.0;
-    });
-const Effect adding_one =
-    sensor([](const Motion&, GearRatio, std::span<const double>, std::span<double> torque_nm) {
-        for (double& t : torque_nm) t += 1.0;
-    });
+const Effect doubling = sensor([](const Situation&, std::span<const double>, std::span<double> torque_nm) {
+    for (double& t : torque_nm) t *= 2.0;
+});
+const Effect adding_one = sensor([](const Situation&, std::span<const double>, std::span<double> torque_nm) {
+    for (double& t : torque_nm) t += 1.0;
+});
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 // An effect of the joint or of its sensor is a record of pure functions: one file in src/model/effects, one
 // line in effects.def. Law tests run over the whole list.
 
+#include <complex>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -23,6 +24,13 @@ struct Motion {
     [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 
+/// What becomes of a parameter that a model leaves out.
+enum class LeftOut {
+    fitted,   ///< it is estimated from a log; until then the model cannot be simulated
+    refused,  ///< it says which line is meant, and a fit does not search for lines: it must be stated
+    assumed,  ///< `start` is taken: a log hardly tells it
+};
+
 /// One number of an effect. Aggregate, so that tables read as data.
 struct Parameter {
     std::string_view name;  ///< with its unit: "inertia_kgm2", "amplitude_nm", "phase_deg"
@@ -32,7 +40,9 @@ struct Parameter {
         0.0;  ///< with every parameter of an effect at its neutral value, the effect changes nothing
     double start = 0.0;               ///< first guess of a search
     double lower = 0.0, upper = 0.0;  ///< both allowed
-    bool linear = false;              ///< the effect's output is an affine function of this parameter
+    bool linear = false;              ///< the torque is an affine function of this parameter
+    bool logarithmic = false;         ///< a search moves in its logarithm; lower is above 0
+    LeftOut left_out = LeftOut::fitted;
 };
 
 /// The dimension whose base unit is the parameter's unit, so that values can be typed with any unit of it.
@@ -41,21 +51,66 @@ struct Parameter {
 /// True when the value is finite and within the parameter's bounds.
 [[nodiscard]] bool allows(const Parameter& parameter, double value);
 
-enum class Side { joint, sensor };  ///< joint effects add torque; sensor effects transform the sum
+/// Where an effect acts. A model is evaluated in this order; within one side, in the order of the model.
+enum class Side {
+    motion,     ///< changes the motion or the gear ratio that everything after it sees
+    ripple,     ///< changes size and phase of the model's ripple terms
+    joint,      ///< adds torque
+    sensor,     ///< transforms the sum, as a continuous signal; noise is added after it
+    converter,  ///< transforms what is logged, noise included
+};
+[[nodiscard]] std::string_view side_name(Side side);
+
+/// Another cause that leaves nearly the same residual, and what tells the two apart.
+struct LookAlike {
+    std::string_view name;     ///< of an effect; or words, when it is not in the catalogue
+    std::string_view when;     ///< the logs in which they look alike
+    std::string_view told_by;  ///< the experiment that would decide
+};
+
+/// What an effect may look at besides its own values. Spans have motion.size() entries, or none.
+struct Situation {
+    const Motion& motion;
+    GearRatio ratio;
+    std::span<const double> load_nm = {};  ///< torque of the effects that bear load; for those that use it
+    std::span<const std::complex<double>> ripple_gain = {};  ///< of the term in hand; empty: 1 everywhere
+};
+
+/// The two parameters, in polar form, whose Cartesian form (size * cos phase, size * sin phase) the torque is
+/// linear in.
+struct Polar {
+    std::size_t size, phase;  ///< places in Effect::parameters
+};
 
 struct Effect {
-    std::string_view name;         ///< kebab-case, stable
-    std::string_view summary;      ///< one line
-    std::string_view equation;     ///< with the parameters' names, q position in deg, v speed in deg/s
-    std::string_view symptom;      ///< what a model without it leaves in the residual
-    std::string_view look_alikes;  ///< what leaves nearly the same, and the motion that tells them apart
-    std::string_view source;       ///< who described it
+    std::string_view name;      ///< kebab-case, stable
+    std::string_view summary;   ///< one line
+    std::string_view equation;  ///< with the parameters' names, q position in deg, v speed in deg/s
+    std::string_view symptom;   ///< what a model without it leaves in the residual
+    std::span<const LookAlike> look_alikes;
+    std::string_view source;  ///< who described it
     Side side = Side::joint;
     std::span<const Parameter> parameters;
-    /// Adds to (joint) or transforms (sensor) `torque_nm`, which has motion.size() entries. `values` has one
-    /// entry per parameter, in their order and units, each allowed.
-    void (*apply)(const Motion& motion, GearRatio ratio, std::span<const double> values,
+    std::optional<Polar> polar = std::nullopt;
+    bool bears_load = false;  ///< joint: its torque is part of the load that gear and bearings carry
+    bool uses_load = false;   ///< it looks at Situation::load_nm
+    bool chance = false;      ///< converter: which samples it hits is chance, so that no prediction holds it
+    bool linear_in_torque = true;  ///< sensor, converter: acts on a sum as the sum of its actions
+    std::optional<std::size_t> ripple_order = std::nullopt;  ///< joint: it is a ripple term, and this
+                                                             ///< parameter is its order
+
+    // One of the following, by side. `values` has one entry per parameter, in their order and units, each
+    // allowed. All are pure functions.
+
+    /// joint: adds to `torque_nm`; sensor, converter: transforms it. It has motion.size() entries.
+    void (*apply)(const Situation& situation, std::span<const double> values,
                   std::span<double> torque_nm) = nullptr;
+    /// motion
+    void (*change_motion)(std::span<const double> values, Motion& motion, GearRatio& ratio) = nullptr;
+    /// ripple: multiplies the complex gain of a ripple term of the order given; its torque is
+    /// amplitude * Re(gain * exp(i * angle)).
+    void (*change_ripple)(const Situation& situation, Order order, std::span<const double> values,
+                          std::span<std::complex<double>> gain) = nullptr;
 };
 
 /// All effects in the order of effects.def.

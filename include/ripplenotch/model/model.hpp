@@ -4,6 +4,7 @@
 // itself.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,15 +13,20 @@
 
 namespace ripplenotch {
 
-/// One effect with one value per parameter. An empty value is one that the model does not state: it is to be
-/// fitted to a log, and until then the model cannot be simulated.
+/// One effect with one value per parameter. An empty value is one that the model does not state; what that
+/// means is up to the parameter (LeftOut).
 struct Term {
     const Effect* effect = nullptr;
     std::vector<std::optional<double>> values;
     bool operator==(const Term&) const = default;
 };
 
-/// A sum of joint effects followed by a chain of sensor effects in the order given.
+/// A value per parameter, as the effect's functions take them: stated, or assumed. Throws
+/// std::bad_optional_access where neither is there.
+[[nodiscard]] std::vector<double> values_of(const Term& term);
+
+/// Effects in the order of the document. They act side by side (see Side), not in the order of this list;
+/// within one side they do.
 struct Model {
     GearRatio gear_ratio;
     std::vector<Term> terms;
@@ -36,11 +42,17 @@ inline constexpr GearRatio largest_gear_ratio{1e5};
 /// parameter, value out of its bounds.
 [[nodiscard]] Term parse_term(std::string_view spec);
 
-/// Names of the values that the model does not state, as "effects[1].amplitude_nm of ripple".
+/// Names of the values that the model has to state and does not, as "effects[1].amplitude_nm of ripple".
 [[nodiscard]] std::vector<std::string> missing_values(const Model& model);
 
-/// Torque along the motion, in newton-metres, without noise; motion.size() entries. Deterministic to the last
-/// bit. Throws UsageError that lists missing_values() when there are any.
+/// Torque to be expected along the motion, in newton-metres; motion.size() entries. Without noise and without
+/// the effects that are chance. Deterministic to the last bit. Throws UsageError that lists missing_values()
+/// when there are any.
 [[nodiscard]] std::vector<double> predict_nm(const Model& model, const Motion& motion);
+
+/// Torque as a sensor would log it: `noise_nm` (motion.size() entries, or none) is added after the sensor's
+/// effects and before the converter's, and chance acts.
+[[nodiscard]] std::vector<double> measure_nm(const Model& model, const Motion& motion,
+                                             std::span<const double> noise_nm);
 
 }  // namespace ripplenotch

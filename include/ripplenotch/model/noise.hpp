@@ -8,7 +8,7 @@ namespace ripplenotch {
 
 /// Which signal a stream of noise belongs to. Each has a stream of its own, so that adding noise to one
 /// signal leaves the noise of another as it was. The numbers are part of what a seed means: never change one.
-enum class NoiseChannel : std::uint64_t { torque = 1, velocity = 2 };
+enum class NoiseChannel : std::uint64_t { torque = 1, velocity = 2, spikes = 3, dropout = 4 };
 
 /// Normally distributed numbers that are the same on every machine: mt19937_64 (specified by the standard)
 /// and our own transform, because std::normal_distribution differs between libraries.
@@ -26,7 +26,9 @@ class Noise {
     bool has_spare_ = false;
 };
 
-/// Adds white noise of the given rms to each value.
-void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel);
+/// Adds noise of the given rms to each value. With `correlation` c in [0, 1) each number is c times the one
+/// before plus a fresh part (first-order autoregression): 0 is white, near 1 is slow.
+void add_noise(std::span<double> values, double rms, double correlation, std::uint64_t seed,
+               NoiseChannel channel);
 
 }  // namespace ripplenotch

@@ -86,10 +86,11 @@ void round_to(std::vector<double>& values, const std::optional<double>& decimals
 }
 
 std::vector<NumberColumn> make_columns(const SimulateOptions& options, const Model& model, Motion motion) {
-    std::vector<double> torque_nm = predict_nm(model, motion);
     const auto seed = static_cast<std::uint64_t>(options.seed);
-    add_white_noise(torque_nm, options.noise.value(), seed, NoiseChannel::torque);
-    add_white_noise(motion.velocity_deg_s, options.velocity_noise.value(), seed, NoiseChannel::velocity);
+    std::vector<double> noise_nm(motion.size(), 0.0);
+    add_noise(noise_nm, options.noise.value(), 0.0, seed, NoiseChannel::torque);
+    std::vector<double> torque_nm = measure_nm(model, motion, noise_nm);
+    add_noise(motion.velocity_deg_s, options.velocity_noise.value(), 0.0, seed, NoiseChannel::velocity);
     std::vector<NumberColumn> columns;
     columns.push_back({"time_s", std::move(motion.time_s)});
     columns.push_back({"velocity_deg_s", std::move(motion.velocity_deg_s)});
@@ -174,9 +175,8 @@ std::function<ExitCode()> attach(Options& options) {
     options.number("--inertia", o->inertia_kgm2, Dimension::inertia, "adds the effect inertia");
     options.texts("--ripple", o->ripples, "ORDER:AMPLITUDE[:PHASE]",
                   "adds the effect ripple: 1:0.8Nm:0deg; repeatable");
-    options.texts(
-        "--effect", o->effects, "NAME,KEY=VALUE,...",
-        fmt::format("adds any effect: offset,torque_nm=0.2; repeatable; effects: {}", names(catalogue())));
+    options.texts("--effect", o->effects, "NAME,KEY=VALUE,...",
+                  "adds any effect: offset,torque_nm=0.2; repeatable; 'ripplenotch effects' lists them");
     options.texts(
         "--motion", o->motions, "NAME,KEY=VALUE,...",
         fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one "

@@ -21,9 +21,16 @@ constexpr Parameter parameters[] = {
      .upper = 100.0},
 };
 
-void apply(const Motion& motion, GearRatio, std::span<const double> values, std::span<double> torque_nm) {
+constexpr LookAlike look_alikes[] = {
+    {"offset", "the joint moves one way only and never rests", "a log that reverses, or rests"},
+    {"hysteresis", "every reversal is quick",
+     "slow reversals: hysteresis builds up over an angle, Coulomb friction at once"},
+    {"viscous-friction", "there is one speed in each direction", "two speeds in the same direction"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        torque_nm[k] += values[0] * smooth_sign(motion.velocity_deg_s[k] / values[1]);
+        torque_nm[k] += values[0] * smooth_sign(situation.motion.velocity_deg_s[k] / values[1]);
     }
 }
 
@@ -34,9 +41,7 @@ const Effect effects::coulomb_friction{
     .summary = "friction of constant size against the motion, behind the sensor",
     .equation = "torque = torque_nm * tanh(v / width_deg_s)",
     .symptom = "a residual that changes sign with the direction of motion and does not depend on the speed",
-    .look_alikes =
-        "offset when the joint moves one way only and never rests; hysteresis, whose step takes an angle to "
-        "build up, when every reversal is quick",
+    .look_alikes = look_alikes,
     .source = "Coulomb; Olsson et al., European Journal of Control 4, 1998, for the smoothed form",
     .side = Side::joint,
     .parameters = parameters,

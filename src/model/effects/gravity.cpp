@@ -19,9 +19,18 @@ constexpr Parameter parameters[] = {
      .upper = 360.0},
 };
 
-void apply(const Motion& motion, GearRatio, std::span<const double> values, std::span<double> torque_nm) {
+constexpr LookAlike look_alikes[] = {
+    {"crosstalk of the sensor, once per output revolution", "always",
+     "a second mounting of the joint; no log of one mounting tells"},
+    {"offset", "the travel is below 30 deg", "a travel of half a turn"},
+    {"quadratic-viscous-friction", "the log is one smooth stroke",
+     "the same positions passed at two speeds, or in both directions"},
+    {"drift", "the log is one stroke", "coming back to the same position later"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        torque_nm[k] += values[0] * cos_degrees(motion.position_deg[k] + values[1]);
+        torque_nm[k] += values[0] * cos_degrees(situation.motion.position_deg[k] + values[1]);
     }
 }
 
@@ -34,12 +43,12 @@ const Effect effects::gravity{
     .symptom =
         "the same torque at the same position in both directions, at rest too; one cycle per output "
         "revolution",
-    .look_alikes =
-        "crosstalk of the sensor, once per output revolution: no log of one joint in one mounting tells "
-        "them apart; offset when the travel is below 30 deg",
+    .look_alikes = look_alikes,
     .source = "statics; Taghirad and Belanger, 1998, for the crosstalk",
     .side = Side::joint,
     .parameters = parameters,
+    .polar = Polar{0, 1},
+    .bears_load = true,
     .apply = apply,
 };
 

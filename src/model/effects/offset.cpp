@@ -13,7 +13,13 @@ constexpr Parameter parameters[] = {
      .linear = true},
 };
 
-void apply(const Motion&, GearRatio, std::span<const double> values, std::span<double> torque_nm) {
+constexpr LookAlike look_alikes[] = {
+    {"coulomb-friction", "the joint moves one way only and never rests", "a log that reverses, or rests"},
+    {"gravity", "the travel is small", "a travel of half a turn"},
+    {"drift", "the log is short", "a log several times as long"},
+};
+
+void apply(const Situation&, std::span<const double> values, std::span<double> torque_nm) {
     for (double& torque : torque_nm) torque += values[0];
 }
 
@@ -24,9 +30,7 @@ const Effect effects::offset{
     .summary = "zero error of the torque sensor",
     .equation = "torque = torque_nm",
     .symptom = "a residual of the same size and sign everywhere, at rest too",
-    .look_alikes =
-        "coulomb-friction when the joint moves one way only and never rests; gravity over a small travel; "
-        "drift in a short log",
+    .look_alikes = look_alikes,
     .source = "the definition of a strain gauge bridge's zero",
     .side = Side::joint,
     .parameters = parameters,

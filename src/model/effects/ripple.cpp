@@ -12,7 +12,8 @@ constexpr Parameter parameters[] = {
      .neutral = 1.0,
      .start = 1.0,
      .lower = 0.01,
-     .upper = 1000.0},
+     .upper = 1000.0,
+     .left_out = LeftOut::refused},
     {.name = "amplitude_nm",
      .unit = "Nm",
      .help = "zero to peak",
@@ -26,12 +27,27 @@ constexpr Parameter parameters[] = {
      .upper = 360.0},
 };
 
-void apply(const Motion& motion, GearRatio ratio, std::span<const double> values,
-           std::span<double> torque_nm) {
-    const double cycles_per_turn = values[0] * ratio.value();
+constexpr LookAlike look_alikes[] = {
+    {"tone", "the log has one speed only", "a second speed: an order moves with it, a tone stays"},
+    {"ripple-modulation", "the joint turns less than half a revolution",
+     "a travel of a whole output revolution"},
+    {"gear-ratio", "the joint turns less than half a revolution", "a travel of a whole output revolution"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
+    const double cycles_per_turn = values[0] * situation.ratio.value();
     const double amplitude_nm = values[1], phase_deg = values[2];
+    const auto& position_deg = situation.motion.position_deg;
+    if (situation.ripple_gain.empty()) {
+        for (std::size_t k = 0; k < torque_nm.size(); ++k)
+            torque_nm[k] += amplitude_nm * cos_degrees(cycles_per_turn * position_deg[k] + phase_deg);
+        return;
+    }
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        torque_nm[k] += amplitude_nm * cos_degrees(cycles_per_turn * motion.position_deg[k] + phase_deg);
+        const double angle_deg = cycles_per_turn * position_deg[k] + phase_deg;
+        const auto gain = situation.ripple_gain[k];
+        torque_nm[k] +=
+            amplitude_nm * (gain.real() * cos_degrees(angle_deg) - gain.imag() * sin_degrees(angle_deg));
     }
 }
 
@@ -42,12 +58,12 @@ const Effect effects::ripple{
     .summary = "torque ripple of the harmonic drive, locked to the motor angle",
     .equation = "torque = amplitude_nm * cos(order * gear_ratio * q + phase_deg)",
     .symptom = "a line at f = order * gear_ratio * |v| / 360 that moves in proportion to the speed",
-    .look_alikes =
-        "a tone of fixed frequency when the log has one speed only; ripple-modulation or a wrong gear ratio "
-        "when the joint turns less than half a revolution",
+    .look_alikes = look_alikes,
     .source = "Kim, Kim, Song, Trans. KSME A, 2011, eq. 1 and 3; Taghirad and Belanger, 1998",
     .side = Side::joint,
     .parameters = parameters,
+    .polar = Polar{1, 2},
+    .ripple_order = 0,
     .apply = apply,
 };
 

@@ -13,8 +13,17 @@ constexpr Parameter parameters[] = {
      .linear = true},
 };
 
-void apply(const Motion& motion, GearRatio, std::span<const double> values, std::span<double> torque_nm) {
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] += values[0] * motion.velocity_deg_s[k];
+constexpr LookAlike look_alikes[] = {
+    {"quadratic-viscous-friction", "fewer than three speeds are in the log",
+     "three speeds, the fastest five times the slowest"},
+    {"coulomb-friction", "there is one speed in each direction", "two speeds in the same direction"},
+    {"gravity", "the log is one smooth stroke",
+     "the same positions passed at two speeds, or in both directions"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
+    for (std::size_t k = 0; k < torque_nm.size(); ++k)
+        torque_nm[k] += values[0] * situation.motion.velocity_deg_s[k];
 }
 
 }  // namespace
@@ -24,9 +33,7 @@ const Effect effects::viscous_friction{
     .summary = "friction in proportion to the speed, behind the sensor",
     .equation = "torque = coefficient_nm_per_deg_s * v",
     .symptom = "a residual in proportion to the speed, of its sign",
-    .look_alikes =
-        "quadratic-viscous-friction when fewer than three speeds are in the log; coulomb-friction when "
-        "there is one speed in each direction",
+    .look_alikes = look_alikes,
     .source = "Olsson et al., European Journal of Control 4, 1998",
     .side = Side::joint,
     .parameters = parameters,

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "model/between_samples.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "model/reproducible.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// Value at a place of the signal that goes on as its ends.
+double at(std::span<const double> values, std::ptrdiff_t place) {
+    const auto last = static_cast<std::ptrdiff_t>(values.size()) - 1;
+    return values[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(place, 0, last))];
+}
+
+constexpr int shift_points = 16;
+constexpr int lag_points = 6;
+
+// Weights of the samples at -(count / 2 - 1), ..., count / 2 for the value at u in [0, 1).
+template <int count>
+std::array<double, count> lagrange_weights(double u) {
+    std::array<double, count> weights{};
+    for (int i = 0; i < count; ++i) {
+        double weight = 1.0;
+        for (int j = 0; j < count; ++j) {
+            if (j != i) weight *= (u - (j - count / 2 + 1)) / static_cast<double>(i - j);
+        }
+        weights[static_cast<std::size_t>(i)] = weight;
+    }
+    return weights;
+}
+
+// integral from 0 to 1 of u^m rate exp(-(1 - u) rate), m = 0 ... lag_points - 1. Partial integration ties
+// neighbours together: I(m) = 1 - m / rate * I(m - 1). Upwards it is stable for a large rate, downwards for a
+// small one.
+std::array<double, lag_points> moments(double rate) {
+    std::array<double, lag_points> found{};
+    if (rate > lag_points) {
+        found[0] = 1.0 - exponential(-std::min(rate, 700.0));
+        for (int m = 1; m < lag_points; ++m)
+            found[static_cast<std::size_t>(m)] = 1.0 - m / rate * found[static_cast<std::size_t>(m - 1)];
+        return found;
+    }
+    constexpr int far = 60;
+    double moment = rate / (far + 1.0);
+    for (int m = far; m > 0; --m) {
+        moment = (1.0 - moment) * rate / m;
+        if (m <= lag_points) found[static_cast<std::size_t>(m - 1)] = moment;
+    }
+    return found;
+}
+
+// Coefficients of u^0, u^1, ... of the polynomial that is 1 at sample i and 0 at the others.
+std::array<double, lag_points> lagrange_coefficients(int i) {
+    std::array<double, lag_points> coefficients{1.0};
+    for (int j = 0; j < lag_points; ++j) {
+        if (j == i) continue;
+        const double zero = j - lag_points / 2 + 1, scale = i - j;
+        for (std::size_t m = lag_points - 1; m > 0; --m)
+            coefficients[m] = (coefficients[m - 1] - zero * coefficients[m]) / scale;
+        coefficients[0] = -zero * coefficients[0] / scale;
+    }
+    return coefficients;
+}
+
+}  // namespace
+
+void shift_samples(std::span<double> values, double delay) {
+    if (values.empty()) return;
+    const double whole = std::ceil(delay);
+    const auto weights = lagrange_weights<shift_points>(whole - delay);
+    const auto steps = static_cast<std::ptrdiff_t>(whole);
+    const std::vector<double> before(values.begin(), values.end());
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(k) - steps - (shift_points / 2 - 1);
+        double sum = 0.0;
+        for (int i = 0; i < shift_points; ++i)
+            sum += weights[static_cast<std::size_t>(i)] * at(before, first + i);
+        values[k] = sum;
+    }
+}
+
+void first_order_lag(std::span<double> values, double time_constant) {
+    if (values.empty()) return;
+    const double rate = 1.0 / time_constant;
+    const auto moment = moments(rate);
+    std::array<double, lag_points> weights{};
+    for (int i = 0; i < lag_points; ++i) {
+        const auto coefficients = lagrange_coefficients(i);
+        for (std::size_t m = 0; m < lag_points; ++m)
+            weights[static_cast<std::size_t>(i)] += coefficients[m] * moment[m];
+    }
+    const double kept = exponential(-std::min(rate, 700.0));
+    const std::vector<double> before(values.begin(), values.end());
+    for (std::size_t k = 1; k < values.size(); ++k) {
+        // From sample k - 1 (u = 0) to sample k (u = 1).
+        const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(k) - 1 - (lag_points / 2 - 1);
+        double sum = kept * values[k - 1];
+        for (int i = 0; i < lag_points; ++i)
+            sum += weights[static_cast<std::size_t>(i)] * at(before, first + i);
+        values[k] = sum;
+    }
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "model/between_samples.hpp"
+#include "model/effects.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "delay_s",
+     .unit = "s",
+     .help = "by which the torque is behind the motion; below 0: the motion is behind the torque",
+     .start = 0.002,
+     .lower = -0.5,
+     .upper = 0.5},
+};
+
+constexpr LookAlike look_alikes[] = {
+    {"lag", "the ripple is slow against the lag",
+     "a faster move: a lag makes the ripple smaller, a delay does not"},
+    {"ripple-direction-dependence", "there is one speed in each direction",
+     "two speeds in the same direction"},
+    {"velocity-bias", "the log is one stroke",
+     "strokes both ways: the phase of a delay returns, that of a bias grows on"},
+    {"a velocity estimated by a filter or a backward difference", "always",
+     "the position beside the velocity"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
+    if (values[0] == 0.0) return;
+    shift_samples(torque_nm, values[0] * situation.motion.sample_rate.value());
+}
+
+}  // namespace
+
+const Effect effects::delay{
+    .name = "delay",
+    .summary = "the torque is logged later than the motion",
+    .equation = "logged torque(t) = torque(t - delay_s)",
+    .symptom =
+        "lines of the ripple in the residual that grow with the speed, and a residual in proportion to the "
+        "jerk",
+    .look_alikes = look_alikes,
+    .source =
+        "sampling and transport; Lagrange for the interpolation (Laakso et al., IEEE Signal Processing "
+        "Magazine 13, 1996)",
+    .side = Side::sensor,
+    .parameters = parameters,
+    .apply = apply,
+};
+
+}  // namespace ripplenotch

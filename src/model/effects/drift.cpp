@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "model/effects.hpp"
+#include "model/reproducible.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "rate_nm_s",
+     .unit = "Nm/s",
+     .help = "slope at the beginning",
+     .start = 0.01,
+     .lower = -1e3,
+     .upper = 1e3,
+     .linear = true},
+    {.name = "time_constant_s",
+     .unit = "s",
+     .help = "after which the slope has fallen to 37 %; the longest is a straight line in any log",
+     .neutral = 1e6,
+     .start = 100.0,
+     .lower = 0.1,
+     .upper = 1e6,
+     .logarithmic = true},
+};
+
+constexpr LookAlike look_alikes[] = {
+    {"offset", "the log is short", "a log several times as long, or one that begins after a rest"},
+    {"gravity", "the log is one stroke", "coming back to the same position later"},
+    {"viscous-friction", "the speed only grows or only falls", "the same speed early and late in the log"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
+    const auto& time_s = situation.motion.time_s;
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
+        const double elapsed_s = time_s[k] - time_s.front();
+        torque_nm[k] += values[0] * values[1] * (1.0 - exponential(-std::min(elapsed_s / values[1], 700.0)));
+    }
+}
+
+}  // namespace
+
+const Effect effects::drift{
+    .name = "drift",
+    .summary = "the zero of the torque sensor wanders with the clock, as it warms up",
+    .equation = "torque = rate_nm_s * time_constant_s * (1 - exp(-t / time_constant_s))",
+    .symptom = "a residual that follows the time of the log, at rest too, and not the motion",
+    .look_alikes = look_alikes,
+    .source = "the thermal response of a body of one time constant (Newton's law of cooling)",
+    .side = Side::joint,
+    .parameters = parameters,
+    .apply = apply,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "model/direction.hpp"
+#include "model/effects.hpp"
+#include "model/reproducible.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "torque_nm",
+     .unit = "Nm",
+     .help = "half the width of the loop",
+     .start = 0.5,
+     .upper = 1e5,
+     .linear = true},
+    {.name = "width_deg",
+     .unit = "deg",
+     .help = "angle after a reversal in which 63 % of the change is made",
+     .neutral = 1.0,
+     .start = 1.0,
+     .lower = 0.001,
+     .upper = 1000.0,
+     .logarithmic = true},
+    {.name = "initial_state",
+     .unit = "",
+     .help = "part of the torque that is there when the log begins, -1 to 1",
+     .lower = -1.0,
+     .upper = 1.0,
+     .left_out = LeftOut::assumed},
+};
+
+constexpr LookAlike look_alikes[] = {
+    {"coulomb-friction", "every reversal is quick, or the width is below what the position resolves",
+     "slow reversals: hysteresis builds up over an angle, Coulomb friction at once"},
+    {"offset", "the joint moves one way only", "a log that reverses"},
+    {"gravity", "the width is as large as the travel", "a longer travel"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
+    const Motion& motion = situation.motion;
+    HeldDirection direction;
+    // Within one direction the state depends on the angle gone since the reversal alone, so that noise on the
+    // position does not ratchet it along.
+    double state = values[2], at_reversal = state, reversal_deg = 0.0;
+    int held = 0;
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
+        const int now = direction.update(motion.velocity_deg_s[k]);
+        if (now != held) {
+            held = now;
+            at_reversal = state;
+            reversal_deg = motion.position_deg[k > 0 ? k - 1 : 0];
+        }
+        if (held != 0) {
+            const double gone_deg = std::max(held * (motion.position_deg[k] - reversal_deg), 0.0);
+            state = held + (at_reversal - held) * exponential(-std::min(gone_deg / values[1], 700.0));
+        }
+        torque_nm[k] += values[0] * state;
+    }
+}
+
+}  // namespace
+
+const Effect effects::hysteresis{
+    .name = "hysteresis",
+    .summary = "soft wind-up of the gear: after a reversal the friction torque turns over within an angle",
+    .equation =
+        "torque = torque_nm * z, dz/dq = (1 - z * direction) / width_deg, z = initial_state at the start",
+    .symptom =
+        "a residual that after each reversal goes from one side to the other over an angle, not over a time, "
+        "and stays at rest",
+    .look_alikes = look_alikes,
+    .source = "Dahl, 1968; for harmonic drives Taghirad and Belanger, 1998; Tuttle, 1992",
+    .side = Side::joint,
+    .parameters = parameters,
+    .apply = apply,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "model/between_samples.hpp"
+#include "model/effects.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "time_constant_s",
+     .unit = "s",
+     .help = "1 / (2 pi times the cut-off frequency in Hz): 0.00796 for 20 Hz",
+     .start = 0.002,
+     .upper = 10.0},
+};
+
+constexpr LookAlike look_alikes[] = {
+    {"delay", "the ripple is slow against the lag",
+     "a faster move: a lag makes the ripple smaller, a delay does not"},
+    {"ripple-speed-dependence", "the ripple falls with the speed",
+     "inertia torque and ripple in the same log: a lag delays both"},
+    {"resonance", "the damping is 0.5 or more", "a faster move"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
+    if (values[0] == 0.0) return;
+    first_order_lag(torque_nm, values[0] * situation.motion.sample_rate.value());
+}
+
+}  // namespace
+
+const Effect effects::lag{
+    .name = "lag",
+    .summary = "the amplifier or a filter follows with one time constant",
+    .equation = "time_constant_s * d(logged torque)/dt + logged torque = torque",
+    .symptom = "the residual of a delay, and ripple that is smaller the faster the joint turns",
+    .look_alikes = look_alikes,
+    .source =
+        "the low-pass of first order; Kim, Kim, Song, Trans. KSME A, 2011, section 4.2, for one that was "
+        "mislabelled",
+    .side = Side::sensor,
+    .parameters = parameters,
+    .apply = apply,
+};
+
+}  // namespace ripplenotch

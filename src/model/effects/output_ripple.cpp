@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "model/effects.hpp"
+#include "model/reproducible.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "order",
+     .unit = "",
+     .help = "cycles per output revolution",
+     .neutral = 2.0,
+     .start = 2.0,
+     .lower = 0.01,
+     .upper = 1e5,
+     .left_out = LeftOut::refused},
+    {.name = "amplitude_nm",
+     .unit = "Nm",
+     .help = "zero to peak",
+     .start = 0.5,
+     .upper = 1e5,
+     .linear = true},
+    {.name = "phase_deg",
+     .unit = "deg",
+     .help = "phase of the cosine where the position of the joint is zero",
+     .lower = -360.0,
+     .upper = 360.0},
+};
+
+constexpr LookAlike look_alikes[] = {
+    {"gravity", "the order is 2 and the travel is below half a turn",
+     "a travel of a whole output revolution"},
+    {"ripple", "the order is near a multiple of the gear ratio", "a travel of several output revolutions"},
+    {"offset", "the travel is a small part of a cycle", "a travel of a whole output revolution"},
+};
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
+    const auto& position_deg = situation.motion.position_deg;
+    for (std::size_t k = 0; k < torque_nm.size(); ++k)
+        torque_nm[k] += values[1] * cos_degrees(values[0] * position_deg[k] + values[2]);
+}
+
+}  // namespace
+
+const Effect effects::output_ripple{
+    .name = "output-ripple",
+    .summary =
+        "torque that repeats with the output angle: misalignment, crosstalk of the sensor, a bearing behind "
+        "the gear",
+    .equation = "torque = amplitude_nm * cos(order * q + phase_deg)",
+    .symptom = "the same torque at the same position in both directions, order cycles per output revolution",
+    .look_alikes = look_alikes,
+    .source =
+        "Taghirad and Belanger, 1998, for misalignment; Godler et al., 1999, for the placing of the gauges",
+    .side = Side::joint,
+    .parameters = parameters,
+    .polar = Polar{1, 2},
+    .apply = apply,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "model/effects.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "frequency_hz",
+     .unit = "Hz",
+     .help = "of the undamped resonance; at the upper bound there is none",
+     .neutral = 1e5,
+     .start = 40.0,
+     .lower = 0.5,
+     .upper = 1e5,
+     .logarithmic = true},
+    {.name = "damping",
+     .unit = "",
+     .help = "damping ratio; from 0.5 on it is a low-pass of second order rather than a resonance",
+     .neutral = 0.1,
+     .start = 0.1,
+     .lower = 0.001,
+     .upper = 2.0,
+     .logarithmic = true},
+};
+
+constexpr LookAlike look_alikes[] = {
+    {"ripple-speed-dependence", "its frequency is above the fastest ripple",
+     "a faster move: a resonance turns the phase as well"},
+    {"lag", "the damping is 0.5 or more", "inertia torque and ripple in the same log: a lag delays both"},
+    {"delay", "its frequency is above the fastest ripple", "a faster move"},
+};
+
+void change_ripple(const Situation& situation, Order order, std::span<const double> values,
+                   std::span<std::complex<double>> gain) {
+    if (values[0] >= parameters[0].upper) return;
+    const double cycles_per_deg = order.value() * situation.ratio.value() / 360.0;
+    for (std::size_t k = 0; k < gain.size(); ++k) {
+        // In the direction of negative angle the torque's phasor turns backwards: there the response is its
+        // conjugate.
+        const double u = cycles_per_deg * situation.motion.velocity_deg_s[k] / values[0];
+        const double real = 1.0 - u * u, imaginary = 2.0 * values[1] * u;
+        const double square = real * real + imaginary * imaginary;
+        const auto before = gain[k];
+        gain[k] = {(before.real() * real + before.imag() * imaginary) / square,
+                   (before.imag() * real - before.real() * imaginary) / square};
+    }
+}
+
+}  // namespace
+
+const Effect effects::resonance{
+    .name = "resonance",
+    .summary = "the joint's elasticity swells the ripple where the frequency of a line meets it",
+    .equation =
+        "ripple * H, H = 1 / (1 - u^2 + 2 i damping u), u = order * gear_ratio * v / 360 / frequency_hz",
+    .symptom =
+        "lines of the ripple in the residual in a band of speed, with a phase that turns by half a cycle "
+        "through it",
+    .look_alikes = look_alikes,
+    .source = "the steady response of a mass on a damped spring; Tuttle, 1992",
+    .side = Side::ripple,
+    .parameters = parameters,
+    .change_ripple = change_ripple,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "model/effects.hpp"
+#include "model/reproducible.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Parameter parameters[] = {
+    {.name = "output_order",
+     .unit = "",
+     .help = "cycles of the modulation per output revolution",
+     .neutral = 1.0,
+     .start = 1.0,
+     .lower = 0.01,
+     .upper = 1e4,
+     .left_out = LeftOut::refused},
+    {.name = "depth_percent",
+     .unit = "%",
+     .help = "zero to peak, of the size of the ripple",
+     .start = 30.0,
+     .upper = 1000.0,
+     .linear = true},
+    {.name = "phase_deg",
+     .unit = "deg",
+     .help = "phase of the cosine where the position of the joint is zero",
+     .lower = -360.0,
+     .upper = 360.0},
+    ripple_order_parameter,
+};
+
+constexpr LookAlike look_alikes[] = {
+    {"gear-ratio", "the joint turns less than a revolution", "a travel of a whole output revolution"},
+    {"ripple-load-dependence", "gravity makes the load follow the position",
+     "the same positions with another load"},
+};
+
+void change_ripple(const Situation& situation, Order order, std::span<const double> values,
+                   std::span<std::complex<double>> gain) {
+    if (!concerns(order, values[3])) return;
+    const auto& position_deg = situation.motion.position_deg;
+    for (std::size_t k = 0; k < gain.size(); ++k)
+        gain[k] *= 1.0 + 0.01 * values[1] * cos_degrees(values[0] * position_deg[k] + values[2]);
+}
+
+}  // namespace
+
+const Effect effects::ripple_modulation{
+    .name = "ripple-modulation",
+    .summary =
+        "ripple whose size swells and fades with the output angle: an eccentric or tilted circular spline",
+    .equation = "ripple amplitude * (1 + depth_percent / 100 * cos(output_order * q + phase_deg))",
+    .symptom = "two lines beside each line of the ripple, output_order cycles per output revolution away",
+    .look_alikes = look_alikes,
+    .source =
+        "amplitude modulation; Tuttle, 1992, and Taghirad and Belanger, 1998, for dissipation and torque "
+        "that change over the output turn",
+    .side = Side::ripple,
+    .parameters = parameters,
+    .polar = Polar{1, 2},
+    .change_ripple = change_ripple,
+};
+
+}  // namespace ripplenotch
