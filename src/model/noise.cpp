@@ -55,4 +55,8 @@ void add_noise(std::span<double> values, double rms, double correlation, std::ui
     }
 }
 
+void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel) {
+    add_noise(values, rms, 0.0, seed, channel);
+}
+
 }  // namespace ripplenotch

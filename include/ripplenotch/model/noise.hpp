@@ -31,4 +31,7 @@ class Noise {
 void add_noise(std::span<double> values, double rms, double correlation, std::uint64_t seed,
                NoiseChannel channel);
 
+/// The same without correlation.
+void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel);
+
 }  // namespace ripplenotch
