@@ -291,6 +291,8 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<G
     if (!certain && !best.hinted && !best.listed) return result;
     result.order_of_line = best.n;
     fit(lines, best, result.fit);
+    // The robust fit moves the value a little from where the comparison of combs left it; one ratio, one number.
+    if (result.fit.value) result.fit.candidates.front().value = *result.fit.value;
     return result;
 }
 
