@@ -16,6 +16,7 @@ REGISTRIES = {
     "formats": ("src/log/formats.def", "FORMAT"),
     "effects": ("src/model/effects.def", "EFFECT"),
     "motions": ("src/model/motions.def", "MOTION"),
+    "export": ("src/export/targets.def", "TARGET"),
 }
 
 
@@ -27,7 +28,7 @@ def listed(kind):
     path, word = REGISTRIES[kind]
     candidates = [SOURCE / path, *sorted((SOURCE / "src").rglob(pathlib.Path(path).name))]
     text = next(c for c in candidates if c.is_file()).read_text()
-    return [name.replace("_", "-") for name in re.findall(rf"^{word}\((\w+)\)", text, re.M)]
+    return [name.rstrip("_").replace("_", "-") for name in re.findall(rf"^{word}\((\w+)\)", text, re.M)]
 
 
 class Pages(unittest.TestCase):

@@ -17,9 +17,10 @@ SEES = {
     "design": {"core"},
     "model": {"core"},
     "filter": {"core", "log", "analysis", "design"},
+    "export": {"core", "design"},
     "evaluate": {"core", "filter", "analysis", "design"},
-    "artifact": {"core", "log", "analysis", "design", "filter", "evaluate", "model"},
-    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "artifact"},
+    "artifact": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export"},
+    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "artifact"},
 }
 
 # Third-party header -> the files that may include it.

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// An export target is a record: one file in src/export/targets, one line in targets.def, one page in
+// docs/export. Law tests run over the list.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/export/arithmetic.hpp"
+#include "ripplenotch/export/filter_set.hpp"
+
+namespace ripplenotch {
+
+struct Written {
+    std::string bytes;
+    std::vector<std::string> warnings;  ///< what the target cannot hold exactly and how it was rounded
+};
+
+/// Bands and sections in the order of the file.
+struct LoadedFilters {
+    std::vector<std::vector<LoadedSection>> bands;
+};
+
+struct Target {
+    std::string_view name, summary, source;
+    bool binary = false;
+    std::span<const Key> keys = {};
+    /// `heading` says what made the file, one line each, for a comment; it may be empty. Throws UsageError,
+    /// naming value, limit and remedy, when the target cannot hold the filters.
+    Written (*write)(const FilterSet& filters, const Settings& settings,
+                     std::span<const std::string> heading) = nullptr;
+    /// Reads what write() wrote, from the bytes alone; `filters` says at which rate and speeds parameters
+    /// become filters. Throws DataError that begins with `source`.
+    LoadedFilters (*read)(std::string_view bytes, const std::string& source, const FilterSet& filters,
+                          const Settings& settings) = nullptr;
+    /// One line to paste where the file is used, with `path` in it; empty when there is nothing to say.
+    std::string (*usage)(const FilterSet& filters, const Settings& settings,
+                         const std::string& path) = nullptr;
+};
+
+[[nodiscard]] std::span<const Target* const> export_targets();
+/// Throws UsageError with the nearest name.
+[[nodiscard]] const Target& find_target(std::string_view name);
+
+}  // namespace ripplenotch

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/export/target.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "export/targets.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+constexpr const Target* list[] = {
+#define TARGET(name) &targets::name,
+#include "export/targets.def"
+#undef TARGET
+};
+}  // namespace
+
+std::span<const Target* const> export_targets() { return list; }
+
+const Target& find_target(std::string_view name) {
+    std::vector<std::string> known;
+    for (const Target* target : export_targets()) {
+        if (target->name == name) return *target;
+        known.emplace_back(target->name);
+    }
+    const auto near = nearest_name(name, known);
+    raise<UsageError>("there is no export target '{}'{}; targets: {}", name,
+                      near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(known, ", "));
+}
+
+}  // namespace ripplenotch

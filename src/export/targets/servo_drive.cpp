@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// Servo drives of the Panasonic MINAS and Omron G5 kind: whole hertz, a width code, a depth code.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "export/parameters.hpp"
+#include "export/targets.hpp"
+#include "export/text.hpp"
+#include "export/text_reader.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array keys = {limits_key};
+
+// Width over centre is 0.5 * 2^(code / 4), code 0 to 20: from Q 2 down to Q 1/16. Depth code d leaves d
+// per cent at the centre; 0 cuts it off.
+constexpr double sharpest_q = 2.0;
+constexpr double widest_q = 1.0 / 16.0;
+constexpr double lowest_hz = 50.0, highest_hz = 4999.0;  // 5000 turns the notch off
+
+double q_of_width(double code) { return sharpest_q / std::exp2(code / 4.0); }
+double gain_of_depth(double code) { return code / 100.0; }
+
+int width_code(double q) {
+    // A tenth of a code step is as good as exact.
+    const double code = 4.0 * std::log2(sharpest_q / q);
+    if (code < -0.1) {
+        raise<UsageError>(
+            "the drive cannot hold Q {}: its narrowest width code is 0, half the centre, and the sharpest Q "
+            "{:.1f}; "
+            "design with --q 2 or less, or filter outside the drive",
+            shortest(q), sharpest_q);
+    }
+    if (code > 20.1) {
+        raise<UsageError>(
+            "the drive cannot hold Q {}: its widest width code is 20, Q {}; design with a higher --q",
+            shortest(q), widest_q);
+    }
+    return static_cast<int>(std::round(code));
+}
+
+Written write(const FilterSet& filters, const Settings& settings, std::span<const std::string> heading) {
+    const SharedShape shape = shared_shape(filters, "servo-drive");
+    const int width = width_code(shape.q);
+    const int depth = static_cast<int>(std::round(100.0 * shape.gain));
+    Written written;
+    written.bytes = comment_lines(heading, "# ");
+    written.bytes +=
+        "# Width code w: -3 dB width over centre is 0.5 * 2^(w/4). Depth code d: d per cent is left at the "
+        "centre.\n";
+    if (filters.by_speed()) {
+        written.bytes +=
+            "# The drive does not follow the speed: the application has to write these at run time.\n";
+    }
+    written.bytes += "band,speed_from_deg_s,speed_to_deg_s,notch,frequency_hz,width_code,depth_code\n";
+    for (const ExportBand& band : filters.bands) {
+        for (std::size_t i = 0; i < band.sections.size(); ++i) {
+            const double center = band.sections[i].center.value();
+            check_range(settings,
+                        fmt::format("the drive's notch frequency of {}", describe(band.sections[i])), center,
+                        lowest_hz, highest_hz, "filter this line outside the drive");
+            const double whole = std::max(1.0, std::round(center));
+            if (whole != center) {
+                written.warnings.push_back(fmt::format("{}: {} Hz is {} Hz in the drive", describe(band),
+                                                       shortest(center), shortest(whole)));
+            }
+            written.bytes += fmt::format("{},{},{},{},{},{},{}\n", band.number, shortest(band.from.value()),
+                                         shortest(band.to.value()), i + 1, shortest(whole), width, depth);
+        }
+    }
+    const double held_q = q_of_width(width);
+    if (std::abs(held_q / shape.q - 1.0) > 0.005) {
+        written.warnings.push_back(
+            fmt::format("Q {} is Q {:.3g} in the drive (width code {})", shortest(shape.q), held_q, width));
+    }
+    if (std::abs(gain_of_depth(depth) - shape.gain) > 1e-12) {
+        written.warnings.push_back(fmt::format("a depth of {:.3g} dB is depth code {} in the drive",
+                                               -20.0 * std::log10(shape.gain), depth));
+    }
+    return written;
+}
+
+LoadedFilters read(std::string_view bytes, const std::string& source, const FilterSet& filters,
+                   const Settings&) {
+    TextReader reader(bytes, source, Comments::hash, Precision::float64);
+    reader.expect("depth_code\n");
+    LoadedFilters found;
+    for (const ExportBand& band : filters.bands) {
+        auto& sections = found.bands.emplace_back();
+        for (std::size_t i = 0; i < band.sections.size(); ++i) {
+            for (const double expected : {static_cast<double>(band.number), band.from.value(),
+                                          band.to.value(), static_cast<double>(i + 1)}) {
+                const double value = reader.number();
+                if (value != expected) reader.fail(shortest(value), shortest(expected));
+            }
+            const Hertz center(reader.number());
+            const double q = q_of_width(reader.number());
+            const double gain = gain_of_depth(reader.number());
+            const NotchSpec notch{center, q, gain > 0.0 ? -20.0 * std::log10(gain) : infinite_depth_db};
+            // How a drive computes is not published; its filter is taken as exact.
+            sections.push_back(
+                loaded(design_notch(notch, filters.sample_rate), {Form::df2t, Precision::float64}));
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+const Target targets::servo_drive = {
+    .name = "servo-drive",
+    .summary = "frequency, width code and depth code of Panasonic MINAS and Omron G5 drives",
+    .source =
+        "Omron G5 user's manual, 6, Notch Filter Width and Depth; Panasonic MINAS A5, notch width and depth",
+    .keys = keys,
+    .write = write,
+    .read = read,
+};
+
+}  // namespace ripplenotch
