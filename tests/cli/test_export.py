@@ -1,0 +1,382 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch export as its users meet it: files that compile and run, limits as exit codes, clear refusals."""
+
+import json
+import math
+import os
+import pathlib
+import shutil
+import struct
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+COMPILER = shutil.which(os.environ.get("CC", "cc"))
+STRICT = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-Wconversion", "-Wshadow"]
+SWITCHING = ("c-header", "cmsis-dsp", "scipy", "matlab", "json")
+FIXED = ("--method", "fixed,centers=60Hz:120Hz,q=2", "--sample-rate", "1kHz")
+SLOW = ("--method", "fixed,centers=2Hz,q=1", "--sample-rate", "4kHz")
+
+# What CMSIS-DSP documents: y = b0 x + b1 x1 + b2 x2 + a1 y1 + a2 y2, state x1 x2 y1 y2 a stage.
+ARM_MATH = """
+typedef float float32_t;
+static void cascade(const float32_t *c, int stages, float32_t *state, const float *in, float *out, int count)
+{
+    for (int k = 0; k < count; ++k) {
+        float x = in[k];
+        for (int s = 0; s < stages; ++s) {
+            const float32_t *b = c + 5 * s;
+            float32_t *m = state + 4 * s;
+            const float y = b[0] * x + b[1] * m[0] + b[2] * m[1] + b[3] * m[2] + b[4] * m[3];
+            m[1] = m[0]; m[0] = x; m[3] = m[2]; m[2] = y;
+            x = y;
+        }
+        out[k] = x;
+    }
+}
+"""
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def run_tool(self, *words, stdin=None):
+        return subprocess.run([TOOL, *map(str, words)], capture_output=True, cwd=self.folder, timeout=120,
+                              input=stdin, stdin=None if stdin is not None else subprocess.DEVNULL)
+
+    def good(self, *words, stdin=None):
+        done = self.run_tool(*words, stdin=stdin)
+        self.assertEqual(done.returncode, 0, done.stderr.decode())
+        return done
+
+    def refused(self, code, *words, stdin=None):
+        done = self.run_tool(*words, stdin=stdin)
+        message = done.stderr.decode()
+        self.assertEqual(done.returncode, code, message)
+        self.assertEqual(len(message.splitlines()), 1, message)
+        self.assertEqual(done.stdout, b"")
+        return message
+
+    def table(self, *words, name="table.json"):
+        words = words or ("--speed", "18:180:18")
+        self.good("design", "--gear-ratio", 100, "--orders", "1,2", "--sample-rate", "1kHz", *words, "-o", name, "--force")
+        return name
+
+    def report(self, *words):
+        done = self.run_tool("export", *words, "--verify", "--json", "--force")
+        return json.loads(done.stdout), done
+
+    def compiled(self, source, *flags):
+        (self.folder / "main.c").write_text(source)
+        subprocess.run([COMPILER, *STRICT, *flags, "main.c", "-o", "main", "-lm"], cwd=self.folder, check=True, timeout=60)
+        return subprocess.run(["./main"], cwd=self.folder, check=True, capture_output=True, text=True, timeout=60).stdout
+
+
+@unittest.skipUnless(COMPILER, "no C compiler")
+class CHeader(Case):
+    SELF_TEST = """
+#define RIPPLENOTCH_SELF_TEST
+#include "notch.h"
+#include <stdio.h>
+int main(void)
+{
+    const double error = (double)ripplenotch_self_test();
+    printf("%.17g\\n", error);
+    return !(error <= (double)RIPPLENOTCH_GOLDEN_TOLERANCE_NM);
+}
+"""
+    FILTER = """
+#include "notch.h"
+#include <stdio.h>
+int main(void)
+{
+    double speed, torque;
+    ripplenotch_state state;
+    ripplenotch_init(&state);
+    while (scanf("%lf %lf", &speed, &torque) == 2) {
+        printf("%.17g\\n", (double)ripplenotch_step(&state, (ripplenotch_real)torque, (ripplenotch_real)speed));
+    }
+    return 0;
+}
+"""
+
+    def test_every_precision_and_form_compiles_without_a_warning_and_passes_its_own_test_vector(self):
+        self.table()
+        for source in (["table.json"], FIXED):
+            for precision in ("float", "double"):
+                for form in ("svf", "df1", "df2t"):
+                    self.good("export", *source, "--to", f"c-header,precision={precision},form={form}", "-o", "notch.h",
+                              "--force")
+                    # Not contracted, it is the same arithmetic to the last bit.
+                    self.assertEqual(float(self.compiled(self.SELF_TEST, "-O2", "-ffp-contract=off")), 0.0, (precision, form))
+                    if form == "svf":
+                        self.compiled(self.SELF_TEST, "-O3", "-ffast-math")  # within the tolerance all the same
+
+    def test_the_test_vector_notices_one_wrong_bit_in_the_table(self):
+        self.table()
+        self.good("export", "table.json", "--to", "c-header,precision=double", "-o", "notch.h")
+        path = self.folder / "notch.h"
+        lines = path.read_text().split("\n")
+        row = next(i for i, line in enumerate(lines) if line.startswith("        {0x1"))
+        lines[row] = lines[row].replace("{0x1.", "{0x1.1", 1)
+        path.write_text("\n".join(lines))
+        (self.folder / "main.c").write_text(self.SELF_TEST)
+        subprocess.run([COMPILER, "main.c", "-o", "main"], cwd=self.folder, check=True)
+        self.assertEqual(subprocess.run(["./main"], cwd=self.folder, stdout=subprocess.DEVNULL).returncode, 1)
+
+    def filtered_by_header(self, rows):
+        (self.folder / "main.c").write_text(self.FILTER)
+        subprocess.run([COMPILER, *STRICT, "main.c", "-o", "main"], cwd=self.folder, check=True)
+        text = "".join(f"{speed} {torque}\n" for speed, torque in rows)
+        done = subprocess.run(["./main"], cwd=self.folder, input=text, capture_output=True, text=True, check=True)
+        return [float(line) for line in done.stdout.split()]
+
+    def filtered_by_tool(self, rows, method):
+        log = "time_s,velocity_deg_s,torque_nm\n" + "".join(f"{k / 1000},{v},{t}\n" for k, (v, t) in enumerate(rows))
+        (self.folder / "log.csv").write_text(log)
+        out = self.good("filter", "log.csv", "--method", method, "-q").stdout.decode().splitlines()
+        return [float(line.split(",")[2]) for line in out[1:]]
+
+    def test_the_header_filters_as_the_tool_does_under_every_rule_and_through_switches(self):
+        # Speeds below, in, between and above the bands, both signs; direct form I is what transition=keep runs.
+        rows = []
+        for speed in (2, 9, 13, 25, 45, 57, 70, 95, 130, 90, 70, 55, 48, -30, -11, -3, 0, 4, 60):
+            rows += [(speed, round(4 + math.sin(0.1 * k) + 0.5 * (k % 7), 6)) for k in range(60)]
+        for below in ("pass", "hold", "fade"):
+            for above in ("pass", "hold", "fade"):
+                self.table("--bands", "18:36,36:54,60:80", "--below", below, "--above", above)
+                self.good("export", "table.json", "--to", "c-header,precision=double,form=df1", "-o", "notch.h", "--force")
+                ours = self.filtered_by_header(rows)
+                theirs = self.filtered_by_tool(rows, "switching,table=table.json,transition=keep")
+                self.assertEqual(len(ours), len(theirs))
+                self.assertLess(max(abs(a - b) for a, b in zip(ours, theirs)), 1e-9, (below, above))
+
+    def test_a_constant_torque_passes_bit_for_bit_from_the_first_sample_through_every_switch(self):
+        # ArduPilot's reset test, with its number, made harder: the speed goes through all bands meanwhile.
+        self.table("--speed", "18:180:18", "--below", "fade", "--above", "fade")
+        rows = [(k - 250, -0.512) for k in range(500)]
+        for precision, expected in (("double", -0.512), ("float", struct.unpack("f", struct.pack("f", -0.512))[0])):
+            self.good("export", "table.json", "--to", f"c-header,precision={precision}", "-o", "notch.h", "--force")
+            self.assertEqual(set(self.filtered_by_header(rows)), {expected})
+
+    def test_on_a_log_at_one_speed_the_float_header_is_within_a_tenth_of_a_millinewton_metre_of_the_tool(self):
+        self.table()
+        self.good("export", "table.json", "--to", "c-header", "-o", "notch.h")
+        lines = (DATA / "paper_90deg_s.csv").read_text().splitlines()[1:]
+        rows = [tuple(float(cell) for cell in line.split(",")[1:3]) for line in lines]
+        worst = max(abs(a - b) for a, b in zip(self.filtered_by_header(rows),
+                                               self.filtered_by_tool(rows, "switching,table=table.json")))
+        self.assertLess(worst, 1e-4)
+
+
+@unittest.skipUnless(COMPILER, "no C compiler")
+class Cmsis(Case):
+    def test_the_arrays_run_with_added_feedback_and_give_what_the_tool_gives(self):
+        self.good("export", *FIXED, "--to", "cmsis-dsp", "-o", "notch.h")
+        (self.folder / "arm_math.h").write_text(ARM_MATH)
+        out = self.compiled("""
+#include "notch.h"
+#include <stdio.h>
+int main(void)
+{
+    static float in[400], out[400];
+    float32_t state[RIPPLENOTCH_STATE_FLOATS] = {0};
+    for (int k = 0; k < 400; ++k) in[k] = k < 10 ? 0.0f : (float)(k % 5);
+    cascade(ripplenotch_coefficients[0], RIPPLENOTCH_STAGES, state, in, out, 400);
+    for (int k = 0; k < 400; ++k) printf("%.9g\\n", (double)out[k]);
+    return 0;
+}
+""", "-I.")
+        log = "time_s,velocity_deg_s,torque_nm\n" + "".join(
+            f"{k / 1000},60,{0 if k < 10 else k % 5}\n" for k in range(400))
+        (self.folder / "log.csv").write_text(log)
+        theirs = self.good("filter", "log.csv", *FIXED[:2], "-q").stdout.decode().splitlines()[1:]
+        for mine, line in zip(out.split(), theirs):
+            self.assertAlmostEqual(float(mine), float(line.split(",")[2]), delta=2e-5)
+
+
+class Content(Case):
+    def test_scipy_gets_the_sections_of_the_table_bit_for_bit(self):
+        self.table()
+        raw = self.good("export", "table.json", "--to", "scipy").stdout
+        self.assertEqual(raw[:8], b"\x93NUMPY\x01\x00")
+        size = 10 + struct.unpack("<H", raw[8:10])[0]
+        self.assertEqual(size % 64, 0)
+        self.assertIn(b"'descr': '<f8', 'fortran_order': False, 'shape': (9, 2, 6)", raw[:size])
+        table = json.loads((self.folder / "table.json").read_text())
+        wanted = [value for band in table["bands"] for notch in band["notches"] for value in notch["sos"]]
+        self.assertEqual(list(struct.unpack(f"<{9 * 2 * 6}d", raw[size:])), wanted)
+
+    def test_scipy_itself_loads_it_and_filters_alike(self):
+        python = "/usr/bin/python3"
+        program = ("import numpy, scipy.signal as s, sys; sos = numpy.load('n.npy'); x = 3 + numpy.sin(numpy.arange(300) / 3);"
+                   "y, _ = s.sosfilt(sos, x, zi=s.sosfilt_zi(sos) * x[0]); print(*y)")
+        if not os.path.exists(python) or subprocess.run([python, "-c", "import scipy"], capture_output=True).returncode:
+            self.skipTest("no SciPy")
+        self.good("export", *FIXED, "--to", "scipy", "-o", "n.npy")
+        done = subprocess.run([python, "-c", program], cwd=self.folder, capture_output=True, text=True, check=True)
+        log = "time_s,velocity_deg_s,torque_nm\n" + "".join(
+            f"{k / 1000},60,{3 + math.sin(k / 3)!r}\n" for k in range(300))
+        (self.folder / "log.csv").write_text(log)
+        theirs = self.good("filter", "log.csv", *FIXED[:2], "-q").stdout.decode().splitlines()[1:]
+        for mine, line in zip(done.stdout.split(), theirs):
+            self.assertAlmostEqual(float(mine), float(line.split(",")[2]), delta=1e-9)
+
+    def test_octave_runs_the_script(self):
+        octave = shutil.which("octave")
+        if not octave:
+            self.skipTest("no Octave")
+        self.table()
+        self.good("export", "table.json", "--to", "matlab", "-o", "n.m")
+        program = "n; printf('%d %d %.17g %.17g %g', numel(ripplenotch.sos), rows(ripplenotch.sos{9}), " \
+                  "ripplenotch.sos{9}(2, 5), ripplenotch.fs, ripplenotch.to_deg_s(9))"
+        done = subprocess.run([octave, "--no-gui", "--quiet", "--eval", program], cwd=self.folder, capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        table = json.loads((self.folder / "table.json").read_text())
+        bands, sections, a1, rate, last = done.stdout.split()
+        self.assertEqual((int(bands), int(sections), float(rate), float(last)), (9, 2, 1000, 180))
+        self.assertEqual(float(a1), table["bands"][8]["notches"][1]["sos"][4])
+
+    def test_json_parses_and_has_the_table(self):
+        self.table("--speed", "18:180:18", "--depth", "40dB", "--below", "fade")
+        filters = json.loads(self.good("export", "table.json", "--to", "json").stdout)
+        table = json.loads((self.folder / "table.json").read_text())
+        self.assertEqual(filters["schema"], "ripplenotch/filters/1")
+        for name in ("sample_rate_hz", "gear_ratio", "below_first_band", "above_last_band"):
+            self.assertEqual(filters[name], table[name])
+        for mine, theirs in zip(filters["bands"], table["bands"], strict=True):
+            self.assertEqual(mine["speed_to_deg_s"], theirs["speed_to_deg_s"])
+            for section, notch in zip(mine["sections"], theirs["notches"], strict=True):
+                for name in ("order", "center_hz", "q", "depth_db", "sos"):
+                    self.assertEqual(section[name], notch[name])
+
+    def test_ros_yaml_has_one_transfer_function_a_section_in_the_standard_sign(self):
+        self.table()
+        text = self.good("export", "table.json", "--band", 5, "--to", "ros-filters").stdout.decode()
+        self.assertEqual(text.count("type: filters/MultiChannelTransferFunctionFilterDouble"), 2)
+        notch = json.loads((self.folder / "table.json").read_text())["bands"][4]["notches"][0]["sos"]
+        self.assertIn(f"a: [1.0, {notch[4]!r}, {notch[5]!r}]", text)
+        self.assertIn(f"b: [{notch[0]!r}, {notch[1]!r}, {notch[2]!r}]", text)
+        single = self.good("export", *FIXED, "--to", "ros-filters,channels=single,node=arm").stdout.decode()
+        self.assertIn("type: filters/TransferFunctionFilterDouble", single)
+        self.assertIn("\narm:\n  ros__parameters:\n    filter_chain:\n      filter1:", single)
+
+    def test_a_low_pass_and_one_band_go_where_coefficients_go(self):
+        for words in (("--method", "lowpass,cutoff=13rad/s", "--sample-rate", "1kHz"), (self.table(), "--band", "3")):
+            for target in SWITCHING + ("ros-filters",):
+                report, done = self.report(*words, "--to", target, "-o", "out")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertTrue(report["verified"])
+
+    def test_the_same_request_gives_the_same_bytes_and_says_how_it_was_made(self):
+        self.table()
+        for target in SWITCHING:
+            self.assertEqual(self.good("export", "table.json", "--to", target).stdout,
+                             self.good("export", "table.json", "--to", target).stdout)
+        text = self.good("export", "table.json", "--to", "c-header").stdout.decode()
+        self.assertIn("ripplenotch export table.json --to c-header", text)
+        self.assertRegex(text, "from table.json, SHA-256 [0-9a-f]{64}")
+
+    def test_a_table_may_come_through_a_pipe(self):
+        name = self.table()
+        text = (self.folder / name).read_bytes()
+        self.assertIn(b"set rpm_filter_q = 25", self.good("export", "-", "--to", "betaflight,limits=none", stdin=text).stdout)
+
+
+class Verify(Case):
+    def test_the_table_of_a_float_header_comes_through(self):
+        self.table()
+        report, done = self.report("table.json", "--to", "c-header", "-o", "notch.h", "--min-depth-db", "80",
+                                   "--max-centre-shift-percent", "0.001", "--max-dc-error-db", "0.0001")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((report["bands"], report["sections_per_band"], len(report["sections"])), (9, 2, 18))
+        self.assertEqual(report["arithmetic"], "float32, state-variable form")
+        self.assertEqual(report["bytes"], (self.folder / "notch.h").stat().st_size)
+        self.assertEqual([s["center_hz"] for s in report["sections"][:2]], [7.5, 15.0])
+
+    def test_a_narrow_low_notch_passes_in_state_variable_form_and_fails_in_the_direct_forms(self):
+        limits = ("--min-depth-db", "60", "--max-centre-shift-percent", "0.1", "--max-dc-error-db", "0.002")
+        for form, code in (("svf", 0), ("df1", 1), ("df2t", 1)):
+            report, done = self.report(*SLOW, "--to", f"c-header,form={form}", "-o", "notch.h", *limits)
+            self.assertEqual(done.returncode, code, done.stderr)
+            section, = report["sections"]
+            self.assertEqual(len(report["violations"]) > 0, code == 1)
+            if form == "svf":
+                self.assertLess(abs(section["mean_error_nm"]), 5e-5)
+            else:
+                # Published for float coefficients: centre +0.2 %, depth 48 dB, and millinewton-metres of an 8 Nm load.
+                self.assertAlmostEqual(section["center_shift_percent"], 0.2, delta=0.05)
+                self.assertAlmostEqual(section["response_depth_db"], 48, delta=0.6)
+                self.assertGreater(abs(section["mean_error_nm"]), 5e-4)
+                self.assertLess(abs(section["mean_error_nm"]), 2e-2)
+
+    def test_a_limit_that_is_passed_is_exit_code_1_with_the_section_the_value_and_the_limit(self):
+        done = self.run_tool("export", *SLOW, "--to", "cmsis-dsp", "-o", "notch.h", "--min-depth-db", "60dB")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr.decode(), r"ripplenotch export: section 1 \(2 Hz\): depth 4\d(\.\d+)? dB, limit 60 dB\n")
+        self.assertIn("notch.h: cmsis-dsp, read back and run at 4000 Hz in float32, direct form I", done.stdout.decode())
+
+    def test_the_report_goes_to_standard_error_when_the_file_goes_to_standard_output(self):
+        done = self.good("export", *FIXED, "--to", "matlab", "--verify")
+        self.assertTrue(done.stdout.startswith(b"% Made by ripplenotch"))
+        self.assertIn(b"read back and run", done.stderr)
+        self.assertEqual(self.good("export", *FIXED, "--to", "matlab").stderr, b"")
+
+    def test_what_a_target_rounds_is_warned_of_and_measured(self):
+        report, done = self.report("--method", "fixed,centers=60.4Hz,q=1.1", "--sample-rate", "1kHz", "--to", "servo-drive",
+                                   "-o", "drive.csv")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(b"warning: one filter: 60.4 Hz is 60 Hz in the drive", done.stderr)
+        section, = report["sections"]
+        self.assertAlmostEqual(section["center_shift_percent"], 100 * (60 / 60.4 - 1), places=6)
+        self.assertAlmostEqual(section["q"], 2 / 2 ** (3 / 4), places=9)
+        # Detuned by 0.66 % at Q 1.19: 2 e Q of it is left.
+        self.assertAlmostEqual(section["depth_db"], -20 * math.log10(2 * 0.00664 * 1.189), delta=0.3)
+
+
+class Refusals(Case):
+    def test_a_drive_that_cannot_hold_the_q_is_refused_with_the_sharpest_it_has(self):
+        message = self.refused(2, "export", "--method", "fixed,centers=60Hz,q=5", "--sample-rate", "1kHz", "--to", "servo-drive",
+                               "-o", "drive.csv")
+        self.assertIn("cannot hold Q 5", message)
+        self.assertIn("sharpest Q 2.0", message)
+        self.assertFalse((self.folder / "drive.csv").exists())
+
+    def test_targets_that_do_not_follow_the_speed_ask_for_a_band(self):
+        self.table()
+        message = self.refused(2, "export", "table.json", "--to", "ros-filters")
+        self.assertIn("9 bands", message)
+        self.assertIn("--band", message)
+        self.assertIn("bands 1 to 9", self.refused(2, "export", "table.json", "--band", 10, "--to", "ros-filters"))
+
+    def test_a_request_that_lacks_or_mixes_something_says_what(self):
+        self.table()
+        self.assertIn("--to is missing; targets: c-header", self.refused(2, "export", "table.json"))
+        self.assertIn("did you mean scipy?", self.refused(2, "export", "table.json", "--to", "scipi"))
+        self.assertIn("nothing to export", self.refused(2, "export", "--to", "json"))
+        self.assertIn("give one of them", self.refused(2, "export", "table.json", *FIXED, "--to", "json"))
+        self.assertIn("--sample-rate", self.refused(2, "export", *FIXED[:2], "--to", "json"))
+        self.assertIn("its own sample rate", self.refused(2, "export", "table.json", "--sample-rate", "1kHz", "--to", "json"))
+        self.assertIn("-o", self.refused(2, "export", "table.json", "--to", "json", "--json"))
+        self.assertIn("no set of coefficients", self.refused(2, "export", "--method", "none", *FIXED[2:], "--to", "json"))
+        self.assertIn("did you mean form?", self.refused(2, "export", *FIXED, "--to", "c-header,forms=df1"))
+        self.assertIn("no more than 120 dB", self.refused(2, "export", *FIXED, "--to", "json", "--min-depth-db", "200"))
+        self.assertIn("not a whole number", self.refused(2, "export", "--method", "lowpass,cutoff=13Hz,order=1.5", *FIXED[2:],
+                                                         "--to", "json"))
+
+    def test_files_are_not_overwritten_unasked_and_a_bad_table_is_exit_code_3(self):
+        self.table()
+        self.good("export", "table.json", "--to", "json", "-o", "out.json")
+        self.assertIn("--force", self.refused(4, "export", "table.json", "--to", "json", "-o", "out.json"))
+        self.good("export", "table.json", "--to", "json", "-o", "out.json", "--force")
+        self.assertIn("ripplenotch/table/1", self.refused(3, "export", "out.json", "--to", "json"))
+        self.refused(4, "export", "no-such.json", "--to", "json")
+
+
+if __name__ == "__main__":
+    unittest.main()
