@@ -113,6 +113,14 @@ int run(int argc, char** argv) {
         return app.exit(request);
     } catch (const CLI::CallForVersion& request) {
         return app.exit(request);
+    } catch (const CLI::ArgumentMismatch& error) {
+        // "At Most 1 required but received 2" is how the library says that an option came twice.
+        const std::string what = error.what();
+        const std::string option = what.substr(0, what.find(':'));
+        const bool twice = what.find("At Most 1 required") != std::string::npos;
+        return complain(ExitCode::usage, running,
+                        fmt::format("{}; see {} {} --help", twice ? option + " is given more than once" : what,
+                                    tool_name, running));
     } catch (const CLI::ParseError& error) {
         return complain(ExitCode::usage, running,
                         fmt::format("{}; see {} {} --help", error.what(), tool_name, running));

@@ -197,7 +197,7 @@ class Decision {
         }
         if (group == nullptr && groups_.size() > 1 && options_.needs_torque) {
             raise<DataError>(
-                "{}: read {} joints ({}), expected one; say which with --joint {}, or --joint all", source_,
+                "{}: read {} joints ({}), expected one; say which with --joint {} (identify and info also take --joint all)", source_,
                 groups_.size(), fmt::join(layout_.joints, ", "), layout_.joints.front());
         }
         if (group != nullptr) {

@@ -60,6 +60,11 @@ class Pages(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn("did you mean --gear-ratio?", done.stderr)
 
+    def test_an_option_given_twice_is_named(self):
+        done = run("design", "--gear-ratio", "100", "--gear-ratio", "101")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--gear-ratio is given more than once", done.stderr)
+
     def test_a_mistyped_command_is_answered_with_the_nearest(self):
         done = run("filtre")
         self.assertEqual(done.returncode, 2)
