@@ -93,6 +93,28 @@ class WhereTheGearComesFrom(Case):
         self.assertEqual([1, 2], [line["order"] for line in figures["attenuation_db"]])
 
 
+class Warm(Case):
+    def test_a_joint_file_starts_the_oscillator_warm(self):
+        _, metrics = self.filtered("--method", "oscillator,joint=joint.json")
+        self.assertEqual(metrics["method"],
+                         "oscillator,gear-ratio=100,orders=1:2,amplitudes=0.8:0.5,phases=0:0")
+        # The log begins at rest with 1.3 Nm of ripple: known and taken out from the first row on.
+        first = float((self.folder / "out.csv").read_text().splitlines()[1].split(",")[2])
+        self.assertLess(abs(first), 0.3)
+        self.filtered("--method", "oscillator,gear-ratio=100,orders=1:2")
+        first = float((self.folder / "out.csv").read_text().splitlines()[1].split(",")[2])
+        self.assertGreater(abs(first), 1.0)
+
+    def test_phases_that_identify_does_not_know_are_left_out(self):
+        (self.folder / "joint.json").write_text(joint(phases=(None, 0.0)))
+        _, metrics = self.filtered("--method", "oscillator,joint=joint.json")
+        self.assertEqual(metrics["method"], "oscillator,gear-ratio=100,orders=1:2,amplitudes=0.8:0.5")
+
+    def test_other_orders_than_the_files_get_no_amplitudes_from_it(self):
+        _, metrics = self.filtered("--method", "oscillator,orders=2,joint=joint.json")
+        self.assertEqual(metrics["method"], "oscillator,orders=2,gear-ratio=100")
+
+
 class Delay(Case):
     def test_the_delay_of_a_tracking_notch_is_listed_by_speed_and_falls_with_it(self):
         _, metrics = self.filtered("--method", "tracking,gear-ratio=100,orders=1:2")

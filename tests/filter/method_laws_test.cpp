@@ -181,22 +181,27 @@ TEST_CASE("at one speed every method does what its frozen filter says, once sett
         const Spec spec = parse_spec(text);
         const Method& method = find_method(spec.name);
         const double speed = 99.0, hz = 31.0;
-        const Cascade cascade =
-            method.frozen(Settings("method", spec, method.keys), Hertz(1000.0), &table, DegPerSec(speed))
-                .cascade;
-        Signals s;
-        const std::size_t count = 20000;
-        for (std::size_t k = 0; k < count; ++k) {
-            s.velocity_deg_s.push_back(speed);
-            s.position_deg.push_back(speed * static_cast<double>(k) / 1000.0);
-            s.torque_nm.push_back(std::cos(2.0 * std::numbers::pi * hz * static_cast<double>(k) / 1000.0));
-        }
-        const auto out = filtered(*start(text, &table), s.samples());
-        const auto gain = response(cascade, Hertz(hz), Hertz(1000.0));
-        double worst = 0.0;
-        for (std::size_t k = count - 2000; k < count; ++k) {
-            const double phase = 2.0 * std::numbers::pi * hz * static_cast<double>(k) / 1000.0;
-            worst = std::max(worst, std::abs(out[k] - (gain * std::polar(1.0, phase)).real()));
+        const FrozenFilter frozen =
+            method.frozen(Settings("method", spec, method.keys), Hertz(1000.0), &table, DegPerSec(speed));
+        if (frozen.follows_ripple) return;
+        const auto gain = response(frozen.cascade, Hertz(hz), Hertz(1000.0));
+        const auto filter = start(text, &table);
+        // Narrow filters take their time: a second more and more, until what is left is rounding.
+        double worst = 1.0;
+        for (std::size_t first = 0; worst >= 1e-8 && first < 640000; first += 4000) {
+            Signals s;
+            for (std::size_t k = first; k < first + 4000; ++k) {
+                s.velocity_deg_s.push_back(speed);
+                s.position_deg.push_back(speed * static_cast<double>(k) / 1000.0);
+                s.torque_nm.push_back(
+                    std::cos(2.0 * std::numbers::pi * hz * static_cast<double>(k) / 1000.0));
+            }
+            const auto out = filtered(*filter, s.samples());
+            worst = 0.0;
+            for (std::size_t k = 2000; k < 4000; ++k) {
+                const double phase = 2.0 * std::numbers::pi * hz * static_cast<double>(first + k) / 1000.0;
+                worst = std::max(worst, std::abs(out[k] - (gain * std::polar(1.0, phase)).real()));
+            }
         }
         CHECK(worst < 1e-8);
     });

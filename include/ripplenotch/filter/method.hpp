@@ -55,6 +55,8 @@ class CausalFilter {
 struct FrozenFilter {
     Cascade cascade;
     std::string note;  ///< e.g. "band 5: 90-108 deg/s", "no band: passes"
+    /// The filter also moves to where it takes the ripple to be, so that it is linear only while it is right.
+    bool follows_ripple = false;
 };
 
 struct Method {

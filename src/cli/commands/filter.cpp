@@ -214,7 +214,7 @@ std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
     options.arguments("LOG", request->logs, true, "logs to filter; - is standard input");
     options.text("--method", request->method, "SPEC",
-                 "name,key=value,...: switching, tracking, fixed, lowpass, none; see docs/methods");
+                 "name,key=value,...: switching, tracking, oscillator, fixed, lowpass, none; see docs/methods");
     options.text("--table", request->table, "FILE",
                  "table.json of method switching, which is then the default");
     options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+// Torque and ripple estimated together by a Kalman filter whose ripple is locked to the motor angle: no
+// delay.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "filter/methods/list.hpp"
+#include "filter/motor_angle.hpp"
+#include "filter/observer_cascade.hpp"
+#include "filter/ripple_kalman.hpp"
+#include "filter/ripple_keys.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 2> angles = {"best", "velocity"};
+constexpr std::array<std::string_view, 2> outputs = {"torque", "minus-ripple"};
+
+constexpr std::array keys = {
+    gear_ratio_key,
+    orders_key,
+    joint_key,
+    Key{.name = "bandwidth",
+        .dimension = Dimension::frequency,
+        .default_text = "15Hz",
+        .above = 0.0,
+        .help = "of the torque: what is faster and no ripple counts as noise"},
+    Key{.name = "memory",
+        .default_text = "2",
+        .above = 0.0,
+        .at_most = 1e6,
+        .help = "motor turns over which the ripple's amplitude may change"},
+    Key{.name = "amplitudes",
+        .kind = KeyKind::list,
+        .dimension = Dimension::torque,
+        .help = "warm start: zero to peak, one per order, e.g. 0.8Nm:0.5Nm"},
+    Key{.name = "phases",
+        .kind = KeyKind::list,
+        .dimension = Dimension::angle,
+        .help =
+            "warm start: of cos(n motor angle + phase), one per order; the motor angle is gear ratio times "
+            "position"},
+    Key{.name = "trust",
+        .default_text = "0.1",
+        .above = 0.0,
+        .at_most = 10.0,
+        .help = "warm start: how far amplitudes and phases may be off, as a share of the amplitude"},
+    Key{.name = "noise",
+        .dimension = Dimension::torque,
+        .default_text = "0.05Nm",
+        .above = 0.0,
+        .help = "rms noise of the sensor"},
+    Key{.name = "largest",
+        .dimension = Dimension::torque,
+        .default_text = "1Nm",
+        .above = 0.0,
+        .help = "cold start: amplitude that an order may well have"},
+    Key{.name = "angle",
+        .kind = KeyKind::choice,
+        .default_text = "best",
+        .choices = angles,
+        .help =
+            "best: position, velocity where there is none or it is not the joint's; velocity: always that"},
+    Key{.name = "start",
+        .dimension = Dimension::angle,
+        .help = "position at the first row of a log without one, so that phases mean something"},
+    Key{.name = "offset",
+        .dimension = Dimension::speed,
+        .default_text = "2deg/s",
+        .above = 0.0,
+        .help = "angle from velocity: largest offset of the velocity that the ripple may correct"},
+    Key{.name = "output",
+        .kind = KeyKind::choice,
+        .default_text = "torque",
+        .choices = outputs,
+        .help = "torque: the estimate, smoothed; minus-ripple: the log's own torque less the ripple"},
+};
+
+struct Plan {
+    RippleOrders ripple;
+    RippleModel model;
+    std::vector<AmplitudePrior> cold, warm;  ///< in units of the noise; cold where phases cannot be used
+    bool has_start = false;
+    double start_deg = 0.0;
+    MotorAngle::Source source = MotorAngle::Source::best;
+    bool minus_ripple = false;
+    double largest_offset_deg_s = 0.0;
+    double sample_rate_hz = 0.0;
+    double noise_nm = 0.0;
+};
+
+void check_amplitudes(const std::vector<double>& amplitudes) {
+    for (const double amplitude : amplitudes) {
+        if (!(amplitude >= 0.0))
+            raise<UsageError>("method oscillator, amplitudes: {} Nm is negative", shortest(amplitude));
+    }
+}
+
+void plan_priors(Plan& p, const Settings& settings) {
+    const double largest = settings.number("largest") / p.noise_nm;
+    p.cold.assign(p.ripple.orders.size(), {0.0, 0.0, largest});
+    if (settings.has("phases") && !settings.has("amplitudes")) {
+        raise<UsageError>("method oscillator, phases: without amplitudes; give both");
+    }
+    if (settings.has("amplitudes")) {
+        auto amplitudes = per_order("oscillator", settings, "amplitudes", p.ripple, 0.0);
+        check_amplitudes(amplitudes);
+        for (double& amplitude : amplitudes) amplitude = std::max(amplitude / p.noise_nm, 1.0);
+        for (std::size_t i = 0; i < amplitudes.size(); ++i) p.cold[i].deviation = amplitudes[i];
+        p.warm = p.cold;
+        if (settings.has("phases")) {
+            const auto phases = per_order("oscillator", settings, "phases", p.ripple, 0.0);
+            for (std::size_t i = 0; i < amplitudes.size(); ++i) {
+                const double phase = phases[i] * std::numbers::pi / 180.0;
+                p.warm[i] = {amplitudes[i] * std::cos(phase), -amplitudes[i] * std::sin(phase),
+                             settings.number("trust") * amplitudes[i]};
+            }
+        }
+    } else {
+        p.warm = p.cold;
+    }
+}
+
+Plan plan(const Settings& settings, Hertz sample_rate) {
+    Plan p;
+    p.ripple = ripple_orders("oscillator", settings);
+    p.sample_rate_hz = sample_rate.value();
+    p.noise_nm = settings.number("noise");
+    const double bandwidth_hz = settings.number("bandwidth");
+    if (!(bandwidth_hz < 0.25 * p.sample_rate_hz)) {
+        raise<UsageError>(
+            "method oscillator, bandwidth: {} Hz is not below a quarter of the sample rate, {} Hz",
+            shortest(bandwidth_hz), shortest(0.25 * p.sample_rate_hz));
+    }
+    p.model = {p.ripple.orders, 1.0 / p.sample_rate_hz, 2.0 * std::numbers::pi * bandwidth_hz,
+               settings.number("memory")};
+    p.has_start = settings.has("start");
+    if (p.has_start) p.start_deg = settings.number("start");
+    if (settings.text("angle") == "velocity") p.source = MotorAngle::Source::velocity;
+    p.minus_ripple = settings.text("output") == "minus-ripple";
+    p.largest_offset_deg_s = settings.number("offset");
+    plan_priors(p, settings);
+    return p;
+}
+
+class OscillatorFilter final : public CausalFilter {
+  public:
+    explicit OscillatorFilter(Plan plan)
+        : plan_(std::move(plan)),
+          angle_(plan_.ripple.gear_ratio, plan_.sample_rate_hz, plan_.source, plan_.start_deg),
+          cold_(plan_.model, plan_.cold),
+          warm_(plan_.model, plan_.warm) {}
+
+    void process(const Samples& in, std::span<double> out) override {
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            const double* const position = in.position_deg.empty() ? nullptr : &in.position_deg[k];
+            angle_.next(in.velocity_deg_s[k], position, correction_deg_s_);
+            if (!started_) {
+                begin(in.torque_nm[k], position != nullptr);
+            } else {
+                run((in.torque_nm[k] - origin_nm_) / plan_.noise_nm);
+            }
+            const double clean = plan_.minus_ripple ? in.torque_nm[k] - plan_.noise_nm * filter_->ripple()
+                                                    : origin_nm_ + plan_.noise_nm * filter_->torque();
+            out[k] = clean;
+        }
+    }
+    void restart() override {
+        started_ = false;
+        angle_.restart();
+    }
+
+  private:
+    void begin(double torque_nm, bool has_position) {
+        started_ = true;
+        origin_nm_ = torque_nm;
+        correction_deg_s_ = 0.0;
+        // Phases mean something only where it is known where the joint stands.
+        filter_ = has_position || plan_.has_start ? &warm_ : &cold_;
+        filter_->start(angle_.turns());
+    }
+
+    void run(double measured) {
+        filter_->next(measured, angle_.turns(), angle_.step_turns());
+        if (!angle_.from_velocity()) return;
+        // A velocity that is off turns the phase: what the ripple itself says of the speed is added to it,
+        // slowly against the time that the amplitudes take.
+        const double share = std::abs(angle_.step_turns()) / (4.0 * plan_.model.memory_turns);
+        const double ahead_deg_s =
+            filter_->phase_advance_turns() * 360.0 / plan_.ripple.gear_ratio * plan_.sample_rate_hz;
+        const double limit = plan_.largest_offset_deg_s;
+        correction_deg_s_ =
+            std::clamp(correction_deg_s_ + std::min(share, 0.01) * ahead_deg_s, -limit, limit);
+    }
+
+    Plan plan_;
+    MotorAngle angle_;
+    RippleKalman cold_, warm_;
+    RippleKalman* filter_ = nullptr;
+    double origin_nm_ = 0.0, correction_deg_s_ = 0.0;
+    bool started_ = false;
+};
+
+std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
+    return std::make_unique<OscillatorFilter>(plan(settings, sample_rate));
+}
+
+FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec speed) {
+    const Plan p = plan(settings, sample_rate);
+    const double step_turns = p.ripple.gear_ratio * speed.value() / 360.0 / p.sample_rate_hz;
+    const std::string note = step_turns == 0.0 ? "standstill: the ripple's amplitudes keep what they were"
+                                               : "settled Kalman filter";
+    return {settled_cascade(p.model, step_turns, p.minus_ripple), note,
+            p.source == MotorAngle::Source::velocity};
+}
+
+}  // namespace
+
+const Method filter_methods::oscillator = {
+    .name = "oscillator",
+    .summary = "Kalman filter of torque and ripple, the ripple locked to the motor angle: no delay",
+    .source = "R. E. Kalman 1960; harmonic drive ripple so estimated: Taghirad and Belanger 1998",
+    .keys = keys,
+    .start = start,
+    .frozen = frozen,
+};
+
+}  // namespace ripplenotch

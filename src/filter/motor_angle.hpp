@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The motor's angle from what a log has: position, else the velocity added up.
+
+#include <cstdint>
+
+namespace ripplenotch {
+
+/// Feeds on samples in order. From the position while it agrees with the velocity (unwrapped at half turns of
+/// the joint); from the velocity by trapezoids where there is no position, or once it has turned out to be
+/// another joint's or constant.
+class MotorAngle {
+  public:
+    enum class Source : std::uint8_t { best, velocity };
+
+    /// `start_deg` is the joint's position at the first sample where no position says it.
+    MotorAngle(double gear_ratio, double sample_rate_hz, Source source, double start_deg) noexcept
+        : gear_ratio_(gear_ratio), step_s_(1.0 / sample_rate_hz), source_(source), start_deg_(start_deg) {}
+
+    void restart() noexcept;
+    /// `position_deg` may be null. `correction_deg_s` is added to the velocity, where that is what counts.
+    void next(double velocity_deg_s, const double* position_deg, double correction_deg_s = 0.0) noexcept;
+
+    [[nodiscard]] double turns() const noexcept {
+        return gear_ratio_ * joint_deg_ / 360.0;
+    }                                                                         ///< of the motor
+    [[nodiscard]] double step_turns() const noexcept { return step_turns_; }  ///< since the sample before
+    [[nodiscard]] bool from_velocity() const noexcept { return from_velocity_; }
+
+  private:
+    void check(double by_velocity_deg, double by_position_deg) noexcept;
+
+    double gear_ratio_, step_s_;
+    Source source_;
+    double start_deg_;
+    double joint_deg_ = 0.0, step_turns_ = 0.0, last_velocity_ = 0.0, last_position_ = 0.0;
+    double checked_velocity_deg_ = 0.0, checked_position_deg_ = 0.0;
+    bool started_ = false, from_velocity_ = false;
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "filter/ripple_kalman.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace ripplenotch {
+namespace {
+
+constexpr double full_below_rate = 0.45, none_above_rate = 0.48;  ///< cycles per sample
+
+double radians(double cycles) { return 2.0 * std::numbers::pi * (cycles - std::floor(cycles)); }
+
+}  // namespace
+
+// White noise of density q in the second derivative. With measurements of variance 1 every step_s the settled
+// filter has the poles of a second-order Butterworth at (q / step_s)^(1/4).
+RippleModel::TorqueNoise RippleModel::torque_noise() const noexcept {
+    const double density = std::pow(bandwidth_rad_s, 4) * step_s;
+    return {density * std::pow(step_s, 3) / 3.0, density * step_s * step_s / 2.0, density * step_s};
+}
+
+// A pair alone settles to the gain step/memory: its amplitude forgets over memory_turns at any speed.
+double RippleModel::amplitude_noise(double step_turns) const noexcept {
+    const double share = step_turns / memory_turns;
+    return 2.0 * share * share;
+}
+
+double RippleModel::share(double order, double step_turns) const noexcept {
+    return std::clamp((none_above_rate - order * std::abs(step_turns)) / (none_above_rate - full_below_rate),
+                      0.0, 1.0);
+}
+
+RippleKalman::RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors)
+    : model_(std::move(model)),
+      priors_(std::move(priors)),
+      m_(model_.states()),
+      torque_noise_(model_.torque_noise()),
+      x_(m_),
+      p_(m_ * m_),
+      h_(m_),
+      ph_(m_) {}
+
+void RippleKalman::look(double motor_turns, double step_turns) noexcept {
+    h_[0] = 1.0;
+    h_[1] = 0.0;
+    for (std::size_t i = 0; i < model_.orders.size(); ++i) {
+        const double phase = radians(model_.orders[i] * motor_turns);
+        const double share = model_.share(model_.orders[i], step_turns);
+        h_[2 + 2 * i] = share * std::cos(phase);
+        h_[3 + 2 * i] = share * std::sin(phase);
+    }
+}
+
+double RippleKalman::ripple() const noexcept {
+    double sum = 0.0;
+    for (std::size_t i = 2; i < m_; ++i) sum += h_[i] * x_[i];
+    return sum;
+}
+
+// Any torque: its variance is that of noise and ripple, and whatever the ripple turns out to be, the torque
+// is the rest.
+void RippleKalman::start(double motor_turns) {
+    look(motor_turns, 0.0);
+    std::fill(p_.begin(), p_.end(), 0.0);
+    double torque_variance = 1.0;
+    for (std::size_t i = 2; i < m_; ++i) {
+        const AmplitudePrior& prior = priors_[i / 2 - 1];
+        const double variance = prior.deviation * prior.deviation;
+        x_[i] = i % 2 == 0 ? prior.cosine : prior.sine;
+        p_[i * m_ + i] = variance;
+        p_[i] = p_[i * m_] = -variance * h_[i];
+        torque_variance += variance * h_[i] * h_[i];
+    }
+    x_[0] = -ripple();
+    x_[1] = 0.0;
+    p_[0] = torque_variance;
+    // A hundred times the settled variance: a log may begin amid a motion.
+    p_[m_ + 1] = 100.0 * std::numbers::sqrt2 * std::pow(model_.bandwidth_rad_s, 3) * model_.step_s;
+    phase_advance_turns_ = 0.0;
+}
+
+void RippleKalman::predict(double step_turns) noexcept {
+    const double dt = model_.step_s;
+    x_[0] += dt * x_[1];
+    // P = F P F' + Q, where F adds dt times row 1 to row 0.
+    double* const row0 = p_.data();
+    const double* const row1 = row0 + m_;
+    for (std::size_t j = 0; j < m_; ++j) row0[j] += dt * row1[j];
+    row0[0] += dt * row0[1];
+    row0[0] += torque_noise_.torque;
+    row0[1] += torque_noise_.cross;
+    p_[m_ + 1] += torque_noise_.rate;
+    for (std::size_t j = 1; j < m_; ++j) p_[j * m_] = row0[j];
+    const double added = model_.amplitude_noise(step_turns);
+    for (std::size_t i = 2; i < m_; ++i) p_[i * m_ + i] += added;
+}
+
+double RippleKalman::next(double measured, double motor_turns, double step_turns) {
+    predict(step_turns);
+    look(motor_turns, step_turns);
+    double expected = 0.0, variance = 1.0;
+    for (std::size_t i = 0; i < m_; ++i) {
+        const double* const row = p_.data() + i * m_;
+        double sum = 0.0;
+        for (std::size_t j = 0; j < m_; ++j) sum += row[j] * h_[j];
+        ph_[i] = sum;
+        expected += h_[i] * x_[i];
+        variance += h_[i] * sum;
+    }
+    const double scale = 1.0 / variance, surprise = measured - expected;
+    double advance = 0.0, weights = 0.0;
+    for (std::size_t i = 2; i < m_; i += 2) {
+        // ripple = Re(z exp(-i n theta)), z = cosine + i sine: a phase that runs ahead turns z backward.
+        const double c = x_[i], s = x_[i + 1], square = c * c + s * s;
+        const double doubt = p_[i * m_ + i] + p_[(i + 1) * m_ + i + 1];
+        if (square <= 9.0 * doubt) continue;
+        const double turned = (c * ph_[i + 1] - s * ph_[i]) * scale * surprise;
+        const double order = model_.orders[i / 2 - 1];
+        advance -= order * turned;
+        weights += order * order * square;
+    }
+    phase_advance_turns_ = weights > 0.0 ? advance / (2.0 * std::numbers::pi * weights) : 0.0;
+    for (std::size_t i = 0; i < m_; ++i) {
+        const double gain = ph_[i] * scale;
+        x_[i] += gain * surprise;
+        // Both triangles from the same product, so that P stays symmetric to the last bit.
+        for (std::size_t j = i; j < m_; ++j) p_[j * m_ + i] = p_[i * m_ + j] -= gain * ph_[j];
+    }
+    return x_[0];
+}
+
+RippleRotation ripple_rotation(const RippleModel& model, double step_turns) {
+    const std::size_t m = model.states();
+    RippleRotation frame{std::vector<double>(m * m), std::vector<double>(m)};
+    frame.step[0] = frame.step[m + 1] = frame.seen[0] = 1.0;
+    frame.step[1] = model.step_s;
+    for (std::size_t i = 2; i < m; i += 2) {
+        const double order = model.orders[i / 2 - 1], phase = radians(order * step_turns);
+        frame.step[i * m + i] = frame.step[(i + 1) * m + i + 1] = std::cos(phase);
+        frame.step[i * m + i + 1] = std::sin(phase);
+        frame.step[(i + 1) * m + i] = -std::sin(phase);
+        frame.seen[i] = model.share(order, step_turns);
+    }
+    return frame;
+}
+
+std::vector<double> settled_gain(const RippleModel& model, double step_turns) {
+    if (step_turns == 0.0) return {};
+    const auto m = static_cast<Eigen::Index>(model.states());
+    const RippleRotation frame = ripple_rotation(model, step_turns);
+    // Doubling for the Riccati equation P = F (P - P h (1 + h' P h)^-1 h' P) F' + Q: A = F', G = h h', S = Q.
+    // Read column by column, frame.step is F'.
+    Eigen::MatrixXd a = Eigen::Map<const Eigen::MatrixXd>(frame.step.data(), m, m);
+    const Eigen::VectorXd h = Eigen::Map<const Eigen::VectorXd>(frame.seen.data(), m);
+    Eigen::MatrixXd s = Eigen::MatrixXd::Zero(m, m);
+    const auto noise = model.torque_noise();
+    s(0, 0) = noise.torque;
+    s(0, 1) = s(1, 0) = noise.cross;
+    s(1, 1) = noise.rate;
+    for (Eigen::Index i = 2; i < m; ++i) s(i, i) = model.amplitude_noise(step_turns);
+    Eigen::MatrixXd g = h * h.transpose();
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(m, m);
+    for (int round = 0; round < 60; ++round) {
+        const Eigen::PartialPivLU<Eigen::MatrixXd> solver(one + g * s);
+        const Eigen::MatrixXd wa = solver.solve(a), wg = solver.solve(g);
+        const Eigen::MatrixXd added = a.transpose() * s * wa;
+        g += a * wg * a.transpose();
+        s += added;
+        s = 0.5 * (s + s.transpose()).eval();
+        g = 0.5 * (g + g.transpose()).eval();
+        a = a * wa;
+        if (!(added.norm() > 1e-15 * s.norm())) break;
+    }
+    const Eigen::VectorXd ph = s * h;
+    const Eigen::VectorXd gain = ph / (1.0 + h.dot(ph));
+    if (!gain.allFinite()) return {};
+    return {gain.data(), gain.data() + m};
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A Kalman filter for torque and ripple together: torque and its rate, and for each order a cosine and a sine
+// amplitude in the motor angle.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ripplenotch {
+
+/// All in units of the sensor's noise, whose variance is 1 per sample.
+struct RippleModel {
+    std::vector<double> orders;
+    double step_s = 0.0;
+    double bandwidth_rad_s = 0.0;  ///< of the torque: where its spectrum sinks below the noise
+    double memory_turns = 0.0;     ///< of the motor, over which an amplitude may change
+
+    [[nodiscard]] std::size_t states() const { return 2 + 2 * orders.size(); }
+    /// What the torque's second derivative adds in one step: variances of torque and rate, and their
+    /// covariance.
+    struct TorqueNoise {
+        double torque, cross, rate;
+    };
+    [[nodiscard]] TorqueNoise torque_noise() const noexcept;
+    /// What a step of this many motor turns adds to the variance of each amplitude.
+    [[nodiscard]] double amplitude_noise(double step_turns) const noexcept;
+    /// Share of an order that is looked at: 1, and less where it nears half the sample rate, beyond which it
+    /// would be taken for torque.
+    [[nodiscard]] double share(double order, double step_turns) const noexcept;
+};
+
+/// What is known of an order at the start.
+struct AmplitudePrior {
+    double cosine = 0.0, sine = 0.0;  ///< of ripple = cosine cos(n theta) + sine sin(n theta)
+    double deviation = 0.0;           ///< of each
+};
+
+/// The filter with its exact gain, worked out at every sample: m = 2 + 2 orders, about m^2 + 4 m
+/// multiplications and additions a sample beside a cosine and a sine per order.
+class RippleKalman {
+  public:
+    RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors);
+
+    /// The first sample, where the torque is anything at all: torque + ripple = 0 is what was measured.
+    void start(double motor_turns);
+    /// Torque estimate after the sample `measured`, at the motor angle `motor_turns`.
+    double next(double measured, double motor_turns, double step_turns);
+
+    [[nodiscard]] double torque() const noexcept { return x_[0]; }
+    [[nodiscard]] double ripple() const noexcept;  ///< at the last sample
+    /// By how much the ripple's phase ran ahead of the angle in the last sample, in motor turns: mean over
+    /// the orders whose amplitude is known to a third, 0 when none is.
+    [[nodiscard]] double phase_advance_turns() const noexcept { return phase_advance_turns_; }
+
+  private:
+    void look(double motor_turns, double step_turns) noexcept;
+    void predict(double step_turns) noexcept;
+
+    RippleModel model_;
+    std::vector<AmplitudePrior> priors_;
+    std::size_t m_;
+    RippleModel::TorqueNoise torque_noise_;
+    std::vector<double> x_, p_, h_, ph_;  ///< p_ is m by m, row by row
+    double phase_advance_turns_ = 0.0;
+};
+
+/// The model at one constant speed in the frame that turns with the motor: torque, rate, then for each order
+/// the ripple and what it will be a quarter period on.
+struct RippleRotation {
+    std::vector<double> step;  ///< m by m, row by row
+    std::vector<double> seen;  ///< how each state shows in what is measured
+};
+[[nodiscard]] RippleRotation ripple_rotation(const RippleModel& model, double step_turns);
+
+/// Gain at one constant speed once settled, in the frame that turns with the motor of ripple_rotation. Empty
+/// where ripple and torque cannot be told apart (at standstill).
+[[nodiscard]] std::vector<double> settled_gain(const RippleModel& model, double step_turns);
+
+}  // namespace ripplenotch

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// The Kalman filter of torque and ripple, on motions whose true torque is known.
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+
+#include "filter/motor_angle.hpp"
+#include "filter/moves.hpp"
+#include "filter/ripple_kalman.hpp"
+#include "ripplenotch/core/error.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::testing;
+
+namespace {
+
+const std::string cold = "oscillator,gear-ratio=100,orders=1:2";
+const std::string warm = cold + ",amplitudes=0.8Nm:0.5Nm,phases=90:90";
+constexpr std::size_t moves = 5;
+
+// Mean rms error over five seeds; `change` makes another log of each move.
+template <class Change>
+double error_on_move(const std::string& text, Change change, bool with_position = true) {
+    double sum = 0.0;
+    for (std::uint64_t seed = 1; seed <= moves; ++seed) {
+        KnownMove move = paper_move(seed);
+        change(move, seed);
+        Samples samples = move.signals.samples();
+        if (!with_position) samples.position_deg = {};
+        sum += rms_error(filtered(*start(text), samples), move.true_nm) / moves;
+    }
+    return sum;
+}
+double error_on_move(const std::string& text) {
+    return error_on_move(text, [](KnownMove&, std::uint64_t) {});
+}
+
+// The delay in samples that makes two signals most alike, to a fraction of one.
+double delay_samples(const std::vector<double>& late, const std::vector<double>& truth) {
+    const auto misfit = [&](std::ptrdiff_t delay) {
+        double sum = 0.0;
+        for (std::size_t k = 20; k + 20 < late.size(); ++k)
+            sum += std::pow(late[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(k) + delay)] - truth[k],
+                            2);
+        return sum;
+    };
+    std::ptrdiff_t best = -19;
+    for (std::ptrdiff_t d = -19; d <= 19; ++d) best = misfit(d) < misfit(best) ? d : best;
+    const double before = misfit(best - 1), at = misfit(best), after = misfit(best + 1);
+    return static_cast<double>(best) + 0.5 * (before - after) / (before - 2.0 * at + after);
+}
+
+// -40 to 40 deg/s at 8 deg/s^2 through standstill at 10 s; ripple of 2 and 1 Nm.
+KnownMove reversal() {
+    KnownMove move;
+    double angle = 0.0;
+    for (std::size_t k = 0; k < 15000; ++k) {
+        const double t = static_cast<double>(k) / 1000.0;
+        const double v = std::clamp(8.0 * (t - 10.0), -40.0, 40.0);
+        angle += v / 1000.0;
+        const double theta = 100.0 * angle * std::numbers::pi / 180.0;
+        move.true_nm.push_back(10.0 + 5.0 * std::sin(2.0 * std::numbers::pi * 0.2 * t));
+        move.signals.velocity_deg_s.push_back(v);
+        move.signals.position_deg.push_back(angle);
+        move.signals.torque_nm.push_back(move.true_nm.back() + 2.0 * std::sin(theta + 0.3) +
+                                         std::sin(2.0 * theta + 1.1));
+    }
+    add_white_noise(move.signals.torque_nm, 0.05, 9, NoiseChannel::torque);
+    return move;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "on the paper's move the oscillator leaves less than 0.1 Nm from a cold and 0.03 Nm from a warm start") {
+    CHECK(error_on_move(cold) < 0.1);
+    CHECK(error_on_move(warm) < 0.03);
+}
+
+TEST_CASE("an angle from a velocity with noise of 0.15 deg/s serves as well") {
+    const auto noisy = [](KnownMove& move, std::uint64_t seed) {
+        integrate_noisy_velocity(move, 0.15, 0.0, seed);
+    };
+    for (const bool with_position : {true, false}) {
+        CHECK(error_on_move(cold, noisy, with_position) < 0.1);
+        CHECK(error_on_move(warm + ",start=90deg", noisy, with_position) < 0.03);
+    }
+}
+
+TEST_CASE("warm values that are 5 per cent and 5 degrees off still leave less than 0.05 Nm") {
+    CHECK(error_on_move(cold + ",amplitudes=0.84Nm:0.475Nm,phases=95:85") < 0.04);
+}
+
+TEST_CASE("the warm oscillator delays by less than a millisecond") {
+    for (std::uint64_t seed = 1; seed <= moves; ++seed) {
+        const KnownMove move = paper_move(seed);
+        const auto out = filtered(*start(warm), move.signals.samples());
+        CHECK(std::abs(delay_samples(out, move.true_nm)) < 1.0);
+    }
+}
+
+TEST_CASE("what a cold start costs is the ripple that stands still with the joint, whatever its phase") {
+    double sum = 0.0, worst = 0.0;
+    for (double phase1 = 0.0; phase1 < 360.0; phase1 += 60.0) {
+        for (double phase2 = 0.0; phase2 < 360.0; phase2 += 60.0) {
+            const KnownMove move = paper_move(7, phase1, phase2);
+            const auto out = filtered(*start(cold), move.signals.samples());
+            // From 0.4 s on the motor has turned three times and the ripple is known.
+            CHECK(rms_error(out, move.true_nm, 400) < 0.06);
+            const double error = rms_error(out, move.true_nm);
+            sum += error * error / 36.0;
+            worst = std::max(worst, error);
+        }
+    }
+    CHECK(std::sqrt(sum) < 0.20);
+    CHECK(worst < 0.34);
+}
+
+TEST_CASE("through a reversal the oscillator stays within 0.15 Nm rms") {
+    const KnownMove move = reversal();
+    const auto out = filtered(*start(cold), move.signals.samples());
+    CHECK(rms_error(out, move.true_nm, 8000, 12000) < 0.03);
+    CHECK(rms_error(move.signals.torque_nm, move.true_nm, 8000, 12000) > 1.5);
+    Samples blind = move.signals.samples();
+    blind.position_deg = {};
+    CHECK(rms_error(filtered(*start(cold), blind), move.true_nm, 8000, 12000) < 0.05);
+}
+
+TEST_CASE("at standstill a known ripple stays taken out, and a new torque is followed") {
+    KnownMove move = paper_move(3);
+    Signals& s = move.signals;
+    for (std::size_t k = 0; k < 20000; ++k) {
+        s.velocity_deg_s.push_back(0.0);
+        s.position_deg.push_back(-90.0);
+        move.true_nm.push_back(k < 10000 ? 0.0 : 2.0);
+        const double ripple = 0.8 * std::cos(-50.0 * std::numbers::pi + std::numbers::pi / 3.0) +
+                              0.5 * std::cos(-100.0 * std::numbers::pi + 2.0 * std::numbers::pi / 3.0);
+        s.torque_nm.push_back(move.true_nm.back() + ripple);
+    }
+    for (std::size_t k = 0; k < 2000; ++k) {
+        const double theta = 100.0 * s.position_deg[k] * std::numbers::pi / 180.0;
+        s.torque_nm[k] = move.true_nm[k] + 0.8 * std::cos(theta + std::numbers::pi / 3.0) +
+                         0.5 * std::cos(2.0 * theta + 2.0 * std::numbers::pi / 3.0);
+    }
+    const auto out = filtered(*start(cold), s.samples());
+    CHECK(rms_error(out, move.true_nm, 2200, 11900) < 0.03);
+    CHECK(rms_error(out, move.true_nm, 13000, 22000) < 0.03);
+}
+
+TEST_CASE("a velocity that is 1 deg/s off is corrected by the ripple itself when there is no position") {
+    Signals s;
+    std::vector<double> truth;
+    for (std::size_t k = 0; k < 20000; ++k) {
+        const double t = static_cast<double>(k) / 1000.0;
+        const double theta = 100.0 * 60.0 * t * std::numbers::pi / 180.0;
+        truth.push_back(std::sin(2.0 * t));
+        s.velocity_deg_s.push_back(61.0);
+        s.torque_nm.push_back(truth.back() + 0.8 * std::cos(theta) + 0.5 * std::cos(2.0 * theta + 1.0));
+    }
+    add_white_noise(s.torque_nm, 0.05, 5, NoiseChannel::torque);
+    const Samples samples{s.velocity_deg_s, s.torque_nm, {}};
+    const double followed = rms_error(filtered(*start(cold), samples), truth, 10000);
+    const double unaided = rms_error(filtered(*start(cold + ",offset=0.001deg/s"), samples), truth, 10000);
+    CHECK(followed < 0.03);
+    CHECK(unaided > 3.0 * followed);
+}
+
+TEST_CASE("a position of another joint is noticed and the velocity taken") {
+    KnownMove move = paper_move(2);
+    std::fill(move.signals.position_deg.begin(), move.signals.position_deg.end(), 90.0);
+    const auto out = filtered(*start(cold), move.signals.samples());
+    // Noticed after one motor turn, at 0.27 s; two turns later the ripple is known.
+    CHECK(rms_error(out, move.true_nm, 500, 1950) < 0.06);
+    MotorAngle angle(100.0, 1000.0, MotorAngle::Source::best, 0.0);
+    const double stuck = 90.0;
+    for (int k = 0; k < 2000; ++k) angle.next(50.0, &stuck);
+    CHECK(angle.from_velocity());
+}
+
+TEST_CASE("a position wrapped at 360 degrees is the same as one that is not") {
+    KnownMove move = reversal();
+    const auto straight = filtered(*start(cold), move.signals.samples());
+    for (double& p : move.signals.position_deg) p -= 360.0 * std::floor(p / 360.0);
+    const auto wrapped = filtered(*start(cold), move.signals.samples());
+    for (std::size_t k = 0; k < wrapped.size(); ++k) REQUIRE(wrapped[k] == Approx(straight[k]).margin(1e-6));
+}
+
+TEST_CASE("the exact gain is that of the textbook's matrices, and settles to that of the Riccati equation") {
+    RippleModel model{{1.0, 2.0}, 0.001, 2.0 * std::numbers::pi * 15.0, 2.0};
+    const std::vector<AmplitudePrior> priors(2, {0.0, 0.0, 20.0});
+    RippleKalman filter(model, priors);
+    filter.start(0.0);
+    // The same model written with matrices, in the frame that turns.
+    const double step = 0.025;
+    const RippleRotation frame = ripple_rotation(model, step);
+    const Eigen::MatrixXd f =
+        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+            frame.step.data(), 6, 6);
+    const Eigen::VectorXd h = Eigen::Map<const Eigen::VectorXd>(frame.seen.data(), 6);
+    Eigen::MatrixXd q = Eigen::MatrixXd::Zero(6, 6), p = q;
+    const auto noise = model.torque_noise();
+    q(0, 0) = noise.torque;
+    q(0, 1) = q(1, 0) = noise.cross;
+    q(1, 1) = noise.rate;
+    q.diagonal().tail(4).setConstant(model.amplitude_noise(step));
+    // Any torque: a variance beyond all others, then the first measurement.
+    p.diagonal() << 1e10, 0.0, 400.0, 400.0, 400.0, 400.0;
+    p(1, 1) = 100.0 * std::numbers::sqrt2 * std::pow(model.bandwidth_rad_s, 3) * model.step_s;
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(6), gain;
+    const auto measure = [&](double y) {
+        gain = p * h / (1.0 + h.dot(p * h));
+        x += gain * (y - h.dot(x));
+        p = (p - gain * h.transpose() * p).eval();
+        p = (0.5 * (p + p.transpose())).eval();
+    };
+    measure(0.0);
+    for (int k = 1; k <= 4000; ++k) {
+        const double y = 3.0 * std::sin(0.01 * k) + 10.0 * std::cos(2.0 * std::numbers::pi * step * k + 0.4);
+        x = f * x;
+        p = f * p * f.transpose() + q;
+        measure(y);
+        const double torque = filter.next(y, step * k, step);
+        REQUIRE(torque == Approx(x[0]).margin(1e-4));
+    }
+    const auto settled = settled_gain(model, step);
+    for (Eigen::Index i = 0; i < 6; ++i)
+        CHECK(settled[static_cast<std::size_t>(i)] == Approx(gain[i]).epsilon(1e-9).margin(1e-12));
+}
+
+TEST_CASE("a joint at rest for ten million samples keeps a sound covariance") {
+    RippleKalman filter({{1.0, 2.0}, 0.001, 100.0, 2.0}, {{0.0, 0.0, 20.0}, {0.0, 0.0, 20.0}});
+    filter.start(0.0);
+    for (int k = 1; k <= 2000; ++k) filter.next(std::cos(0.1 * k), 0.02 * k, 0.02);
+    for (int k = 0; k < 10'000'000; ++k) filter.next(1.0, 40.3, 0.0);
+    CHECK(std::abs(filter.torque() + filter.ripple() - 1.0) < 1e-9);
+    double worst = 0.0;
+    for (int k = 1; k <= 4000; ++k) {
+        const double torque = filter.next(std::cos(2.0 * std::numbers::pi * 0.02 * k), 40.3 + 0.02 * k, 0.02);
+        if (k > 2000) worst = std::max(worst, std::abs(torque));
+    }
+    CHECK(worst < 1e-6);
+}
+
+TEST_CASE("a line beyond half the sample rate is not taken for torque") {
+    // 100 deg/s at 25 Hz: order 1 of a gear of 90 turns once a sample and looks like a constant.
+    Signals s;
+    for (std::size_t k = 0; k < 2000; ++k) {
+        s.velocity_deg_s.push_back(100.0);
+        s.position_deg.push_back(4.0 * static_cast<double>(k));
+        s.torque_nm.push_back(5.0 + 0.3 * std::sin(0.05 * static_cast<double>(k)));
+    }
+    const auto out = filtered(*start("oscillator,gear-ratio=90,orders=1,bandwidth=2Hz", nullptr, Hertz(25.0)),
+                              s.samples());
+    CHECK(rms_error(out, s.torque_nm) < 0.01);
+}
+
+TEST_CASE("oscillator says what is wrong with its settings") {
+    CHECK_THROWS_WITH(start(cold + ",phases=0:0"), Catch::Contains("without amplitudes"));
+    CHECK_THROWS_WITH(start(cold + ",amplitudes=0.8"), Catch::Contains("1 values for 2 orders"));
+    CHECK_THROWS_WITH(start(cold + ",amplitudes=0.8:-1"), Catch::Contains("negative"));
+    CHECK_THROWS_WITH(start(cold + ",bandwidth=300Hz"), Catch::Contains("250 Hz"));
+    CHECK_THROWS_AS(start(cold + ",memory=0"), UsageError);
+}

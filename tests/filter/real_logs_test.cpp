@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// What the methods take out of two joints of a real robot. The logs are not part of the project: without them
+// these cases say so and do nothing.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <complex>
+#include <filesystem>
+
+#include "filter/tables.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
+#include "ripplenotch/filter/engine.hpp"
+#include "ripplenotch/log/log.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::testing;
+
+namespace {
+
+struct LineLevel {
+    double amplitude_nm = 0.0, floor_nm = 0.0;
+};
+
+// Amplitude of an order (cycles per joint turn) over all sweeps: the highest within 2.5 orders, rms over
+// sweeps; the floor is the median of 6 to 30 orders away.
+LineLevel level(const std::vector<Sweep>& sweeps, double order) {
+    const auto amplitude = [&](double at) {
+        double sum = 0.0, turns = 0.0;
+        for (const Sweep& sweep : sweeps) {
+            std::complex<double> s = 0.0;
+            for (std::size_t k = 0; k < sweep.turns.size(); ++k)
+                s += sweep.value[k] * std::polar(1.0, -2.0 * std::numbers::pi * at * sweep.turns[k]);
+            sum += sweep.length_turns * std::norm(2.0 * s / sweep.weight_sum);
+            turns += sweep.length_turns;
+        }
+        return std::sqrt(sum / turns);
+    };
+    LineLevel found;
+    for (double off = -2.5; off <= 2.5; off += 0.5)
+        found.amplitude_nm = std::max(found.amplitude_nm, amplitude(order + off));
+    std::vector<double> around;
+    for (double off = 6.0; off <= 30.0; off += 1.5) {
+        around.push_back(amplitude(order - off));
+        around.push_back(amplitude(order + off));
+    }
+    std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2),
+                     around.end());
+    found.floor_nm = around[around.size() / 2];
+    return found;
+}
+
+std::vector<Sweep> sweeps_of(const Trace& trace, const std::vector<double>& torque) {
+    Trace other = trace;
+    other.torque_nm = torque;
+    const TraceView view = other.view();
+    return cut_sweeps({&view, 1}, {}).pieces;
+}
+
+// Forward and backward through a low-pass: no delay, 5 Hz.
+std::vector<double> slow_part(std::vector<double> torque, Hertz rate) {
+    for (int pass = 0; pass < 2; ++pass) {
+        const auto filter = start("lowpass,cutoff=5Hz,order=2", nullptr, rate);
+        std::vector<double> out(torque.size());
+        filter->process({torque, torque, {}}, out);
+        torque.assign(out.rbegin(), out.rend());
+    }
+    return torque;
+}
+
+double change_below_5hz(const std::vector<double>& raw, const std::vector<double>& out, Hertz rate) {
+    const auto a = slow_part(raw, rate), b = slow_part(out, rate);
+    double mean = 0.0, difference = 0.0, spread = 0.0;
+    for (const double x : a) mean += x / static_cast<double>(a.size());
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        difference += std::pow(b[k] - a[k], 2);
+        spread += std::pow(a[k] - mean, 2);
+    }
+    return std::sqrt(difference / spread);
+}
+
+void check_log(const std::string& name, const std::string& orders, const std::vector<double>& lines,
+               const std::vector<std::string>& methods_tried) {
+    const std::filesystem::path path = std::filesystem::path(RIPPLENOTCH_LOGS_DIR) / "gpl3" / name;
+    if (!std::filesystem::exists(path)) {
+        WARN("skipped: no log " << name << " in the folder of real logs");
+        return;
+    }
+    const Log log = read_log(path.string(), {});
+    const Hertz rate = nominal_rate(log.trace.sample_rate);
+    const auto before = sweeps_of(log.trace, log.trace.torque_nm);
+    for (const std::string& method : methods_tried) {
+        const std::string text = fmt::format("{},gear-ratio=120,orders={}", method, orders);
+        std::vector<double> out(log.trace.size());
+        start(text, nullptr, rate)
+            ->process({log.trace.velocity_deg_s, log.trace.torque_nm, log.trace.position_deg}, out);
+        const auto after = sweeps_of(log.trace, out);
+        INFO(name << ' ' << text);
+        CHECK(change_below_5hz(log.trace.torque_nm, out, rate) < 0.03);
+        for (const double line : lines) {
+            const LineLevel raw = level(before, 120.0 * line), left = level(after, 120.0 * line);
+            INFO("order " << line << ": " << raw.amplitude_nm << " Nm, floor " << raw.floor_nm << " Nm; left "
+                          << left.amplitude_nm << " Nm");
+            CHECK(raw.amplitude_nm > 3.0 * raw.floor_nm);
+            const double fall_db = 20.0 * std::log10(raw.amplitude_nm / left.amplitude_nm);
+            CHECK((fall_db >= 12.0 || left.amplitude_nm <= raw.floor_nm));
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE(
+    "the lines of a robot's joint 1 fall by 12 dB or to the floor, the torque below 5 Hz changes by less "
+    "than 3 %") {
+    check_log("panda_gaz_j1.csv", "1:2", {1.0, 2.0}, {"tracking", "oscillator"});
+}
+
+TEST_CASE(
+    "the lines of a robot's joint 4 fall by 12 dB or to the floor, the torque below 5 Hz changes by less "
+    "than 3 %") {
+    check_log("panda_gaz_j4.csv", "2:4", {2.0, 4.0}, {"tracking", "oscillator"});
+}
