@@ -26,8 +26,9 @@ double turns_of(const Trace& trace, double sample_rate) {
     double degrees = 0.0;
     const auto stride = static_cast<std::size_t>(std::max(1.0, 0.01 * sample_rate));
     if (!trace.position_deg.empty()) {
-        for (std::size_t i = stride; i < trace.size(); i += stride) {
-            degrees += std::abs(trace.position_deg[i] - trace.position_deg[i - stride]);
+        for (std::size_t i = 0; i + 1 < trace.size(); i += stride) {
+            const std::size_t next = std::min(i + stride, trace.size() - 1);
+            degrees += std::abs(trace.position_deg[next] - trace.position_deg[i]);
         }
     } else if (sample_rate > 0.0 && std::isfinite(trace.velocity_deg_s.front())) {
         for (std::size_t i = 0; i < trace.size(); ++i)
