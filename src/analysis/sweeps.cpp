@@ -6,84 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "ripplenotch/analysis/steady.hpp"
+#include "ripplenotch/analysis/motion_runs.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double smoothing_s = 0.05;  // of the velocity that cuts and weighs; far shorter than any sweep
-
-std::vector<double> integrated_velocity(const TraceView& log) {
-    std::vector<double> turns(log.size(), 0.0);
-    for (std::size_t k = 1; k < log.size(); ++k) {
-        const double step = log.time_s[k] - log.time_s[k - 1];
-        turns[k] = turns[k - 1] + 0.5 * (log.velocity_deg_s[k] + log.velocity_deg_s[k - 1]) * step / 360.0;
-    }
-    return turns;
-}
-
-/// Position in turns, jumps of more than half a turn between neighbours taken as wrapping.
-std::vector<double> unwrapped_position(const TraceView& log) {
-    std::vector<double> turns(log.size());
-    double offset = 0.0;
-    for (std::size_t k = 0; k < log.size(); ++k) {
-        if (k > 0) {
-            const double jump = log.position_deg[k] - log.position_deg[k - 1];
-            if (std::abs(jump) > 180.0) offset -= std::round(jump / 360.0);
-        }
-        turns[k] = log.position_deg[k] / 360.0 + offset;
-    }
-    return turns;
-}
-
-struct Angle {
-    std::vector<double> turns;
-    bool absolute = false;
-};
-
-/// A position that moves by less than half or more than twice what the velocity says is of something else (a
-/// motor encoder, another joint): then the velocity speaks.
-Angle angle_of(const TraceView& log) {
-    Angle angle{integrated_velocity(log), false};
-    if (!log.has_position()) return angle;
-    std::vector<double> position = unwrapped_position(log);
-    double product = 0.0, square = 0.0;
-    constexpr std::size_t pieces = 200;
-    for (std::size_t b = 0; b < pieces; ++b) {
-        const std::size_t from = (log.size() - 1) * b / pieces, to = (log.size() - 1) * (b + 1) / pieces;
-        const double moved = angle.turns[to] - angle.turns[from];
-        product += moved * (position[to] - position[from]);
-        square += moved * moved;
-    }
-    if (product < 0.5 * square || product > 2.0 * square) return angle;
-    return {std::move(position), true};
-}
-
-struct Span {
-    std::size_t first = 0, end = 0;
-};
-
-/// Runs of samples that move in one direction without a gap in time.
-std::vector<Span> directed_runs(const TraceView& log, std::span<const double> speed, const SweepRule& rule) {
-    double fastest = 0.0;
-    for (const double v : speed) fastest = std::max(fastest, std::abs(v));
-    const double slowest = std::max(rule.slowest_deg_s, rule.slowest_share * fastest);
-    const double gap = rule.gap_steps / log.sample_rate.value();
-    std::vector<Span> runs;
-    int direction = 0;
-    for (std::size_t k = 0; k < log.size(); ++k) {
-        const int here = speed[k] > slowest ? 1 : speed[k] < -slowest ? -1 : 0;
-        const bool jumped = k > 0 && log.time_s[k] - log.time_s[k - 1] > gap;
-        if (here != 0 && (here != direction || jumped)) runs.push_back({k, k});
-        if (here != 0) runs.back().end = k + 1;
-        direction = here;
-    }
-    return runs;
-}
-
 /// Pieces of at most rule.longest_turns and about rule.longest_s, half overlapping, of equal length in angle.
-std::vector<Span> pieces_of(const Span& run, const TraceView& log, std::span<const double> turns,
-                            const SweepRule& rule) {
+std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std::span<const double> turns,
+                                 const SweepRule& rule) {
     const double start = turns[run.first];
     const double length = std::abs(turns[run.end - 1] - start);
     if (length < rule.shortest_turns) return {};
@@ -92,7 +22,7 @@ std::vector<Span> pieces_of(const Span& run, const TraceView& log, std::span<con
     if (length <= longest) return {run};
     const auto count = static_cast<std::size_t>(std::max(1.0, std::floor(2.0 * length / longest) - 1.0));
     const double hop = count > 1 ? (length - longest) / static_cast<double>(count - 1) : 0.0;
-    std::vector<Span> pieces;
+    std::vector<SampleRun> pieces;
     std::size_t from = run.first;
     for (std::size_t i = 0; i < count; ++i) {
         const double begin = hop * static_cast<double>(i);
@@ -170,7 +100,7 @@ void weigh(Sweep& sweep) {
     }
 }
 
-Sweep make_sweep(const TraceView& log, const Span& span, std::span<const double> all_turns,
+Sweep make_sweep(const TraceView& log, const SampleRun& span, std::span<const double> all_turns,
                  std::span<const double> all_speed, const SweepRule& rule) {
     const std::size_t n = span.end - span.first;
     const double step = 1.0 / log.sample_rate.value();
@@ -203,7 +133,7 @@ Sweep make_sweep(const TraceView& log, const Span& span, std::span<const double>
 
 struct Planned {
     std::size_t log = 0;
-    Span span;
+    SampleRun span;
 };
 
 /// Keeps pieces evenly over all of them until their number and their samples fit.
@@ -245,17 +175,17 @@ Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count) {
 }
 
 Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule) {
-    std::vector<Angle> angles;
+    std::vector<OutputAngle> angles;
     std::vector<std::vector<double>> speeds;
     std::vector<Planned> planned;
     Sweeps sweeps;
     for (std::size_t i = 0; i < logs.size(); ++i) {
         const TraceView& log = logs[i];
-        const auto width = static_cast<std::size_t>(smoothing_s * log.sample_rate.value()) | 1U;
-        angles.push_back(angle_of(log));
-        speeds.push_back(moving_mean(log.velocity_deg_s, width));
-        for (const Span& run : directed_runs(log, speeds.back(), rule)) {
-            for (const Span& piece : pieces_of(run, log, angles.back().turns, rule)) {
+        angles.push_back(output_angle(log));
+        speeds.push_back(smoothed_speed(log));
+        for (const SampleRun& run : directed_runs(log.time_s, speeds.back(), log.sample_rate,
+                                                  {rule.slowest_share, rule.slowest_deg_s, rule.gap_steps})) {
+            for (const SampleRun& piece : pieces_of(run, log, angles.back().turns, rule)) {
                 if (piece.end - piece.first >= rule.fewest_samples) planned.push_back({i, piece});
             }
         }

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Amplitude and phase of each line against time: least squares on the angle over sliding windows, all lines
+// of all shafts at once, so that close and crossing ones are told apart.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+/// What repeats `order` times per turn of a shaft. With time in seconds as `turns`, a tone of `order` hertz.
+struct TrackedLine {
+    double order = 1.0;
+    std::span<const double> turns;  ///< angle of its shaft, one value a sample, signed, without jumps
+};
+
+/// A torque signal and the lines looked for in it. All spans have one value a sample; time increases.
+struct TrackedSignal {
+    Hertz sample_rate;
+    std::span<const double> time_s, torque_nm;
+    std::span<const double> speed_deg_s;      ///< signed, smooth; tells runs apart and is reported
+    std::span<const double> reference_turns;  ///< the shaft whose turns windows are measured in
+    std::vector<TrackedLine> lines;
+};
+
+/// One line along the rows of its OrderTracks; nan where it was not measured.
+struct LineTrack {
+    std::vector<double> amplitude_nm;       ///< zero to peak
+    std::vector<double> standard_error_nm;  ///< of the amplitude, from the residual
+    std::vector<double> phase_deg;          ///< of cos(2 pi order turns + phase), -180 to 180
+    std::vector<double> hz;                 ///< frequency there
+};
+
+struct OrderTracks {
+    std::vector<double> time_s, speed_deg_s;  ///< per row
+    std::vector<LineTrack> lines;             ///< in the order of TrackedSignal::lines
+    double residual_rms_nm = 0.0;             ///< torque that neither the lines nor the trend explain
+    std::size_t rows_folded = 0;              ///< rows in which a line lies above half the sample rate
+    std::size_t rows_not_separable = 0;       ///< left out: lines too much alike within the window
+    std::size_t windows_too_slow = 0;         ///< left out: longer than WindowRule::longest
+    std::size_t windows_too_few_samples = 0;  ///< left out: under two samples an unknown
+};
+
+struct WindowRule {
+    double turns = 8.0;    ///< length in turns of the reference shaft, unless `seconds` is above 0
+    Seconds seconds{0.0};  ///< length in time
+    Seconds longest{
+        2.0};           ///< a window in turns that takes longer is left out: the trend is no cubic for longer
+    double hop = 0.25;  ///< windows start so much of a length apart, or a little closer
+    int envelope_degree = 2;  ///< amplitude within a window: 0 constant, 1 or 2 polynomial in time
+};
+
+/// The turns that tell lines of these orders apart: eight periods of the lowest, and two of the smallest
+/// difference.
+[[nodiscard]] double separating_window_turns(std::span<const double> orders);
+
+/// In each window x(t) = cubic in t + sum over lines of a(t) cos(2 pi order turns) + b(t) sin(...) is fitted,
+/// a and b being polynomials of WindowRule::envelope_degree; reported is what holds at the window's middle.
+/// A window lies within one direction of motion and holds no gap; a run between half and one window long is
+/// one window. Throws UsageError for a signal without lines, orders not above 0 or a rule that makes no
+/// sense. O(n).
+[[nodiscard]] OrderTracks track_orders(const TrackedSignal& signal, const WindowRule& rule);
+
+}  // namespace ripplenotch
