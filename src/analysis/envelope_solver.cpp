@@ -87,11 +87,12 @@ class Section {
     void add_smoothness(std::vector<Eigen::Triplet<double>>& entries,
                         const EnvelopeSettings& settings) const {
         const std::vector<double> row = difference_row(settings.poles);
-        const double strong = settings.samples_per_point * settings.weight * settings.weight;
         for (std::size_t j = 0; j + row.size() <= same_.size(); ++j) {
             for (std::size_t c = 0; c < components_; ++c) {
                 const bool trend = settings.trend && c + 1 == components_;
-                const double weight = trend ? strong : 0.5 * strong;
+                const double weight =
+                    settings.samples_per_point * (trend ? settings.trend_weight * settings.trend_weight
+                                                        : 0.5 * settings.weight * settings.weight);
                 for (std::size_t a = 0; a < row.size(); ++a) {
                     for (std::size_t b = 0; b <= a; ++b) {
                         push(entries, static_cast<Eigen::Index>((j + a) * components_ + c),

@@ -16,6 +16,7 @@ struct EnvelopeSettings {
     int poles = 2;        ///< order of the differences that are kept small
     double weight = 0.0;  ///< r of those differences
     bool trend = true;
+    double trend_weight = 0.0;  ///< r of the trend's differences
     std::size_t overlap_points = 400;  ///< sections of a long run share so many with each neighbour
 };
 

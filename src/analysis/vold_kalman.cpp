@@ -19,7 +19,8 @@ constexpr double points_per_width = 40.0;  ///< points of the envelope in 1/band
 constexpr double rows_per_width = 8.0;
 constexpr double shortest_run = 1.5;  ///< in 1/bandwidth
 constexpr double worst_condition = 1e13;
-constexpr double fewest_cycles = 1.0;   ///< of a line within 1/bandwidth, or it is trend
+constexpr double trend_widths = 4.0;    ///< the trend's bandwidth over a line's
+constexpr double fewest_cycles = 1.0;   ///< of a line within 1/bandwidth, or it is one with its mirror image
 constexpr double near_share = 0.5;      ///< lines closer than this share of the bandwidth ...
 constexpr std::size_t near_widths = 8;  ///< ... for most of so many times 1/bandwidth are one
 constexpr double gap_steps = 10.0;
@@ -53,8 +54,8 @@ std::vector<double> cycles_at_points(const EnvelopeGrid& grid, std::span<const d
     return at;
 }
 
-/// True at the points around which a line turns by less than a cycle within `width` points.
-std::vector<bool> stands(const std::vector<double>& cycles, std::size_t width) {
+/// True at the points around which a line turns by fewer than `fewest` cycles within `width` points.
+std::vector<bool> stands(const std::vector<double>& cycles, std::size_t width, double fewest) {
     std::vector<double> travelled(cycles.size(), 0.0);
     for (std::size_t j = 1; j < cycles.size(); ++j) {
         travelled[j] = travelled[j - 1] + std::abs(cycles[j] - cycles[j - 1]);
@@ -62,7 +63,7 @@ std::vector<bool> stands(const std::vector<double>& cycles, std::size_t width) {
     std::vector<bool> still(cycles.size());
     for (std::size_t j = 0; j < cycles.size(); ++j) {
         const std::size_t from = std::min(j > width / 2 ? j - width / 2 : 0, cycles.size() - 1 - width);
-        still[j] = travelled[from + width] - travelled[from] < fewest_cycles;
+        still[j] = travelled[from + width] - travelled[from] < fewest;
     }
     return still;
 }
@@ -124,23 +125,24 @@ class RunTracker {
         const std::size_t lines = signal_.lines.size();
         std::vector<std::vector<double>> cycles(lines);
         for (std::size_t i = 0; i < lines; ++i) cycles[i] = line_cycles(signal_.lines[i]);
-        const auto unknown = unseparated(cycles, width);
+        const auto unknown = unseparated(cycles, width, settings_.trend ? trend_widths : fewest_cycles);
         const double end = time_s_.back();
         for (std::size_t j = 0; j < grid_.points; j += stride) {
             const double t = grid_.start_s + grid_.step_s * static_cast<double>(j);
             if (t > end) break;
+            const auto is_unknown = [&](const std::vector<bool>& line) { return line[j]; };
+            if (std::any_of(unknown.begin(), unknown.end(), is_unknown)) ++tracks.rows_not_separable;
+            if (std::all_of(unknown.begin(), unknown.end(), is_unknown)) continue;
             tracks.time_s.push_back(t);
             tracks.speed_deg_s.push_back(signal_.speed_deg_s[run_.first + nearest(t)]);
             const std::size_t from_end = std::min(j, grid_.points - 1 - j);
             const double error = error_factor[std::min(from_end, error_factor.size() - 1)];
-            bool missing = false, folded = false;
+            bool folded = false;
             for (std::size_t i = 0; i < lines; ++i) {
                 const double hz = rate_at(cycles[i], j, width);
                 folded = folded || hz > 0.5 * signal_.sample_rate.value();
-                missing = missing || unknown[i][j];
                 add_value(tracks.lines[i], i, j, hz, error, unknown[i][j]);
             }
-            tracks.rows_not_separable += missing ? 1 : 0;
             tracks.rows_folded += folded ? 1 : 0;
         }
     }
@@ -154,9 +156,9 @@ class RunTracker {
 
     /// Per line and point: cannot be told from the trend or from another line there.
     [[nodiscard]] static std::vector<std::vector<bool>> unseparated(
-        const std::vector<std::vector<double>>& cycles, std::size_t width) {
+        const std::vector<std::vector<double>>& cycles, std::size_t width, double fewest) {
         std::vector<std::vector<bool>> unknown;
-        for (const auto& line : cycles) unknown.push_back(stands(line, width));
+        for (const auto& line : cycles) unknown.push_back(stands(line, width, fewest));
         for (std::size_t i = 0; i < cycles.size(); ++i) {
             for (std::size_t other = 0; other < i; ++other) {
                 for (const double sign : {-1.0, 1.0}) {  // a real line is a pair of turning ones
@@ -210,6 +212,10 @@ EnvelopeSettings settings_of(const TrackedSignal& signal, const VoldKalmanRule& 
     settings.poles = rule.poles;
     settings.weight = vold_kalman_weight(width * settings.step_s, rule.poles);
     settings.trend = rule.trend;
+    if (rule.trend) {
+        settings.trend_weight =
+            vold_kalman_weight(std::min(0.9, trend_widths * width * settings.step_s), rule.poles);
+    }
     settings.overlap_points = static_cast<std::size_t>(std::ceil(10.0 / (width * settings.step_s)));
     return settings;
 }
@@ -280,7 +286,7 @@ VoldKalmanTracks track_vold_kalman(const TrackedSignal& signal, const VoldKalman
         longest_s = std::max(longest_s, signal.time_s[run.end - 1] - signal.time_s[run.first]);
     }
     const EnvelopeKernel kernel(settings, longest_s, rule.bandwidth);
-    const double unknowns = static_cast<double>(2 * signal.lines.size() + (rule.trend ? 1 : 0));
+    const double unknowns = static_cast<double>(2 * signal.lines.size()) + (rule.trend ? trend_widths : 0.0);
     const double freedom =
         static_cast<double>(samples) * (1.0 - std::min(0.9, unknowns * kernel.freedom_per_sample()));
     result.tracks.residual_rms_nm = std::sqrt(squares / freedom);

@@ -34,8 +34,8 @@ TEST_CASE(
 TEST_CASE("constant orders of a run-up come out with their amplitudes, and as waveforms") {
     const auto signal = tests::run_up();
     const int poles = GENERATE(1, 2, 3, 4);
-    const VoldKalmanTracks found =
-        track_vold_kalman(signal.tracked(tests::run_up_orders), {.bandwidth = Hertz(2.0), .poles = poles});
+    const VoldKalmanTracks found = track_vold_kalman(
+        signal.tracked(tests::run_up_orders), {.bandwidth = Hertz(2.0), .poles = poles, .trend = false});
     REQUIRE(found.tracks.time_s.size() > 20);
     for (std::size_t i = 0; i < 4; ++i) {
         const double truth = tests::run_up_amplitudes[i];
@@ -55,7 +55,8 @@ TEST_CASE("constant orders of a run-up come out with their amplitudes, and as wa
 TEST_CASE("crossing orders of two shafts keep their amplitudes within 1 percent, the swell included") {
     const auto signal = tests::crossing();
     const VoldKalmanTracks found = track_vold_kalman(
-        signal.tracked(), {.bandwidth = Hertz(10.0), .poles = 2, .rows_per_second = Hertz(100.0)});
+        signal.tracked(),
+        {.bandwidth = Hertz(10.0), .poles = 2, .trend = false, .rows_per_second = Hertz(100.0)});
     REQUIRE(found.tracks.time_s.size() > 200);
     double highest = 0.0;
     for (std::size_t row = 0; row < found.tracks.time_s.size(); ++row) {
@@ -153,7 +154,8 @@ TEST_CASE("a clock that jitters moves no amplitude") {
         CHECK_THAT(amplitude, WithinRel(0.8, 1e-5));
 }
 
-TEST_CASE("where a line stands still or stays with another it is nan, and elsewhere it is not disturbed") {
+TEST_CASE(
+    "where a line stands still or stays with another it is left out, and elsewhere it is not disturbed") {
     // Rest for 4 s, then 25 turns a second for 6 s; a torque that no order explains underneath.
     std::vector<double> speed(10000, 0.0);
     for (std::size_t k = 0; k < speed.size(); ++k) {
@@ -163,14 +165,14 @@ TEST_CASE("where a line stands still or stays with another it is nan, and elsewh
     tests::add_line(signal, {1.0, 0.8, 0.3});
     for (double& torque : signal.torque_nm) torque += 5.0;
     const VoldKalmanTracks found = track_vold_kalman(signal.tracked({1.0}), {.bandwidth = Hertz(1.0)});
-    std::size_t missing = 0;
+    // 4 Hz are reached 0.08 s after the start; half a second of the envelope lies before that.
+    REQUIRE_FALSE(found.tracks.time_s.empty());
+    CHECK(found.tracks.time_s.front() > 3.9);
+    CHECK(found.tracks.rows_not_separable >= 31);
     for (std::size_t row = 0; row < found.tracks.time_s.size(); ++row) {
-        const double amplitude = found.tracks.lines[0].amplitude_nm[row];
-        missing += std::isnan(amplitude) ? 1 : 0;
-        if (found.tracks.time_s[row] < 3.4) CHECK(std::isnan(amplitude));
-        if (found.tracks.time_s[row] > 5.0) CHECK_THAT(amplitude, WithinAbs(0.8, 1e-3));
+        if (found.tracks.time_s[row] > 5.0)
+            CHECK_THAT(found.tracks.lines[0].amplitude_nm[row], WithinAbs(0.8, 1e-3));
     }
-    CHECK(found.tracks.rows_not_separable == missing);
 
     // A tone at the speed of the shaft: told apart nowhere.
     signal = tests::shaft(tests::straight(25.0, 25.0, 5000), 1000.0);
@@ -178,7 +180,8 @@ TEST_CASE("where a line stands still or stays with another it is nan, and elsewh
     TrackedSignal tracked = signal.tracked({1.0});
     tracked.lines.push_back({25.2, signal.time_s});
     const VoldKalmanTracks together = track_vold_kalman(tracked, {.bandwidth = Hertz(1.0)});
-    for (const double amplitude : together.tracks.lines[0].amplitude_nm) CHECK(std::isnan(amplitude));
+    CHECK(together.tracks.time_s.empty());
+    CHECK(together.tracks.rows_not_separable > 30);
 }
 
 TEST_CASE("a log too short for the bandwidth is refused, and the message names one that works") {

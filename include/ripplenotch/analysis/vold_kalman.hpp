@@ -15,7 +15,7 @@ namespace ripplenotch {
 struct VoldKalmanRule {
     Hertz bandwidth{1.0};  ///< of each envelope, -3 dB, both sides together
     int poles = 2;         ///< 1 to 4: how steeply the filter falls beyond
-    bool trend = true;     ///< a smooth torque of the same bandwidth is estimated along with the lines
+    bool trend = true;     ///< a smooth torque of four times the bandwidth is estimated along with the lines
     /// Samples per point of the envelopes; 0 chooses 40 points in 1/bandwidth, between which they are
     /// straight.
     std::size_t samples_per_point = 0;
@@ -24,7 +24,7 @@ struct VoldKalmanRule {
 };
 
 struct VoldKalmanTracks {
-    OrderTracks tracks;     ///< rows_not_separable counts the rows in which some line is nan
+    OrderTracks tracks;     ///< rows_not_separable counts rows with a nan and rows left out
     Hertz bandwidth;        ///< as obtained in the middle of the longest run, from the equations solved
     Seconds envelope_step;  ///< between points of the envelopes
     std::size_t runs_too_short = 0;                ///< left out: shorter than 1.5 / bandwidth
@@ -40,11 +40,12 @@ struct VoldKalmanTracks {
 /// in 1/bandwidth changes them by less than 0.1 %, keeps any bandwidth well conditioned and takes clocks that
 /// jitter. Sparse Cholesky factorisation, O(n). A gap in time ends a run; each run is solved alone.
 ///
-/// A line is nan where it turns by less than a cycle within 1/bandwidth, for then it cannot be told from the
-/// trend, and where it keeps within half the bandwidth of another line for most of 8/bandwidth. Lines may
-/// cross. standard_error_nm holds for white noise, ends of runs included, away from such places. Throws
-/// UsageError for the rules above, and DataError when no run lasts 1.5 / bandwidth, naming the bandwidth that
-/// the log can give.
+/// A line is nan where its frequency is below four times the bandwidth, for there the trend reaches (with no
+/// trend: below the bandwidth, for there it meets its own mirror image), and where it keeps within half the
+/// bandwidth of another line for most of 8/bandwidth. Lines may cross. Rows in which every line is nan are
+/// left out. standard_error_nm holds for white noise, ends of runs included, away from such places.
+/// Throws UsageError for the rules above, and DataError when no run lasts 1.5 / bandwidth, naming the
+/// bandwidth that the log can give.
 [[nodiscard]] VoldKalmanTracks track_vold_kalman(const TrackedSignal& signal, const VoldKalmanRule& rule);
 
 }  // namespace ripplenotch

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch track: amplitude and phase of each order against time or speed.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/joint_facts.hpp"
+#include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/analysis/vold_kalman.hpp"
+#include "ripplenotch/artifact/track.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 2> method_names = {"ls", "vold-kalman"};
+constexpr std::array<std::string_view, 3> amplitude_names = {"peak", "rms", "peak-to-peak"};
+constexpr std::array<std::string_view, 2> against_names = {"time", "speed"};
+
+struct Request {
+    CommonOptions common;
+    LogOptions log;
+    std::string path, method = "ls", amplitude = "peak", against = "time";
+    std::vector<double> orders, output_orders, tones_hz;
+    std::optional<double> gear_ratio, window_turns;
+    std::optional<std::string> joint_file;
+    std::optional<Seconds> window;
+    std::optional<Hertz> bandwidth, rows_per_second;
+    std::optional<DegPerSec> speed_step;
+    int poles = 2;
+};
+
+bool by_vold_kalman(const Request& request) { return request.method == "vold-kalman"; }
+
+void check(const Request& request) {
+    const bool vold_kalman = by_vold_kalman(request);
+    if (vold_kalman && (request.window_turns || request.window)) {
+        raise<UsageError>("--window and --window-turns belong to --method ls; vold-kalman has a --bandwidth");
+    }
+    if (!vold_kalman && (request.bandwidth || request.rows_per_second)) {
+        raise<UsageError>(
+            "--bandwidth and --rows-per-second belong to --method vold-kalman; ls has a --window");
+    }
+    if (request.window_turns && request.window)
+        raise<UsageError>("--window and --window-turns exclude each other");
+    if (request.window && !(request.window->value() > 0.0)) raise<UsageError>("--window must be above 0 s");
+    if (request.window_turns && !(*request.window_turns > 0.0))
+        raise<UsageError>("--window-turns must be above 0");
+    if (request.rows_per_second && !(request.rows_per_second->value() > 0.0))
+        raise<UsageError>("--rows-per-second must be above 0 Hz");
+    if (request.speed_step && !(request.speed_step->value() > 0.0))
+        raise<UsageError>("--speed-step must be above 0 deg/s");
+    if (request.speed_step && request.against != "speed")
+        raise<UsageError>("--speed-step belongs to --against speed");
+    if (request.log.joint == "all") raise<UsageError>("--joint all: track looks at one joint; name it");
+}
+
+/// Gear ratio and motor orders from the joint file where the command line does not say them.
+void take_joint_file(Request& request, Provenance& provenance) {
+    if (request.joint_file) {
+        const JointFacts facts = load_joint_facts(*request.joint_file);
+        provenance.inputs.push_back(input_record(*request.joint_file));
+        if (!request.gear_ratio) request.gear_ratio = gear_ratio_of(facts).value();
+        if (request.orders.empty()) {
+            for (const Order order : facts.orders) request.orders.push_back(order.value());
+        }
+    }
+    if (request.gear_ratio && !(*request.gear_ratio > 0.0))
+        raise<UsageError>("--gear-ratio {} is not above 0", shortest(*request.gear_ratio));
+    if (!request.orders.empty() && !request.gear_ratio) {
+        raise<UsageError>(
+            "--orders count cycles per motor turn and need --gear-ratio or --joint-file; --output-orders "
+            "count per "
+            "turn of the joint");
+    }
+    if (request.orders.empty() && request.output_orders.empty() && request.tones_hz.empty()) {
+        raise<UsageError>(
+            "nothing to track; give --orders 1,2 with --gear-ratio, or --output-orders, or --joint-file");
+    }
+}
+
+/// The signal that is tracked, with the angles and speeds that it borrows.
+struct Prepared {
+    OutputAngle angle;
+    std::vector<double> motor_turns, speed;
+    TrackedSignal signal;
+    std::vector<TrackLabel> labels;
+    std::vector<double> reference_orders;  ///< of the lines that turn, per turn of the reference shaft
+};
+
+std::unique_ptr<Prepared> prepare(const Request& request, const TraceView& trace) {
+    auto p = std::make_unique<Prepared>();
+    p->angle = output_angle(trace);
+    p->speed = smoothed_speed(trace);
+    const double ratio = request.gear_ratio.value_or(1.0);
+    p->motor_turns = p->angle.turns;
+    for (double& turns : p->motor_turns) turns *= ratio;
+    p->signal = {trace.sample_rate, trace.time_s, trace.torque_nm, p->speed, p->motor_turns, {}};
+    const auto add = [&](TrackLabel::Kind kind, double value, std::span<const double> turns) {
+        p->labels.push_back({kind, value});
+        p->signal.lines.push_back({value, turns});
+    };
+    for (const double order : request.orders) {
+        add(TrackLabel::Kind::order, order, p->motor_turns);
+        p->reference_orders.push_back(order);
+    }
+    for (const double order : request.output_orders) {
+        add(TrackLabel::Kind::order_output, order, p->angle.turns);
+        p->reference_orders.push_back(order / ratio);
+    }
+    for (const double hz : request.tones_hz) add(TrackLabel::Kind::tone, hz, trace.time_s);
+    return p;
+}
+
+void track_by_least_squares(const Request& request, const Prepared& prepared, TrackReport& report) {
+    WindowRule rule;
+    if (request.window) {
+        rule.seconds = *request.window;
+        report.window = rule.seconds;
+    } else if (request.window_turns) {
+        rule.turns = *request.window_turns;
+    } else if (prepared.reference_orders.empty()) {
+        raise<UsageError>("tones alone need --window, for example --window 0.5s");
+    } else {
+        rule.turns = separating_window_turns(prepared.reference_orders);
+    }
+    if (!request.window) report.window_turns = rule.turns;
+    report.tracks = track_orders(prepared.signal, rule);
+}
+
+void track_by_vold_kalman(const Request& request, const Prepared& prepared, TrackReport& report) {
+    VoldKalmanRule rule;
+    if (request.bandwidth) rule.bandwidth = *request.bandwidth;
+    if (request.rows_per_second) rule.rows_per_second = *request.rows_per_second;
+    rule.poles = request.poles;
+    VoldKalmanTracks found = track_vold_kalman(prepared.signal, rule);
+    report.bandwidth = rule.bandwidth;
+    report.bandwidth_obtained = found.bandwidth;
+    report.poles = rule.poles;
+    report.tracks = std::move(found.tracks);
+}
+
+std::vector<std::string> warnings_of(const TrackReport& report) {
+    const OrderTracks& tracks = report.tracks;
+    std::vector<std::string> warnings;
+    if (!report.angle_from_position) {
+        warnings.emplace_back(
+            "no usable position: the angle is integrated velocity, and phases count from the first sample");
+    }
+    if (tracks.windows_too_slow > 0) {
+        warnings.push_back(
+            fmt::format("{} windows left out: slower than {} turns in 2 s; --window gives them in seconds",
+                        tracks.windows_too_slow, shortest(report.window_turns.value_or(0.0))));
+    }
+    if (tracks.windows_too_few_samples > 0) {
+        warnings.push_back(
+            fmt::format("{} windows left out: too few samples for so many lines; use a longer window",
+                        tracks.windows_too_few_samples));
+    }
+    if (tracks.rows_not_separable > 0) {
+        warnings.push_back(
+            fmt::format("{} rows where lines cannot be told apart from each other or from the trend are {}",
+                        tracks.rows_not_separable, report.method == "ls" ? "left out" : "nan or left out"));
+    }
+    if (tracks.rows_folded > 0) {
+        warnings.push_back(
+            fmt::format("in {} rows a line lies above half the sample rate: its amplitude is what a "
+                        "low-pass before the sampling left of it",
+                        tracks.rows_folded));
+    }
+    return warnings;
+}
+
+std::string why_none(const TrackReport& report) {
+    if (report.bandwidth) {
+        return fmt::format(
+            "no line anywhere turns faster than four times the bandwidth of {} Hz, apart from the others",
+            shortest(report.bandwidth->value()));
+    }
+    const std::string window = report.window ? shortest(report.window->value()) + " s"
+                                             : shortest(report.window_turns.value_or(0.0)) + " turns";
+    return fmt::format("the joint nowhere moves in one direction for a window of {}, or for half of one",
+                       window);
+}
+
+ExitCode run(Request& request, const std::string& command_line) {
+    check(request);
+    Provenance provenance{{}, command_line};
+    take_joint_file(request, provenance);
+    const LogFormat& format = output_format(request.common.output, std::nullopt);
+    const Log log = read_log(request.path, request.log.resolve());
+    say_layout(request.common, log.layout);
+    say_warnings(request.common, log.timebase.warnings);
+    provenance.inputs.push_back(input_record(request.path));
+    provenance.inputs.back().rows = log.trace.size();
+
+    const auto prepared = prepare(request, log.trace.view());
+    TrackReport report;
+    report.joint = log.trace.joint;
+    report.method = request.method;
+    report.kind = request.amplitude == "rms"            ? AmplitudeKind::rms
+                  : request.amplitude == "peak-to-peak" ? AmplitudeKind::peak_to_peak
+                                                        : AmplitudeKind::peak;
+    if (request.gear_ratio) report.gear_ratio = GearRatio(*request.gear_ratio);
+    report.angle_from_position = prepared->angle.absolute;
+    report.labels = prepared->labels;
+    if (by_vold_kalman(request)) {
+        track_by_vold_kalman(request, *prepared, report);
+    } else {
+        track_by_least_squares(request, *prepared, report);
+    }
+    const auto warnings = warnings_of(report);
+    say_warnings(request.common, warnings);
+    if (report.tracks.time_s.empty())
+        raise<DataError>("{}: no row could be measured: {}", request.path, why_none(report));
+    if (request.against == "speed")
+        report.by_speed = gather_by_speed(report.tracks, request.speed_step.value_or(DegPerSec(0.0)));
+    if (request.common.json) {
+        write_all(request.common.output, track_text(report, provenance), request.common.overwrite());
+        return ExitCode::done;
+    }
+    say(request.common, track_verdict(report));
+    std::vector<NumberColumn> columns;
+    for (TrackColumn& column : track_columns(report))
+        columns.push_back({column.name, std::move(column.values)});
+    ByteSink sink(request.common.output, request.common.overwrite(), format.binary);
+    format.write_columns(sink, columns);
+    sink.finish();
+    return ExitCode::done;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    const auto request = std::make_shared<Request>();
+    options.argument("LOG", request->path, true, "a log; - is standard input");
+    options.numbers("--orders", request->orders, Dimension::none, "lines to track, in cycles per motor turn");
+    options.number("--gear-ratio", request->gear_ratio, Dimension::none, "motor turns per output turn");
+    options.text("--joint-file", request->joint_file, "FILE", "joint.json: gear ratio and orders from there");
+    options.numbers("--output-orders", request->output_orders, Dimension::none,
+                    "lines to track along with them, in cycles per output turn");
+    options.numbers("--tones", request->tones_hz, Dimension::frequency,
+                    "lines of fixed frequency to keep apart: 50Hz");
+    options.choice("--method", request->method, method_names,
+                   "least squares over sliding windows, or Vold-Kalman");
+    options.number(
+        "--window-turns", request->window_turns, Dimension::none,
+        "ls: window in motor turns (output turns without a gear ratio); 8 periods of the lowest order, or 2 "
+        "beats of the closest");
+    options.quantity("--window", request->window, Dimension::time, "ls: window in time instead");
+    options.quantity("--bandwidth", request->bandwidth, Dimension::frequency,
+                     "vold-kalman: -3 dB width of each line's envelope; 1 Hz");
+    options.count("--poles", request->poles, 1, 4, "vold-kalman: steepness");
+    options.quantity("--rows-per-second", request->rows_per_second, Dimension::frequency,
+                     "vold-kalman: rows of the result; 8 in 1/bandwidth");
+    options.choice("--amplitude", request->amplitude, amplitude_names,
+                   "what amplitudes are; the column names say it");
+    options.choice("--against", request->against, against_names, "rows by time, or gathered by signed speed");
+    options.quantity("--speed-step", request->speed_step, Dimension::speed,
+                     "width of a row's speeds; about 24 rows when left out");
+    attach_log(options, request->log);
+    attach_common(options, request->common);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::track{
+    .name = "track",
+    .summary = "amplitude and phase of each order against time or speed",
+    .description =
+        "Writes CSV (.npy by -o's extension): time_s, speed_deg_s, and per line amplitude, phase and "
+        "standard error.\n"
+        "All lines are fitted at once, so that close and crossing ones are told apart.\n"
+        "Example: ripplenotch track log.csv --orders 1,2 --gear-ratio 100 --against speed",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch track as users meet it: columns, kinds of amplitude, speed, Vold-Kalman, refusals."""
+
+import csv
+import io
+import json
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+MOVE = str(DATA / "paper_move_2s.csv")
+ORDERS = ["--orders", "1,2", "--gear-ratio", "100"]
+
+
+def run(*words, stdin=None):
+    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=60, input=stdin,
+                          stdin=None if stdin is not None else subprocess.DEVNULL)
+
+
+def rows_of(text):
+    table = list(csv.reader(io.StringIO(text)))
+    return table[0], [[float(cell) for cell in row] for row in table[1:]]
+
+
+class Case(unittest.TestCase):
+    def track(self, *words, **more):
+        done = run("track", *words, **more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return rows_of(done.stdout)
+
+
+class Columns(Case):
+    def test_both_methods_find_the_amplitudes_that_the_move_was_made_with(self):
+        for words, names in ((), "ls"), (("--method", "vold-kalman", "--bandwidth", "3Hz"), "vold-kalman"):
+            header, rows = self.track(MOVE, *ORDERS, *words)
+            self.assertEqual(header, ["time_s", "speed_deg_s",
+                                      "order_1_amplitude_nm", "order_1_phase_deg", "order_1_standard_error_nm",
+                                      "order_2_amplitude_nm", "order_2_phase_deg", "order_2_standard_error_nm"])
+            self.assertGreater(len(rows), 15, names)
+            for row in rows:
+                for column, truth in (2, 0.8), (5, 0.5):
+                    if not math.isnan(row[column]):
+                        # 4 standard errors of up to 0.007 Nm
+                        self.assertAlmostEqual(row[column], truth, delta=0.028, msg=f"{names} {row}")
+                        self.assertAlmostEqual(row[column + 1], 0.0, delta=4.0)
+
+    def test_rms_and_peak_to_peak_are_the_peak_times_their_factor_and_named_so(self):
+        _, peak = self.track(MOVE, *ORDERS)
+        for kind, name, factor in ("rms", "order_1_rms_nm", math.sqrt(0.5)), ("peak-to-peak",
+                                                                            "order_1_peak_to_peak_nm", 2.0):
+            header, rows = self.track(MOVE, *ORDERS, "--amplitude", kind)
+            self.assertEqual(header[2], name)
+            for a, b in zip(peak, rows):
+                self.assertAlmostEqual(a[2] * factor, b[2], delta=1e-5)
+
+    def test_against_speed_has_one_row_a_range_slowest_first(self):
+        header, rows = self.track(MOVE, *ORDERS, "--against", "speed")
+        self.assertEqual(header[:5], ["speed_deg_s", "rows", "order_1_amplitude_nm", "order_1_phase_deg",
+                                      "order_1_spread_nm"])
+        self.assertEqual(rows, sorted(rows))
+        _, one = self.track(str(DATA / "paper_90deg_s.csv"), *ORDERS, "--against", "speed")
+        self.assertEqual(len(one), 1)
+        self.assertAlmostEqual(one[0][0], 90.0, places=6)
+
+    def test_output_orders_are_motor_orders_times_the_ratio(self):
+        _, motor = self.track(MOVE, *ORDERS, "--window-turns", "8")
+        header, output = self.track(MOVE, "--output-orders", "100,200", "--window-turns", "0.08")
+        self.assertEqual(header[2], "order_output_100_amplitude_nm")
+        self.assertEqual(len(motor), len(output))
+        for a, b in zip(motor, output):
+            for x, y in zip(a, b):
+                self.assertAlmostEqual(x, y, delta=2e-4 * max(1.0, abs(x)))
+
+    def test_a_tone_beside_the_orders_changes_neither(self):
+        header, rows = self.track(MOVE, *ORDERS, "--tones", "120Hz")
+        self.assertEqual(header[8], "tone_120hz_amplitude_nm")
+        for row in rows:
+            self.assertAlmostEqual(row[2], 0.8, delta=0.03)
+            self.assertLess(row[8], 0.03)
+
+    def test_the_same_bytes_twice_from_a_file_and_from_a_pipe_and_as_npy(self):
+        first = run("track", MOVE, *ORDERS).stdout
+        self.assertEqual(first, run("track", "-", *ORDERS, stdin=pathlib.Path(MOVE).read_text()).stdout)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "track.npy")
+            done = run("track", MOVE, *ORDERS, "-o", str(path))
+            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+            self.assertEqual(path.read_bytes()[:6], b"\x93NUMPY")
+
+    def test_without_position_amplitudes_stand_and_a_warning_says_what_phases_mean(self):
+        lines = pathlib.Path(MOVE).read_text().splitlines()
+        text = "\n".join(line.rsplit(",", 1)[0] for line in lines) + "\n"
+        done = run("track", "-", *ORDERS, stdin=text)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("count from the first sample", done.stderr)
+        for row in rows_of(done.stdout)[1]:
+            self.assertAlmostEqual(row[2], 0.8, delta=0.03)
+
+
+class Json(unittest.TestCase):
+    def test_the_verdict_and_the_columns_agree(self):
+        done = run("track", MOVE, *ORDERS, "--json", "--method", "vold-kalman", "--bandwidth", "2Hz")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual(result["schema"], "ripplenotch/track/1")
+        self.assertIn("order 1: 0.8 Nm zero to peak", result["verdict"])
+        # A run of 3 s is six times 1/bandwidth: the middle has the bandwidth asked for within a few per cent.
+        self.assertAlmostEqual(result["bandwidth_obtained_hz"], 2.0, delta=0.06)
+        measured = [x for x in result["columns"]["order_1_amplitude_nm"] if x is not None]
+        self.assertEqual(result["lines"][0]["rows_measured"], len(measured))
+        self.assertAlmostEqual(result["lines"][0]["greatest_nm"], max(measured), delta=1e-5)
+
+    def test_a_joint_file_says_ratio_and_orders(self):
+        joint = run("identify", str(DATA / "paper_60deg_s.csv"), str(DATA / "paper_120deg_s.csv"), "--json")
+        self.assertEqual(joint.returncode, 0, joint.stderr)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "joint.json")
+            path.write_text(joint.stdout)
+            done = run("track", MOVE, "--joint-file", str(path), "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([line["order"] for line in json.loads(done.stdout)["lines"]], [1.0, 2.0])
+
+
+class Refusals(unittest.TestCase):
+    def refused(self, code, words, *parts):
+        done = run("track", *words)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(done.stdout, "")
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    def test_requests_that_make_no_sense_name_the_remedy(self):
+        self.refused(2, [MOVE], "nothing to track")
+        self.refused(2, [MOVE, "--orders", "1"], "--gear-ratio")
+        self.refused(2, [MOVE, "--orders", "0", "--gear-ratio", "100"], "above 0")
+        self.refused(2, [MOVE, "--orders", "1,1", "--gear-ratio", "100"], "listed twice")
+        self.refused(2, [MOVE, "--orders", "1", "--gear-ratio", "-3"], "--gear-ratio -3 is not above 0")
+        self.refused(2, [MOVE, *ORDERS, "--bandwidth", "1Hz"], "--method vold-kalman")
+        self.refused(2, [MOVE, *ORDERS, "--method", "vold-kalman", "--window", "1s"], "--bandwidth")
+        self.refused(2, [MOVE, "--tones", "50Hz"], "--window")
+
+    def test_a_bandwidth_that_the_log_is_too_short_for_is_refused_with_one_that_it_can_give(self):
+        self.refused(3, [MOVE, *ORDERS, "--method", "vold-kalman", "--bandwidth", "0.1Hz"], "needs 15 s", "0.53 Hz")
+
+    def test_a_log_at_rest_has_nothing_to_track(self):
+        self.refused(3, [str(DATA / "paper_rest.csv"), *ORDERS], "no row could be measured")
+        self.refused(3, [str(DATA / "paper_rest.csv"), *ORDERS, "--method", "vold-kalman"], "no row could be measured")
+
+
+if __name__ == "__main__":
+    unittest.main()
