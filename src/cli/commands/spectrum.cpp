@@ -9,6 +9,7 @@
 
 #include "cli/command.hpp"
 #include "cli/joint_facts.hpp"
+#include "cli/speed_map_request.hpp"
 #include "cli/text_table.hpp"
 #include "ripplenotch/artifact/spectrum.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -27,6 +28,7 @@ struct Request {
     std::optional<Seconds> segment;
     double false_alarm = 0.01;
     SteadyRule steady;
+    SpeedMapRequest map;
     bool peaks = false;
 };
 
@@ -175,14 +177,19 @@ ExitCode run(Request& request, const std::string& command_line) {
     if (request.segment && !(request.segment->value() > 0.0))
         raise<UsageError>("--segment must be above 0 s");
     if (!(request.steady.at_least.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
+    check_speed_map(request.map);
+    if (request.map.map &&
+        (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
+        raise<UsageError>("--map goes with neither --domain, --stretch, --segment nor --peaks");
     const Log log = read_log(request.path, request.log.resolve());
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.timebase.warnings);
     const Provenance provenance{{input_record(request.path)}, command_line};
     const TraceView trace = log.trace.view();
-    const std::string text = request.domain == "order"
-                                 ? order_result(request, trace, log.trace.joint, provenance)
-                                 : frequency_result(request, trace, log.trace.joint, provenance);
+    const std::string text =
+        request.map.map             ? speed_map_result(request.map, log.trace, request.common, provenance)
+        : request.domain == "order" ? order_result(request, trace, log.trace.joint, provenance)
+                                    : frequency_result(request, trace, log.trace.joint, provenance);
     write_all(request.common.output, text, request.common.overwrite());
     return ExitCode::done;
 }
@@ -204,6 +211,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.number("--steady-band-speed", request->steady.band_deg_s, Dimension::speed,
                    "... or within this speed, whichever is wider");
     options.quantity("--steady-for", request->steady.at_least, Dimension::time, "for at least this long");
+    attach_speed_map(options, request->map);
     attach_log(options, request->log);
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };

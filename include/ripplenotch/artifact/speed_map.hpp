@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A spectrum over speed as JSON.
+
+#include <string>
+
+#include "ripplenotch/analysis/order_map.hpp"
+#include "ripplenotch/artifact/document.hpp"
+
+namespace ripplenotch {
+
+/// Schema ripplenotch/spectrum/1 with `domain` campbell or order-map. `axis_name` is what the axis counts:
+/// frequency_hz, order or order_output.
+[[nodiscard]] std::string speed_map_text(const std::string& joint, const SpeedMap& map,
+                                         std::string_view axis_name, const Provenance& provenance);
+
+}  // namespace ripplenotch

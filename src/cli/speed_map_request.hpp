@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// spectrum --map: its options, and the map as CSV or JSON.
+
+#include <optional>
+#include <string>
+
+#include "cli/options.hpp"
+#include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/trace.hpp"
+
+namespace ripplenotch {
+
+struct SpeedMapRequest {
+    std::optional<std::string> map;  ///< "campbell" or "order"; nothing without it
+    std::optional<double> gear_ratio, resolution, highest;
+    std::optional<DegPerSec> speed_step;
+};
+
+void attach_speed_map(Options& options, SpeedMapRequest& request);
+
+/// Throws UsageError when options of the map are given without --map, or make no sense.
+void check_speed_map(const SpeedMapRequest& request);
+
+/// CSV, one row a cell: speed_deg_s, then frequency_hz, order (with a gear ratio) or order_output, then
+/// amplitude_nm. JSON: schema ripplenotch/spectrum/1.
+[[nodiscard]] std::string speed_map_result(const SpeedMapRequest& request, const Trace& trace,
+                                           const CommonOptions& common, const Provenance& provenance);
+
+}  // namespace ripplenotch
