@@ -327,6 +327,10 @@ class Verify(Case):
         self.assertIn(b"read back and run", done.stderr)
         self.assertEqual(self.good("export", *FIXED, "--to", "matlab").stderr, b"")
 
+    def test_a_device_cannot_be_read_again_and_is_not(self):
+        done = self.good("export", *FIXED, "--to", "json", "-o", "/dev/null", "--verify")
+        self.assertIn(b"/dev/null: json, read back and run", done.stdout)
+
     def test_what_a_target_rounds_is_warned_of_and_measured(self):
         report, done = self.report("--method", "fixed,centers=60.4Hz,q=1.1", "--sample-rate", "1kHz", "--to", "servo-drive",
                                    "-o", "drive.csv")

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -102,13 +103,13 @@ std::vector<std::string> heading_of(const Provenance& provenance) {
     return lines;
 }
 
-// Reads the file that was written, not the text in memory; a pipe cannot be read again, so there it is the
-// text.
+// Reads the file that was written, not the text in memory; a pipe or device cannot be read again, so there it
+// is the text.
 void verify(const Request& request, const Target& target, const Settings& settings, const FilterSet& filters,
             const std::string& bytes, ExportReport& report) {
-    const bool pipe = request.common.output == "-";
+    const bool pipe = !std::filesystem::is_regular_file(request.common.output);
     const std::string again = pipe ? bytes : read_all(request.common.output);
-    const std::string source = pipe ? "standard output" : request.common.output;
+    const std::string source = request.common.output == "-" ? "standard output" : request.common.output;
     const LoadedFilters loaded = target.read(again, source, filters, settings);
     report.checks = verify_export(filters, loaded, source);
     report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
