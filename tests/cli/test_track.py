@@ -13,6 +13,7 @@ import unittest
 
 TOOL = os.environ["RIPPLENOTCH"]
 DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
 MOVE = str(DATA / "paper_move_2s.csv")
 ORDERS = ["--orders", "1,2", "--gear-ratio", "100"]
 
@@ -124,6 +125,21 @@ class Json(unittest.TestCase):
             done = run("track", MOVE, "--joint-file", str(path), "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual([line["order"] for line in json.loads(done.stdout)["lines"]], [1.0, 2.0])
+
+
+class RealLogs(unittest.TestCase):
+    def test_the_panda_s_second_order_is_its_strongest_by_both_methods(self):
+        # An order spectrum of the whole log, made independently, shows 0.17, 0.41 and 0.24 Nm for orders 1, 2, 4.
+        log = LOGS / "gpl3" / "panda_gaz_j4.csv"
+        if not log.is_file():
+            self.skipTest(f"{log} is not there")
+        for method in "ls", "vold-kalman":
+            done = run("track", str(log), "--orders", "1,2,4", "--gear-ratio", "120", "--method", method, "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            first, second, fourth = (line["median_nm"] for line in json.loads(done.stdout)["lines"])
+            self.assertTrue(0.08 < first < 0.25 and 0.2 < second < 0.5 and 0.1 < fourth < 0.4,
+                            f"{method} {first} {second} {fourth}")
+            self.assertGreater(second, 1.5 * first)
 
 
 class Refusals(unittest.TestCase):
