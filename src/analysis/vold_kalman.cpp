@@ -17,7 +17,8 @@ namespace {
 
 constexpr double points_per_width = 40.0;  ///< points of the envelope in 1/bandwidth
 constexpr double rows_per_width = 8.0;
-constexpr double shortest_run = 1.5;  ///< in 1/bandwidth
+constexpr double shortest_run = 1.5;   ///< in 1/bandwidth
+constexpr double widest_share = 0.25;  ///< of the sample rate
 constexpr double worst_condition = 1e13;
 constexpr double trend_widths = 4.0;    ///< the trend's bandwidth over a line's
 constexpr double fewest_cycles = 1.0;   ///< of a line within 1/bandwidth, or it is one with its mirror image
@@ -32,7 +33,7 @@ void check(const TrackedSignal& signal, const VoldKalmanRule& rule) {
         if (!(line.order > 0.0)) raise<UsageError>("order {} is not above 0", shortest(line.order));
     }
     const double rate = signal.sample_rate.value(), width = rule.bandwidth.value();
-    if (!(width > 0.0) || width > 0.25 * rate) {
+    if (!(width > 0.0) || width > widest_share * rate) {
         raise<UsageError>(
             "a bandwidth of {} Hz is not above 0 and at most a quarter of the sample rate, {:.6g} Hz",
             shortest(width), rate);
@@ -235,10 +236,15 @@ std::vector<SampleRun> long_runs(const TrackedSignal& signal, const VoldKalmanRu
         }
     }
     if (runs.empty()) {
+        const double widest = widest_share * signal.sample_rate.value();
+        const double enough = 1.05 * shortest_run / std::max(longest, 1e-12);
         raise<DataError>(
-            "a bandwidth of {} Hz needs {:.3g} s of torque without a gap, the longest run has {:.3g} s; "
-            "use a bandwidth of at least {:.2g} Hz, or least squares (--method ls)",
-            shortest(rule.bandwidth.value()), needed, longest, 1.05 * shortest_run / longest);
+            "a bandwidth of {} Hz needs {:.3g} s of torque without a gap, the longest run has {:.3g} s; use "
+            "{}",
+            shortest(rule.bandwidth.value()), needed, longest,
+            enough < widest
+                ? fmt::format("a bandwidth of at least {:.2g} Hz, or least squares (--method ls)", enough)
+                : "least squares (--method ls)");
     }
     return runs;
 }

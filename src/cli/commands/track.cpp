@@ -209,10 +209,10 @@ ExitCode run(Request& request, const std::string& command_line) {
     if (request.gear_ratio) report.gear_ratio = GearRatio(*request.gear_ratio);
     report.angle_from_position = prepared->angle.absolute;
     report.labels = prepared->labels;
-    if (by_vold_kalman(request)) {
-        track_by_vold_kalman(request, *prepared, report);
-    } else {
-        track_by_least_squares(request, *prepared, report);
+    try {
+        (by_vold_kalman(request) ? track_by_vold_kalman : track_by_least_squares)(request, *prepared, report);
+    } catch (const DataError& error) {  // the library knows no file
+        raise<DataError>("{}: {}", request.path, error.what());
     }
     const auto warnings = warnings_of(report);
     say_warnings(request.common, warnings);
