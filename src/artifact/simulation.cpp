@@ -14,7 +14,13 @@ std::string write_simulation(const Simulation& simulation, const Provenance& pro
     json["columns"] = simulation.columns;
     json["motions"] = simulation.motions;
     json["seed"] = simulation.seed;
+    if (const auto& followed = simulation.followed) {
+        json["along_log"] = {{"smoothing_s", followed->smoothing.value()},
+                             {"measured_rms_nm", followed->measured_rms_nm},
+                             {"residual_rms_nm", followed->residual_rms_nm}};
+    }
     json["noise_rms_nm"] = simulation.noise_rms.value();
+    json["noise_correlation"] = simulation.noise_correlation;
     json["velocity_noise_rms_deg_s"] = simulation.velocity_noise_rms.value();
     json["torque_nm"] = {{"min", simulation.torque_min_nm}, {"max", simulation.torque_max_nm}};
     json["speed_deg_s"] = {{"min", simulation.speed_min_deg_s}, {"max", simulation.speed_max_deg_s}};

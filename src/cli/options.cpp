@@ -170,6 +170,12 @@ void attach_common(Options& options, CommonOptions& common) {
 void attach_log(Options& options, LogOptions& log) {
     options.text("--format", log.format, "NAME",
                  "format of the log: csv, npy (default: found out from its first bytes)");
+    options.quantity("--sample-rate", log.sample_rate, Dimension::frequency,
+                     "rate of a log without time; overrides the log's own time");
+    attach_log_columns(options, log);
+}
+
+void attach_log_columns(Options& options, LogOptions& log) {
     options.text("--joint", log.joint, "NAME",
                  "which joint of a file that holds several; all runs each where possible");
     options.text(
@@ -177,8 +183,6 @@ void attach_log(Options& options, LogOptions& log) {
         "what the columns are: by place 'time,velocity,torque' (- skips one), or by name 'torque=tau_J'");
     options.texts("--unit", log.units, "COLUMN=UNIT",
                   "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable");
-    options.quantity("--sample-rate", log.sample_rate, Dimension::frequency,
-                     "rate of a log without time; overrides the log's own time");
     options.text("--delimiter", log.delimiter, "CHAR", "between cells of a text log: , ; space or tab");
     options.text("--decimal", log.decimal, "MARK", "decimal mark of a text log: . or ,");
     options.flag("--no-header", log.no_header, "the first row of a text log is data");

@@ -88,6 +88,8 @@ struct LogOptions {
     [[nodiscard]] ReadOptions resolve() const;
 };
 void attach_log(Options& options, LogOptions& log);
+/// The same without --format and --sample-rate, for a command whose own options have these names.
+void attach_log_columns(Options& options, LogOptions& log);
 
 /// Messages for people, on standard error: "ripplenotch: warning: ...". Nothing at all when quiet.
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings);

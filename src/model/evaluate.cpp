@@ -53,7 +53,7 @@ void add_joint_torque(const Model& model, const Situation& situation, std::span<
 }
 
 std::vector<double> evaluate(const Model& model, const Motion& logged, std::span<const double> noise_nm,
-                             bool chance) {
+                             Chance chance) {
     if (const auto missing = missing_values(model); !missing.empty()) {
         raise<UsageError>("the model does not state {}; give the value, or fit it to a log first",
                           fmt::join(missing, ", "));
@@ -70,7 +70,7 @@ std::vector<double> evaluate(const Model& model, const Motion& logged, std::span
     std::vector<double> torque_nm(motion.size(), 0.0);
     add_joint_torque(model, situation, torque_nm);
     const auto transform = [&](const Effect& effect, const std::vector<double>& values) {
-        if (chance || !effect.chance) effect.apply(situation, values, torque_nm);
+        if (chance == Chance::acts || !effect.chance) effect.apply(situation, values, torque_nm);
     };
     each(model, Side::sensor, transform);
     for (std::size_t k = 0; k < noise_nm.size(); ++k) torque_nm[k] += noise_nm[k];
@@ -81,11 +81,12 @@ std::vector<double> evaluate(const Model& model, const Motion& logged, std::span
 }  // namespace
 
 std::vector<double> predict_nm(const Model& model, const Motion& motion) {
-    return evaluate(model, motion, {}, false);
+    return evaluate(model, motion, {}, Chance::left_out);
 }
 
-std::vector<double> measure_nm(const Model& model, const Motion& motion, std::span<const double> noise_nm) {
-    return evaluate(model, motion, noise_nm, true);
+std::vector<double> measure_nm(const Model& model, const Motion& motion, std::span<const double> noise_nm,
+                               Chance chance) {
+    return evaluate(model, motion, noise_nm, chance);
 }
 
 }  // namespace ripplenotch

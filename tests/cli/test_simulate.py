@@ -222,6 +222,98 @@ class Summary(unittest.TestCase):
             self.assertEqual(again.stdout, log.read_bytes())
 
 
+class AlongLogs(unittest.TestCase):
+    """simulate LOG: the model along the motion that a log measured."""
+
+    JOINT = ["--gear-ratio", "100", "--inertia", "0.5kgm2", "--ripple", "1:0.8Nm:30deg", "--effect",
+             "viscous-friction,coefficient_nm_per_deg_s=0.005"]
+    MOVES = ["--motion", "rest,duration=0.3s", "--motion", "poly6,to=120deg,duration=1s", "--motion",
+             "rest,duration=0.3s", "--motion", "poly6,to=-20deg,duration=1.5s", "--motion", "rest,duration=0.3s",
+             "--sample-rate", "1kHz"]
+
+    def log(self, folder, *words, moves=None):
+        path = str(pathlib.Path(folder, "log.csv"))
+        done = simulate(*self.JOINT, *(moves or self.MOVES), *words, "-o", path, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return path
+
+    def test_the_right_model_leaves_the_noise_and_a_wrong_one_more(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = self.log(folder, "--noise", "0.06Nm", "--velocity-noise", "0.15deg/s")
+            out = str(pathlib.Path(folder, "out.csv"))
+            done = simulate(*self.JOINT, log, "-o", out, "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            summary = json.loads(done.stdout)
+            # The velocity's noise comes in through the acceleration: 0.15 deg/s * 1 kHz * sqrt(75 / 51^3) = 3.6
+            # deg/s2, 0.03 Nm; the kinks of the acceleration add a little.
+            self.assertGreater(summary["along_log"]["residual_rms_nm"], 0.06)
+            self.assertLess(summary["along_log"]["residual_rms_nm"], 0.08)
+            self.assertEqual(summary["along_log"]["smoothing_s"], 0.05)
+            self.assertEqual(summary["motions"], [])
+            self.assertEqual(summary["sample_rate_hz"], 1000)
+            self.assertEqual([record["rows"] for record in summary["inputs"]], [3400])
+            # The residual printed is that of the columns written.
+            with open(out) as made, open(log) as measured:
+                pairs = list(zip(csv.DictReader(made), csv.DictReader(measured)))
+            for a, b in pairs:
+                for name in ("time_s", "velocity_deg_s", "position_deg"):
+                    self.assertEqual(a[name], b[name])
+            residual = [float(b["torque_nm"]) - float(a["torque_nm"]) for a, b in pairs]
+            self.assertAlmostEqual(math.sqrt(sum(r * r for r in residual) / len(residual)),
+                                   summary["along_log"]["residual_rms_nm"], delta=1e-12)
+            wrong = json.loads(simulate("--gear-ratio", "101", *self.JOINT[2:], log, "-o", out, "--force", "--json").stdout)
+            self.assertGreater(wrong["along_log"]["residual_rms_nm"], 0.3)
+
+    def test_a_log_without_position_gives_one_without_position(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = self.log(folder, "--no-position")
+            done = simulate(*self.JOINT, log)
+            self.assertEqual(list(rows(done)[0]), ["time_s", "velocity_deg_s", "torque_nm"])
+            with open(log) as measured:
+                truth = [float(row["torque_nm"]) for row in csv.DictReader(measured)]
+            # The moves begin with a kink of the acceleration, which the smoothing rounds.
+            for a, b in zip(column(done, "torque_nm"), truth):
+                self.assertAlmostEqual(a, b, delta=0.2)
+            sharp = column(simulate(*self.JOINT, "--smoothing", "6ms", log), "torque_nm")
+            for a, b in zip(sharp, truth):
+                self.assertAlmostEqual(a, b, delta=0.02)
+
+    def test_units_joints_and_pipes_are_read_as_every_command_does(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = pathlib.Path(self.log(folder))
+            done = simulate(*self.JOINT, str(log))
+            lines = log.read_text().splitlines()
+            odd = [lines[0].replace("velocity_deg_s", "j4_velocity [rad/s]").replace("torque_nm", "j4_torque [Nm]")
+                   .replace("position_deg", "j4_position [deg]")]
+            for line in lines[1:]:
+                cells = line.split(",")
+                cells[1] = repr(math.radians(float(cells[1])))
+                odd.append(",".join(cells))
+            piped = simulate(*self.JOINT, "--joint", "j4", "-", stdin="\n".join(odd).encode())
+            for a, b in zip(column(piped, "torque_nm"), column(done, "torque_nm")):
+                self.assertAlmostEqual(a, b, delta=1e-9)
+
+    def test_spikes_of_a_model_are_left_out_of_a_prediction_unless_asked_for(self):
+        with tempfile.TemporaryDirectory() as folder:
+            log = self.log(folder)
+            spiky = [*self.JOINT, "--effect", "spikes,rate_percent=1,size_nm=50"]
+            plain = column(simulate(*self.JOINT, log), "torque_nm")
+            self.assertEqual(column(simulate(*spiky, log), "torque_nm"), plain)
+            with_spikes = column(simulate(*spiky, "--faults", log), "torque_nm")
+            self.assertGreater(sum(abs(a - b) > 40 for a, b in zip(with_spikes, plain)), 10)
+            made = column(simulate(*spiky, *self.MOVES), "torque_nm")
+            self.assertGreater(max(made), 40)
+
+    def test_correlated_noise_has_its_rms_and_its_correlation(self):
+        long = ["--gear-ratio", "1", "--motion", "rest,duration=40s", "--sample-rate", "1kHz", "--noise", "50mNm"]
+        values = column(simulate(*long, "--noise-correlation", "0.9"), "torque_nm")
+        power = sum(x * x for x in values) / len(values)
+        # 40000 values of correlation 0.9 are worth about 2100 independent ones.
+        self.assertAlmostEqual(math.sqrt(power) / 0.05, 1.0, delta=0.06)
+        self.assertAlmostEqual(sum(a * b for a, b in zip(values, values[1:])) / len(values) / power, 0.9, delta=0.01)
+        self.assertEqual(simulate(*long, "--noise-correlation", "0").stdout, simulate(*long).stdout)
+
+
 class Refusals(unittest.TestCase):
     def refused(self, code, expected, *words, stdin=b""):
         with tempfile.TemporaryDirectory() as folder:
@@ -249,6 +341,12 @@ class Refusals(unittest.TestCase):
         self.refused(2, ["--ripple", "'1:'"], "--gear-ratio", "100", "--ripple", "1:", *MOVE)
         self.refused(2, ["amplitude_nm", "'2deg'"], "--gear-ratio", "100", "--ripple", "1:2deg", *MOVE)
         self.refused(2, ["did you mean constant?"], *JOINT, "--motion", "constnat,speed=1", "--sample-rate", "1kHz")
+        self.refused(2, ["--motion and a LOG", "give one"], *JOINT, *MOVE, "log.csv")
+        self.refused(2, ["standard input holds one"], "--model", "-", "-")
+        self.refused(2, ["--noise-correlation: 1"], *JOINT, *MOVE, "--noise-correlation", "1")
+        self.refused(2, ["--smoothing: -1"], *JOINT, "--smoothing", "-1", "log.csv")
+        self.refused(4, ["no-such.csv"], *JOINT, "no-such.csv")
+        self.refused(3, ["3 rows", "at least 5"], *JOINT, "-", stdin=b"time_s,velocity_deg_s,torque_nm\n0,1,2\n1,1,2\n2,1,2\n")
         self.refused(2, ["--noise", "-1"], *JOINT, *MOVE, "--noise", "-1")
         self.refused(2, ["--velocity-noise", "-1"], *JOINT, *MOVE, "--velocity-noise", "-1")
         self.refused(2, ["--decimals", "2.5"], *JOINT, *MOVE, "--decimals", "2.5")

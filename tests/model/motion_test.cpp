@@ -31,6 +31,10 @@ const std::vector<Example> examples = {
      "poly6,from=-90deg,to=90deg,duration=2s,asymmetry=0.3"},
     {"sine", "sine,amplitude=20deg,frequency=0.7Hz,duration=3s,phase=0deg",
      "sine,amplitude=20deg,frequency=0.7Hz,duration=3s,phase=180deg"},
+    {"sweep", "sweep,amplitude=20deg,from-frequency=0.1Hz,to-frequency=0.6Hz,duration=3s,phase=20deg",
+     "sweep,amplitude=20deg,from-frequency=0.1Hz,to-frequency=0.6Hz,duration=3s,phase=200deg"},
+    {"multisine", "multisine,amplitude=10deg,frequency=0.2Hz,count=4,duration=3s",
+     "multisine,amplitude=10deg,frequency=0.2Hz,count=4,duration=3s,phase=180deg"},
 };
 
 Motion chain(std::vector<std::string> specs, Hertz rate) { return make_motion(specs, rate); }
@@ -213,4 +217,25 @@ TEST_CASE("a wrong motion is refused with the piece and the remedy") {
                Contains("from=3deg") && Contains("ends at 0deg") && Contains("leave from= out"));
     CHECK_THAT(refusal({"poly6,to=1,duration=1s,asymmetry=1.01"}), Contains("between -1 and 1"));
     CHECK_THROWS_WITH(make_motion("rest,duration=1s", 0_Hz), Contains("not above 0"));
+}
+
+TEST_CASE("a sweep ends at its last frequency, and a multisine keeps within its amplitude and repeats") {
+    const Motion m =
+        make_motion("sweep,amplitude=10deg,from-frequency=1.03Hz,to-frequency=4.97Hz,duration=4s", 1000_Hz);
+    // 1.03 t + 0.4925 t^2 swings: 12 in all, 7.5 of them by 3 s; from rest, one turns at each half swing.
+    const auto turns = [&](std::size_t from) {
+        int count = 0;
+        for (std::size_t k = from + 1; k < m.size(); ++k)
+            count += m.velocity_deg_s[k] * m.velocity_deg_s[k - 1] < 0.0;
+        return count;
+    };
+    CHECK(turns(1) == 23);
+    CHECK(turns(3000) == 8);
+    const Motion s = make_motion("multisine,amplitude=30deg,frequency=0.5Hz,count=7,duration=4s", 1000_Hz);
+    const auto [low, high] = std::minmax_element(s.position_deg.begin(), s.position_deg.end());
+    CHECK(*high - *low < 60.0);
+    for (std::size_t k = 0; k < 2000; ++k)
+        REQUIRE(s.position_deg[k] == Approx(s.position_deg[k + 2000]).margin(1e-9));
+    CHECK_THROWS_WITH(make_motion("multisine,amplitude=1deg,frequency=1Hz,count=2.5,duration=1s", 10_Hz),
+                      Contains("not a whole number"));
 }

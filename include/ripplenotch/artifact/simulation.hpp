@@ -3,6 +3,7 @@
 // What simulate says about a log that it made: enough to make it again, and what to expect in it.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,22 @@
 
 namespace ripplenotch {
 
+/// The log along whose motion a simulation ran, and how far it is from the torque measured there.
+struct Followed {
+    Seconds smoothing;
+    double measured_rms_nm = 0.0;  ///< of the log's torque
+    double residual_rms_nm =
+        0.0;  ///< of the log's torque less the model's, without noise, chance and rounding
+};
+
 struct Simulation {
     Model model;
     std::vector<std::string> motions;  ///< specifications, in sequence
     Hertz sample_rate;
     std::uint64_t seed = 0;
+    std::optional<Followed> followed;  ///< then motions is empty
     NewtonMeters noise_rms;
+    double noise_correlation = 0.0;
     DegPerSec velocity_noise_rms;
     std::size_t rows = 0;
     std::vector<std::string> columns;

@@ -16,8 +16,9 @@
 
 namespace ripplenotch {
 
-/// The motion that a model is evaluated along: n samples of the joint (output side) at a uniform rate, all
-/// four of equal length; sample k is at exactly k / sample_rate.
+/// The motion that a model is evaluated along: n samples of the joint (output side), all four of equal
+/// length. Made by make_motion, sample k is at exactly k / sample_rate; measured in a log, times are the
+/// log's own and sample_rate is their mean rate, which effects with a memory take for every step.
 struct Motion {
     Hertz sample_rate;
     std::vector<double> time_s, position_deg, velocity_deg_s, acceleration_deg_s2;

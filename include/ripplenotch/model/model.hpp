@@ -50,9 +50,12 @@ inline constexpr GearRatio largest_gear_ratio{1e5};
 /// when there are any.
 [[nodiscard]] std::vector<double> predict_nm(const Model& model, const Motion& motion);
 
+/// Whether effects that are chance (spikes, dropout) act.
+enum class Chance { left_out, acts };
+
 /// Torque as a sensor would log it: `noise_nm` (motion.size() entries, or none) is added after the sensor's
-/// effects and before the converter's, and chance acts.
+/// effects and before the converter's.
 [[nodiscard]] std::vector<double> measure_nm(const Model& model, const Motion& motion,
-                                             std::span<const double> noise_nm);
+                                             std::span<const double> noise_nm, Chance chance = Chance::acts);
 
 }  // namespace ripplenotch

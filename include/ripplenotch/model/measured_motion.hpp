@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The motion of a log, as a model is evaluated along it.
+
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/model/effect.hpp"
+
+namespace ripplenotch {
+
+inline constexpr Seconds default_smoothing{0.05};
+
+/// The motion that the log measured, at the log's own times. Nothing in it is ahead of or behind the log:
+/// * velocity and acceleration are value and slope of the cubic that fits the logged velocity best, by least
+///   squares, within half of `smoothing` to both sides (Savitzky and Golay, 1964, on times as they are). A
+///   component of frequency f keeps its velocity within 1 % and its acceleration within 2 % as long as
+///   f * smoothing < 0.4; within smoothing / 2 of the ends the cubic leans to one side. Below 5 samples the
+///   5 nearest are taken, so that a smoothing of 0 keeps as much as can be differentiated.
+/// * position is the log's, or else the integral of the logged velocity by the trapezoidal rule, from 0:
+/// right
+///   within (2 pi f / sample_rate)^2 / 12 of a component of frequency f.
+/// Throws DataError: fewer than 5 samples, or times that do not increase.
+[[nodiscard]] Motion motion_along(const TraceView& log, Seconds smoothing = default_smoothing);
+
+}  // namespace ripplenotch

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/model/measured_motion.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/model/model.hpp"
+#include "ripplenotch/model/motion.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::literals;
+using Catch::Matchers::Contains;
+
+namespace {
+
+// What a log of a motion holds; position only when asked for.
+Trace logged(const Motion& motion, bool with_position) {
+    Trace trace{.source = "log",
+                .joint = {},
+                .sample_rate = motion.sample_rate,
+                .time_s = motion.time_s,
+                .velocity_deg_s = motion.velocity_deg_s,
+                .torque_nm = std::vector<double>(motion.size(), 0.0),
+                .position_deg = {}};
+    if (with_position) trace.position_deg = motion.position_deg;
+    return trace;
+}
+
+double largest_error(const std::vector<double>& a, const std::vector<double>& b, std::size_t margin) {
+    double most = 0.0;
+    for (std::size_t k = margin; k + margin < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("speed and acceleration are exact where the speed is a cubic in time, at the ends too") {
+    Motion m = make_motion("rest,duration=0.5s", 400_Hz);
+    for (std::size_t k = 0; k < m.size(); ++k) {
+        const double t = m.time_s[k];
+        m.velocity_deg_s[k] = 3.0 - 20.0 * t + 70.0 * t * t - 100.0 * t * t * t;
+        m.acceleration_deg_s2[k] = -20.0 + 140.0 * t - 300.0 * t * t;
+    }
+    const Motion measured = motion_along(logged(m, true).view());
+    CHECK(largest_error(measured.velocity_deg_s, m.velocity_deg_s, 0) < 1e-10);
+    CHECK(largest_error(measured.acceleration_deg_s2, m.acceleration_deg_s2, 0) < 1e-8);
+    CHECK(measured.position_deg == m.position_deg);
+}
+
+TEST_CASE(
+    "a swing keeps its speed and acceleration within what the header states, and is not shifted in time") {
+    // 8 Hz * 50 ms = 0.4.
+    const Motion m = make_motion("sine,amplitude=5deg,frequency=8Hz,duration=3s", 1000_Hz);
+    const Motion measured = motion_along(logged(m, true).view());
+    const double speed = 5.0 * 2.0 * 3.14159265 * 8.0, acceleration = speed * 2.0 * 3.14159265 * 8.0;
+    CHECK(largest_error(measured.velocity_deg_s, m.velocity_deg_s, 26) < 0.01 * speed);
+    CHECK(largest_error(measured.acceleration_deg_s2, m.acceleration_deg_s2, 26) < 0.02 * acceleration);
+    // Half a sample of shift would be an acceleration off by 2.5 % at the zero crossings: the products with
+    // the quadrature of each signal say how much there is.
+    double speed_shift = 0.0, acceleration_shift = 0.0, scale = 0.0;
+    for (std::size_t k = 250; k < 2750; ++k) {
+        speed_shift += measured.velocity_deg_s[k] * m.acceleration_deg_s2[k] / acceleration;
+        acceleration_shift += measured.acceleration_deg_s2[k] * m.velocity_deg_s[k] / acceleration;
+        scale += m.velocity_deg_s[k] * m.velocity_deg_s[k] / speed;
+    }
+    CHECK(std::abs(speed_shift / scale) < 1e-9);
+    CHECK(std::abs(acceleration_shift / scale) < 1e-9);
+}
+
+TEST_CASE("without a position it is the integral of the speed, from 0, neither early nor late") {
+    const std::vector<std::string> specs = {"poly6,to=90deg,duration=1s", "poly6,to=-40deg,duration=1.3s"};
+    const Motion m = make_motion(specs, 1000_Hz);
+    const Motion measured = motion_along(logged(m, false).view());
+    // The trapezoidal rule errs by step^2 / 12 times the change of acceleration, here below 1e-6 / 12 * 500.
+    CHECK(largest_error(measured.position_deg, m.position_deg, 0) < 5e-5);
+}
+
+TEST_CASE("times with jitter and a gap are taken as they are") {
+    Motion m = make_motion("sine,amplitude=30deg,frequency=0.5Hz,duration=4s", 1000_Hz);
+    std::mt19937_64 engine(2);
+    std::uniform_real_distribution<double> jitter(-0.3e-3, 0.3e-3);
+    for (std::size_t k = 0; k < m.size(); ++k) {
+        m.time_s[k] += jitter(engine) + (k > 2000 ? 0.02 : 0.0);
+        const double angle = 2.0 * 3.141592653589793 * 0.5 * m.time_s[k];
+        m.velocity_deg_s[k] = 94.24777960769379 * std::sin(angle);
+        m.acceleration_deg_s2[k] = 296.0881320326807 * std::cos(angle);
+        m.position_deg[k] = 30.0 * (1.0 - std::cos(angle));
+    }
+    const Motion measured = motion_along(logged(m, false).view());
+    CHECK(largest_error(measured.velocity_deg_s, m.velocity_deg_s, 0) < 1e-3);
+    CHECK(largest_error(measured.acceleration_deg_s2, m.acceleration_deg_s2, 26) < 0.05);
+    const double offset = m.position_deg[0];
+    for (std::size_t k = 0; k < m.size(); ++k)
+        REQUIRE(measured.position_deg[k] == Approx(m.position_deg[k] - offset).margin(0.005));
+}
+
+TEST_CASE("noise on the velocity is smoothed as a cubic over the window does") {
+    Motion m = make_motion("rest,duration=40s", 1000_Hz);
+    std::mt19937_64 engine(4);
+    std::normal_distribution<double> noise(0.0, 0.15);
+    for (double& v : m.velocity_deg_s) v = noise(engine);
+    const Motion measured = motion_along(logged(m, false).view());
+    double speed = 0.0, acceleration = 0.0;
+    for (std::size_t k = 100; k + 100 < m.size(); ++k) {
+        speed += measured.velocity_deg_s[k] * measured.velocity_deg_s[k];
+        acceleration += measured.acceleration_deg_s2[k] * measured.acceleration_deg_s2[k];
+    }
+    const double count = static_cast<double>(m.size() - 200);
+    // 51 samples: the variance of the value is 9 / (4 n), that of the slope 75 / n^3 rate^2, for many
+    // samples.
+    CHECK(std::sqrt(speed / count) == Approx(0.15 * std::sqrt(9.0 / 4.0 / 51.0)).epsilon(0.05));
+    CHECK(std::sqrt(acceleration / count) ==
+          Approx(0.15 * 1000.0 * std::sqrt(75.0 / (51.0 * 51.0 * 51.0))).epsilon(0.05));
+}
+
+TEST_CASE("a model along a log of its own motion predicts its own torque") {
+    const std::vector<std::string> specs = {"rest,duration=0.3s", "poly6,to=120deg,duration=1s",
+                                            "rest,duration=0.3s", "poly6,to=-20deg,duration=1.4s",
+                                            "rest,duration=0.3s"};
+    const Motion m = make_motion(specs, 1000_Hz);
+    Model model{GearRatio(100.0), {}};
+    for (const auto term :
+         {"inertia,inertia_kgm2=0.8", "ripple,order=1,amplitude_nm=0.7,phase_deg=30",
+          "ripple,order=2,amplitude_nm=0.4,phase_deg=-50", "hysteresis,torque_nm=0.5,width_deg=1",
+          "viscous-friction,coefficient_nm_per_deg_s=0.005", "delay,delay_s=3ms"}) {
+        model.terms.push_back(parse_term(term));
+    }
+    const auto truth = predict_nm(model, m);
+    for (const bool with_position : {true, false}) {
+        const Trace log = logged(m, with_position);
+        CHECK(largest_error(predict_nm(model, motion_along(log.view(), Seconds(0.006))), truth, 0) < 0.03);
+        // The move begins with a kink of its acceleration; a window of 50 ms rounds it, by 0.2 Nm for some
+        // samples.
+        const auto smooth = predict_nm(model, motion_along(log.view()));
+        CHECK(largest_error(smooth, truth, 0) < 0.25);
+        double square = 0.0;
+        for (std::size_t k = 0; k < truth.size(); ++k) square += std::pow(smooth[k] - truth[k], 2);
+        CHECK(std::sqrt(square / static_cast<double>(truth.size())) < 0.02);
+    }
+}
+
+TEST_CASE("a log that no motion can be measured from is refused with the reason") {
+    Trace trace = logged(make_motion("rest,duration=4s", 1_Hz), false);
+    CHECK_THROWS_WITH(motion_along(trace.view()), Contains("4 rows") && Contains("at least 5"));
+    trace = logged(make_motion("rest,duration=9s", 1_Hz), false);
+    trace.time_s[3] = trace.time_s[2];
+    CHECK_THROWS_WITH(motion_along(trace.view()), Contains("2 to 2 s after row 3") && Contains("increase"));
+    for (double& t : trace.time_s) t = std::nan("");
+    CHECK_THROWS_WITH(motion_along(trace.view()), Contains("--sample-rate"));
+}
