@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The values that a model does not state, estimated from a measured torque by separable least squares.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/model/model.hpp"
+
+namespace ripplenotch {
+
+/// 95 % interval, of the errors being normal and the model being linear within it.
+struct Interval {
+    double low = 0.0, high = 0.0;
+};
+
+struct FittedValue {
+    std::size_t term = 0, parameter = 0;  ///< places in the model
+    double value = 0.0;
+    std::optional<double> standard_error;  ///< empty: the log does not tell this value
+    std::optional<Interval> ci95;          ///< empty with it; may reach beyond the parameter's bounds
+    bool at_bound = false;                 ///< the best value within the bounds is a bound
+};
+
+struct Fit {
+    Model model;                      ///< with every value that can be fitted
+    std::vector<FittedValue> values;  ///< in the order of terms and parameters
+    double residual_rms_nm = 0.0;     ///< of the samples used, after whitening
+    std::size_t samples = 0;          ///< used
+    int iterations = 0;
+    bool converged = false;
+};
+
+struct FitOptions {
+    /// First guesses: a model of the same terms. Values that it states take the place of Parameter::start.
+    const Model* first_guess = nullptr;
+    /// Coefficients a1 ... ap of the noise e(k) = a1 e(k-1) + ... + ap e(k-p) + white. Empty: white.
+    std::span<const double> noise_color = {};
+    /// Samples to leave out, 0 for those; torque_nm.size() entries or none. The p samples after each of them
+    /// are left out as well.
+    std::span<const unsigned char> use = {};
+    int most_iterations = 50;
+};
+
+/// Estimates the values that `model` leaves out (LeftOut::fitted) so that the sum of squares of `torque_nm`
+/// less predict_nm is least. Values that the torque is linear in are solved for; the others are searched by
+/// Levenberg and Marquardt's method from their first guess, within their bounds, so that the nearest minimum
+/// is found and not the deepest. `torque_nm` has motion.size() entries. Values of chance effects stay
+/// unstated. Throws UsageError: a value has to be stated (LeftOut::refused), or there are fewer samples than
+/// values.
+[[nodiscard]] Fit fit(const Model& model, const Motion& motion, std::span<const double> torque_nm,
+                      const FitOptions& options = {});
+
+/// Torque that one unit of a linear parameter adds along the motion: predicted with the value 1 less
+/// predicted with 0. The rest of the model must be stated.
+[[nodiscard]] std::vector<double> torque_per_unit(const Model& model, std::size_t term, std::size_t parameter,
+                                                  const Motion& motion);
+
+}  // namespace ripplenotch
