@@ -31,6 +31,10 @@ struct ChosenMethod {
     [[nodiscard]] std::unique_ptr<CausalFilter> start(Hertz sample_rate) const {
         return method->start(*settings, sample_rate, table.get());
     }
+    /// Null for methods that need no first pass.
+    [[nodiscard]] std::unique_ptr<Learner> learner(Hertz sample_rate) const {
+        return method->learner == nullptr ? nullptr : method->learner(*settings, sample_rate);
+    }
     [[nodiscard]] FrozenFilter frozen(Hertz sample_rate, DegPerSec speed) const {
         return method->frozen(*settings, sample_rate, table.get(), speed);
     }

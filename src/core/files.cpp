@@ -80,6 +80,10 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
     }
 }
 
+ByteSource::ByteSource(const std::string& path, std::string name) : ByteSource(path) {
+    name_ = std::move(name);
+}
+
 ByteSource::ByteSource(std::string name, std::shared_ptr<const std::string> bytes, std::size_t piece_size)
     : name_(std::move(name)), bytes_(std::move(bytes)), piece_size_(piece_size) {}
 

@@ -57,6 +57,38 @@ void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView
     }
 }
 
+// The stretches between gaps, in blocks; `at_gap` after each gap.
+template <class Block, class Gap>
+void for_each_block(const ComparedLog& log, const Block& block, const Gap& at_gap) {
+    std::size_t at = 0, gap = 0;
+    while (at < log.trace.size()) {
+        std::size_t end = std::min(at + block_rows, log.trace.size());
+        const bool gap_ahead = gap < log.gap_rows.size() && log.gap_rows[gap] < end;
+        if (gap_ahead) end = log.gap_rows[gap] + 1;
+        block(log.trace.part(at, end - at));
+        if (gap_ahead) {
+            ++gap;
+            at_gap();
+        }
+        at = end;
+    }
+}
+
+// A filter for the log; one that looks at the whole log first has done so.
+std::unique_ptr<CausalFilter> filter_for(const Contender& contender, const ComparedLog& log) {
+    const auto learner = contender.learner(log.trace.sample_rate);
+    if (learner == nullptr) return contender.start(log.trace.sample_rate);
+    std::vector<double> passed;
+    for_each_block(
+        log,
+        [&](const TraceView& block) {
+            passed.resize(block.size());
+            learner->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, passed);
+        },
+        [&] { learner->restart(); });
+    return learner->learned();
+}
+
 }  // namespace
 
 MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, DegPerSec speed,
@@ -102,22 +134,14 @@ DegPerSec median_moving_speed(const TraceView& trace) {
 LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
                          const RippleLines& lines) {
     std::vector<Runner> runners;
-    for (const Contender& contender : contenders)
-        runners.push_back({contender.start(log.trace.sample_rate), {}});
+    for (const Contender& contender : contenders) runners.push_back({filter_for(contender, log), {}});
     RippleMeter meter(lines.gear_ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);
-    std::size_t at = 0, gap = 0;
-    while (at < log.trace.size()) {
-        std::size_t end = std::min(at + block_rows, log.trace.size());
-        const bool gap_ahead = gap < log.gap_rows.size() && log.gap_rows[gap] < end;
-        if (gap_ahead) end = log.gap_rows[gap] + 1;
-        run_block(runners, meter, log.trace.part(at, end - at));
-        if (gap_ahead) {
-            ++gap;
+    for_each_block(
+        log, [&](const TraceView& block) { run_block(runners, meter, block); },
+        [&] {
             meter.split();
             for (Runner& runner : runners) runner.filter->restart();
-        }
-        at = end;
-    }
+        });
     const RippleLevels levels = meter.levels();
     LogLevels result{{}, levels.windows, levels.measured_share, ""};
     if (levels.windows == 0) {

@@ -9,6 +9,10 @@ std::unique_ptr<CausalFilter> Contender::start(Hertz sample_rate) const {
     return method->start(settings, sample_rate, table.get());
 }
 
+std::unique_ptr<Learner> Contender::learner(Hertz sample_rate) const {
+    return method->learner == nullptr ? nullptr : method->learner(settings, sample_rate);
+}
+
 std::optional<FrozenFilter> Contender::frozen(Hertz sample_rate, DegPerSec speed) const {
     if (method->frozen == nullptr) return std::nullopt;
     return method->frozen(settings, sample_rate, table.get(), speed);

@@ -96,4 +96,14 @@ inline std::vector<double> filtered(CausalFilter& filter, const Samples& in) {
     return out;
 }
 
+/// Both passes of a method that looks at the whole log first.
+inline std::vector<double> filtered_in_two_passes(const std::string& text, const Samples& in,
+                                                  Hertz sample_rate = Hertz(1000.0)) {
+    const Spec spec = parse_spec(text);
+    const Method& method = find_method(spec.name);
+    const auto learner = method.learner(Settings("method " + spec.name, spec, method.keys), sample_rate);
+    static_cast<void>(filtered(*learner, in));
+    return filtered(*learner->learned(), in);
+}
+
 }  // namespace ripplenotch::testing

@@ -17,6 +17,8 @@ class ByteSource {
     /// Throws FileError naming the path and the system's reason, UsageError when "-" is a terminal: nobody
     /// wants to type a log, and a tool that waits in silence looks broken.
     explicit ByteSource(const std::string& path);
+    /// The same file under another name for messages.
+    ByteSource(const std::string& path, std::string name);
     /// Bytes already in memory, under a name for messages, given out in pieces of at most `piece_size`.
     ByteSource(std::string name, std::shared_ptr<const std::string> bytes, std::size_t piece_size = std::size_t(-1));
     ~ByteSource();

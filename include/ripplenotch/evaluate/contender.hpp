@@ -19,6 +19,8 @@ struct Contender {
 
     /// A filter without a past. Throws UsageError on what cannot be designed at this sample rate.
     [[nodiscard]] std::unique_ptr<CausalFilter> start(Hertz sample_rate) const;
+    /// Null for methods that need no first pass over the log.
+    [[nodiscard]] std::unique_ptr<Learner> learner(Hertz sample_rate) const;
     /// The linear filter in force at a constant speed; empty for methods that have none.
     [[nodiscard]] std::optional<FrozenFilter> frozen(Hertz sample_rate, DegPerSec speed) const;
 };

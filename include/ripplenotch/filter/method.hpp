@@ -59,6 +59,15 @@ struct FrozenFilter {
     bool follows_ripple = false;
 };
 
+/// The first pass of a method that looks at the whole log before it filters. Fed like a filter, it passes the
+/// torque unchanged; then learned() gives the filter for a second pass over the same samples.
+class Learner : public CausalFilter {
+  public:
+    [[nodiscard]] virtual std::unique_ptr<CausalFilter> learned() = 0;
+    /// What was learned, one sentence each; after learned().
+    [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
+};
+
 struct Method {
     std::string_view name, summary, source;
     std::span<const Key> keys;
@@ -69,6 +78,8 @@ struct Method {
     /// The linear filter in force at a constant speed; empty function for methods that have none.
     FrozenFilter (*frozen)(const Settings& settings, Hertz sample_rate, const CandidateTable* table,
                            DegPerSec speed) = nullptr;
+    /// Null for causal methods. Where there is one, start() gives the filter that has learned nothing: it passes.
+    std::unique_ptr<Learner> (*learner)(const Settings& settings, Hertz sample_rate) = nullptr;
 };
 
 [[nodiscard]] std::span<const Method* const> methods();

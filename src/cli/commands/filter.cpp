@@ -13,6 +13,7 @@
 #include "cli/joint_facts.hpp"
 #include "ripplenotch/artifact/metrics.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/spool.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -155,9 +156,24 @@ Provenance provenance_of(const Request& request, const Job& job, const ChosenMet
     return provenance;
 }
 
+// The filter of a method that looks at the whole log first, from a pass of its own.
+std::unique_ptr<CausalFilter> learn(const Request& request, const ChosenMethod& method, const Spool& spool) {
+    LogStream stream(open_log(spool.open(), request.log.resolve()), request.gap_steps);
+    const auto learner = method.learner(stream.design_rate());
+    static_cast<void>(stream.run(*learner, nullptr, nullptr));
+    auto filter = learner->learned();
+    for (const std::string& note : learner->notes())
+        say(request.common, fmt::format("{}: {}", stream.reader().layout().source, note));
+    return filter;
+}
+
 void run_job(const Request& request, const Job& job, const ChosenMethod& method, const Gear& gear,
              const std::string& command_line) {
-    LogStream stream(open_log(job.log, request.log.resolve()), request.gap_steps);
+    std::optional<Spool> spool;
+    if (method.method->learner != nullptr) spool.emplace(job.log);
+    LogStream stream(
+        spool ? open_log(spool->open(), request.log.resolve()) : open_log(job.log, request.log.resolve()),
+        request.gap_steps);
     const Layout& layout = stream.reader().layout();
     say_layout(request.common, layout);
     if (method.table != nullptr) {
@@ -174,7 +190,7 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
     const bool wanted = job.metrics || request.common.json || request.common.verbose;
     std::optional<RippleMeter> meter;
     if (wanted && gear.ratio) meter.emplace(*gear.ratio, gear.orders, stream.design_rate(), 2);
-    const auto filter = method.start(stream.design_rate());
+    const auto filter = spool ? learn(request, method, *spool) : method.start(stream.design_rate());
     // Both outputs are opened before the work, so that a name that is taken costs nobody an hour.
     std::optional<ByteSink> metrics_sink;
     const std::optional<std::string> metrics_path = request.common.json ? "-" : job.metrics;
@@ -214,7 +230,8 @@ std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
     options.arguments("LOG", request->logs, true, "logs to filter; - is standard input");
     options.text("--method", request->method, "SPEC",
-                 "name,key=value,...: switching, tracking, oscillator, fixed, lowpass, none; see docs/methods");
+                 "name,key=value,...: switching, tracking, oscillator, subtract, fixed, lowpass, none; see "
+                 "docs/methods");
     options.text("--table", request->table, "FILE",
                  "table.json of method switching, which is then the default");
     options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");

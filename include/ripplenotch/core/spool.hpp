@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Reading the same bytes twice: a file as it is, a pipe by way of a temporary file.
+
+#include <memory>
+#include <string>
+
+#include "ripplenotch/core/files.hpp"
+
+namespace ripplenotch {
+
+class Spool {
+  public:
+    /// A regular file is left where it is; standard input ("-"), a named pipe or a device is read to its end
+    /// into a file in the system's folder for temporary files, which goes when the spool goes. Throws
+    /// FileError.
+    explicit Spool(const std::string& path);
+    ~Spool();
+    Spool(const Spool&) = delete;
+    Spool& operator=(const Spool&) = delete;
+
+    /// The bytes from their start, under the name that people gave.
+    [[nodiscard]] std::unique_ptr<ByteSource> open() const;
+
+  private:
+    std::string path_, name_, temporary_;
+};
+
+}  // namespace ripplenotch
