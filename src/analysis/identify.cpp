@@ -17,6 +17,8 @@
 namespace ripplenotch {
 namespace {
 
+constexpr double highest_by_hint = 4.0;  // of the comb of a hinted ratio, on which images are looked for
+
 /// A line as it is reported, and as the gear ratio sees it when it may turn with the joint.
 struct Reported {
     Line line;
@@ -51,7 +53,46 @@ std::optional<double> phase_in_angle(std::span<const TraceView> logs, const Stea
     return std::arg(together) * degrees_per_radian;
 }
 
-Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady, const SteadyLine& found) {
+std::string listed_orders(std::span<const double> orders) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min<std::size_t>(orders.size(), 5); ++i)
+        text += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", orders[i]);
+    return text;
+}
+
+/// Says what the seen order could be besides, and unfolds it where that can be told.
+void unfold(Reported& reported, const FoldQuestion& question, const IdentifyOptions& options,
+            double rate_hz) {
+    Line& line = reported.line;
+    const FoldAnswer answer = answer_fold(question, options.hint);
+    if (line.kind == LineKind::tone && !answer.order_output) return;
+    line.could_be = answer.could_be;
+    const std::string others = listed_orders(line.could_be);
+    if (!answer.order_output) {
+        if (others.empty()) return;
+        line.note += fmt::format("{}or folded at {:.4g} Hz from order {}", line.note.empty() ? "" : "; ",
+                                 rate_hz, others);
+        return;
+    }
+    const double share = *answer.order_output / question.seen;
+    line.kind = LineKind::alias;
+    line.order_output_seen = question.seen;
+    line.order_output = answer.order_output;
+    line.phase_known = false;
+    line.hz.reset();
+    line.note = fmt::format("folded at {:.4g} Hz, seen at output order {:.4g}{}{}", rate_hz, question.seen,
+                            answer.by_hint ? "; unfolded by the hint" : "",
+                            others.empty() ? "" : "; alike: " + others);
+    reported.order->order_output = *answer.order_output;
+    reported.order->certain = !answer.by_hint;
+    for (OrderObservation& seen : reported.order->observations) {
+        seen.order_output = *answer.order_output;
+        seen.hz *= share;
+    }
+}
+
+Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady, const SteadyLine& found,
+                     const IdentifyOptions& options) {
     Reported reported;
     Line& line = reported.line;
     line.kind = found.kind;
@@ -76,7 +117,7 @@ Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
     line.amplitude_nm = amplitude;
     line.speed_from_deg_s = slowest;
     line.speed_to_deg_s = fastest;
-    if (found.kind != LineKind::order) line.hz = hz_top / hz_bottom;
+    if (found.kind == LineKind::tone || found.kind == LineKind::unknown) line.hz = hz_top / hz_bottom;
     if (found.kind == LineKind::tone) {
         line.note = fastest == 0.0 ? "seen at rest" : "";
         return reported;
@@ -85,7 +126,7 @@ Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
     order.error = 1.0 / std::sqrt(order_bottom);
     order.snr = line.snr;
     order.amplitude_nm = amplitude;
-    order.certain = found.kind == LineKind::order;
+    order.certain = found.kind == LineKind::order || found.kind == LineKind::alias;
     line.order_output = order.order_output;
     line.order_output_stderr = order.error;
     if (order.certain) {
@@ -96,11 +137,28 @@ Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
     } else {
         line.note = "seen at one speed only";
     }
+    const Sighting& first = found.sightings.front();
+    if (found.kind == LineKind::alias) {
+        line.phase_known = false;
+        line.note = fmt::format("folded at {:.4g} Hz, at {:.3g} deg/s seen at {:.4g} Hz", first.rate_hz,
+                                std::abs(first.speed_deg_s), first.seen_hz);
+    }
     reported.order = std::move(order);
+    if (found.kind == LineKind::unknown && options.hint) {
+        // One speed, so every image explains it alike.
+        std::vector<Fold> folds;
+        for (const double fold : unfolded_orders(first.order_output(), first.rate_hz, first.speed_deg_s,
+                                                 highest_by_hint * options.hint->value()))
+            folds.push_back({fold, 0.0});
+        unfold(reported, {first.order_output(), 4.0 * reported.order->error, 0.0, 0.0, folds}, options,
+               first.rate_hz);
+        line.could_be.clear();
+    }
     return reported;
 }
 
-Reported from_motion(const MotionLines& motion, std::size_t source) {
+Reported from_motion(const MotionLines& motion, std::size_t source, const IdentifyOptions& options,
+                     double rate_hz) {
     const MotionLine& found = motion.lines[source];
     Reported reported;
     Line& line = reported.line;
@@ -111,9 +169,13 @@ Reported from_motion(const MotionLines& motion, std::size_t source) {
     line.speed_from_deg_s = motion.slowest_deg_s;
     line.speed_to_deg_s = motion.fastest_deg_s;
     if (found.kind != LineKind::order && found.hz > 0.0) line.hz = found.hz;
-    if (found.kind == LineKind::tone) return reported;
-    line.order_output = found.order_output;
-    line.order_output_stderr = found.order_stderr;
+    const bool tone = found.kind == LineKind::tone;
+    const double order = tone ? found.order_seen : found.order_output;
+    const double error = tone ? 0.1 * motion.resolution_orders : found.order_stderr;
+    if (!tone) {
+        line.order_output = order;
+        line.order_output_stderr = error;
+    }
     if (found.phase_deg) {
         line.phase_deg = *found.phase_deg;
         line.phase_known = true;
@@ -121,14 +183,13 @@ Reported from_motion(const MotionLines& motion, std::size_t source) {
     if (found.kind == LineKind::unknown)
         line.note = "the speed varies too little to tell an order from a tone";
     const double speed = 0.5 * (line.speed_from_deg_s + line.speed_to_deg_s);
-    const OrderObservation seen{
-        found.order_output, found.order_stderr, speed, 0.0, found.order_output * speed / 360.0, source};
-    reported.order = OrderLine{found.order_output,
-                               found.order_stderr,
-                               found.snr,
-                               found.amplitude_nm,
-                               found.kind == LineKind::order,
-                               {seen}};
+    const OrderObservation seen{order, error, speed, 0.0, order * speed / 360.0, source};
+    reported.order =
+        OrderLine{order, error, found.snr, found.amplitude_nm, found.kind == LineKind::order, {seen}};
+    unfold(reported, {order, 0.5 * motion.resolution_orders, found.gain_angle, found.gain_time, found.folds},
+           options, rate_hz);
+    if (line.kind == LineKind::tone) reported.order.reset();
+    if (line.kind == LineKind::alias) line.order_output_stderr = error;
     return reported;
 }
 
@@ -174,8 +235,9 @@ SteadyRule rule_of(const IdentifyOptions& options) {
 }
 
 bool has_order(const std::vector<Reported>& reported) {
-    return std::any_of(reported.begin(), reported.end(),
-                       [](const Reported& r) { return r.line.kind == LineKind::order; });
+    return std::any_of(reported.begin(), reported.end(), [](const Reported& r) {
+        return r.line.kind == LineKind::order || r.line.kind == LineKind::alias;
+    });
 }
 
 }  // namespace
@@ -202,7 +264,7 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
     if (options.evidence != Evidence::order) {
         looked.steady = find_steady_lines(logs, rule_of(options), false_alarm);
         for (const SteadyLine& line : looked.steady->lines)
-            reported.push_back(from_steady(logs, *looked.steady, line));
+            reported.push_back(from_steady(logs, *looked.steady, line, options));
         result.evidence = "steady stretches";
     }
     const bool steady_suffices = has_order(reported);
@@ -210,6 +272,11 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
         MotionLinesOptions motion;
         motion.false_alarm = false_alarm;
         looked.motion = find_motion_lines(logs, motion);
+        if (looked.motion->sweeps == 0 && (!looked.steady || looked.steady->moving == 0)) {
+            motion = short_log_options();
+            motion.false_alarm = options.false_alarm;  // nothing else has been asked yet
+            looked.motion = find_motion_lines(logs, motion);
+        }
         // Where the motion cannot tell either, the stretches' own figures are the sharper ones.
         const bool motion_tells =
             std::any_of(looked.motion->lines.begin(), looked.motion->lines.end(),
@@ -226,7 +293,8 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
                                    std::any_of(reported.begin(), reported.end(), [&](const Reported& r) {
                                        return std::abs(*r.line.hz - line.hz) < 4.0 * line.hz_stderr + 0.5;
                                    });
-                if (!known) reported.push_back(from_motion(*looked.motion, i));
+                if (!known)
+                    reported.push_back(from_motion(*looked.motion, i, options, result.sample_rate.value()));
             }
             result.evidence = result.evidence.empty() || looked.steady->moving == 0
                                   ? "order spectrum"

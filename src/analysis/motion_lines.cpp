@@ -37,7 +37,9 @@ std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& st
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
     for (const Candidate& candidate : candidates) {
-        if (recurs(sweeps, stack, static_cast<double>(candidate.peak.bin) * stack.spacing)) return candidate;
+        // Half a sweep of some ten cells has five: there is nothing to recur in.
+        if (stack.few_cells || recurs(sweeps, stack, static_cast<double>(candidate.peak.bin) * stack.spacing))
+            return candidate;
     }
     return std::nullopt;
 }
@@ -96,6 +98,13 @@ SpeedRange speed_range(std::span<const Sweep> sweeps) {
     return range;
 }
 
+/// Output order of a frequency at the mean speed of the heaviest sweep.
+double order_at(std::span<const Sweep> sweeps, const Stack& stack, double hz) {
+    const auto heaviest = std::max_element(stack.sweep_weights.begin(), stack.sweep_weights.end());
+    const Sweep& sweep = sweeps[static_cast<std::size_t>(heaviest - stack.sweep_weights.begin())];
+    return 360.0 * hz / std::max(std::abs(sweep.mean_deg_s), 1e-9);
+}
+
 /// A line of one axis and the most that the other axis offers where the first could be seen there.
 struct Rivals {
     double order = 0.0, hz = 0.0;
@@ -134,6 +143,14 @@ LineKind judged(const std::vector<Sweep>& sweeps, const Stack& angle, const Stac
 }
 
 }  // namespace
+
+MotionLinesOptions short_log_options() {
+    MotionLinesOptions options;
+    options.sweeps.fewest_samples = 24;
+    options.stack.few_cells = true;
+    options.lowest_tone_hz = 3.0;
+    return options;
+}
 
 MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLinesOptions& options) {
     MotionLines found;
@@ -207,6 +224,8 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
             line.hz = rivals.hz;
             line.hz_stderr = time.resolution;
         }
+        line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, angle, rivals.hz);
+        line.folds = folds_of(sweeps, angle, line.order_seen, options.stack.highest_order);
         subtract(sweeps, stack.axis, place);
         changed = true;
         found.lines.push_back(std::move(line));

@@ -54,7 +54,8 @@ double length_of(const Sweep& sweep, Axis axis) {
 PowerSpectrum Stack::tested() const { return {ratio, 1.0, resolution / spacing, first, averages}; }
 
 std::vector<SignificantPeak> Stack::peaks(double false_alarm) const {
-    auto found = significant_peaks(tested(), false_alarm / tries_factor);
+    auto found = few_cells ? significant_peaks_of_few_cells(tested(), false_alarm / tries_factor)
+                           : significant_peaks(tested(), false_alarm / tries_factor);
     for (SignificantPeak& peak : found) peak.false_alarm = std::min(1.0, peak.false_alarm * tries_factor);
     return found;
 }
@@ -62,6 +63,7 @@ std::vector<SignificantPeak> Stack::peaks(double false_alarm) const {
 Stack stack_sweeps(std::span<const Sweep> sweeps, Axis axis, const StackRule& rule) {
     Stack stack;
     stack.axis = axis;
+    stack.few_cells = rule.few_cells;
     double longest = 0.0, weights = 0.0, mean_length = 0.0, half_rate = 0.0;
     for (const Sweep& sweep : sweeps) {
         longest = std::max(longest, length_of(sweep, axis));

@@ -5,12 +5,17 @@
 #include <cmath>
 #include <optional>
 
+#include "ripplenotch/analysis/alias.hpp"
+
 namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_peaks = 16;  // per stretch, the clearest
 constexpr std::size_t fewest_samples = 64;
 constexpr double same_order_share = 0.005;  // scatter of speeds that stretches of one order may show
+constexpr double same_fold_share = 0.0005;  // the same for orders beyond half the sample rate: many are tried
+constexpr double chance_of_fold = 0.01;
+constexpr double highest_folded_order = 1000.0;
 constexpr double other_speed_share = 0.02;  // speeds further apart are different ones
 
 double median_of(std::vector<double> values) {
@@ -41,14 +46,16 @@ std::vector<StretchLines> measure_stretches(std::span<const TraceView> logs, con
     return found;
 }
 
-std::vector<Sighting> sightings_of(const std::vector<StretchLines>& stretches) {
+std::vector<Sighting> sightings_of(std::span<const TraceView> logs,
+                                   const std::vector<StretchLines>& stretches) {
     std::vector<Sighting> all;
     for (std::size_t i = 0; i < stretches.size(); ++i) {
         const Stretch& stretch = stretches[i].stretch;
         const double speed = stretch.rest ? 0.0 : stretch.speed.value();
         for (const SpectralPeak& peak : stretches[i].peaks) {
             const double share = stretch.rest ? 0.0 : stretch.speed_error_deg_s / std::abs(speed);
-            all.push_back({i, peak.hz, peak.hz_stderr, speed, share, peak.amplitude_nm, peak.snr});
+            all.push_back({i, peak.hz, peak.hz_stderr, speed, share, peak.amplitude_nm, peak.snr,
+                           logs[stretches[i].log].sample_rate.value(), peak.hz});
         }
     }
     return all;
@@ -86,12 +93,14 @@ struct Group {
     std::vector<std::size_t> members;  // indices of sightings
     std::size_t speeds = 0;
     double clearness = 0.0;
+    double order = 0.0;  // of an alias, unfolded
     /// More speeds first; at equal speeds an order before a tone, for every pair of orders 1 and 2 at speeds
     /// 1 : 2 shares a frequency by arithmetic, while tones at related speeds share an order only by accident;
-    /// then the clearer.
+    /// a folded order last, for many are tried; then the clearer.
     bool operator<(const Group& other) const {
         if (speeds != other.speeds) return speeds < other.speeds;
-        if (kind != other.kind) return kind == LineKind::tone;
+        const auto rank = [](LineKind k) { return k == LineKind::order ? 2 : k == LineKind::tone ? 1 : 0; };
+        if (kind != other.kind) return rank(kind) < rank(other.kind);
         return clearness < other.clearness;
     }
 };
@@ -100,7 +109,7 @@ struct Group {
 template <class Same>
 Group grow(LineKind kind, std::size_t seed, const std::vector<Sighting>& all, const std::vector<bool>& used,
            Same same) {
-    Group group{kind, {seed}, 0, 0.0};
+    Group group{kind, {seed}, 0, 0.0, 0.0};
     std::vector<std::optional<std::size_t>> nearest;
     for (std::size_t j = 0; j < all.size(); ++j) {
         if (used[j] || all[j].stretch == all[seed].stretch || !same(all[seed], all[j])) continue;
@@ -120,6 +129,72 @@ Group grow(LineKind kind, std::size_t seed, const std::vector<Sighting>& all, co
     return group;
 }
 
+/// What an order beyond half the sample rate would show in a stretch: distance to the sighting over what is
+/// allowed.
+struct FoldedMatch {
+    double hz = 0.0;  ///< unfolded
+    double share = 1e300;
+    double chance = 1.0;  ///< that a line at any frequency lies as near
+};
+
+FoldedMatch match_folded(double order, double order_error, const Sighting& seen) {
+    const double hz = order * std::abs(seen.speed_deg_s) / 360.0;
+    const double allowed =
+        4.0 * std::hypot(seen.hz_error, hz * seen.speed_share_error, hz * order_error / order) +
+        same_fold_share * hz;
+    const double off = folded_hz(hz, seen.rate_hz) - seen.seen_hz;
+    return {hz, std::abs(off) / allowed, std::min(1.0, 4.0 * allowed / seen.rate_hz)};
+}
+
+/// An order beyond half the sample rate that explains sightings at three speeds or more, none of which shares
+/// its seen order with the others; so unlikely by chance, all the unfoldings that were tried counted.
+Group grow_folded(std::size_t seed, const std::vector<Sighting>& all, const std::vector<bool>& used) {
+    Group best;
+    const Sighting& first = all[seed];
+    const auto orders =
+        unfolded_orders(first.order_output(), first.rate_hz, first.speed_deg_s, highest_folded_order);
+    for (const double order : orders) {
+        const double hz = order * std::abs(first.speed_deg_s) / 360.0;
+        const double error =
+            order * std::hypot(first.hz_error / hz, first.speed_share_error, 0.5 * same_fold_share);
+        Group group{LineKind::alias, {seed}, 0, 0.0, order};
+        std::vector<double> speeds{first.speed_deg_s};
+        double chance = static_cast<double>(orders.size());
+        for (std::size_t stretch = 0; stretch <= all.back().stretch; ++stretch) {
+            std::optional<std::size_t> nearest;
+            std::size_t there = 0;
+            FoldedMatch match;
+            for (std::size_t j = 0; j < all.size(); ++j) {
+                const Sighting& seen = all[j];
+                if (used[j] || seen.stretch != stretch || stretch == first.stretch || seen.speed_deg_s == 0.0)
+                    continue;
+                ++there;
+                const FoldedMatch one = match_folded(order, error, seen);
+                if (one.share > 1.0 || one.share >= match.share) continue;
+                match = one;
+                nearest = j;
+            }
+            if (!nearest) continue;
+            chance *= std::min(1.0, match.chance * static_cast<double>(there));
+            group.members.push_back(*nearest);
+            speeds.push_back(all[*nearest].speed_deg_s);
+        }
+        group.speeds = count_speeds(std::move(speeds));
+        group.clearness = -std::log(chance);
+        if (group.speeds >= 3 && chance < chance_of_fold && best < group) best = std::move(group);
+    }
+    return best;
+}
+
+/// Puts the sightings at the frequencies whose images they are.
+void unfold(SteadyLine& line, double order) {
+    for (Sighting& seen : line.sightings) {
+        const double hz = order * std::abs(seen.speed_deg_s) / 360.0;
+        const double turns = std::round(hz / seen.rate_hz);
+        seen.hz = turns * seen.rate_hz + std::copysign(seen.seen_hz, hz - turns * seen.rate_hz);
+    }
+}
+
 std::vector<SteadyLine> grouped(const std::vector<Sighting>& all,
                                 const std::vector<StretchLines>& stretches) {
     std::vector<SteadyLine> lines;
@@ -134,6 +209,7 @@ std::vector<SteadyLine> grouped(const std::vector<Sighting>& all,
                 return same_tone(a, b, stretches);
             };
             best = std::max(best, grow(LineKind::tone, seed, all, used, tone));
+            if (all[seed].speed_deg_s != 0.0) best = std::max(best, grow_folded(seed, all, used));
         }
         if (best.members.empty()) return lines;
         SteadyLine line;
@@ -146,6 +222,7 @@ std::vector<SteadyLine> grouped(const std::vector<Sighting>& all,
         const bool at_rest = std::any_of(line.sightings.begin(), line.sightings.end(),
                                          [](const Sighting& seen) { return seen.speed_deg_s == 0.0; });
         line.kind = at_rest ? LineKind::tone : best.speeds > 1 ? best.kind : LineKind::unknown;
+        if (line.kind == LineKind::alias) unfold(line, best.order);
         lines.push_back(std::move(line));
     }
 }
@@ -164,7 +241,7 @@ SteadyLines find_steady_lines(std::span<const TraceView> logs, const SteadyRule&
         if (!one.stretch.rest) speeds.push_back(one.stretch.speed.value());
     }
     found.speeds = count_speeds(std::move(speeds));
-    found.lines = grouped(sightings_of(found.stretches), found.stretches);
+    found.lines = grouped(sightings_of(logs, found.stretches), found.stretches);
     return found;
 }
 

@@ -33,6 +33,16 @@ std::array<double, 2> pair_at(Fields& fields, std::string_view name) {
     return {value[0].get<double>(), value[1].get<double>()};
 }
 
+std::vector<double> numbers_at(Fields& fields, std::string_view name) {
+    std::vector<double> numbers;
+    for (const Json& value : array_at(fields, name)) {
+        if (!value.is_number())
+            raise<DataError>("{} holds {}, expected numbers", fields.where(name), value.dump());
+        numbers.push_back(value.get<double>());
+    }
+    return numbers;
+}
+
 /// Reads each entry of a list of objects with `read(fields)`, strictly.
 template <class Read>
 void for_each_object(Fields& fields, std::string_view name, const std::string& source, Read read) {
@@ -58,6 +68,8 @@ Json line_to_json(const Line& line) {
     json["order"] = optional_to_json(line.order);
     json["order_output"] = optional_to_json(line.order_output);
     json["order_output_stderr"] = optional_to_json(line.order_output_stderr);
+    json["order_output_seen"] = optional_to_json(line.order_output_seen);
+    json["could_be"] = line.could_be;
     json["hz"] = optional_to_json(line.hz);
     json["amplitude_nm"] = line.amplitude_nm;
     json["phase_deg"] = line.phase_known ? finite_or_null(line.phase_deg) : Json(nullptr);
@@ -80,6 +92,8 @@ Line line_from_json(Fields& fields, const std::string& source, const std::string
     line.order = optional_number(fields, "order");
     line.order_output = optional_number(fields, "order_output");
     line.order_output_stderr = optional_number(fields, "order_output_stderr");
+    line.order_output_seen = optional_number(fields, "order_output_seen");
+    if (fields.find("could_be") != nullptr) line.could_be = numbers_at(fields, "could_be");
     line.hz = optional_number(fields, "hz");
     line.amplitude_nm = fields.number("amplitude_nm");
     if (const auto phase = optional_number(fields, "phase_deg")) {

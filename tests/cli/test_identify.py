@@ -195,6 +195,19 @@ class RealLogs(unittest.TestCase):
         self.assertIn("one speed dominates", found["verdict"])
         self.assertFalse(found["conclusive"])
 
+    def test_short_ur3e_log_and_its_folded_order(self):
+        log = str(LOGS / "ur3e_rad_L1L2_j345.csv")
+        for joint in ("j3", "j4"):
+            self.near(orders(identified(log, "--joint", joint), ("order", "unknown")), 201.0, 0.02)
+        hinted = identified(log, "--joint", "j5", "--gear-ratio", "101")["lines"][0]
+        self.assertEqual((hinted["kind"], hinted["order"]), ("alias", 2))
+        self.assertAlmostEqual(hinted["order_output_seen"], 49.5, delta=0.5)
+        self.assertAlmostEqual(hinted["order_output"], 202, delta=4)
+        line = identified(log, "--joint", "j5")["lines"][0]
+        self.assertAlmostEqual(line["order_output"], 49.5, delta=0.5)
+        self.near(line["could_be"], 202.0, 0.02)
+        self.assertIn("folded at 25 Hz", line["note"])
+
     def test_ur10_has_nothing_on_any_joint(self):
         found = identified(str(LOGS / "ur10_unisa_exciting_all.csv"), "--joint", "all")
         self.assertEqual(found["schema"], "ripplenotch/joints/1")

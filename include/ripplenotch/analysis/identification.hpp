@@ -30,8 +30,10 @@ struct Line {
     std::optional<double> order;         ///< cycles per motor revolution; only with a gear ratio
     std::optional<double> order_output;  ///< cycles per output revolution; for kind order and alias
     std::optional<double> order_output_stderr;
-    std::optional<double> hz;   ///< for kind tone, and the seen frequency of a single-speed line
-    double amplitude_nm = 0.0;  ///< zero to peak, mean over the stretches that show it
+    std::optional<double> order_output_seen;  ///< for kind alias: where the folded line is seen
+    std::vector<double> could_be;  ///< other output orders that explain the line about as well, by folding
+    std::optional<double> hz;      ///< for kind tone, and the seen frequency of a single-speed line
+    double amplitude_nm = 0.0;     ///< zero to peak, mean over the stretches that show it
     double phase_deg = 0.0;  ///< of cos(order * motor angle + phase), angle from position where there is one
     bool phase_known = false;
     double snr = 0.0;  ///< amplitude over the local noise amplitude

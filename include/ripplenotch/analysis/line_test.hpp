@@ -43,6 +43,11 @@ struct SignificantPeak {
 [[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
                                                              double false_alarm);
 
+/// The same for spectra of some ten cells: floor from all that is beyond a line's main lobe, or from its
+/// louder side; maxima within 3.5 cells of either end are not judged.
+[[nodiscard]] std::vector<SignificantPeak> significant_peaks_of_few_cells(const PowerSpectrum& spectrum,
+                                                                          double false_alarm);
+
 /// Chance that noise exceeds `ratio` times a floor that was itself estimated from `cells` independent cells.
 [[nodiscard]] double exceedance(double ratio, double averages, double cells);
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "ripplenotch/analysis/alias.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/stack.hpp"
 
@@ -21,6 +22,8 @@ struct MotionLine {
     double snr = 0.0;                               ///< amplitude_nm / floor_nm
     double false_alarm = 1.0;                  ///< chance that noise shows such a line anywhere on this axis
     double gain_angle = 0.0, gain_time = 0.0;  ///< what a line in angle, or in time, explains, in nats
+    std::vector<Fold> folds;  ///< orders beyond half the sample rate whose image this may be, best first
+    double order_seen = 0.0;  ///< the best that output orders below half the sample rate offer
     std::optional<double> phase_deg;  ///< of cos(order * output angle + phase), when the sweeps agree on it
     std::vector<AmplitudeAtSpeed> by_speed;  ///< per sweep
 };
@@ -44,6 +47,10 @@ struct MotionLines {
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
     bool absolute_angle = false;
 };
+
+/// For logs too short for the ordinary search: sweeps of 24 samples or more, judged by a test for spectra of
+/// some ten cells. Resolution is coarse and only clear lines are found.
+[[nodiscard]] MotionLinesOptions short_log_options();
 
 /// Takes the clearest line of both axes that does not rest on a single sweep, gives it to the axis that
 /// explains more of it, subtracts it sweep by sweep, and looks again, until noise could have made what is

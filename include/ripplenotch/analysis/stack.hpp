@@ -33,12 +33,14 @@ struct Stack {
     [[nodiscard]] PowerSpectrum tested() const;
     /// significant_peaks of `ratio`, the chance corrected for grids finer than the resolution.
     [[nodiscard]] std::vector<SignificantPeak> peaks(double false_alarm) const;
+    bool few_cells = false;     ///< StackRule::few_cells
     double tries_factor = 1.0;  ///< longest over mean length
 };
 
 struct StackRule {
     double lowest_order = 20.0, highest_order = 2400.0;
     double lowest_hz = 0.5;
+    bool few_cells = false;      ///< sweeps so short that their spectra have some ten cells
     double fewest_cycles = 4.0;  ///< per sweep: what turns less often in it is not told from the trend
 };
 

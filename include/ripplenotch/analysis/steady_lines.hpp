@@ -28,6 +28,8 @@ struct Sighting {
     double speed_deg_s = 0.0;  ///< signed; 0 at rest
     double speed_share_error = 0.0;
     double amplitude_nm = 0.0, snr = 0.0;
+    double rate_hz = 0.0;  ///< of the log
+    double seen_hz = 0.0;  ///< where the spectrum shows it: below hz in a line of kind alias
     [[nodiscard]] double order_output() const;  ///< 360 f / |v|; only where the joint moves
     [[nodiscard]] double order_error() const;   ///< from the frequency alone
 };

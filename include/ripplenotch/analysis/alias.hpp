@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Folded orders: what turns faster than half the sample rate is seen at |k * rate - order * |v| / 360|. The
+// sum over the measured angle may be asked at the unfolded order directly: where the speed changes within a
+// sweep, the true order gathers more of the line than its images do.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/analysis/stack.hpp"
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+/// One order that a seen line could be in truth.
+struct Fold {
+    double order_output = 0.0;
+    double gain = 0.0;  ///< what it explains of the samples, in nats, comparable with the seen order's own
+};
+
+/// Frequency at which one of `hz` is seen when sampled at `rate_hz`: 0 to half the rate.
+[[nodiscard]] double folded_hz(double hz, double rate_hz);
+
+/// Orders up to `highest` whose image at this speed is `seen` (both per output turn), lowest first.
+[[nodiscard]] std::vector<double> unfolded_orders(double seen, double rate_hz, double speed_deg_s,
+                                                  double highest);
+
+/// The same with what each explains, best first, each at its own maximum where the speeds of the heaviest
+/// sweep could put it. Rests on the heaviest sweeps, 20,000 samples at most. Empty where no image lies below
+/// `highest`.
+[[nodiscard]] std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, double seen,
+                                         double highest);
+
+/// What is known of a line that may be folded.
+struct FoldQuestion {
+    double seen = 0.0;                        ///< output order
+    double tolerance = 0.0;                   ///< of an order, to lie on the hint's comb, besides 0.6 % of it
+    double gain_seen = 0.0, gain_time = 0.0;  ///< of the seen order, and of a fixed tone
+    std::span<const Fold> folds;
+};
+
+struct FoldAnswer {
+    std::optional<double> order_output;  ///< the order that is folded; empty when it may not be
+    bool by_hint = false;
+    std::vector<double> could_be;  ///< orders that explain the line about as well, lowest first
+};
+
+/// A fold is the answer when it explains the samples decisively better than anything else, or when it does so
+/// about as well and lies on the comb of the hinted ratio while the seen order does not.
+[[nodiscard]] FoldAnswer answer_fold(const FoldQuestion& question, std::optional<GearRatio> hint);
+
+}  // namespace ripplenotch

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/alias.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "ripplenotch/analysis/fourier.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double decisive_nats = 5.0;
+constexpr double floor_doubt = 0.15;
+constexpr double comb_share = 0.006;  // as wide as the fit of the ratio takes its combs
+constexpr std::size_t most_samples = 20000;
+constexpr std::size_t most_folds = 40;
+constexpr double most_grid = 300.0;
+constexpr int most_comb = 4;  // n beyond which a hinted comb is so dense that images lie on it by chance
+// How often the leading line of a drive stands at n = 1 to 4.
+constexpr std::array<double, most_comb> share_of_n{0.25, 0.55, 0.02, 0.06};
+
+double rate_in_orders(double rate_hz, double speed_deg_s) {
+    return 360.0 * rate_hz / std::max(std::abs(speed_deg_s), 1e-9);
+}
+
+/// Sweeps that vouch for the seen order, with the noise there; images share it.
+struct Witness {
+    const Sweep* sweep = nullptr;
+    double noise = 0.0;
+};
+
+std::vector<Witness> witnesses_of(std::span<const Sweep> sweeps, const Stack& angle, double seen) {
+    const auto bin = static_cast<std::size_t>(std::lround(std::max(0.0, seen / angle.spacing)));
+    std::vector<std::size_t> by_weight(sweeps.size());
+    std::iota(by_weight.begin(), by_weight.end(), std::size_t{0});
+    std::stable_sort(by_weight.begin(), by_weight.end(), [&](std::size_t a, std::size_t b) {
+        return angle.sweep_weights[a] > angle.sweep_weights[b];
+    });
+    std::vector<Witness> witnesses;
+    std::size_t samples = 0;
+    for (const std::size_t i : by_weight) {
+        const auto& floors = angle.floors[i];
+        if (bin >= floors.size() || floors[bin] <= 0.0F) continue;
+        samples += sweeps[i].turns.size();
+        if (samples > most_samples) break;
+        witnesses.push_back({&sweeps[i], static_cast<double>(floors[bin])});
+    }
+    return witnesses;
+}
+
+double gain_of(std::span<const Witness> witnesses, double order) {
+    double most = 0.0, gain = 0.0;
+    for (const Witness& witness : witnesses) {
+        const double weight = witness.sweep->effective_samples();
+        const double power =
+            std::norm(fourier_point(witness.sweep->turns, witness.sweep->value, order).value);
+        most = std::max(most, weight);
+        gain += weight * (power / witness.noise - 1.0);
+    }
+    return most > 0.0 ? gain / most : 0.0;
+}
+
+/// Largest gain between two orders: a grid of a third of a resolution, then halved steps around its best.
+Fold best_between(std::span<const Witness> witnesses, double from, double to, double step) {
+    step = std::max(step, (to - from) / most_grid);
+    Fold best{0.5 * (from + to), -1e300};
+    for (double at = std::max(from, step); at <= to; at += step) {
+        const double gain = gain_of(witnesses, at);
+        if (gain > best.gain) best = {at, gain};
+    }
+    for (double reach = step / 2.0; reach > step / 200.0; reach /= 2.0) {
+        for (const double at : {best.order_output - reach, best.order_output + reach}) {
+            const double gain = gain_of(witnesses, at);
+            if (gain > best.gain) best = {at, gain};
+        }
+    }
+    return best;
+}
+
+/// n of the comb of `ratio` nearest to an order, where it lies on it.
+std::optional<int> on_comb(double order, double ratio, double tolerance) {
+    const int n = static_cast<int>(std::lround(order / ratio));
+    if (n < 1 || n > most_comb || std::abs(order - n * ratio) > tolerance + comb_share * order)
+        return std::nullopt;
+    return n;
+}
+
+}  // namespace
+
+double folded_hz(double hz, double rate_hz) { return std::abs(hz - rate_hz * std::round(hz / rate_hz)); }
+
+std::vector<double> unfolded_orders(double seen, double rate_hz, double speed_deg_s, double highest) {
+    const double rate = rate_in_orders(rate_hz, speed_deg_s);
+    std::vector<double> orders;
+    for (double k = 1.0; k * rate - seen <= highest && orders.size() < most_folds; k += 1.0) {
+        if (k * rate - seen > 0.0) orders.push_back(k * rate - seen);
+        if (k * rate + seen <= highest) orders.push_back(k * rate + seen);
+    }
+    std::sort(orders.begin(), orders.end());
+    return orders;
+}
+
+std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, double seen, double highest) {
+    const std::vector<Witness> witnesses = witnesses_of(sweeps, angle, seen);
+    std::vector<Fold> folds;
+    if (witnesses.empty()) return folds;
+    const Sweep& heaviest = *witnesses.front().sweep;
+    const double slow = rate_in_orders(heaviest.rate_hz, heaviest.slow_deg_s);
+    const double quick = rate_in_orders(heaviest.rate_hz, heaviest.quick_deg_s);
+    const double step = 0.5 / heaviest.length_turns, reach = 6.0 * step;
+    for (double k = 1.0; k * quick - seen <= highest && folds.size() < most_folds; k += 1.0) {
+        for (const double side : {-1.0, 1.0}) {
+            const double from = k * quick + side * seen - reach, to = k * slow + side * seen + reach;
+            // An image that falls on the seen order itself says nothing.
+            const bool on_itself = from < seen + 4.0 * angle.resolution && to > seen - 4.0 * angle.resolution;
+            if (from < highest && !on_itself) folds.push_back(best_between(witnesses, from, to, step));
+        }
+    }
+    std::stable_sort(folds.begin(), folds.end(),
+                     [](const Fold& a, const Fold& b) { return a.gain > b.gain; });
+    return folds;
+}
+
+FoldAnswer answer_fold(const FoldQuestion& question, std::optional<GearRatio> hint) {
+    FoldAnswer answer;
+    if (question.folds.empty()) return answer;
+    const double best = std::max(question.folds.front().gain, question.gain_seen);
+    const double decisive = std::max(decisive_nats, floor_doubt * std::max(best, question.gain_time));
+    std::vector<Fold> likely;
+    for (const Fold& fold : question.folds) {
+        if (fold.gain > best - decisive) likely.push_back(fold);
+    }
+    const bool seen_itself = question.gain_seen > best - decisive;
+    const bool as_tone = question.gain_time > best - decisive;
+    if (likely.size() == 1 && !seen_itself && !as_tone) {
+        answer.order_output = likely.front().order_output;
+        return answer;
+    }
+    for (const Fold& fold : likely) answer.could_be.push_back(fold.order_output);
+    std::sort(answer.could_be.begin(), answer.could_be.end());
+    if (!hint || question.gain_time > best + decisive) return answer;
+    const double ratio = hint->value();
+    if (seen_itself && on_comb(question.seen, ratio, question.tolerance)) return answer;
+    const Fold* chosen = nullptr;
+    double most = -1e300;
+    for (const Fold& fold : likely) {
+        const auto n = on_comb(fold.order_output, ratio, question.tolerance);
+        const double nats = n ? fold.gain + std::log(share_of_n[static_cast<std::size_t>(*n - 1)]) : most;
+        if (nats > most) {
+            most = nats;
+            chosen = &fold;
+        }
+    }
+    if (chosen == nullptr) return answer;
+    answer.order_output = chosen->order_output;
+    answer.by_hint = true;
+    std::erase(answer.could_be, chosen->order_output);
+    return answer;
+}
+
+}  // namespace ripplenotch

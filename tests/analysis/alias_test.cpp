@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/alias.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "analysis/traces.hpp"
+#include "ripplenotch/analysis/identification.hpp"
+
+using namespace ripplenotch;
+using Catch::Contains;
+using Catch::Matchers::WithinAbs;
+
+namespace {
+
+Identification identified(const std::vector<Trace>& traces, std::optional<double> hint = std::nullopt) {
+    std::vector<TraceView> views;
+    for (const Trace& trace : traces) views.push_back(trace.view());
+    IdentifyOptions options;
+    if (hint) options.hint = GearRatio(*hint);
+    return identify(views, options);
+}
+
+Trace at_25_hz(double seconds, std::function<double(double)> speed, std::uint32_t seed,
+               double order = 202.0) {
+    return tests::make_trace({.rate_hz = 25.0,
+                              .seconds = seconds,
+                              .speed_deg_s = std::move(speed),
+                              .ripple = {{order, 0.3, 0.4}},
+                              .noise_nm = 0.03,
+                              .seed = seed});
+}
+
+/// A short move: half a second of rest, up to `top`, almost to the end, as pick-and-place logs have it.
+double short_move(double t, double top) {
+    if (t < 0.3) return 0.0;
+    return t < 0.8 ? top * (t - 0.3) / 0.5 : t < 2.35 ? top : std::max(0.1, top * (1.0 - (t - 2.35) / 0.5));
+}
+
+}  // namespace
+
+TEST_CASE("2 Kg at 60 deg/s sampled at 25 Hz is seen at output order 50, and order 50 unfolds to it") {
+    const double hz = 200.0 * 60.0 / 360.0;
+    CHECK_THAT(folded_hz(hz, 25.0) * 360.0 / 60.0, WithinAbs(50.0, 1e-9));
+    const std::vector<double> orders = unfolded_orders(50.0, 25.0, 60.0, 420.0);
+    CHECK(orders == std::vector<double>{100.0, 200.0, 250.0, 350.0, 400.0});
+    for (const double order : orders)
+        CHECK_THAT(folded_hz(order * 60.0 / 360.0, 25.0), WithinAbs(folded_hz(hz, 25.0), 1e-9));
+}
+
+TEST_CASE("a folded order at three steady speeds is an alias, unfolded without any hint") {
+    std::vector<Trace> logs;
+    std::uint32_t seed = 1;
+    for (const double speed : {47.0, 61.0, 83.0})
+        logs.push_back(at_25_hz(
+            30.0, [=](double) { return speed; }, seed++));
+    const Identification found = identified(logs);
+    REQUIRE(found.lines.size() == 1);
+    CHECK(found.lines[0].kind == LineKind::alias);
+    CHECK_THAT(*found.lines[0].order_output, WithinAbs(202.0, 0.2));
+    CHECK_THAT(found.lines[0].note, Contains("folded at 25 Hz"));
+    REQUIRE(found.lines[0].by_speed.size() == 3);
+    for (const AmplitudeAtSpeed& at : found.lines[0].by_speed)
+        CHECK_THAT(at.hz, WithinAbs(202.0 * at.speed_deg_s / 360.0, 0.02));
+}
+
+TEST_CASE("two speeds cannot unfold an order, and three fixed tones are no alias") {
+    const Identification two = identified({at_25_hz(
+                                               30.0, [](double) { return 47.0; }, 1),
+                                           at_25_hz(
+                                               30.0, [](double) { return 61.0; }, 2)});
+    for (const Line& line : two.lines) CHECK(line.kind == LineKind::unknown);
+    std::vector<Trace> logs;
+    for (const double speed : {47.0, 61.0, 83.0}) {
+        logs.push_back(tests::make_trace({.rate_hz = 25.0,
+                                          .seconds = 30.0,
+                                          .speed_deg_s = [=](double) { return speed; },
+                                          .tones = {{3.3 + 0.11 * speed - 4.0, 0.3, 0.0}},
+                                          .noise_nm = 0.03,
+                                          .seed = static_cast<std::uint32_t>(speed)}));
+    }
+    for (const Line& line : identified(logs).lines) CHECK(line.kind != LineKind::order);
+}
+
+TEST_CASE("in motion of varying speed an order beyond half the sample rate is found at its own place") {
+    const Identification found = identified({at_25_hz(
+        60.0, [](double t) { return 55.0 + 20.0 * std::sin(0.7 * t); }, 3)});
+    REQUIRE(found.lines.size() == 1);
+    CHECK_THAT(*found.lines[0].order_output, WithinAbs(202.0, 0.5));
+}
+
+TEST_CASE(
+    "images that explain a line alike are listed; a hint chooses among them, but not against the samples") {
+    const std::vector<Fold> folds{{250.0, 18.3}, {100.5, 18.0}, {199.6, 18.2}};
+    const FoldQuestion question{49.5, 2.0, 17.8, 19.0, folds};
+    const FoldAnswer open = answer_fold(question, std::nullopt);
+    CHECK_FALSE(open.order_output.has_value());
+    CHECK(open.could_be == std::vector<double>{100.5, 199.6, 250.0});
+    const FoldAnswer hinted = answer_fold(question, GearRatio(101.0));
+    CHECK(hinted.by_hint);
+    CHECK(hinted.order_output == 199.6);
+    CHECK_FALSE(answer_fold(question, GearRatio(77.0)).order_output.has_value());
+    // The seen order lies on the hinted comb itself.
+    CHECK_FALSE(answer_fold(question, GearRatio(49.6)).order_output.has_value());
+    const std::vector<Fold> poor{{250.0, 3.0}, {199.6, 2.0}};
+    CHECK_FALSE(answer_fold({49.5, 2.0, 30.0, 12.0, poor}, GearRatio(101.0)).order_output.has_value());
+    const std::vector<Fold> clear{{199.6, 60.0}, {250.0, 20.0}};
+    const FoldAnswer told = answer_fold({49.5, 2.0, 22.0, 25.0, clear}, std::nullopt);
+    CHECK(told.order_output == 199.6);
+    CHECK_FALSE(told.by_hint);
+}
+
+TEST_CASE("a short log of 65 samples shows its order within 2 %") {
+    for (const double top : {10.3, 14.7}) {
+        const Identification found = identified({at_25_hz(
+            2.6, [=](double t) { return short_move(t, top); }, 5)});
+        REQUIRE_FALSE(found.lines.empty());
+        CHECK_THAT(*found.lines[0].order_output, WithinAbs(202.0, 4.0));
+    }
+}
+
+TEST_CASE("noise of any colour in logs of 65 samples gives a line in at most one of a hundred") {
+    constexpr int runs = 1000;
+    for (int kind = 0; kind < 5; ++kind) {
+        int orders = 0, any = 0;
+        for (int run = 0; run < runs; ++run) {
+            const double top = run % 3 == 0 ? 10.3 : run % 3 == 1 ? 14.7 : 60.0;
+            Trace log = tests::make_trace({.rate_hz = 25.0,
+                                           .seconds = 2.6,
+                                           .speed_deg_s = [=](double t) { return short_move(t, top); },
+                                           .noise_nm = 0.1,
+                                           .seed = static_cast<std::uint32_t>(100 + 7 * run)});
+            auto& x = log.torque_nm;
+            const double colour = kind == 1 ? 0.7 : kind == 2 ? 0.95 : 0.0;
+            for (std::size_t k = 1; k < x.size(); ++k) x[k] += colour * (x[k - 1] - 10.0);
+            for (std::size_t k = 0; k < x.size(); ++k) {
+                if (kind == 3) x[k] = std::round(x[k] / 0.13) * 0.13;
+                if (kind == 4 && k % 3 == 2) x[k] = x[k - 1];
+            }
+            const Identification found = identified({log});
+            any += std::any_of(found.lines.begin(), found.lines.end(),
+                               [](const Line& l) { return l.kind != LineKind::tone; });
+            orders += std::any_of(found.lines.begin(), found.lines.end(),
+                                  [](const Line& l) { return l.kind == LineKind::order; });
+        }
+        INFO("kind " << kind << ": " << orders << " orders, " << any << " lines of " << runs);
+        CHECK(orders <= runs / 100);
+        CHECK(any <= runs / 100 + 9);  // 10 expected, three standard deviations more allowed
+    }
+}
