@@ -17,6 +17,7 @@ constexpr int most_alone = 8, most_besides = 16;
 constexpr double match_share = 0.006;  // a line lies on a comb within this share, or four standard errors
 constexpr double same_ratio_share = 0.008;  // candidates nearer than this are one
 constexpr double hint_share = 0.015;
+constexpr double least_scale_error = 0.0005;
 constexpr double least_score = 0.7;
 constexpr double lowest_usual = 25.0, highest_usual = 320.0;
 constexpr std::array catalogue{30.0, 50.0, 80.0, 100.0, 101.0, 120.0, 121.0, 160.0, 161.0};
@@ -82,7 +83,8 @@ Comb matched(double ratio, std::span<const OrderLine> lines) {
     return comb;
 }
 
-void judge(Comb& comb, std::span<const OrderLine> lines, std::optional<GearRatio> hint) {
+void judge(Comb& comb, std::span<const OrderLine> lines, std::optional<GearRatio> hint,
+           std::span<const int> hinted_orders) {
     double strongest = 0.0;
     for (const OrderLine& line : lines) strongest = std::max(strongest, line.amplitude_nm);
     std::vector<int> orders;
@@ -127,9 +129,20 @@ void judge(Comb& comb, std::span<const OrderLine> lines, std::optional<GearRatio
         comb.hinted = true;
         comb.reason += fmt::format("; agrees with the hint {:.6g}", hint->value());
     }
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const bool leads = lines[i].amplitude_nm == strongest && comb.n[i];
+        if (!leads ||
+            std::find(hinted_orders.begin(), hinted_orders.end(), *comb.n[i]) == hinted_orders.end())
+            continue;
+        comb.nats += hint_nats;
+        comb.hinted = true;
+        comb.reason += fmt::format("; its strongest line is at n = {}, as hinted", *comb.n[i]);
+        break;
+    }
 }
 
-std::vector<Comb> all_combs(std::span<const OrderLine> lines, std::optional<GearRatio> hint) {
+std::vector<Comb> all_combs(std::span<const OrderLine> lines, std::optional<GearRatio> hint,
+                            std::span<const int> hinted_orders) {
     std::vector<Comb> combs;
     const auto add = [&](double ratio) {
         Comb comb = matched(ratio, lines);
@@ -138,12 +151,13 @@ std::vector<Comb> all_combs(std::span<const OrderLine> lines, std::optional<Gear
             return std::abs(other.ratio - comb.ratio) < same_ratio_share * comb.ratio && other.n == comb.n;
         });
         if (known) return;
-        judge(comb, lines, hint);
+        judge(comb, lines, hint, hinted_orders);
         combs.push_back(std::move(comb));
     };
     if (hint) add(hint->value());
     for (const OrderLine& line : lines) {
         for (int n = 1; n <= most_alone; ++n) add(line.order_output / n);
+        for (const int n : hinted_orders) add(line.order_output / n);
     }
     std::stable_sort(combs.begin(), combs.end(),
                      [](const Comb& a, const Comb& b) { return a.nats > b.nats; });
@@ -254,12 +268,36 @@ void name_wrong_units(const Comb& comb, std::optional<GearRatio> hint, GearRatio
     }
 }
 
+/// A ratio is a ratio of teeth: when the lines lie off the hinted one by more than their errors allow and by
+/// little, the speed's or position's scale is the likelier culprit.
+void name_scale_error(GearRatio hint, GearRatioResult& result) {
+    if (!result.fit.value) return;
+    const double share = *result.fit.value / hint.value() - 1.0;
+    const double doubt = 0.5 * (result.fit.ci95_high - result.fit.ci95_low) / hint.value();
+    if (std::abs(share) < least_scale_error || std::abs(share) < 1.5 * doubt || std::abs(share) > hint_share)
+        return;
+    const std::string what = fmt::format("the velocity's or position's scale reads {:.2f} % {}",
+                                         100.0 * std::abs(share), share < 0.0 ? "high" : "low");
+    result.fit.candidates.push_back({hint.value(), 0.0, "if " + what});
+    result.notes.push_back(fmt::format(
+        "the ratio {:.6g} is {:+.2f} % from the hint {:.6g}, more than its error of {:.2f} %: the "
+        "likely cause is that {}, or that a time column runs off by that much; a gear ratio that "
+        "odd is unlikely",
+        *result.fit.value, 100.0 * share, hint.value(), 100.0 * doubt, what));
+}
+
 void check_hint(const std::vector<Comb>& combs, std::span<const OrderLine> lines, GearRatio hint,
                 std::vector<std::string>& notes) {
     if (std::any_of(combs.begin(), combs.end(), [](const Comb& comb) { return comb.hinted; })) return;
     const OrderLine& first = lines.front();
     const double n = std::max(1.0, std::round(first.order_output / hint.value()));
     const double off = 100.0 * (first.order_output / (n * hint.value()) - 1.0);
+    const double clock = first.order_output / (2.0 * hint.value());
+    notes.push_back(
+        fmt::format("were the strongest line at n = 2 of {:.6g}, a clock (nominal sample rate) {:.3g} times "
+                    "{} would explain "
+                    "it, where the log has no position",
+                    hint.value(), clock > 1.0 ? clock : 1.0 / clock, clock > 1.0 ? "too fast" : "too slow"));
     notes.push_back(fmt::format(
         "the hint {:.6g} is not supported: output order {:.5g} is {:+.2f} % from {:.0f} times it, more than "
         "its error allows; a speed or position scale wrong by that much would explain it",
@@ -268,11 +306,12 @@ void check_hint(const std::vector<Comb>& combs, std::span<const OrderLine> lines
 
 }  // namespace
 
-GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<GearRatio> hint) {
+GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<GearRatio> hint,
+                               std::span<const int> hinted_orders) {
     GearRatioResult result;
     result.order_of_line.resize(lines.size());
     if (lines.empty()) return result;
-    const std::vector<Comb> combs = all_combs(lines, hint);
+    const std::vector<Comb> combs = all_combs(lines, hint, hinted_orders);
     if (combs.empty()) return result;
     double total = 0.0;
     for (const Comb& comb : combs) total += std::exp(comb.nats - combs.front().nats);
@@ -284,6 +323,10 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<G
     const Comb& best = combs.front();
     name_wrong_units(best, hint, result);
     if (hint) check_hint(combs, lines, *hint, result.notes);
+    if (!hinted_orders.empty() && !hint &&
+        std::none_of(combs.begin(), combs.end(), [](const Comb& comb) { return comb.hinted; })) {
+        result.notes.push_back("no comb puts the strongest line at a hinted order");
+    }
     const bool certain = std::any_of(lines.begin(), lines.end(), [&](const OrderLine& line) {
         return line.certain && best.n[static_cast<std::size_t>(&line - lines.data())];
     });
@@ -291,8 +334,10 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<G
     if (!certain && !best.hinted && !best.listed) return result;
     result.order_of_line = best.n;
     fit(lines, best, result.fit);
-    // The robust fit moves the value a little from where the comparison of combs left it; one ratio, one number.
+    // The robust fit moves the value a little from where the comparison of combs left it; one ratio, one
+    // number.
     if (result.fit.value) result.fit.candidates.front().value = *result.fit.value;
+    if (hint && best.hinted) name_scale_error(*hint, result);
     return result;
 }
 

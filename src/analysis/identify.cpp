@@ -218,7 +218,7 @@ void add_ratio(std::vector<Reported>& reported, const IdentifyOptions& options, 
         orders.push_back(*reported[i].order);
         owner.push_back(i);
     }
-    GearRatioResult ratio = fit_gear_ratio(orders, options.hint);
+    GearRatioResult ratio = fit_gear_ratio(orders, options.hint, options.hinted_orders);
     result.gear_ratio = std::move(ratio.fit);
     for (std::string& note : ratio.notes) result.notes.push_back(std::move(note));
     for (std::size_t i = 0; i < owner.size(); ++i) {

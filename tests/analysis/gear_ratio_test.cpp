@@ -150,3 +150,25 @@ TEST_CASE("no lines, no ratio, no candidates") {
     CHECK_FALSE(result.fit.value.has_value());
     CHECK(result.fit.candidates.empty());
 }
+
+TEST_CASE("a hinted order settles what a lone line is, and leaves it open when no line is there") {
+    const std::vector lines{line_at(1768.0, 0.06)};
+    CHECK_FALSE(fit_gear_ratio(lines, std::nullopt).fit.value.has_value());
+    const std::vector<int> eight{8};
+    const auto hinted = fit_gear_ratio(lines, std::nullopt, eight);
+    REQUIRE(hinted.fit.value.has_value());
+    CHECK_THAT(*hinted.fit.value, WithinRel(221.0, 1e-6));
+    CHECK(hinted.order_of_line[0] == 8);
+}
+
+TEST_CASE("a ratio half a per cent off a hint names the scale error, one within its error does not") {
+    const std::vector off{line_at(99.5, 0.8), line_at(199.0, 0.5)};
+    const auto odd = fit_gear_ratio(off, GearRatio(100.0));
+    REQUIRE(odd.fit.value.has_value());
+    CHECK_THAT(*odd.fit.value, WithinRel(99.5, 1e-6));
+    REQUIRE_FALSE(odd.notes.empty());
+    CHECK(odd.notes.back().find("scale reads 0.50 % high") != std::string::npos);
+    CHECK_THAT(odd.fit.candidates.back().value, WithinRel(100.0, 1e-12));
+    const std::vector right{line_at(100.0, 0.8), line_at(200.0, 0.5)};
+    CHECK(fit_gear_ratio(right, GearRatio(100.0)).notes.empty());
+}

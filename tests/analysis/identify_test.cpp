@@ -169,6 +169,32 @@ TEST_CASE("the way that was asked for is the way that is used") {
     CHECK(identify_all(logs, options).evidence == "steady stretches");
 }
 
+TEST_CASE("without position and with a velocity scale wrong by 0.5 %, orders stay and the scale is named") {
+    for (const bool steady : {true, false}) {
+        std::vector<Trace> logs;
+        for (int j = 0; j < (steady ? 3 : 1); ++j) {
+            logs.push_back(tests::make_trace(
+                {.seconds = steady ? 5.0 : 12.0,
+                 .speed_deg_s =
+                     [=](double t) { return steady ? 60.0 * (j + 1) : 90.0 * std::sin(0.9 * t + 0.4); },
+                 .ripple = paper_ripple,
+                 .noise_nm = 0.05,
+                 .position = false,
+                 .seed = static_cast<std::uint32_t>(40 + j)}));
+            for (double& v : logs.back().velocity_deg_s) v *= 1.005;
+        }
+        IdentifyOptions options;
+        options.hint = GearRatio(100.0);
+        const Identification found = identify_all(logs, options);
+        CHECK(lines_of(found, LineKind::order).size() == 2);
+        REQUIRE(found.gear_ratio.value.has_value());
+        CHECK_THAT(*found.gear_ratio.value, WithinRel(100.0 / 1.005, 2e-3));
+        CHECK(std::any_of(found.notes.begin(), found.notes.end(), [](const std::string& note) {
+            return note.find("scale reads 0.") != std::string::npos && note.find("high") != std::string::npos;
+        }));
+    }
+}
+
 TEST_CASE("too short a log is refused with the number needed") {
     const Trace trace = tests::make_trace({.seconds = 0.05});
     CHECK_THROWS_WITH(identify_all({trace}), Contains("at least 64"));

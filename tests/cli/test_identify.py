@@ -195,6 +195,16 @@ class RealLogs(unittest.TestCase):
         self.assertIn("one speed dominates", found["verdict"])
         self.assertFalse(found["conclusive"])
 
+    def test_kuka_ratios_by_either_hint_in_each_log_and_in_both_together(self):
+        logs = [str(LOGS / f"kuka_kr300_traj{name}_all.csv") for name in "AB"]
+        for joint, ratio in (("j4", 221.0), ("j5", 239.62), ("j6", 154.32)):
+            for words in ([logs[0]], [logs[1]], logs):
+                for hint in (("--gear-ratio", str(ratio)), ("--order-hint", "8")):
+                    found = identified(*words, "--joint", joint, *hint)
+                    self.assertIsNotNone(found["gear_ratio"]["value"], (joint, words, hint))
+                    self.assertAlmostEqual(found["gear_ratio"]["value"], ratio, delta=0.003 * ratio)
+                    self.assertIn(8, [line["order"] for line in found["lines"]])
+
     def test_short_ur3e_log_and_its_folded_order(self):
         log = str(LOGS / "ur3e_rad_L1L2_j345.csv")
         for joint in ("j3", "j4"):

@@ -43,6 +43,8 @@ struct GearRatioResult {
 /// hint; the scores are shares of one. The value is left empty unless one candidate has at least 0.7. Fit:
 /// per source the weighted mean over its lines, then over sources by Huber's weights (k = 1.345), the
 /// scatter's excess over the stated errors widening the interval (Student's t).
-[[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<GearRatio> hint);
+/// `hinted_orders`: n at which the strongest line is believed to stand; checked in the same way as the ratio.
+[[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<GearRatio> hint,
+                                             std::span<const int> hinted_orders = {});
 
 }  // namespace ripplenotch

@@ -76,6 +76,7 @@ struct IdentifyOptions {
     enum class Evidence { automatic, steady, order };
     Evidence evidence = Evidence::automatic;
     std::optional<GearRatio> hint;     ///< checked, not believed
+    std::vector<int> hinted_orders;    ///< n at which the strongest line is believed to stand
     double false_alarm = 0.01;         ///< chance that a log of noise gives any line
     double steady_band_percent = 5.0;  ///< speed stays within this share of its mean ...
     double steady_band_deg_s = 1.0;    ///< ... or within this, whichever is wider

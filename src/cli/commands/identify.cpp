@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include "cli/command.hpp"
@@ -22,6 +23,7 @@ struct Request {
     std::vector<std::string> logs;
     std::string evidence = "automatic";
     std::optional<double> gear_ratio;
+    std::vector<double> order_hint;
     IdentifyOptions identify;
     bool require_conclusive = false;
 };
@@ -81,6 +83,11 @@ void check(Request& request) {
             raise<UsageError>("--gear-ratio {} is not above 0", *request.gear_ratio);
         request.identify.hint = GearRatio(*request.gear_ratio);
     }
+    for (const double n : request.order_hint) {
+        if (n < 1.0 || n > 16.0 || n != std::floor(n))
+            raise<UsageError>("--order-hint {} is not a whole number from 1 to 16", n);
+        request.identify.hinted_orders.push_back(static_cast<int>(n));
+    }
     const double rate = request.identify.false_alarm;
     if (!(rate > 0.0) || rate > 0.5) raise<UsageError>("--false-alarm {} is not between 0 and 0.5", rate);
     if (!(request.identify.steady_for.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
@@ -121,6 +128,8 @@ std::function<ExitCode()> attach(Options& options) {
     options.arguments("LOG", request->logs, true, "logs of one joint; several are fitted together");
     options.number("--gear-ratio", request->gear_ratio, Dimension::none,
                    "what you believe the ratio is; checked against the lines, not believed");
+    options.numbers("--order-hint", request->order_hint, Dimension::none,
+                    "which multiple of the motor's turn you believe the strongest line to be, 1 to 16");
     options.choice("--evidence", request->evidence, evidence_names,
                    "steady stretches (the paper's way), order spectrum (any motion), or what suffices");
     options.number("--false-alarm", request->identify.false_alarm, Dimension::none,
