@@ -292,16 +292,16 @@ void check_hint(const std::vector<Comb>& combs, std::span<const OrderLine> lines
     const OrderLine& first = lines.front();
     const double n = std::max(1.0, std::round(first.order_output / hint.value()));
     const double off = 100.0 * (first.order_output / (n * hint.value()) - 1.0);
-    const double clock = first.order_output / (2.0 * hint.value());
-    notes.push_back(
-        fmt::format("were the strongest line at n = 2 of {:.6g}, a clock (nominal sample rate) {:.3g} times "
-                    "{} would explain "
-                    "it, where the log has no position",
-                    hint.value(), clock > 1.0 ? clock : 1.0 / clock, clock > 1.0 ? "too fast" : "too slow"));
     notes.push_back(fmt::format(
         "the hint {:.6g} is not supported: output order {:.5g} is {:+.2f} % from {:.0f} times it, more than "
         "its error allows; a speed or position scale wrong by that much would explain it",
         hint.value(), first.order_output, off, n));
+    const double clock = first.order_output / (2.0 * hint.value());
+    notes.push_back(
+        fmt::format("were that line at n = 2 of {:.6g}, a clock (nominal sample rate) {:.3g} times "
+                    "{} would explain "
+                    "it, where the log has no position",
+                    hint.value(), clock > 1.0 ? clock : 1.0 / clock, clock > 1.0 ? "too fast" : "too slow"));
 }
 
 }  // namespace
