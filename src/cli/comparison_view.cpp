@@ -19,15 +19,14 @@ struct ViewColumn {
 };
 
 std::string fixed(const std::optional<double>& value, int decimals) {
-    return value ? fmt::format("{:.{}f}", *value, decimals) : "";
+    return value ? rounded(*value, decimals) : "";
 }
 
 std::string attenuation(const MethodFigures& figures, std::size_t line) {
     if (line >= figures.attenuation.size() || !figures.attenuation[line].db) return "";
     const double db = *figures.attenuation[line].db;
     if (db >= most_attenuation_db) return fmt::format(">{:.0f}", most_attenuation_db);
-    // A raw signal against itself is 0.0, never -0.0.
-    return fmt::format("{:.1f}", db + 0.0 == 0.0 || std::abs(db) < 0.05 ? 0.0 : db);
+    return rounded(db, 1);
 }
 
 std::vector<ViewColumn> columns_of(const Comparison& comparison) {

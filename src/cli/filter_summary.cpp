@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ripplenotch/core/number.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -19,13 +21,14 @@ std::string ripple_line(const OrderLevel& level) {
 std::string delay_line(const std::vector<FilterDelay>& delays) {
     const auto by_delay = [](const FilterDelay& a, const FilterDelay& b) { return a.dc_delay < b.dc_delay; };
     const auto [least, most] = std::minmax_element(delays.begin(), delays.end(), by_delay);
-    if (delays.size() == 1) return fmt::format("delay at 0 Hz: {:.1f} ms", 1e3 * least->dc_delay.value());
+    const auto milliseconds = [](const FilterDelay& delay) { return rounded(1e3 * delay.dc_delay.value(), 1); };
+    if (delays.size() == 1) return fmt::format("delay at 0 Hz: {} ms", milliseconds(*least));
     const auto where = [](const FilterDelay& delay) {
         return delay.band > 0 ? fmt::format("band {}", delay.band)
                               : fmt::format("at {:g} deg/s", delay.from.value());
     };
-    return fmt::format("delay at 0 Hz: {:.1f} ms ({}) to {:.1f} ms ({})", 1e3 * least->dc_delay.value(),
-                       where(*least), 1e3 * most->dc_delay.value(), where(*most));
+    return fmt::format("delay at 0 Hz: {} ms ({}) to {} ms ({})", milliseconds(*least), where(*least),
+                       milliseconds(*most), where(*most));
 }
 
 }  // namespace

@@ -77,4 +77,11 @@ void append_fixed(std::string& out, double value, int decimals) {
     out.append(text.data(), static_cast<std::size_t>(at - text.data()));
 }
 
+std::string rounded(double value, int decimals) {
+    std::string text;
+    append_fixed(text, value, decimals);
+    const bool all_zero = text.find_first_not_of("-0.") == std::string::npos;
+    return all_zero && text.front() == '-' ? text.substr(1) : text;
+}
+
 }  // namespace ripplenotch

@@ -35,6 +35,17 @@ class Pipes(unittest.TestCase):
         self.assertEqual(from_file.stdout, from_pipe.stdout)
         self.assertEqual(from_file.stdout, dribbled.stdout)
 
+    def test_a_binary_log_of_unknown_length_is_whole_in_a_pipe(self):
+        # Its header holds the number of rows, which a pipe of text tells only at its end.
+        with tempfile.TemporaryDirectory() as folder:
+            target = pathlib.Path(folder, "out.npy")
+            self.assertEqual(shell(f"ripplenotch filter --method {LOWPASS} {LOG} -o {target}").returncode, 0)
+            piped = shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - --output-format npy | cat")
+            self.assertEqual(piped.returncode, 0, piped.stderr)
+            self.assertEqual(piped.stdout, target.read_bytes())
+        read = shell(f"cat {LOG} | ripplenotch filter --method none - --output-format npy | ripplenotch info - --json")
+        self.assertEqual(json.loads(read.stdout)["rows"], 4000)
+
     def test_a_reader_that_leaves_early_ends_the_tool_quietly(self):
         done = shell(f"(for i in $(seq 200); do tail -n +2 {LOG} | cut -d, -f2-; done) "
                      f"| ripplenotch filter --columns velocity,torque,position --no-header --sample-rate 1kHz -q "

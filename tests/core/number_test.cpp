@@ -80,3 +80,10 @@ TEST_CASE("appended numbers are those of the formatting library and of printf, d
     append_fixed(out, -1e-9, 3);
     CHECK(out == "-0.00-0.000");
 }
+
+TEST_CASE("a figure for people that rounds to zero has no sign") {
+    CHECK(rounded(-0.04, 1) == "0.0");
+    CHECK(rounded(-0.06, 1) == "-0.1");
+    CHECK(rounded(-0.0, 0) == "0");
+    CHECK(rounded(127.27, 1) == "127.3");
+}

@@ -22,4 +22,7 @@ void append_shortest(std::string& out, double value);
 /// Appends `value` with exactly `decimals` digits after the mark, rounded as printf does.
 void append_fixed(std::string& out, double value, int decimals);
 
+/// A figure for people: `decimals` digits after the mark, and no sign where all of them are zero.
+[[nodiscard]] std::string rounded(double value, int decimals);
+
 }  // namespace ripplenotch
