@@ -151,8 +151,8 @@ TEST_CASE("the state-variable form has the transfer function of the section, not
         }
     }
     for (const int order : {1, 2, 5}) {
-        for (const ExportSection& section :
-             filter_set(LowPassSpec{13_Hz, order}, 1000_Hz).bands.front().sections)
+        const FilterSet low_pass = filter_set(LowPassSpec{13_Hz, order}, 1000_Hz);
+        for (const ExportSection& section : low_pass.bands.front().sections)
             sections.push_back({section, 1000_Hz});
     }
     for (const auto& [section, rate] : sections) {

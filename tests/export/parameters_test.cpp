@@ -128,7 +128,7 @@ TEST_CASE("Betaflight's Q is written times 100, its weights are what is taken aw
                                    "set rpm_filter_q = 500\nset rpm_filter_min_hz = 50\n"));
     // -3 dB from f / 2Q below to f / 2Q above: 300 Hz at Q 5 is 60 Hz wide.
     const auto sections = there_and_back("betaflight", table(5.0, infinite_depth_db)).bands;
-    const ExportSection& designed = table(5.0, infinite_depth_db).bands.at(0).sections.at(0);
+    const ExportSection designed = table(5.0, infinite_depth_db).bands.at(0).sections.at(0);
     const SectionCheck check = check_response(sections.at(0).at(0).biquad, designed, 1000_Hz);
     CHECK_THAT(check.q, WithinRel(5.0, 1e-5));
     CHECK_THAT(*check.shift_percent, WithinAbs(0.0, 1e-4));
