@@ -83,6 +83,15 @@ void RippleKalman::start(double motor_turns) {
     phase_advance_turns_ = 0.0;
 }
 
+void RippleKalman::start_unloaded(double motor_turns, double measured) {
+    start(motor_turns);
+    x_[0] = 0.0;
+    for (std::size_t i = 0; i < m_; ++i) {
+        if (i != 1) p_[i] = p_[i * m_] = 0.0;
+    }
+    update(measured);
+}
+
 void RippleKalman::predict(double step_turns) noexcept {
     const double dt = model_.step_s;
     x_[0] += dt * x_[1];
@@ -102,6 +111,11 @@ void RippleKalman::predict(double step_turns) noexcept {
 double RippleKalman::next(double measured, double motor_turns, double step_turns) {
     predict(step_turns);
     look(motor_turns, step_turns);
+    update(measured);
+    return x_[0];
+}
+
+void RippleKalman::update(double measured) noexcept {
     double expected = 0.0, variance = 1.0;
     for (std::size_t i = 0; i < m_; ++i) {
         const double* const row = p_.data() + i * m_;
@@ -130,7 +144,6 @@ double RippleKalman::next(double measured, double motor_turns, double step_turns
         // Both triangles from the same product, so that P stays symmetric to the last bit.
         for (std::size_t j = i; j < m_; ++j) p_[j * m_ + i] = p_[i * m_ + j] -= gain * ph_[j];
     }
-    return x_[0];
 }
 
 RippleRotation ripple_rotation(const RippleModel& model, double step_turns) {

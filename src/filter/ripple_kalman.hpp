@@ -44,6 +44,8 @@ class RippleKalman {
 
     /// The first sample, where the torque is anything at all: torque + ripple = 0 is what was measured.
     void start(double motor_turns);
+    /// The same where the torque is known to be 0 at the first sample: all of `measured` is noise or ripple.
+    void start_unloaded(double motor_turns, double measured);
     /// Torque estimate after the sample `measured`, at the motor angle `motor_turns`.
     double next(double measured, double motor_turns, double step_turns);
 
@@ -56,6 +58,7 @@ class RippleKalman {
   private:
     void look(double motor_turns, double step_turns) noexcept;
     void predict(double step_turns) noexcept;
+    void update(double measured) noexcept;
 
     RippleModel model_;
     std::vector<AmplitudePrior> priors_;

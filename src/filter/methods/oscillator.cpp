@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "filter/methods/list.hpp"
@@ -19,6 +20,8 @@
 
 namespace ripplenotch {
 namespace {
+
+constexpr double standing_deg_s = 1.0;  ///< a log that begins slower than this begins at standstill
 
 constexpr std::array<std::string_view, 2> angles = {"best", "velocity"};
 constexpr std::array<std::string_view, 2> outputs = {"torque", "minus-ripple"};
@@ -62,6 +65,11 @@ constexpr std::array keys = {
         .default_text = "1Nm",
         .above = 0.0,
         .help = "cold start: amplitude that an order may well have"},
+    Key{.name = "rest",
+        .dimension = Dimension::torque,
+        .help =
+            "torque that the joint is known to bear where a log begins at standstill, 0Nm for an unloaded "
+            "arm: the rest is ripple"},
     Key{.name = "angle",
         .kind = KeyKind::choice,
         .default_text = "best",
@@ -89,6 +97,7 @@ struct Plan {
     std::vector<AmplitudePrior> cold, warm;  ///< in units of the noise; cold where phases cannot be used
     bool has_start = false;
     double start_deg = 0.0;
+    std::optional<double> rest_nm;
     MotorAngle::Source source = MotorAngle::Source::best;
     bool minus_ripple = false;
     double largest_offset_deg_s = 0.0;
@@ -142,6 +151,7 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     p.model = {p.ripple.orders, 1.0 / p.sample_rate_hz, 2.0 * std::numbers::pi * bandwidth_hz,
                settings.number("memory")};
     p.has_start = settings.has("start");
+    if (settings.has("rest")) p.rest_nm = settings.number("rest");
     if (p.has_start) p.start_deg = settings.number("start");
     if (settings.text("angle") == "velocity") p.source = MotorAngle::Source::velocity;
     p.minus_ripple = settings.text("output") == "minus-ripple";
@@ -163,7 +173,7 @@ class OscillatorFilter final : public CausalFilter {
             const double* const position = in.position_deg.empty() ? nullptr : &in.position_deg[k];
             angle_.next(in.velocity_deg_s[k], position, correction_deg_s_);
             if (!started_) {
-                begin(in.torque_nm[k], position != nullptr);
+                begin(in.torque_nm[k], in.velocity_deg_s[k], position != nullptr);
             } else {
                 run((in.torque_nm[k] - origin_nm_) / plan_.noise_nm);
             }
@@ -178,13 +188,18 @@ class OscillatorFilter final : public CausalFilter {
     }
 
   private:
-    void begin(double torque_nm, bool has_position) {
+    void begin(double torque_nm, double velocity_deg_s, bool has_position) {
         started_ = true;
-        origin_nm_ = torque_nm;
         correction_deg_s_ = 0.0;
         // Phases mean something only where it is known where the joint stands.
         filter_ = has_position || plan_.has_start ? &warm_ : &cold_;
-        filter_->start(angle_.turns());
+        const bool known = plan_.rest_nm && std::abs(velocity_deg_s) < standing_deg_s;
+        origin_nm_ = known ? *plan_.rest_nm : torque_nm;
+        if (known) {
+            filter_->start_unloaded(angle_.turns(), (torque_nm - origin_nm_) / plan_.noise_nm);
+        } else {
+            filter_->start(angle_.turns());
+        }
     }
 
     void run(double measured) {

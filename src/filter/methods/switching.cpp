@@ -17,7 +17,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 4> transitions = {"parallel", "keep", "reset", "crossfade"};
+constexpr std::array<std::string_view, 5> transitions = {"parallel", "keep", "keep-state-variable", "reset",
+                                                         "crossfade"};
 constexpr std::array<std::string_view, 3> rules = {"pass", "hold", "fade"};
 
 constexpr std::array keys = {
@@ -77,6 +78,7 @@ std::unique_ptr<Transition> transition(const Settings& settings, Hertz sample_ra
     Candidates candidates(table.bands());
     const std::string name = settings.text("transition");
     if (name == "keep") return make_keep(std::move(candidates));
+    if (name == "keep-state-variable") return make_keep_state_variable(candidates);
     if (name == "reset") return make_reset(std::move(candidates));
     if (name == "crossfade")
         return make_crossfade(std::move(candidates), samples(settings, "crossfade", sample_rate));

@@ -48,6 +48,7 @@ struct Candidates {
 std::unique_ptr<Transition> make_parallel(Candidates candidates);
 std::unique_ptr<Transition> make_crossfade(Candidates candidates, std::size_t blend_samples);
 std::unique_ptr<Transition> make_keep(Candidates candidates);
+std::unique_ptr<Transition> make_keep_state_variable(const Candidates& candidates);
 std::unique_ptr<Transition> make_reset(Candidates candidates);
 
 }  // namespace ripplenotch
