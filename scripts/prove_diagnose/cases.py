@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""A case: a joint with something hidden in it, and two logs of that joint.
+
+The joint, the training log and the validation log are drawn from the case's name and number alone, so that any case
+can be made again by itself.
+"""
+
+import dataclasses
+import zlib
+
+import numpy as np
+
+from . import disturbances, joint, motion, other_formulas, sensor, strengths
+
+SAMPLE_RATE_HZ = 1000.0
+
+
+@dataclasses.dataclass
+class Log:
+    time_s: np.ndarray
+    velocity_deg_s: np.ndarray
+    torque_nm: np.ndarray
+    position_deg: np.ndarray | None
+    noise_rms_nm: float
+    place_s: tuple | None  # of a disturbance
+
+    def save(self, path):
+        columns = ["time_s", "velocity_deg_s", "torque_nm"] + (["position_deg"] if self.position_deg is not None else [])
+        rows = np.empty(len(self.time_s), [(name, "<f8") for name in columns])
+        for name in columns:
+            rows[name] = getattr(self, name)
+        np.save(path, rows)
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+    study: str
+    label: str
+    number: int
+    noise: str = "white"
+    motion: str = "rich"
+    hidden: tuple = ()  # labels of strengths
+    disturbance: str | None = None
+    other: str | None = None
+    position: bool = True
+    seconds: float = 40.0
+
+    @property
+    def name(self):
+        words = (self.study, self.label, self.motion, self.noise, "" if self.position else "no-position", str(self.number))
+        return "-".join(word.replace(" ", "_").replace(",", "") for word in words if word)
+
+    def rng(self, purpose):
+        return np.random.default_rng([zlib.crc32(f"{self.name} {purpose}".encode())])
+
+    def truth(self):
+        """The complete joint: what the model knows and what is hidden from it."""
+        rng = self.rng("joint")
+        base = strengths.base_joint(rng)
+        return base, [strengths.draw(rng, label) for label in self.hidden]
+
+    def log(self, purpose):
+        """purpose: 'train' or 'validate'; another motion, noise and chance of the same joint."""
+        base, hidden = self.truth()
+        other = other_formulas.OTHERS[self.other](self.rng("other")) if self.other else None
+        rng = self.rng(purpose)
+        start_deg = rng.uniform(-90.0, 90.0) if self.position else 0.0  # without position every log begins at one stop
+        travel = motion.MOTIONS[self.motion](rng, start_deg, 3.0 if self.motion == "one stroke" else self.seconds)
+        time = np.arange(round(travel.duration_s * SAMPLE_RATE_HZ)) / SAMPLE_RATE_HZ
+        torque = joint.torque(travel, base + hidden, strengths.GEAR_RATIO, time, other)
+        place = None
+        if self.disturbance:
+            disturbing, place = disturbances.DISTURBANCES[self.disturbance](rng, time)
+            torque = torque + disturbing
+        noise = sensor.noise(rng, self.noise, len(time), strengths.TORQUE_NOISE_NM)
+        torque = sensor.convert(torque + noise, hidden, rng)
+        q, v, _ = travel.at(time)
+        v = v + strengths.VELOCITY_NOISE_DEG_S * rng.standard_normal(len(time))
+        v = v + sum(e["bias_deg_s"] for e in joint.named(hidden, "velocity-bias"))
+        position = np.round(q * 2**19 / 360) * 360 / 2**19 if self.position else None  # an encoder of 19 bits
+        return Log(time, v, torque, position, float(np.sqrt(np.mean(noise**2))), place)
+
+
+def without_hidden(case):
+    """The same joint with nothing hidden, for the smallest residual that its logs allow."""
+    return dataclasses.replace(case, hidden=(), disturbance=None, other=None)
+
+
+def studies(name, seeds, seed0=0):
+    """The cases of one study; seeds: how many of each."""
+    numbers = range(seed0, seed0 + seeds)
+    if name == "single":
+        return [Case(name, label, n, hidden=(label,)) for label in strengths.HIDDEN for n in numbers]
+    if name == "rarer":
+        return [Case(name, label, n, hidden=(label,), position=label != "velocity-bias")
+                for label in strengths.RARER for n in numbers]
+    if name in ("pair", "triple"):
+        count = 2 if name == "pair" else 3
+        several = [strengths.draw_several(np.random.default_rng([count, n]), count) for n in numbers]
+        return [Case(name, "+".join(labels), n, hidden=tuple(labels)) for n, labels in zip(numbers, several)]
+    if name.startswith("null"):
+        return [Case(name, "nothing", n, noise=name.partition(" ")[2] or "white") for n in numbers]
+    if name == "outside":
+        return [Case(name, label, n, disturbance=label) for label in disturbances.DISTURBANCES for n in numbers]
+    if name == "outside+single":
+        labels = list(strengths.HIDDEN)
+        return [Case(name, label, n, disturbance=label, hidden=(labels[(7 * n + k) % len(labels)],))
+                for k, label in enumerate(disturbances.DISTURBANCES) for n in numbers]
+    if name == "formula":
+        return [Case(name, label, n, other=label) for label in other_formulas.OTHERS for n in numbers]
+    if name == "noise":
+        return [Case(name, label, n, noise=kind, hidden=(label,)) for kind in ("ar0.5", "t4")
+                for label in strengths.HIDDEN for n in numbers]
+    if name == "poor":
+        return [Case(name, label, n, motion=kind, hidden=() if label == "nothing" else (label,))
+                for kind in ("one way", "one stroke", "short travel")
+                for label in ("nothing", "offset", "coulomb-friction", "viscous-friction", "gravity", "hysteresis", "delay",
+                              "ripple", "gear-ratio") for n in numbers]
+    raise SystemExit(f"there is no study '{name}'; there are: {', '.join(STUDIES)}")
+
+
+STUDIES = ("single", "rarer", "pair", "triple", "null", "null ar0.5", "null t4", "outside", "outside+single", "formula",
+           "noise", "poor")

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""What counts as right: a diagnosis against the truth of its case.
+
+A finding is a name and, where the name is that of a line, its order: ripple of order 3 is not ripple of order 4.
+"""
+
+from . import strengths
+
+ORDER = {"ripple": "order", "output-ripple": "order", "ripple-modulation": "output_order"}
+# Shapes that a log of motion hardly tells, and what says which line is meant, are not counted as parameters.
+UNCOUNTED = ("effect", "width_deg_s", "order", "output_order", "held", "milliseconds", "initial_state")
+
+
+def value_of(parameter):
+    return parameter["value"] if isinstance(parameter, dict) else parameter
+
+
+def key(effect, parameters):
+    order = parameters.get(ORDER.get(effect))
+    return (effect, None if order is None else round(value_of(order), 2))
+
+
+def words(keys):
+    """Findings as people write them: 'ripple 3'."""
+    return sorted(effect if order is None else f"{effect} {order:g}" for effect, order in keys)
+
+
+def truth_keys(hidden):
+    return {key(e["effect"], e) for e in hidden}
+
+
+def named_keys(found):
+    """The confirmed findings, each with its order. `named` says which; the rounds say of what order."""
+    keys = {key(entry["effect"], entry["parameters"]): entry
+            for entry in found["rounds"] if entry["status"] == "confirmed"}
+    if {effect for effect, _ in keys} != set(found["named"]):
+        raise ValueError(f"named {found['named']} and the confirmed rounds {words(keys)} disagree")
+    return keys
+
+
+def undecided_names(found):
+    names = {name for entry in found["ambiguous"] for name in entry["effects"]}
+    return names | {entry["effect"] for entry in found["rounds"] if entry["status"] in ("ambiguous", "unidentifiable")}
+
+
+def names(case, acceptable, hidden, found):
+    """exact, in_set, false names."""
+    named, undecided = set(named_keys(found)), undecided_names(found)
+    if acceptable:
+        right = {k for k in named if k[0] in acceptable}
+        return {"exact": bool(right) and named == right, "in_set": bool(right) or bool(undecided & set(acceptable)),
+                "false": words(named - right), "named": words(named)}
+    truth = truth_keys(hidden)
+    false = named - truth
+    in_set = not false and all(k in named or k[0] in undecided for k in truth)
+    return {"exact": named == truth, "in_set": in_set, "false": words(false), "named": words(named)}
+
+
+def true_parameters(effect, seconds):
+    if effect["effect"] == "dropout":
+        low, high = effect["milliseconds"]
+        return {"rate_hz": effect["held"] / seconds, "duration_s": (low + high) / 2000}
+    found = {name: value for name, value in effect.items() if name not in UNCOUNTED}
+    if effect.get("time_constant_s", 0.0) >= 1e5:  # a straight line: any longer constant is as right
+        del found["time_constant_s"]
+    return found
+
+
+def holds(interval, value, error):
+    """Does the interval about the value hold the truth, which is the value less its error? None without interval."""
+    if not interval or None in interval:
+        return None
+    return bool(value - interval[1] <= error <= value - interval[0])
+
+
+def parameters(hidden, found, seconds):
+    """For each parameter of each effect that was named rightly: relative error, and whether its interval holds it."""
+    rows, named = [], named_keys(found)
+    for effect in hidden:
+        entry = named.get(key(effect["effect"], effect))
+        given = {name: v if isinstance(v, dict) else {"value": v} for name, v in entry["parameters"].items()} if entry else {}
+        for name, true in true_parameters(effect, seconds).items():
+            if name not in given:
+                continue
+            error = given[name]["value"] - true
+            if name == "phase_deg":
+                error = (error + 180.0) % 360.0 - 180.0
+            rows.append({"parameter": f"{effect['effect']}.{name}",
+                         "holds": holds(given[name].get("ci95"), given[name]["value"], error),
+                         "relative": None if name == "phase_deg" else abs(error / true)})
+    return rows
+
+
+def place(case, span, found):
+    """Is something unexplained reported where the disturbance is? A place far wider than the disturbance is none."""
+    if not found["unexplained"]:
+        return False
+    if span[1] - span[0] > case.seconds / 2:
+        return True
+    widest = max(2.0, 4.0 * (span[1] - span[0]))
+    spans = [s for entry in found["unexplained"] for s in entry["where"].get("time_s") or []]
+    return any(low < span[1] + 0.25 and high > span[0] - 0.25 and high - low <= widest for low, high in spans)
+
+
+def share_closed(before_nm, after_nm, floor_nm):
+    """Share of the explainable gap that is gone; None where nothing, or next to nothing, can be explained."""
+    explainable = before_nm**2 - floor_nm**2
+    return (before_nm**2 - after_nm**2) / explainable if explainable > 0.1 * floor_nm**2 else None
+
+
+def explainable(hidden):
+    return not any(e["effect"] in ("quantization", *strengths.CHANCE) for e in hidden)

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: MIT
+"""The scores of many cases as tables of markdown."""
+
+import statistics
+
+
+def share(rows, test):
+    counted = [bool(test(row)) for row in rows if test(row) is not None]
+    return f"{sum(counted)}/{len(counted)}" if counted else "-"
+
+
+def percent(rows, test):
+    counted = [bool(test(row)) for row in rows if test(row) is not None]
+    return f"{100 * sum(counted) / len(counted):.1f} % ({sum(counted)}/{len(counted)})" if counted else "-"
+
+
+def median(values, text):
+    values = [value for value in values if value is not None]
+    return text.format(statistics.median(values)) if values else "-"
+
+
+def groups(rows, by):
+    found = {}
+    for row in rows:
+        found.setdefault(by(row), []).append(row)
+    return found.items()
+
+
+def cells(rows, single):
+    of = [p for row in rows for p in row["parameters"]]
+    return [single, str(len(rows)), share(rows, lambda r: r["exact"]), share(rows, lambda r: r["in_set"]),
+            share(rows, lambda r: r["false"]), median([r["gap"]["closed"] and 100 * r["gap"]["closed"] for r in rows], "{:.1f} %"),
+            share(rows, lambda r: r["gap"]["as_said"]),
+            median([p["relative"] and 100 * p["relative"] for p in of], "{:.1f} %"), share(of, lambda p: p["holds"]),
+            median([r["seconds"] for r in rows], "{:.1f} s")]
+
+
+HEAD = ["hidden", "logs", "exactly right", "in the set", "false name", "gap closed", "gap as said", "parameter error",
+        "interval holds", "time"]
+
+
+def markdown(head, lines):
+    return "\n".join("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *lines])
+
+
+def by_label(rows):
+    lines = [cells(group, label) for label, group in groups(rows, lambda r: r["label"])]
+    return markdown(HEAD, lines + ([cells(rows, "**all**")] if len(lines) > 1 else []))
+
+
+def several(rows):
+    return markdown(HEAD, [cells(rows, f"{rows[0]['study']}s")])
+
+
+def null(rows):
+    head = ["noise", "logs", "no name", "`matches`", "false names", "time"]
+    lines = [[kind, str(len(group)), share(group, lambda r: not r["named"]),
+              share(group, lambda r: r["verdict"] == "matches"),
+              "; ".join(sorted({", ".join(r["named"]) for r in group if r["named"]})) or "none",
+              median([r["seconds"] for r in group], "{:.1f} s")] for kind, group in groups(rows, lambda r: r["noise"])]
+    return markdown(head, lines)
+
+
+def outside(rows):
+    head = ["disturbance", "logs", "named as an effect", "says unexplained", "place in time right", "in the set", "time"]
+    lines = [[label, str(len(group)), share(group, lambda r: r["false"]), share(group, lambda r: r["unexplained"]),
+              share(group, lambda r: r["place"]), share(group, lambda r: r["in_set"]),
+              median([r["seconds"] for r in group], "{:.1f} s")] for label, group in groups(rows, lambda r: r["label"])]
+    return markdown(head, lines)
+
+
+def poor(rows):
+    head = ["motion", "hidden", "logs", "exactly right", "in the set", "false name"]
+    return markdown(head, [[motion, label, str(len(group)), share(group, lambda r: r["exact"]),
+                            share(group, lambda r: r["in_set"]), share(group, lambda r: r["false"])]
+                           for (motion, label), group in groups(rows, lambda r: (r["motion"], r["label"]))])
+
+
+def noise(rows):
+    return markdown(["noise", *HEAD], [[kind, *cells(group, "all singles")]
+                                       for kind, group in groups(rows, lambda r: r["noise"])])
+
+
+def yardsticks(rows):
+    """One line a study: the tool and the two yardsticks on the same logs."""
+    head = ["study", "logs", "method", "exactly right", "false name in", "false names a log", "gap closed"]
+    lines = []
+    for study, group in groups([r for r in rows if "yardsticks" in r], lambda r: r["study"]):
+        lines.append([study, str(len(group)), "diagnose", percent(group, lambda r: r["exact"]),
+                      percent(group, lambda r: r["false"]), f"{sum(len(r['false']) for r in group) / len(group):.2f}",
+                      median([r["gap"]["closed"] and 100 * r["gap"]["closed"] for r in group], "{:.1f} %")])
+        for method in group[0]["yardsticks"]:
+            own = [r["yardsticks"][method] for r in group]
+            lines.append([study, str(len(group)), method, percent(own, lambda r: r["exact"]),
+                          percent(own, lambda r: r["false"]), f"{sum(r['false'] for r in own) / len(own):.2f}",
+                          median([r["closed"] and 100 * r["closed"] for r in own], "{:.1f} %")])
+    return markdown(head, lines)
+
+
+FORMS = {"single": by_label, "rarer": by_label, "pair": several, "triple": several, "null": null, "outside": outside,
+         "outside+single": outside, "formula": by_label, "noise": noise, "poor": poor}
+
+
+def failures(rows):
+    lines = []
+    for row in rows:
+        if "error" in row:
+            lines.append(f"{row['case']}: {row['error']}")
+        elif row["study"].startswith("outside") and (row["false"] or not row["place"]):
+            lines.append(f"{row['case']}: named {', '.join(row['named']) or 'nothing'}, "
+                         f"place {'right' if row['place'] else 'wrong'}, {row['verdict']}")
+        elif not row["study"].startswith("outside") and not (row["exact"] and row["gap"]["as_said"]):
+            lines.append(f"{row['case']}: named {', '.join(row['named']) or 'nothing'}"
+                         f"{', but in the set' if row['in_set'] else ''}, {row['verdict']}")
+    return lines
+
+
+def whole(rows):
+    """All tables, one a study, then the yardsticks, then the cases that went wrong."""
+    answered = [row for row in rows if "error" not in row]
+    parts = []
+    for study, group in groups(answered, lambda r: r["study"].split(" ")[0]):
+        parts += [f"### {study}", FORMS[study](group)]
+    if any("yardsticks" in row for row in answered):
+        parts += ["### yardsticks", yardsticks(answered)]
+    wrong = failures(rows)
+    parts += ["### what went wrong", "\n".join(f"* {line}" for line in wrong) or "Nothing."]
+    return "\n\n".join(parts) + "\n"

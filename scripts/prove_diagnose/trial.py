@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""One case from its logs to its scores."""
+
+import json
+import pathlib
+import shutil
+import tempfile
+
+from . import cases, measured, other_formulas, score, strengths, tool, yardsticks
+
+
+def floor_nm(program, case, base, hidden, folder):
+    """The smallest residual that the validation log allows: that of the whole truth along its measured motion.
+
+    The truth of another formula has no words in model.json; there the same log with nothing hidden stands for it.
+    """
+    log = folder / "validate.npy"
+    if case.other:
+        hidden, log = [], folder / "plain.npy"
+        cases.without_hidden(case).log("validate").save(log)
+    model = folder / "truth.json"
+    model.write_text(json.dumps(tool.as_model(base + hidden)))
+    return tool.residual_nm(program, model, log)
+
+
+def gaps(program, case, found, train, validate, floor, folder):
+    after = tool.residual_nm(program, folder / "improved.json", folder / "validate.npy")
+    before = measured.baseline_gap_nm(train, validate)
+    said = found["gap"]
+    counted = score.explainable(case.truth()[1]) and not case.disturbance
+    return {"before_nm": before, "after_nm": after, "floor_nm": floor, "said_after_nm": said["validation_after_nm"],
+            "as_said": abs(after - said["validation_after_nm"]) <= 0.1 * said["validation_after_nm"],
+            "before_as_said": abs(before - said["validation_before_nm"]) <= 0.1 * before,
+            "closed": score.share_closed(before, after, floor) if counted else None}
+
+
+def judged_yardsticks(case, acceptable, hidden, train, validate, floor):
+    rows, truth = {}, score.truth_keys(hidden)
+    for method, (found, after) in yardsticks.judge(train, validate).items():
+        right = {k for k in found if k[0] in acceptable} if acceptable else found & truth
+        exact = (bool(right) and found == right) if acceptable else found == truth
+        closed = score.share_closed(measured.baseline_gap_nm(train, validate), after, floor)
+        rows[method] = {"exact": exact, "false": len(found - right),
+                        "closed": closed if score.explainable(hidden) and not case.disturbance else None}
+    return rows
+
+
+def scores(program, case, folder, options, with_yardsticks):
+    base, hidden = case.truth()
+    acceptable = other_formulas.OTHERS[case.other](case.rng("other")).acceptable if case.other else ()
+    logs = {purpose: case.log(purpose) for purpose in ("train", "validate")}
+    for purpose, log in logs.items():
+        log.save(folder / f"{purpose}.npy")
+    train, validate = (measured.Measured(log, strengths.GEAR_RATIO) for log in logs.values())
+    floor = floor_nm(program, case, base, hidden, folder)
+    found, seconds = tool.diagnose(program, folder, options)
+    row = {"verdict": found["verdict"], "seconds": seconds, **score.names(case, acceptable, hidden, found),
+           "parameters": score.parameters(hidden, found, case.seconds),
+           "gap": gaps(program, case, found, train, validate, floor, folder), "unexplained": len(found["unexplained"])}
+    if case.disturbance:
+        row["place"] = score.place(case, logs["train"].place_s, found)
+        row["disturbance_s"] = logs["train"].place_s
+    if with_yardsticks:
+        row["yardsticks"] = judged_yardsticks(case, acceptable, hidden, train, validate, floor)
+    return row
+
+
+def failed(row):
+    if "error" in row:
+        return True
+    if row["study"].startswith("outside"):
+        return bool(row["false"]) or not row["place"]
+    return not row["exact"] or not row["gap"]["as_said"]
+
+
+def trial(program, case, options=(), with_yardsticks=False, keep=None):
+    """The scores of a case; keep: a folder in which the files of those that fail are left."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="prove-diagnose-"))
+    about = {"study": case.study, "label": case.label, "case": case.name, "motion": case.motion, "noise": case.noise}
+    try:
+        row = {**about, **scores(program, case, folder, options, with_yardsticks)}
+    except (tool.ToolFailed, KeyError, TypeError, ValueError) as failure:
+        row = {**about, "error": f"{type(failure).__name__}: {failure}"}
+    if keep and failed(row):
+        shutil.rmtree(keep / case.name, ignore_errors=True)
+        shutil.copytree(folder, keep / case.name)
+    shutil.rmtree(folder)
+    return row
