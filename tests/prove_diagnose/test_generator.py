@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""The generator and the tool's catalogue are two programs; for each effect they make the same torque."""
+
+import unittest
+
+import prove  # first: it skips without numpy
+import numpy as np
+from prove_diagnose import agreement, cases, joint, motion, sensor
+
+
+class Agreement(unittest.TestCase):
+    def test_the_truth_along_a_log_leaves_no_more_than_the_noise_of_the_log(self):
+        rows = agreement.rows(prove.TOOL)
+        self.assertGreaterEqual(len(rows), 20)
+        for label, without, complete, floor in rows:
+            with self.subTest(label):
+                # A friction's step at rest sees the noise of the speed; nothing else is above the floor by more than 4 %.
+                self.assertLess(complete, floor * (1.25 if "friction" in label else 1.04))
+                self.assertGreater(without, 1.25 * floor)
+
+
+class Motion(unittest.TestCase):
+    def test_speed_and_acceleration_are_the_derivatives_of_the_angle(self):
+        for name, make in motion.MOTIONS.items():
+            with self.subTest(name):
+                travel = make(np.random.default_rng(1), 10.0, 40.0)
+                time = np.linspace(0.0, travel.duration_s, 40001)[1:-1]
+                (before, v0, _), (q, v, a), (after, v1, _) = (travel.at(time + d) for d in (-1e-5, 0.0, 1e-5))
+                self.assertLess(np.max(np.abs((after - before) / 2e-5 - v)), 0.02)
+                self.assertLess(np.median(np.abs((v1 - v0) / 2e-5 - a)), 1e-3)
+
+    def test_a_rich_motion_passes_25_and_178_deg_s_both_ways_and_takes_40_s(self):
+        for seed in range(20):
+            travel = motion.rich(np.random.default_rng(seed), 0.0, 40.0)
+            speeds = travel.at(np.arange(40000) / 1000.0)[1]
+            self.assertAlmostEqual(travel.duration_s, 40.0, delta=1.0)
+            for speed in (-178.0, -25.0, 25.0, 178.0):
+                self.assertGreater(np.sum(np.abs(speeds - speed) < 1e-6), 900, (seed, speed))
+
+
+class Sensor(unittest.TestCase):
+    def test_noise_has_the_rms_and_the_memory_that_it_is_named_for(self):
+        for kind, memory in (("white", 0.0), ("ar0.5", 0.5), ("t4", 0.0)):
+            values = sensor.noise(np.random.default_rng(3), kind, 200000, 0.06)
+            self.assertAlmostEqual(np.std(values), 0.06, delta=0.002)
+            self.assertAlmostEqual(np.mean(values[1:] * values[:-1]) / np.var(values), memory, delta=0.02)
+
+    def test_a_case_is_the_same_log_every_time_and_another_for_each_purpose(self):
+        case = cases.studies("pair", 1)[0]
+        first, again, other = case.log("train"), case.log("train"), case.log("validate")
+        self.assertTrue(np.array_equal(first.torque_nm, again.torque_nm))
+        self.assertFalse(np.array_equal(first.torque_nm[:1000], other.torque_nm[:1000]))
+
+    def test_every_effect_that_can_be_drawn_changes_the_log(self):
+        for study in ("single", "rarer"):
+            for case in cases.studies(study, 1):
+                log, plain = case.log("train"), cases.without_hidden(case).log("train")
+                changed = [np.max(np.abs(a - b)) for a, b in ((log.torque_nm, plain.torque_nm),
+                                                              (log.velocity_deg_s, plain.velocity_deg_s))]
+                self.assertGreater(max(changed), 0.015, case.label)
+
+    def test_a_lag_delays_a_slow_torque_by_its_time_constant(self):
+        time = np.arange(80000) / 8000.0
+        slow = joint.first_order(np.sin(time), 1.0 / 8000.0, 0.01)
+        self.assertAlmostEqual(float(slow[40000]), float(np.sin(5.0 - 0.01)), delta=1e-4)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""A small part of the proof: each effect once, some logs without, disturbances, on logs that the tool never saw."""
+
+import json
+import pathlib
+import tempfile
+import unittest
+
+import prove  # first: it skips without numpy
+
+prove.skip_unless_command("diagnose")
+
+
+class Part(unittest.TestCase):
+    def rows(self, study, seeds):
+        with tempfile.TemporaryDirectory() as folder:
+            record = pathlib.Path(folder) / "record.jsonl"
+            done = prove.prove("--study", study, "--seeds", str(seeds), "--record", str(record))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            rows = [json.loads(line) for line in record.read_text().splitlines()]
+        self.assertEqual([row for row in rows if "error" in row], [])
+        return rows
+
+    def test_each_effect_hidden_alone_is_named_and_the_improved_model_does_on_another_log_what_was_said(self):
+        rows = self.rows("single", 1)
+        wrong = [(row["case"], row["named"]) for row in rows if not row["exact"]]
+        self.assertLessEqual(len(wrong), 1, wrong)
+        self.assertEqual([row["case"] for row in rows if row["false"]], [])
+        self.assertEqual([row["case"] for row in rows if not row["gap"]["as_said"]], [])
+
+    def test_nothing_hidden_nothing_named(self):
+        self.assertEqual([(row["case"], row["named"]) for row in self.rows("null", 3) if row["named"]], [])
+
+    def test_what_is_in_no_catalogue_is_reported_where_it_is_and_under_no_name(self):
+        rows = self.rows("outside", 1)
+        self.assertEqual([(row["case"], row["named"]) for row in rows if row["named"] or not row["unexplained"]], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""What the tables count: a diagnosis that is known to be right, wrong or undecided is scored as such."""
+
+import unittest
+
+import prove  # first: it skips without numpy
+import numpy as np
+from prove_diagnose import cases, measured, score, strengths, yardsticks
+
+
+def diagnosis(rounds, ambiguous=(), unexplained=()):
+    """rounds: (effect, status, {parameter: (value, low, high)})"""
+    entries = [{"effect": effect, "status": status,
+                "parameters": {name: {"value": v, "ci95": [low, high]} for name, (v, low, high) in given.items()}}
+               for effect, status, given in rounds]
+    return {"verdict": "explained", "rounds": entries, "named": [r[0] for r in rounds if r[1] == "confirmed"],
+            "ambiguous": [{"effects": list(names)} for names in ambiguous], "unexplained": list(unexplained)}
+
+
+RIPPLE = {"effect": "ripple", "order": 3, "amplitude_nm": 0.2, "phase_deg": 175.0}
+OFFSET = {"effect": "offset", "torque_nm": 0.4}
+
+
+def ripple(order, amplitude=(0.2, 0.19, 0.21), phase=(175.0, 170.0, 180.0)):
+    return ("ripple", "confirmed", {"order": (order, order, order), "amplitude_nm": amplitude, "phase_deg": phase})
+
+
+class Names(unittest.TestCase):
+    def score(self, hidden, found, acceptable=()):
+        return score.names(None, acceptable, hidden, found)
+
+    def test_the_right_name_and_nothing_else_is_exact(self):
+        self.assertTrue(self.score([RIPPLE], diagnosis([ripple(3)]))["exact"])
+
+    def test_the_same_name_with_another_order_is_a_false_name(self):
+        found = self.score([RIPPLE], diagnosis([ripple(4)]))
+        self.assertEqual((found["exact"], found["in_set"], found["false"]), (False, False, ["ripple 4"]))
+
+    def test_a_false_name_beside_the_right_one_is_not_exact_and_not_in_the_set(self):
+        found = self.score([RIPPLE], diagnosis([ripple(3), ("offset", "confirmed", {"torque_nm": (0.1, 0.0, 0.2)})]))
+        self.assertEqual((found["exact"], found["in_set"], found["false"]), (False, False, ["offset"]))
+
+    def test_a_tie_that_holds_the_truth_is_in_the_set_but_not_exact(self):
+        found = self.score([OFFSET], diagnosis([], ambiguous=[("coulomb-friction", "offset")]))
+        self.assertEqual((found["exact"], found["in_set"]), (False, True))
+
+    def test_nothing_named_where_nothing_is_hidden_is_exact(self):
+        self.assertTrue(self.score([], diagnosis([("offset", "tentative", {})]))["exact"])
+
+    def test_a_truth_of_another_formula_accepts_its_names_and_no_others(self):
+        right = diagnosis([("hysteresis", "confirmed", {})])
+        self.assertTrue(self.score([], right, ("hysteresis", "coulomb-friction"))["exact"])
+        self.assertEqual(self.score([], right, ("lag",))["false"], ["hysteresis"])
+
+    def test_a_list_of_names_that_the_rounds_do_not_bear_out_is_an_error(self):
+        found = diagnosis([("offset", "tentative", {})])
+        found["named"] = ["offset"]
+        self.assertRaises(ValueError, self.score, [OFFSET], found)
+
+
+class Parameters(unittest.TestCase):
+    def test_an_interval_holds_a_phase_across_the_half_turn(self):
+        phase = (-178.0, -188.0, -168.0)
+        rows = score.parameters([RIPPLE], diagnosis([ripple(3, (0.21, 0.205, 0.215), phase)]), 40.0)
+        self.assertEqual({row["parameter"]: row["holds"] for row in rows},
+                         {"ripple.amplitude_nm": False, "ripple.phase_deg": True})
+        self.assertAlmostEqual(rows[0]["relative"], 0.05)
+
+    def test_no_interval_counts_neither_way_and_a_wrong_name_has_no_parameters(self):
+        found = diagnosis([ripple(3, (0.2, None, None))])
+        self.assertIsNone(score.parameters([RIPPLE], found, 40.0)[0]["holds"])
+        self.assertEqual(score.parameters([OFFSET], found, 40.0), [])
+
+
+class Gap(unittest.TestCase):
+    def test_the_share_is_that_of_the_explainable_energy(self):
+        self.assertAlmostEqual(score.share_closed(0.5, 0.06, 0.06), 1.0)
+        self.assertAlmostEqual(score.share_closed(0.5, 0.5, 0.06), 0.0)
+        self.assertIsNone(score.share_closed(0.061, 0.06, 0.06))
+
+    def test_a_place_counts_when_it_overlaps_and_is_not_the_whole_log(self):
+        case = cases.studies("outside", 1)[0]
+        for spans, right in (([[10.1, 10.3]], True), ([[0.0, 40.0]], False), ([[20.0, 20.5]], False), ([], False)):
+            found = diagnosis([], unexplained=[{"where": {"time_s": spans}}])
+            self.assertEqual(score.place(case, (10.0, 10.4), found), right, spans)
+
+
+class Yardsticks(unittest.TestCase):
+    def test_they_find_an_effect_that_is_a_column_of_their_library_and_close_its_gap(self):
+        case = next(case for case in cases.studies("single", 1) if case.label == "gravity")
+        train, validate = (measured.Measured(case.log(p), strengths.GEAR_RATIO) for p in ("train", "validate"))
+        before = measured.baseline_gap_nm(train, validate)
+        for method, (found, after) in yardsticks.judge(train, validate).items():
+            self.assertIn(("gravity", None), found, method)
+            self.assertLess(after, 0.1 * before, method)
+
+    def test_forward_regression_takes_the_one_column_of_white_noise_plus_column(self):
+        rng = np.random.default_rng(5)
+        columns, base = rng.standard_normal((4000, 12)), np.ones((4000, 1))
+        values = 3.0 + 0.5 * columns[:, 7] + rng.standard_normal(4000)
+        self.assertEqual(yardsticks.forward_regression(base, columns, values), [7])
+        self.assertEqual(yardsticks.thresholded(base, columns, values, 0.2), [7])
+
+
+if __name__ == "__main__":
+    unittest.main()
