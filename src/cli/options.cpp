@@ -148,9 +148,9 @@ std::string Options::command_line() const {
     std::string line = owned(tool_name);
     const auto& words = implementation_.words;
     for (std::size_t i = 0; i < words.size(); ++i) {
-        if (words[i] == "-o" || words[i] == "--output") {
+        if (words[i] == "-o" || words[i] == "--output" || words[i] == "--plot") {
             ++i;
-        } else if (words[i].rfind("--output=", 0) != 0 && words[i] != "--force" && words[i] != "-q" &&
+        } else if (words[i].rfind("--output=", 0) != 0 && words[i].rfind("--plot=", 0) != 0 && words[i] != "--force" && words[i] != "-q" &&
                    words[i] != "--quiet" && words[i] != "-v" && words[i] != "--verbose" &&
                    words[i] != "--json") {
             line += " " + shell_quoted(words[i]);

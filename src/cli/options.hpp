@@ -58,7 +58,7 @@ class Options {
     void arguments(std::string_view name, std::vector<std::string>& target, bool required,
                    std::string_view help);
 
-    /// The command line as it would be typed again, without -o, --force, -q, -v and --json; for provenance.
+    /// The command line as it would be typed again, without -o, --plot, --force, -q, -v and --json; for provenance.
     [[nodiscard]] std::string command_line() const;
 
   private:

@@ -66,18 +66,18 @@ void check_speed_map(const SpeedMapRequest& request) {
     if (request.speed_step) positive("--speed-step", request.speed_step->value());
 }
 
-std::string speed_map_result(const SpeedMapRequest& request, const Trace& trace, const CommonOptions& common,
-                             const Provenance& provenance) {
+SpeedMapResult speed_map_result(const SpeedMapRequest& request, const Trace& trace,
+                                const CommonOptions& common, const Provenance& provenance) {
     const bool campbell = *request.map == "campbell";
     const TraceView view = trace.view();
     OutputAngle angle = output_angle(view);
     for (double& turns : angle.turns) turns *= request.gear_ratio.value_or(1.0);
     const std::vector<double> speed = smoothed_speed(view);
-    const SpeedMap map = speed_map(view, angle.turns, speed,
-                                   {.axis = campbell ? Axis::time : Axis::angle,
-                                    .resolution = request.resolution,
-                                    .highest = request.highest,
-                                    .speed_step = request.speed_step.value_or(DegPerSec(0.0))});
+    SpeedMap map = speed_map(view, angle.turns, speed,
+                             {.axis = campbell ? Axis::time : Axis::angle,
+                              .resolution = request.resolution,
+                              .highest = request.highest,
+                              .speed_step = request.speed_step.value_or(DegPerSec(0.0))});
     const std::string_view axis = campbell ? "frequency_hz" : request.gear_ratio ? "order" : "order_output";
     const std::string words = in_words(map, campbell ? "Hz" : "orders", request.resolution);
     if (request.resolution && map.resolution > 1.001 * *request.resolution) {
@@ -85,7 +85,8 @@ std::string speed_map_result(const SpeedMapRequest& request, const Trace& trace,
     } else {
         say(common, words);
     }
-    return common.json ? speed_map_text(trace.joint, map, axis, provenance) : map_csv(map, axis);
+    std::string text = common.json ? speed_map_text(trace.joint, map, axis, provenance) : map_csv(map, axis);
+    return {std::move(text), std::move(map)};
 }
 
 }  // namespace ripplenotch

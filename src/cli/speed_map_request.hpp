@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli/options.hpp"
+#include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/core/trace.hpp"
 
@@ -24,7 +25,11 @@ void check_speed_map(const SpeedMapRequest& request);
 
 /// CSV, one row a cell: speed_deg_s, then frequency_hz, order (with a gear ratio) or order_output, then
 /// amplitude_nm. JSON: schema ripplenotch/spectrum/1.
-[[nodiscard]] std::string speed_map_result(const SpeedMapRequest& request, const Trace& trace,
-                                           const CommonOptions& common, const Provenance& provenance);
+struct SpeedMapResult {
+    std::string text;
+    SpeedMap map;
+};
+[[nodiscard]] SpeedMapResult speed_map_result(const SpeedMapRequest& request, const Trace& trace,
+                                              const CommonOptions& common, const Provenance& provenance);
 
 }  // namespace ripplenotch

@@ -19,8 +19,10 @@ SEES = {
     "filter": {"core", "log", "analysis", "design"},
     "export": {"core", "design"},
     "evaluate": {"core", "filter", "analysis", "design"},
-    "artifact": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export"},
-    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "artifact"},
+    "figure": {"core"},
+    "report": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "figure"},
+    "artifact": {"core", "figure", "log", "analysis", "design", "filter", "evaluate", "model", "export"},
+    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "artifact", "figure", "report"},
 }
 
 # Third-party header -> the files that may include it.

@@ -11,11 +11,13 @@
 #include "cli/comparison_view.hpp"
 #include "cli/contenders.hpp"
 #include "cli/joint_facts.hpp"
+#include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/comparison.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/evaluate/match_low_pass.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/report/comparison_figure.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -25,6 +27,7 @@ constexpr double default_step_nm = 10.0,
 
 struct Request {
     CommonOptions common;
+    PlotRequest plot;
     LogOptions log_options;
     std::string log;
     std::vector<std::string> methods;
@@ -190,6 +193,7 @@ Comparison compare_on_log(const Request& request, const Field& field, std::optio
 }
 
 ExitCode run(const Request& request, const std::string& command_line) {
+    check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     const Field field = load_contenders(request.methods, request.lines, provenance);
     auto lines = lines_of(request.lines, field, provenance);
@@ -199,6 +203,12 @@ ExitCode run(const Request& request, const std::string& command_line) {
     const std::string text =
         request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison);
     write_all(request.common.output, text, request.common.overwrite());
+    draw_plot(request.plot, request.common, provenance, [&] {
+        std::vector<Contender> shown = field.contenders;
+        if (comparison.match && comparison.match->low_pass)
+            shown.push_back(make_contender(parse_spec(*comparison.match->low_pass)));
+        return comparison_figure(comparison, shown);
+    });
     return ExitCode::done;
 }
 
@@ -222,6 +232,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.count("--match-order", request->match_order, 1, 20, "order of that low-pass");
     options.number("--match-attenuation", request->match_attenuation_db, Dimension::decibel,
                    "find the low-pass of this ripple attenuation instead");
+    attach_plot(options, request->plot);
     attach_log(options, request->log_options);
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };

@@ -10,10 +10,12 @@
 
 #include "cli/command.hpp"
 #include "cli/joint_facts.hpp"
+#include "cli/plot_request.hpp"
 #include "cli/speed_bands.hpp"
 #include "cli/table_text.hpp"
 #include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/report/table_figure.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -24,6 +26,7 @@ constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
 
 struct Request {
     CommonOptions common;
+    PlotRequest plot;
     std::string joint;
     std::optional<double> gear_ratio, depth_db, max_delay_ms, min_attenuation_db;
     std::vector<double> orders;
@@ -212,6 +215,7 @@ std::vector<std::string> violations(const Request& request, const CandidateTable
 
 ExitCode run(const Request& request, const std::string& command_line) {
     const std::string form = form_of(request);
+    check_plot(request.plot, request.common);
     std::optional<JointFacts> joint;
     Provenance provenance{{}, command_line};
     if (!request.joint.empty()) {
@@ -225,6 +229,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
                              : form == "csv" ? table_to_csv(table)
                                              : table_to_text(table);
     write_all(request.common.output, text, request.common.overwrite());
+    draw_plot(request.plot, request.common, provenance, [&] { return table_figure(table); });
     const auto broken = violations(request, table);
     say_warnings(request.common, broken);
     return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
@@ -260,6 +265,7 @@ std::function<ExitCode()> attach(Options& options) {
                    "exit code 1 when a line is attenuated less anywhere in its band");
     options.choice("--format", request->form, form_names,
                    "form of the result (default: by the name of -o, else text)");
+    attach_plot(options, request->plot);
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };
 }

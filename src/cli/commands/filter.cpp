@@ -11,6 +11,7 @@
 #include "cli/command.hpp"
 #include "cli/filter_summary.hpp"
 #include "cli/joint_facts.hpp"
+#include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/metrics.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/spool.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 struct Request {
     CommonOptions common;
+    PlotRequest plot;
     LogOptions log;
     std::vector<std::string> logs;
     std::string method, decimals = "shortest";
@@ -132,7 +134,8 @@ void check(const Request& request) {
     }
     if (!(request.gap_steps > 1.0))
         raise<UsageError>("--gap: {} median steps is not above 1", shortest(request.gap_steps));
-    const bool log_on_stdout = request.common.output == "-" && !request.out_directory;
+    const bool log_on_stdout =
+        request.common.output == "-" && !request.out_directory && request.plot.path != "-";
     if (log_on_stdout && (request.common.json || request.metrics == "-")) {
         raise<UsageError>(
             "the filtered log and its metrics would both go to standard output; name a file with -o");
@@ -140,6 +143,13 @@ void check(const Request& request) {
     if (request.common.json && request.logs.size() > 1) {
         raise<UsageError>("--json prints the metrics of one log; for several use --metrics DIR");
     }
+    check_plot(request.plot, request.common);
+    if (request.plot.path == "-" && request.metrics == "-")
+        raise<UsageError>(
+            "--plot - and --metrics - would both go to standard output; name a file for one of them");
+    if (request.plot.wanted() && request.logs.size() > 1)
+        raise<UsageError>("--plot draws one log, and {} are given; filter them one by one",
+                          request.logs.size());
     if (request.common.json && request.metrics) raise<UsageError>("--json is --metrics -; give one of them");
 }
 
@@ -195,9 +205,17 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
     std::optional<ByteSink> metrics_sink;
     const std::optional<std::string> metrics_path = request.common.json ? "-" : job.metrics;
     if (metrics_path) metrics_sink.emplace(*metrics_path, request.common.overwrite());
-    const auto writer =
-        rewrite_log(job.output, stream.reader(), output_format(job.output, request.output_format),
-                    write_options(request, stream.torque_decimals()), request.common.overwrite());
+    std::unique_ptr<LogWriter> writer;
+    if (!request.plot.instead_of(job.output)) {
+        writer = rewrite_log(job.output, stream.reader(), output_format(job.output, request.output_format),
+                             write_options(request, stream.torque_decimals()), request.common.overwrite());
+    }
+    const WatchedWriter* watched = nullptr;
+    if (request.plot.wanted()) {
+        auto watching = std::make_unique<WatchedWriter>(std::move(writer));
+        watched = watching.get();
+        writer = std::move(watching);
+    }
     metrics.stream = stream.run(*filter, writer.get(), meter ? &*meter : nullptr);
 
     if (meter) metrics.levels = meter->levels();
@@ -214,6 +232,10 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
             metrics_to_json(metrics, provenance_of(request, job, method, metrics.stream.rows, command_line)));
         metrics_sink->finish();
     }
+    if (watched == nullptr) return;
+    draw_plot(request.plot, request.common,
+              provenance_of(request, job, method, metrics.stream.rows, command_line),
+              [&] { return watched->course().figure(metrics.source, method.text, metrics.stream); });
 }
 
 ExitCode run(const Request& request, const std::string& command_line) {
@@ -252,6 +274,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "joint.json with gear ratio and orders, for the same");
     options.number("--gap", request->gap_steps, Dimension::none,
                    "a step in time of more than this many median steps starts a new run");
+    attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };

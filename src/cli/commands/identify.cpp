@@ -9,8 +9,10 @@
 
 #include "cli/command.hpp"
 #include "cli/identify_text.hpp"
+#include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/identification.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/report/identification_figure.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -19,6 +21,7 @@ constexpr std::array<std::string_view, 3> evidence_names = {"automatic", "steady
 
 struct Request {
     CommonOptions common;
+    PlotRequest plot;
     LogOptions log;
     std::vector<std::string> logs;
     std::string evidence = "automatic";
@@ -95,17 +98,24 @@ void check(Request& request) {
         raise<UsageError>("--steady-band must not be negative");
 }
 
+std::string logs_in_words(const std::vector<std::string>& logs) {
+    return logs.size() == 1 ? logs.front() : fmt::format("{} and {} more", logs.front(), logs.size() - 1);
+}
+
 bool ends_with_json(const std::string& path) {
     return path.size() > 5 && path.substr(path.size() - 5) == ".json";
 }
 
 ExitCode run(Request& request, const std::string& command_line) {
     check(request);
+    check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     std::vector<Identification> found;
     for (const Joint& joint : read_all_joints(request, provenance))
         found.push_back(identified(joint, request));
 
+    if (request.plot.wanted() && found.size() > 1)
+        raise<UsageError>("--plot draws one joint, and --joint all found {}; name one", found.size());
     std::string text;
     for (const Identification& one : found) text += (text.empty() ? "" : "\n") + identification_report(one);
     const bool json_file = ends_with_json(request.common.output);
@@ -118,6 +128,8 @@ ExitCode run(Request& request, const std::string& command_line) {
     } else {
         write_all(request.common.output, text, request.common.overwrite());
     }
+    draw_plot(request.plot, request.common, provenance,
+              [&] { return identification_figure(logs_in_words(request.logs), found.front()); });
     const bool conclusive =
         std::all_of(found.begin(), found.end(), [](const Identification& one) { return one.conclusive; });
     return conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
@@ -141,6 +153,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.quantity("--steady-for", request->identify.steady_for, Dimension::time, "for at least this long");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
+    attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };

@@ -9,11 +9,13 @@
 
 #include "cli/command.hpp"
 #include "cli/joint_facts.hpp"
+#include "cli/plot_request.hpp"
 #include "cli/speed_map_request.hpp"
 #include "cli/text_table.hpp"
 #include "ripplenotch/artifact/spectrum.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/report/spectrum_figure.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -29,6 +31,7 @@ struct Request {
     double false_alarm = 0.01;
     SteadyRule steady;
     SpeedMapRequest map;
+    PlotRequest plot;
     bool peaks = false;
 };
 
@@ -139,8 +142,14 @@ std::string order_peaks(const OrderSpectrum& spectrum) {
     return text + text_table(rows, "lr");
 }
 
-std::string order_result(const Request& request, const TraceView& trace, const std::string& joint,
-                         const Provenance& provenance) {
+/// What goes to the output, and the figure of it.
+struct Result {
+    std::string text;
+    std::function<Figure()> figure;
+};
+
+Result order_result(const Request& request, const TraceView& trace, const std::string& joint,
+                    const Provenance& provenance) {
     if (request.stretch || request.segment)
         raise<UsageError>("--stretch and --segment belong to --domain frequency");
     MotionLinesOptions options;
@@ -153,21 +162,52 @@ std::string order_result(const Request& request, const TraceView& trace, const s
             "{}: the joint nowhere moves {} output turns in one direction, so there is no order spectrum",
             request.path, shortest(options.sweeps.shortest_turns));
     }
-    if (request.common.json) return order_spectrum_text(joint, result, request.false_alarm, provenance);
-    return request.peaks ? order_peaks(result) : order_csv(result.stack);
+    std::string text = request.common.json
+                           ? order_spectrum_text(joint, result, request.false_alarm, provenance)
+                       : request.peaks ? order_peaks(result)
+                                       : order_csv(result.stack);
+    return {std::move(text), [result, source = request.path] {
+                return order_spectrum_figure(source, result.stack, result.lines);
+            }};
 }
 
-std::string frequency_result(const Request& request, const TraceView& trace, const std::string& joint,
-                             const Provenance& provenance) {
+Figure frequency_figure(const std::string& source, const std::vector<StretchSpectrum>& spectra) {
+    std::vector<ShownSpectrum> shown;
+    for (const StretchSpectrum& one : spectra) {
+        const std::string name =
+            one.number ? fmt::format("Stretch {}, {:.4g} deg/s", *one.number, one.stretch.speed.value()) : "";
+        shown.push_back({name, &one.spectrum});
+    }
+    return spectrum_figure(source, shown);
+}
+
+Result frequency_result(const Request& request, const TraceView& trace, const std::string& joint,
+                        const Provenance& provenance) {
     std::vector<StretchSpectrum> spectra;
     for (const auto& [number, stretch] : parts_of(request, trace)) {
         spectra.push_back({number, stretch,
                            torque_spectrum(trace.part(stretch.first, stretch.count),
                                            {request.segment, request.false_alarm})});
     }
-    if (request.common.json) return spectra_text(joint, spectra, request.false_alarm, provenance);
-    if (!request.peaks && request.common.verbose) say(request.common, frequency_peaks(spectra));
-    return request.peaks ? frequency_peaks(spectra) : frequency_csv(spectra);
+    if (!request.common.json && !request.peaks && request.common.verbose)
+        say(request.common, frequency_peaks(spectra));
+    std::string text = request.common.json ? spectra_text(joint, spectra, request.false_alarm, provenance)
+                       : request.peaks     ? frequency_peaks(spectra)
+                                           : frequency_csv(spectra);
+    return {std::move(text), [spectra = std::move(spectra), source = request.path] {
+                return frequency_figure(source, spectra);
+            }};
+}
+
+Result map_result(const Request& request, const Trace& trace, const Provenance& provenance) {
+    SpeedMapResult result = speed_map_result(request.map, trace, request.common, provenance);
+    MapLines lines;
+    if (request.map.gear_ratio) {
+        lines = {GearRatio(*request.map.gear_ratio), {1.0, 2.0, 3.0, 4.0}, *request.map.map == "order"};
+    }
+    return {std::move(result.text), [map = std::move(result.map), lines, source = request.path] {
+                return speed_map_figure(source, map, lines);
+            }};
 }
 
 ExitCode run(Request& request, const std::string& command_line) {
@@ -178,6 +218,7 @@ ExitCode run(Request& request, const std::string& command_line) {
         raise<UsageError>("--segment must be above 0 s");
     if (!(request.steady.at_least.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
     check_speed_map(request.map);
+    check_plot(request.plot, request.common);
     if (request.map.map &&
         (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
         raise<UsageError>("--map goes with neither --domain, --stretch, --segment nor --peaks");
@@ -186,11 +227,13 @@ ExitCode run(Request& request, const std::string& command_line) {
     say_warnings(request.common, log.timebase.warnings);
     const Provenance provenance{{input_record(request.path)}, command_line};
     const TraceView trace = log.trace.view();
-    const std::string text =
-        request.map.map             ? speed_map_result(request.map, log.trace, request.common, provenance)
-        : request.domain == "order" ? order_result(request, trace, log.trace.joint, provenance)
-                                    : frequency_result(request, trace, log.trace.joint, provenance);
-    write_all(request.common.output, text, request.common.overwrite());
+    const Result result = request.map.map ? map_result(request, log.trace, provenance)
+                          : request.domain == "order"
+                              ? order_result(request, trace, log.trace.joint, provenance)
+                              : frequency_result(request, trace, log.trace.joint, provenance);
+    if (request.peaks || !request.plot.instead_of(request.common.output))
+        write_all(request.common.output, result.text, request.common.overwrite());
+    draw_plot(request.plot, request.common, provenance, result.figure);
     return ExitCode::done;
 }
 
@@ -212,6 +255,7 @@ std::function<ExitCode()> attach(Options& options) {
                    "... or within this speed, whichever is wider");
     options.quantity("--steady-for", request->steady.at_least, Dimension::time, "for at least this long");
     attach_speed_map(options, request->map);
+    attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a figure shows, as JSON: the data behind a picture, for any other program that draws.
+
+#include <string>
+
+#include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/figure/figure.hpp"
+
+namespace ripplenotch {
+
+/// Schema ripplenotch/figure/1; numbers with eight significant digits, null where a line breaks or a cell is
+/// empty. Same figure, same bytes.
+[[nodiscard]] std::string figure_text(const Figure& figure, const Provenance& provenance);
+
+}  // namespace ripplenotch

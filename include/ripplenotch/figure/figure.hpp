@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A figure as a value: what it shows, in which units, under which names. Built once from results (room
+// report); renderers draw it, artifact writes it as JSON. Nothing here knows pixels.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace ripplenotch {
+
+enum class PlotScale { linear, logarithmic };
+
+/// What an axis counts. A logarithmic axis leaves out what is not above 0.
+struct PlotAxis {
+    std::string label, unit = {};  ///< "torque", "Nm"; a number without a unit has none
+    PlotScale scale = PlotScale::linear;
+    std::optional<double> from = {}, to = {};  ///< left out: what the panel's contents span
+};
+
+/// Eight colours that the colour-blind can tell apart (Okabe and Ito 2002). The number is the place in
+/// ink_rgb.
+enum class Ink { black, blue, vermilion, green, orange, purple, sky, grey };
+/// "#0072b2"
+[[nodiscard]] std::string ink_rgb(Ink ink);
+/// The i-th of the inks that tell series apart; starts again after six.
+[[nodiscard]] Ink series_ink(std::size_t i);
+
+enum class CurveStyle { line, dashed, steps, points, stems };
+
+/// Points of equal length x and y, joined in this order; a nan breaks the line.
+struct Curve {
+    std::string name;  ///< in the legend; empty: not there
+    Ink ink = Ink::blue;
+    CurveStyle style = CurveStyle::line;
+    std::vector<double> x, y;
+};
+
+/// The area between two curves over the same x: an interval, a spread.
+struct Ribbon {
+    std::string name;
+    Ink ink = Ink::grey;
+    std::vector<double> x, low, high;
+};
+
+/// A rectangle behind the curves: a band of speeds, a stretch of time. Edges may be infinite: to the panel's
+/// edge.
+struct Shade {
+    std::string name;  ///< written in it when there is room
+    Ink ink = Ink::grey;
+    double x_from = 0.0, x_to = 0.0, y_from = 0.0, y_to = 0.0;
+};
+
+/// A straight line with a name of its own beside the panel: a peak, an order, a fit.
+struct NamedLine {
+    enum class Run {
+        at_x,  ///< x = value
+        at_y,  ///< y = value
+        ray,   ///< y = value * x
+    };
+    std::string name;
+    Run run = Run::at_x;
+    double value = 0.0;
+    Ink ink = Ink::grey;
+    bool dashed = true;
+};
+
+/// cells[row * (x_edges.size() - 1) + column]; edges rise, nan is an empty cell.
+struct HeatMap {
+    std::string label, unit = {};  ///< of the cells
+    PlotScale scale = PlotScale::linear;
+    double lowest = 0.0, highest = 1.0;  ///< of the colours; cells beyond take the colour of the end
+    std::vector<double> x_edges = {}, y_edges = {}, cells = {};
+};
+
+/// One pair of axes.
+struct Panel {
+    std::string title;
+    PlotAxis x, y;
+    std::optional<HeatMap> map = {};
+    std::vector<Shade> shades = {};
+    std::vector<Ribbon> ribbons = {};
+    std::vector<Curve> curves = {};
+    std::vector<NamedLine> lines = {};
+    bool legend = true;   ///< false where a panel beside it has the same names
+    double height = 1.0;  ///< against that of other panels
+};
+
+struct Figure {
+    std::string name;      ///< kebab-case, which figure this is: "spectrum", "candidate-table"
+    std::string title;     ///< what is shown, of which file
+    std::string sentence;  ///< what can be seen in it, with numbers; may be empty
+    std::vector<Panel> panels;
+    int columns = 1;  ///< panels run left to right, then down
+};
+
+/// From the lowest to the highest; empty when nothing can be shown.
+struct PlotRange {
+    double from = 0.0, to = 1.0;
+};
+/// What an axis of the panel spans: as stated, else what is in the panel, a little wider along y.
+[[nodiscard]] PlotRange x_range(const Panel& panel);
+[[nodiscard]] PlotRange y_range(const Panel& panel);
+/// 0 at range.from, 1 at range.to; may lie outside. nan for what a logarithmic axis cannot show.
+[[nodiscard]] double share_along(const PlotRange& range, PlotScale scale, double value);
+/// The inverse of share_along.
+[[nodiscard]] double value_at(const PlotRange& range, PlotScale scale, double share);
+
+/// "torque, Nm"
+[[nodiscard]] std::string axis_text(const PlotAxis& axis);
+
+/// Throws std::logic_error when vectors that belong together differ in length: a fault of the builder.
+void check_figure(const Figure& figure);
+
+}  // namespace ripplenotch

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Methods side by side: frequency responses, a step and a ramp.
+
+#include <span>
+#include <string>
+
+#include "ripplenotch/evaluate/comparison.hpp"
+#include "ripplenotch/figure/figure.hpp"
+
+namespace ripplenotch {
+
+/// Magnitude, phase and group delay of the linear filter that each method is at the comparison's speed, and
+/// what each puts out for a step and a ramp. Runs the filters on signals of its own, as Bench does.
+[[nodiscard]] Figure comparison_figure(const Comparison& comparison, std::span<const Contender> contenders);
+
+/// A cascade at these frequencies.
+struct FilterResponse {
+    std::vector<double> hz;
+    std::vector<double> magnitude_db;  ///< at least lowest_magnitude_db
+    std::vector<double> phase_deg;     ///< sum over sections, not folded; nan at a null, like the delay
+    std::vector<double> group_delay_ms;
+};
+inline constexpr double lowest_magnitude_db = -120.0;
+/// From 1e-4 of the sample rate to just below its half, even on a logarithmic axis; the nulls of every
+/// section and `also_hz` are among the frequencies, so that none is missed between two points.
+[[nodiscard]] FilterResponse filter_response(std::span<const Biquad> cascade, Hertz sample_rate,
+                                             std::span<const double> also_hz);
+
+}  // namespace ripplenotch

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Spectra and maps over speed as figures.
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/order_map.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/figure/figure.hpp"
+
+namespace ripplenotch {
+
+struct ShownSpectrum {
+    std::string name;  ///< "stretch 2, 60 deg/s"; empty for the whole log
+    const Spectrum* spectrum = nullptr;
+};
+
+/// Lines that get their name in a spectrum, strongest first.
+inline constexpr std::size_t most_named_lines = 12;
+/// Spectra that get a panel; the sentence says how many there were.
+inline constexpr std::size_t most_spectrum_panels = 8;
+
+/// Amplitude against frequency with the noise floor, lines named by frequency and amplitude.
+[[nodiscard]] Figure spectrum_figure(const std::string& source, std::span<const ShownSpectrum> spectra);
+
+/// Amplitude against output order, order lines named.
+[[nodiscard]] Figure order_spectrum_figure(const std::string& source, const Stack& stack,
+                                           const MotionLines& lines);
+
+/// Campbell diagram or order map: speed along x. With a gear ratio the lines of `orders` (per motor turn) are
+/// drawn; `axis_per_motor_turn` says that the map's own orders are per motor turn, not per output turn.
+struct MapLines {
+    std::optional<GearRatio> gear_ratio;
+    std::vector<double> orders;
+    bool axis_per_motor_turn = false;
+};
+[[nodiscard]] Figure speed_map_figure(const std::string& source, const SpeedMap& map, const MapLines& lines);
+
+}  // namespace ripplenotch

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// --plot FILE: a command's result as a picture, or in the terminal.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/options.hpp"
+#include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/figure/figure.hpp"
+#include "ripplenotch/log/format.hpp"
+#include "ripplenotch/report/torque_course.hpp"
+
+namespace ripplenotch {
+
+struct PlotRequest {
+    std::optional<std::string> path;
+
+    [[nodiscard]] bool wanted() const { return path.has_value(); }
+    /// The figure takes the place of data that would go to standard output.
+    [[nodiscard]] bool instead_of(const std::string& output) const { return path == "-" && output == "-"; }
+};
+
+void attach_plot(Options& options, PlotRequest& request);
+
+/// Before any work is done: throws UsageError for a name that is no picture's or --json and the figure both
+/// on standard output, FileError for a file that exists and may not be overwritten.
+void check_plot(const PlotRequest& request, const CommonOptions& common);
+
+/// Draws what make() gives; does nothing when no plot is asked for. Call it after everything else is written:
+/// without gnuplot it writes the figure's data beside where the picture would be and throws FileError.
+void draw_plot(const PlotRequest& request, const CommonOptions& common, const Provenance& provenance,
+               const std::function<Figure()>& make);
+
+/// Passes rows on to `writer` (which may be null) and keeps what a figure of them needs.
+class WatchedWriter : public LogWriter {
+  public:
+    explicit WatchedWriter(std::unique_ptr<LogWriter> writer) : writer_(std::move(writer)) {}
+    void write(const RowBlock& block, std::span<const double> torque_nm) override;
+    void finish(std::string_view tail) override;
+    [[nodiscard]] const TorqueCourse& course() const { return course_; }
+
+  private:
+    std::unique_ptr<LogWriter> writer_;
+    TorqueCourse course_;
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/figure/figure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<const char*, 8> inks = {"#000000", "#0072b2", "#d55e00", "#009e73",
+                                             "#e69f00", "#cc79a7", "#56b4e9", "#808080"};
+
+// Least and greatest of what an axis of this scale can show.
+class Span {
+  public:
+    explicit Span(PlotScale scale) : scale_(scale) {}
+
+    void take(double value) {
+        if (!std::isfinite(value) || (scale_ == PlotScale::logarithmic && !(value > 0.0))) return;
+        low_ = std::min(low_, value);
+        high_ = std::max(high_, value);
+    }
+    void take(const std::vector<double>& values) {
+        for (const double value : values) take(value);
+    }
+
+    [[nodiscard]] PlotRange range(const PlotAxis& axis, double widen) const {
+        PlotRange range{low_, high_};
+        if (!(low_ <= high_)) {
+            range = scale_ == PlotScale::logarithmic ? PlotRange{0.1, 1.0} : PlotRange{0.0, 1.0};
+        } else if (scale_ == PlotScale::logarithmic) {
+            const double factor = high_ > low_ ? std::pow(high_ / low_, widen) : 2.0;
+            range = {low_ / factor, high_ * factor};
+        } else {
+            const double more = high_ > low_ ? widen * (high_ - low_) : std::max(0.5 * std::abs(high_), 0.5);
+            range = {low_ - more, high_ + more};
+        }
+        if (axis.from) range.from = *axis.from;
+        if (axis.to) range.to = *axis.to;
+        if (!(range.from < range.to)) range.to = range.from + (range.from > 0.0 ? range.from : 1.0);
+        return range;
+    }
+
+  private:
+    PlotScale scale_;
+    double low_ = std::numeric_limits<double>::infinity(), high_ = -std::numeric_limits<double>::infinity();
+};
+
+void demand(bool holds, const Figure& figure, const char* what) {
+    if (!holds) throw std::logic_error("figure " + figure.name + ": " + what);
+}
+
+}  // namespace
+
+std::string ink_rgb(Ink ink) { return inks[static_cast<std::size_t>(ink)]; }
+
+Ink series_ink(std::size_t i) {
+    constexpr std::array order = {Ink::blue, Ink::vermilion, Ink::green, Ink::orange, Ink::purple, Ink::sky};
+    return order[i % order.size()];
+}
+
+PlotRange x_range(const Panel& panel) {
+    Span span(panel.x.scale);
+    for (const Curve& curve : panel.curves) span.take(curve.x);
+    for (const Ribbon& ribbon : panel.ribbons) span.take(ribbon.x);
+    if (panel.map) span.take(panel.map->x_edges);
+    for (const Shade& shade : panel.shades) {
+        span.take(shade.x_from);
+        span.take(shade.x_to);
+    }
+    return span.range(panel.x, 0.0);
+}
+
+PlotRange y_range(const Panel& panel) {
+    Span span(panel.y.scale);
+    for (const Curve& curve : panel.curves) {
+        span.take(curve.y);
+        if (curve.style == CurveStyle::stems) span.take(0.0);
+    }
+    for (const Ribbon& ribbon : panel.ribbons) {
+        span.take(ribbon.low);
+        span.take(ribbon.high);
+    }
+    if (panel.map) span.take(panel.map->y_edges);
+    for (const Shade& shade : panel.shades) {
+        span.take(shade.y_from);
+        span.take(shade.y_to);
+    }
+    for (const NamedLine& line : panel.lines) {
+        if (line.run == NamedLine::Run::at_y) span.take(line.value);
+    }
+    return span.range(panel.y, panel.map ? 0.0 : 0.05);
+}
+
+double share_along(const PlotRange& range, PlotScale scale, double value) {
+    if (scale == PlotScale::linear) return (value - range.from) / (range.to - range.from);
+    if (!(value > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+    return std::log(value / range.from) / std::log(range.to / range.from);
+}
+
+double value_at(const PlotRange& range, PlotScale scale, double share) {
+    if (scale == PlotScale::linear) return range.from + share * (range.to - range.from);
+    return range.from * std::pow(range.to / range.from, share);
+}
+
+std::string axis_text(const PlotAxis& axis) {
+    return axis.unit.empty() ? axis.label : axis.label + ", " + axis.unit;
+}
+
+void check_figure(const Figure& figure) {
+    demand(!figure.panels.empty(), figure, "no panel");
+    demand(figure.columns > 0, figure, "no column");
+    for (const Panel& panel : figure.panels) {
+        demand(!panel.x.label.empty() && !panel.y.label.empty(), figure, "an axis without a label");
+        for (const Curve& curve : panel.curves)
+            demand(curve.x.size() == curve.y.size(), figure, "a curve's x and y differ in length");
+        for (const Ribbon& ribbon : panel.ribbons) {
+            demand(ribbon.x.size() == ribbon.low.size() && ribbon.x.size() == ribbon.high.size(), figure,
+                   "a ribbon's edges differ in length");
+        }
+        if (!panel.map) continue;
+        const HeatMap& map = *panel.map;
+        demand(map.x_edges.size() > 1 && map.y_edges.size() > 1, figure, "a map without cells");
+        demand(map.cells.size() == (map.x_edges.size() - 1) * (map.y_edges.size() - 1), figure,
+               "a map's cells and edges do not agree");
+    }
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+// Pictures: SVG, PNG and PDF from one script.
+
+#include <algorithm>
+#include <cmath>
+
+#include "figure/gnuplot_process.hpp"
+#include "figure/gnuplot_script.hpp"
+#include "figure/page_layout.hpp"
+#include "figure/same_bytes.hpp"
+#include "ripplenotch/figure/gnuplot.hpp"
+#include "ripplenotch/figure/min_max.hpp"
+#include "ripplenotch/figure/visible_text.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_cells = 400;  // of a map, each way: finer is not seen
+
+// Dark to light without turning back, so that it reads in grey and to every kind of eye.
+constexpr const char* palette =
+    "0 '#08112f', 0.2 '#17396e', 0.4 '#1d6d86', 0.6 '#4aa27a', 0.8 '#b9c54b', 1 '#ffe94a'";
+
+// One panel of one page, in gnuplot's words.
+class PanelScript {
+  public:
+    PanelScript(GnuplotScript& script, const PageLayout& page, const Panel& panel, const PanelLayout& box)
+        : script_(script), page_(page), panel_(panel), box_(box) {}
+
+    void write() {
+        script_.line("reset");
+        script_.line("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}", x(box_.left),
+                     x(box_.right));
+        script_.line("set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}", y(box_.top),
+                     y(box_.bottom));
+        if (!panel_.title.empty())
+            text(cut_to(visible_text(panel_.title), 100), box_.left, box_.title_y, "left font ',13'");
+        axis("x", panel_.x, box_.x);
+        axis("y", panel_.y, box_.y);
+        script_.line("set tics out nomirror font ',11'\nset border 3 lc rgb '#404040'");
+        script_.line("set grid lc rgb '{}' lt 1 lw 0.5 {}", panel_.map ? "#ffffff" : "#dddddd",
+                     panel_.map ? "front dt (1,6)" : "back");
+        legend();
+        for (const Shade& shade : panel_.shades) draw(shade);
+        for (const NamedLine& line : panel_.lines) draw(line);
+        for (const LineLabel& label : box_.labels) draw(label);
+        plot();
+    }
+
+  private:
+    [[nodiscard]] double x(double px) const { return px / page_.width; }
+    [[nodiscard]] double y(double px) const { return 1.0 - px / page_.height; }
+
+    void text(const std::string& words, double at_x, double at_y, const char* how) {
+        script_.line("set label {} at screen {:.6f},{:.6f} {} front", gnuplot_string(words), x(at_x), y(at_y),
+                     how);
+    }
+
+    void axis(const char* name, const PlotAxis& axis, const PlotRange& range) {
+        script_.line("set {0}range [{1:.10g}:{2:.10g}]", name, range.from, range.to);
+        if (name[0] == 'x') {
+            script_.line("set xlabel {} font ',12' offset 0,0.2", gnuplot_string(axis_text(axis)));
+        } else {
+            // At a place of its own: gnuplot's would move with the width of the numbers, and off the page.
+            text(axis_text(axis), box_.left - left_px + 16.0, 0.5 * (box_.top + box_.bottom),
+                 "center rotate by 90 font ',12'");
+        }
+        if (axis.scale == PlotScale::logarithmic) script_.line("set logscale {}", name);
+        script_.line("set format {} '%.10g'", name);
+    }
+
+    void legend() {
+        if (box_.legend_rows == 0) {
+            script_.line("unset key");
+            return;
+        }
+        script_.line(
+            "set key at screen {:.6f},{:.6f} left top vertical Left reverse maxrows {} samplen 2.4 "
+            "spacing 1.25 font ',12'",
+            x(box_.legend_x), y(box_.legend_y), box_.legend_rows);
+    }
+
+    void draw(const Shade& shade) {
+        const auto clip = [](double value, const PlotRange& range) {
+            return std::isnan(value) ? range.from : std::min(std::max(value, range.from), range.to);
+        };
+        const double x0 = clip(shade.x_from, box_.x), x1 = clip(shade.x_to, box_.x);
+        const double y0 = clip(shade.y_from, box_.y), y1 = clip(shade.y_to, box_.y);
+        script_.line(
+            "set object rectangle from {:.10g},{:.10g} to {:.10g},{:.10g} fc rgb '{}' fs transparent solid "
+            "0.14 noborder behind",
+            x0, y0, x1, y1, ink_rgb(shade.ink));
+        const std::string words = visible_text(shade.name);
+        const double left = share_along(box_.x, panel_.x.scale, x0),
+                     right = share_along(box_.x, panel_.x.scale, x1);
+        const double width_px = (right - left) * (box_.right - box_.left);
+        if (words.empty() || letter_px * static_cast<double>(text_width(words)) > width_px) return;
+        text(words, box_.left + 0.5 * (left + right) * (box_.right - box_.left),
+             box_.bottom - share_along(box_.y, panel_.y.scale, y1) * (box_.bottom - box_.top) + 0.6 * line_px,
+             "center font ',11' tc rgb '#404040'");
+    }
+
+    void draw(const NamedLine& line) {
+        Segment s{};
+        if (!segment_of(line, box_.x, box_.y, s)) return;
+        // On a map grey would drown in the dark.
+        const std::string ink = panel_.map ? "#ffffff" : ink_rgb(line.ink);
+        script_.line("set arrow from {:.10g},{:.10g} to {:.10g},{:.10g} nohead {} lc rgb '{}' lw 1 {}", s.x0,
+                     s.y0, s.x1, s.y1, panel_.map ? "front" : "back", ink, line.dashed ? "dt (6,4)" : "dt 1");
+    }
+
+    void draw(const LineLabel& label) {
+        if (label.on_top) {
+            leader(label.anchor_px, box_.top, label.at_px, box_.top - 13.0);
+            text(label.text, label.at_px, box_.top - 17.0, "left rotate by 90 font ',11'");
+        } else {
+            leader(box_.right, label.anchor_px, box_.right + 11.0, label.at_px);
+            text(label.text, box_.right + 15.0, label.at_px, "left font ',11'");
+        }
+    }
+
+    void leader(double x0, double y0, double x1, double y1) {
+        script_.line(
+            "set arrow from screen {:.6f},{:.6f} to screen {:.6f},{:.6f} nohead lc rgb '#808080' lw 0.7",
+            x(x0), y(y0), x(x1), y(y1));
+    }
+
+    void map(std::vector<std::string>& parts) {
+        const auto pixels = [](double width, std::size_t cells) {
+            return std::min({static_cast<std::size_t>(width), most_cells, 4 * cells});
+        };
+        const HeatMap& whole = *panel_.map;
+        const std::size_t columns = pixels(box_.right - box_.left, whole.x_edges.size() - 1);
+        const std::size_t rows = pixels(box_.bottom - box_.top, whole.y_edges.size() - 1);
+        const HeatMap raster =
+            rasterised(whole, box_.x, panel_.x.scale, box_.y, panel_.y.scale, columns, rows);
+        script_.line("set palette defined ({})\nset cbrange [{:.10g}:{:.10g}]", palette, whole.lowest,
+                     whole.highest);
+        if (whole.scale == PlotScale::logarithmic) script_.line("set logscale cb");
+        script_.line("set format cb '%.10g'\nset cbtics out nomirror font ',11'");
+        script_.line("set colorbox user origin screen {:.6f},{:.6f} size screen {:.6f},{:.6f} noborder",
+                     x(colours_left()), y(box_.bottom), x(13.0), y(box_.top) - y(box_.bottom));
+        script_.line("set cblabel {} font ',12'", gnuplot_string(axis_text({whole.label, whole.unit})));
+        script_.line(
+            "set object rectangle from graph 0,0 to graph 1,1 fc rgb '#e4e4e4' fs solid noborder behind");
+        const double dx = (box_.x.to - box_.x.from) / static_cast<double>(columns);
+        const double dy = (box_.y.to - box_.y.from) / static_cast<double>(rows);
+        const std::string data = script_.matrix(raster);
+        parts.push_back(
+            fmt::format("{} matrix using ({:.10g}+{:.10g}*$1):({:.10g}+{:.10g}*$2):3 with image notitle",
+                        data, box_.x.from + 0.5 * dx, dx, box_.y.from + 0.5 * dy, dy));
+    }
+
+    // Right of the names of lines.
+    [[nodiscard]] double colours_left() const {
+        double longest = 0.0;
+        for (const LineLabel& label : box_.labels)
+            if (!label.on_top)
+                longest = std::max(longest, small_letter_px * static_cast<double>(text_width(label.text)));
+        return box_.right + 16.0 + (longest > 0.0 ? longest + 14.0 : 0.0);
+    }
+
+    [[nodiscard]] std::string titled(const std::string& name) const {
+        return name.empty() || box_.legend_rows == 0 ? "notitle" : "title " + gnuplot_string(name);
+    }
+
+    void draw(const Curve& whole, std::vector<std::string>& parts) {
+        const auto buckets = static_cast<std::size_t>(box_.right - box_.left);
+        const Curve curve = thinned(whole, buckets);
+        const std::string data = script_.rows({&curve.x, &curve.y});
+        const std::string ink = ink_rgb(curve.ink);
+        const char* how = curve.style == CurveStyle::points   ? "points pt 7 ps 0.7"
+                          : curve.style == CurveStyle::steps  ? "steps lw 1.6"
+                          : curve.style == CurveStyle::stems  ? "impulses lw 1.6"
+                          : curve.style == CurveStyle::dashed ? "lines lw 1.4 dt (7,4)"
+                                                              : "lines lw 1.5";
+        parts.push_back(
+            fmt::format("{} using 1:2 with {} lc rgb '{}' {}", data, how, ink, titled(curve.name)));
+    }
+
+    void plot() {
+        std::vector<std::string> parts;
+        if (panel_.map) map(parts);
+        for (const Ribbon& ribbon : panel_.ribbons) {
+            const std::string data = script_.rows({&ribbon.x, &ribbon.low, &ribbon.high});
+            parts.push_back(fmt::format(
+                "{} using 1:2:3 with filledcurves fs transparent solid 0.25 noborder fc rgb '{}' {}", data,
+                ink_rgb(ribbon.ink), titled(ribbon.name)));
+        }
+        for (const Curve& curve : panel_.curves) draw(curve, parts);
+        if (parts.empty()) parts.emplace_back("NaN notitle");
+        std::string all;
+        for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
+        script_.line("plot {}", all);
+    }
+
+    GnuplotScript& script_;
+    const PageLayout& page_;
+    const Panel& panel_;
+    const PanelLayout& box_;
+};
+
+void open_page(GnuplotScript& script, const PageLayout& page, PictureKind kind) {
+    script.line("set encoding utf8");
+    if (kind == PictureKind::svg) {
+        script.line(
+            "set terminal svg size {},{} noenhanced background rgb 'white' font 'sans-serif,12' name "
+            "'ripplenotch'",
+            page.width, page.height);
+    } else if (kind == PictureKind::png) {
+        script.line(
+            "set terminal pngcairo size {},{} noenhanced background rgb 'white' font 'sans,12' fontscale "
+            "0.75",
+            page.width, page.height);
+    } else {
+        script.line(
+            "set terminal pdfcairo size {:.2f}in,{:.2f}in noenhanced background rgb 'white' font 'sans,12' "
+            "fontscale 0.72",
+            page.width / 100.0, page.height / 100.0);
+    }
+}
+
+std::string page_script(const Figure& figure, PictureKind kind) {
+    const PageLayout page = lay_out(figure);
+    GnuplotScript script;
+    open_page(script, page, kind);
+    script.line("set multiplot");
+    double at = 20.0;
+    int number = 1000;  // apart from the labels of panels, which gnuplot counts itself
+    const auto say = [&](const std::string& words, const char* font, double step) {
+        script.line("set label {} {} at screen {:.6f},{:.6f} left font ',{}' front", number++,
+                    gnuplot_string(words), 14.0 / page.width, 1.0 - at / page.height, font);
+        at += step;
+    };
+    for (const std::string& words : page.title) say(words, "15", 20.0);
+    for (const std::string& words : page.sentence) say(words, "12", line_px);
+    // Nothing but the labels: a plot without axes carries them.
+    script.line(
+        "unset border\nunset tics\nunset key\nset margins 0,0,0,0\nset xrange [0:1]\nset yrange [0:1]\nplot "
+        "NaN");
+    for (std::size_t i = 0; i < figure.panels.size(); ++i)
+        PanelScript(script, page, figure.panels[i], page.panels[i]).write();
+    script.line("unset multiplot");
+    return script.text();
+}
+
+}  // namespace
+
+std::optional<std::string> draw_picture(const Figure& figure, PictureKind kind) {
+    check_figure(figure);
+    auto bytes = run_gnuplot(page_script(figure, kind));
+    if (bytes && kind == PictureKind::svg) *bytes = same_svg(std::move(*bytes));
+    if (bytes && kind == PictureKind::pdf) *bytes = same_pdf(std::move(*bytes));
+    return bytes;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/report/comparison_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/figure/min_max.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// The control is grey, methods take the inks in turn.
+Ink ink_of(const Contender& contender, std::size_t& taken) {
+    return contender.method->name == "none" ? Ink::grey : series_ink(taken++);
+}
+
+// Half of the longest settling time before the signal and one and a half after it, within reason.
+double shown_s(const Comparison& comparison) {
+    double longest_ms = 0.0;
+    for (const MethodFigures& figures : comparison.methods)
+        if (figures.settle_ms) longest_ms = std::max(longest_ms, figures.settle_ms->front());
+    return std::clamp(1.3e-3 * longest_ms, 40.0 / comparison.sample_rate.value(), 10.0);
+}
+
+// Output of a filter that has seen no torque for ever, then `signal(t)` from t = 0 on.
+template <class Signal>
+Curve run(const Contender& contender, const Comparison& comparison, double duration_s, Ink ink,
+          const Signal& signal) {
+    const double rate = comparison.sample_rate.value();
+    const auto before = static_cast<std::size_t>(0.1 * duration_s * rate) + 1;
+    const auto count = before + static_cast<std::size_t>(duration_s * rate) + 1;
+    std::vector<double> torque(count), position(count), out(count);
+    const std::vector<double> velocity(count, comparison.speed.value());
+    MinMaxCourse course;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double t = (static_cast<double>(k) - static_cast<double>(before)) / rate;
+        torque[k] = k < before ? 0.0 : signal(t);
+        position[k] = comparison.speed.value() * t;
+    }
+    const auto filter = contender.start(comparison.sample_rate);
+    filter->process({velocity, torque, position}, out);
+    for (std::size_t k = 0; k < count; ++k)
+        course.add(1e3 * (static_cast<double>(k) - static_cast<double>(before)) / rate, out[k]);
+    Curve curve = course.curve(contender.text, ink);
+    if (ink == Ink::grey) curve.style = CurveStyle::dashed;
+    return curve;
+}
+
+std::vector<Panel> course_panels(const Comparison& comparison, std::span<const Contender> contenders) {
+    std::vector<Panel> panels;
+    const double duration_s = shown_s(comparison);
+    const PlotAxis time{"time", "ms"};
+    Panel step{.title = "", .x = time, .y = {"torque", "Nm"}}, ramp = step;
+    step.legend = ramp.legend = false;
+    std::size_t taken = 0;
+    for (const Contender& contender : contenders) {
+        const Ink ink = ink_of(contender, taken);
+        if (comparison.step_nm) {
+            const double height = *comparison.step_nm;
+            step.curves.push_back(
+                run(contender, comparison, duration_s, ink, [height](double) { return height; }));
+        }
+        if (comparison.ramp_nm_s) {
+            const double slope = *comparison.ramp_nm_s;
+            ramp.curves.push_back(
+                run(contender, comparison, duration_s, ink, [slope](double t) { return slope * t; }));
+        }
+    }
+    if (comparison.step_nm) {
+        step.title = fmt::format("A step of {:.4g} Nm", *comparison.step_nm);
+        panels.push_back(std::move(step));
+    }
+    if (comparison.ramp_nm_s) {
+        ramp.title = fmt::format("A ramp of {:.4g} Nm/s", *comparison.ramp_nm_s);
+        panels.push_back(std::move(ramp));
+    }
+    return panels;
+}
+
+struct ResponsePanels {
+    Panel magnitude, phase, delay;
+};
+
+ResponsePanels empty_panels(const Comparison& comparison) {
+    const PlotAxis frequency{"frequency", "Hz", PlotScale::logarithmic};
+    ResponsePanels panels{{.title = "Magnitude", .x = frequency, .y = {"gain", "dB"}},
+                          {.title = "Phase", .x = frequency, .y = {"phase", "deg"}},
+                          {.title = "Group delay", .x = frequency, .y = {"delay", "ms"}}};
+    panels.phase.legend = panels.delay.legend = false;
+    if (!comparison.lines) return panels;
+    for (const Order order : comparison.lines->orders) {
+        const double hz = ripple_frequency(order, comparison.lines->gear_ratio, comparison.speed).value();
+        panels.magnitude.lines.push_back(
+            {fmt::format("order {}", shortest(order.value())), NamedLine::Run::at_x, hz, Ink::black});
+    }
+    return panels;
+}
+
+// Beside a null the delay of a notch runs to where the rest of the picture would be a line: the axis keeps to
+// what the delays are at low frequencies.
+void fit_delay_axis(Panel& delay, double longest_dc_ms) {
+    delay.y.from = -0.25 * std::max(longest_dc_ms, 1.0);
+    delay.y.to = 1.25 * std::max(longest_dc_ms, 1.0);
+}
+
+std::vector<Panel> response_panels(const Comparison& comparison, std::span<const Contender> contenders) {
+    ResponsePanels panels = empty_panels(comparison);
+    std::vector<double> lines_hz;
+    for (const NamedLine& line : panels.magnitude.lines) lines_hz.push_back(line.value);
+    std::size_t taken = 0;
+    double longest_dc_ms = 0.0, deepest_db = -20.0;
+    for (const Contender& contender : contenders) {
+        const Ink ink = ink_of(contender, taken);
+        const auto frozen = contender.frozen(comparison.sample_rate, comparison.speed);
+        if (!frozen) continue;
+        const FilterResponse response = filter_response(frozen->cascade, comparison.sample_rate, lines_hz);
+        const CurveStyle style = ink == Ink::grey ? CurveStyle::dashed : CurveStyle::line;
+        panels.magnitude.curves.push_back({contender.text, ink, style, response.hz, response.magnitude_db});
+        panels.phase.curves.push_back({contender.text, ink, style, response.hz, response.phase_deg});
+        panels.delay.curves.push_back({contender.text, ink, style, response.hz, response.group_delay_ms});
+        longest_dc_ms = std::max(longest_dc_ms, response.group_delay_ms.front());
+        deepest_db = std::min(deepest_db,
+                              *std::min_element(response.magnitude_db.begin(), response.magnitude_db.end()));
+    }
+    if (panels.magnitude.curves.empty()) return {};
+    panels.magnitude.y.from = std::max(deepest_db - 5.0, -85.0);
+    panels.magnitude.y.to = 8.0;
+    fit_delay_axis(panels.delay, longest_dc_ms);
+    return {std::move(panels.magnitude), std::move(panels.phase), std::move(panels.delay)};
+}
+
+}  // namespace
+
+Figure comparison_figure(const Comparison& comparison, std::span<const Contender> contenders) {
+    Figure figure{"comparison",
+                  fmt::format("Methods at {:.6g} deg/s, sampled at {:.6g} Hz", comparison.speed.value(),
+                              comparison.sample_rate.value()),
+                  verdict(comparison),
+                  {}};
+    std::vector<Panel> responses = response_panels(comparison, contenders);
+    std::vector<Panel> courses = course_panels(comparison, contenders);
+    if (responses.empty() && !courses.empty()) courses.front().legend = true;
+    // Frequency at the left, time at the right.
+    figure.columns = responses.empty() || courses.empty() ? 1 : 2;
+    for (std::size_t i = 0; i < std::max(responses.size(), courses.size()); ++i) {
+        if (i < responses.size()) figure.panels.push_back(std::move(responses[i]));
+        if (i < courses.size()) figure.panels.push_back(std::move(courses[i]));
+    }
+    return figure;
+}
+
+}  // namespace ripplenotch

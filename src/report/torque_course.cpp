@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/report/torque_course.hpp"
+
+#include <fmt/format.h>
+
+namespace ripplenotch {
+
+void TorqueCourse::add(double time_s, double speed_deg_s, double before_nm, double after_nm) {
+    if (!any_) first_s_ = time_s;
+    any_ = true;
+    last_s_ = time_s;
+    speed_.add(time_s, speed_deg_s);
+    before_.add(time_s, before_nm);
+    after_.add(time_s, after_nm);
+}
+
+Figure TorqueCourse::figure(const std::string& source, const std::string& method,
+                            const StreamReport& report) const {
+    PlotAxis time{"time", "s"};
+    time.from = first_s_;
+    time.to = last_s_;
+    Panel torque{.title = "Torque before and after", .x = time, .y = {"torque", "Nm"}};
+    torque.curves = {before_.curve("before", Ink::orange), after_.curve("after", Ink::blue)};
+    Panel speed{.title = "Joint speed", .x = time, .y = {"speed", "deg/s"}, .height = 0.5};
+    speed.curves = {speed_.curve("", Ink::black)};
+    Figure figure{"torque", fmt::format("{}: {}", source, method), "", {std::move(torque), std::move(speed)}};
+    if (report.switches.empty()) return figure;
+
+    Curve band{"",
+               Ink::green,
+               CurveStyle::steps,
+               {first_s_},
+               {static_cast<double>(report.switches[0].change.from_band)}};
+    Curve jump{"", Ink::vermilion, CurveStyle::stems, {}, {}};
+    for (const TimedSwitch& one : report.switches) {
+        band.x.push_back(one.time_s);
+        band.y.push_back(one.change.to_band);
+        jump.x.push_back(one.time_s);
+        jump.y.push_back(one.change.jump_nm);
+    }
+    band.x.push_back(last_s_);
+    band.y.push_back(band.y.back());
+    Panel in_force{.title = "Band in force (0: none)", .x = time, .y = {"band", ""}, .height = 0.5};
+    in_force.curves = {thinned(band)};
+    Panel jumps{.title = "Jump of the output at each switch", .x = time, .y = {"jump", "Nm"}, .height = 0.5};
+    jumps.curves = {thinned(jump)};
+    figure.panels.push_back(std::move(in_force));
+    figure.panels.push_back(std::move(jumps));
+    figure.sentence = fmt::format("{} changes of filter{}.", report.switch_count,
+                                  report.switches.size() < report.switch_count
+                                      ? fmt::format(", the first {} shown", report.switches.size())
+                                      : "");
+    return figure;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""--plot as users meet it: pictures, the terminal, figures as data, and what happens without gnuplot."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+import xml.dom.minidom
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+LOG = str(DATA / "paper_90deg_s.csv")
+MOVE = str(DATA / "paper_move_2s.csv")
+TABLE = ["--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18"]
+SIGNALS = ["--step", "10Nm", "--ramp", "20Nm/s", "--speed", "90deg/s", "--sample-rate", "1kHz", "--gear-ratio", "100",
+           "--orders", "1,2"]
+HOSTILE = "<script>alert(1)</script> \"q\" 'x' `touch pwned` $(touch pwned) @m _a^b{c} ]]> é \x1b[2J.csv"
+
+needs_gnuplot = unittest.skipUnless(shutil.which("gnuplot"), "SKIPPED: there is no gnuplot here")
+
+
+def run(*words, folder=None, **environment):
+    return subprocess.run([TOOL, *map(str, words)], capture_output=True, cwd=folder, timeout=120,
+                          stdin=subprocess.DEVNULL, env=dict(os.environ, **environment))
+
+
+COMMANDS = {
+    "spectrum": ["spectrum", LOG],
+    "order-spectrum": ["spectrum", MOVE, "--domain", "order"],
+    "campbell": ["spectrum", MOVE, "--map", "campbell", "--gear-ratio", "100"],
+    "order-map": ["spectrum", MOVE, "--map", "order", "--gear-ratio", "100", "--highest", "6"],
+    "line-frequency": ["identify", *(str(DATA / f"paper_{v}deg_s.csv") for v in (60, 90, 120, 180))],
+    "candidate-table": ["design", *TABLE],
+    "torque": ["filter", LOG, "--method", "lowpass,cutoff=13rad/s,order=1"],
+    "comparison": ["compare", *SIGNALS, "--method", "fixed,centers=25Hz:50Hz,q=0.25", "--method",
+                   "lowpass,cutoff=13rad/s,order=1"],
+}
+
+
+class Plots(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def plot(self, words, name, **environment):
+        return run(*words, "-o", self.path / "result", "--plot", self.path / name, "--force", folder=self.path,
+                   **environment)
+
+    def test_every_figure_is_data_with_labels_and_units(self):
+        for name, words in COMMANDS.items():
+            done = self.plot(words, "figure.json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            figure = json.loads((self.path / "figure.json").read_text())
+            self.assertEqual((figure["schema"], figure["name"]), ("ripplenotch/figure/1", name))
+            for panel in figure["panels"]:
+                self.assertTrue(panel["x"]["label"] and panel["y"]["label"], name)
+                self.assertLess(panel["x"]["from"], panel["x"]["to"])
+                for curve in panel["curves"]:
+                    self.assertEqual(len(curve["x"]), len(curve["y"]))
+
+    @needs_gnuplot
+    def test_every_figure_is_drawn_in_every_form(self):
+        for name, words in COMMANDS.items():
+            for form, magic in (("svg", b"<?xml"), ("png", b"\x89PNG"), ("pdf", b"%PDF")):
+                done = self.plot(words, f"{name}.{form}")
+                self.assertEqual((done.returncode, done.stderr), (0, b""), name)
+                self.assertTrue((self.path / f"{name}.{form}").read_bytes().startswith(magic))
+            figure = json.loads((self.plot(words, "figure.json"), (self.path / "figure.json").read_text())[1])
+            text = xml.dom.minidom.parse(str(self.path / f"{name}.svg")).documentElement
+            written = " ".join(node.firstChild.data for node in text.getElementsByTagName("text")
+                               if node.firstChild)
+            for panel in figure["panels"]:
+                for axis in ("x", "y"):
+                    self.assertIn(panel[axis]["label"], written, name)
+                for line in panel["lines"]:
+                    self.assertIn(line["name"][:30], written, name)
+
+    @needs_gnuplot
+    def test_the_same_input_gives_the_same_bytes(self):
+        for form in ("svg", "png", "pdf", "json"):
+            self.plot(COMMANDS["campbell"], f"a.{form}")
+            self.plot(COMMANDS["campbell"], f"b.{form}", LC_ALL="de_DE.UTF-8", TZ="Asia/Tokyo", GNUTERM="dumb")
+            self.assertEqual((self.path / f"a.{form}").read_bytes(), (self.path / f"b.{form}").read_bytes(), form)
+
+    @needs_gnuplot
+    def test_the_terminal_gets_eighty_columns_of_text(self):
+        for name, words in COMMANDS.items():
+            done = run(*words, "--plot", "-")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            text = done.stdout.decode()
+            self.assertNotIn("\x1b", text)
+            if name in ("spectrum", "campbell", "torque"):
+                self.assertLessEqual(max(map(len, text.splitlines())), 80, name)
+        drawn = run(*COMMANDS["spectrum"], "--plot", "-").stdout.decode()
+        for part in ("amplitude, zero to peak, Nm", "frequency, Hz", "A 25 Hz, 0.8 Nm", "B 50 Hz, 0.5", "noise floor"):
+            self.assertIn(part, drawn)
+
+    @needs_gnuplot
+    def test_hostile_names_show_as_text_and_run_nothing(self):
+        os.symlink(LOG, self.path / "log.csv")
+        hostile = HOSTILE.replace("/", "∕")
+        os.symlink(LOG, self.path / hostile)
+        done = run("spectrum", hostile, "-o", "out.csv", "--plot", "page.svg", folder=self.path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        svg = (self.path / "page.svg").read_bytes()
+        self.assertNotIn(b"<script", svg)
+        self.assertNotIn(b"\x1b", svg)
+        page = xml.dom.minidom.parseString(svg).documentElement
+        written = " ".join(node.firstChild.data for node in page.getElementsByTagName("text") if node.firstChild)
+        self.assertIn("<script>alert(1)<∕script> \"q\" 'x' `touch pwned` $(touch pwned) @m _a^b{c} ]]> é \\x1b[2J",
+                      written)
+        drawn = run("spectrum", hostile, "--plot", "-", folder=self.path)
+        self.assertIn(b"`touch pwned`", drawn.stdout)
+        self.assertNotIn(b"\x1b", drawn.stdout)
+        self.assertFalse((self.path / "pwned").exists())
+
+    def test_a_picture_s_name_is_never_run(self):
+        name = "a`touch pwned`;$(touch pwned)'\".svg"
+        done = run(*COMMANDS["candidate-table"], "-o", "out", "--plot", name, folder=self.path)
+        if shutil.which("gnuplot"):
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertTrue((self.path / name).is_file())
+        self.assertFalse((self.path / "pwned").exists())
+
+    def test_without_gnuplot_the_result_and_the_figure_s_data_are_written_and_it_is_said(self):
+        done = self.plot(COMMANDS["spectrum"], "picture.svg", PATH="/nowhere")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(b"no gnuplot", done.stderr)
+        self.assertIn(b"gnuplot-nox", done.stderr)
+        self.assertTrue((self.path / "result").read_text().startswith("frequency_hz,"))
+        self.assertEqual(json.loads((self.path / "picture.json").read_text())["name"], "spectrum")
+        self.assertFalse((self.path / "picture.svg").exists())
+        terminal = run(*COMMANDS["spectrum"], "--plot", "-", PATH="/nowhere")
+        self.assertEqual((terminal.returncode, terminal.stdout), (4, b""))
+
+    def test_a_gnuplot_that_fails_is_quoted(self):
+        fake = self.path / "gnuplot"
+        fake.write_text("#!/bin/sh\necho 'it hurts' >&2\nexit 3\n")
+        fake.chmod(0o755)
+        done = self.plot(COMMANDS["candidate-table"], "picture.svg", PATH=f"{self.path}:/usr/bin:/bin")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(b"it hurts", done.stderr)
+
+    def test_requests_that_make_no_sense_are_refused_before_any_work(self):
+        for words, part in ((["--plot", "picture.jpg"], b".svg"), (["--plot", "-", "--json"], b"standard output")):
+            done = run(*COMMANDS["spectrum"], *words)
+            self.assertEqual((done.returncode, done.stdout), (2, b""), words)
+            self.assertIn(part, done.stderr)
+        (self.path / "mine.svg").write_text("mine")
+        done = run(*COMMANDS["spectrum"], "--plot", self.path / "mine.svg")
+        self.assertEqual((done.returncode, done.stdout), (4, b""))
+        self.assertEqual((self.path / "mine.svg").read_text(), "mine")
+        done = run("filter", LOG, MOVE, "--method", "none", "--out-dir", self.path, "--plot", "x.svg")
+        self.assertEqual(done.returncode, 2, done.stderr)
+
+    def test_a_result_does_not_know_of_its_picture(self):
+        plain, plotted = self.path / "a.json", self.path / "b.json"
+        run(*COMMANDS["candidate-table"], "-o", plain)
+        run(*COMMANDS["candidate-table"], "-o", plotted, "--plot", self.path / "x.json")
+        self.assertEqual(plain.read_bytes(), plotted.read_bytes())
+
+    def test_the_filtered_log_is_the_same_with_and_without_a_picture(self):
+        words = ["filter", LOG, "--method", "lowpass,cutoff=13rad/s,order=1"]
+        run(*words, "-o", self.path / "a.csv")
+        run(*words, "-o", self.path / "b.csv", "--plot", self.path / "x.json")
+        self.assertEqual((self.path / "a.csv").read_bytes(), (self.path / "b.csv").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()

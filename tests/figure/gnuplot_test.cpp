@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/figure/gnuplot.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "figure/gnuplot_script.hpp"
+#include "figure/same_bytes.hpp"
+#include "ripplenotch/figure/visible_text.hpp"
+
+using namespace ripplenotch;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string hostile =
+    "<script>alert(1)</script> \"'`touch ripplenotch_was_here` $(touch x)\n!touch ripplenotch_was_here\n@m "
+    "_a^b{c} ]]> & \\ % é";
+
+Figure hostile_figure() {
+    Panel panel{.title = hostile, .x = {hostile, hostile}, .y = {hostile, "Nm"}};
+    panel.curves.push_back({hostile, Ink::blue, CurveStyle::line, {0.0, 1.0, 2.0}, {0.0, 1.0, 0.5}});
+    panel.ribbons.push_back({hostile, Ink::green, {0.0, 2.0}, {0.0, 0.2}, {0.5, 0.7}});
+    panel.lines.push_back({hostile, NamedLine::Run::at_x, 1.0});
+    panel.lines.push_back({hostile, NamedLine::Run::at_y, 0.5});
+    panel.shades.push_back({hostile, Ink::sky, 0.0, 2.0, 0.0, 1.0});
+    panel.map = HeatMap{.label = hostile, .unit = hostile};
+    panel.map->x_edges = {0.0, 1.0, 2.0};
+    panel.map->y_edges = {0.0, 1.0};
+    panel.map->cells = {0.2, 0.8};
+    return {"test", hostile, hostile, {panel}};
+}
+
+// "" without gnuplot, with a word on the skipping.
+std::string picture(const Figure& figure, PictureKind kind) {
+    const auto drawn = draw_picture(figure, kind);
+    if (!drawn) WARN("SKIPPED: there is no gnuplot here");
+    return drawn.value_or("");
+}
+
+}  // namespace
+
+TEST_CASE("a string for gnuplot holds nothing that its parser looks at") {
+    const std::string quoted = gnuplot_string(hostile);
+    CHECK(quoted.front() == '"');
+    CHECK(quoted.back() == '"');
+    const std::string inner = quoted.substr(1, quoted.size() - 2);
+    CHECK(inner.find_first_of("\"'`$@{}%!\n<>&_^#;") == std::string::npos);
+    // A backslash stands only before three octal digits.
+    for (std::size_t at = inner.find('\\'); at != std::string::npos; at = inner.find('\\', at + 1)) {
+        REQUIRE(at + 3 < inner.size());
+        for (std::size_t i = 1; i <= 3; ++i) CHECK((inner[at + i] >= '0' && inner[at + i] <= '7'));
+    }
+}
+
+TEST_CASE("every string of bytes survives into a gnuplot string as visible text, byte for byte") {
+    for (int byte = 0; byte < 256; ++byte) {
+        const std::string text = "a" + std::string(1, static_cast<char>(byte)) + "b";
+        const std::string quoted = gnuplot_string(text);
+        std::string read;
+        for (std::size_t at = 1; at + 1 < quoted.size(); ++at) {
+            if (quoted[at] != '\\') {
+                read += quoted[at];
+                continue;
+            }
+            read += static_cast<char>(std::stoi(quoted.substr(at + 1, 3), nullptr, 8));
+            at += 3;
+        }
+        CHECK(read == visible_text(text));
+    }
+}
+
+TEST_CASE("hostile names are drawn as text and run nothing") {
+    const std::string svg = picture(hostile_figure(), PictureKind::svg);
+    if (svg.empty()) return;
+    CHECK_FALSE(std::filesystem::exists("ripplenotch_was_here"));
+    CHECK_THAT(svg, !Contains("<script"));
+    CHECK_THAT(svg, !Contains("]]>"));
+    CHECK_THAT(svg, Contains("&lt;script>"));
+    CHECK_THAT(svg, Contains("_a^b{c}"));
+    CHECK_THAT(svg, Contains("\\n!touch"));
+}
+
+TEST_CASE("the same figure gives the same bytes, without a clock or a version in them") {
+    for (const PictureKind kind : {PictureKind::svg, PictureKind::png, PictureKind::pdf}) {
+        const std::string first = picture(hostile_figure(), kind);
+        if (first.empty()) return;
+        CHECK(first == picture(hostile_figure(), kind));
+        CHECK_THAT(first, !Contains("GNUPLOT"));
+        CHECK_THAT(first, !Contains("cairo 1."));
+        CHECK_THAT(first, !Contains("/CreationDate (D:20"));
+    }
+}
+
+TEST_CASE("a PDF keeps its length when clock and version go, since it counts its own bytes") {
+    const std::string pdf =
+        "<< /Producer (cairo 1.16.0 (https://cairographics.org))\n   /CreationDate (D:20261121135235Z)\n>>";
+    const std::string same = same_pdf(pdf);
+    CHECK(same.size() == pdf.size());
+    CHECK_THAT(same, Contains("/CreationDate (D:19700101000000Z)"));
+    CHECK_THAT(same, Contains("/Producer (cairo                    "));
+    CHECK(same_pdf("no such thing") == "no such thing");
+}
+
+TEST_CASE("a figure without points is drawn with its axes") {
+    const Figure figure{"test", "Empty", "", {{.title = "", .x = {"time", "s"}, .y = {"torque", "Nm"}}}};
+    const std::string svg = picture(figure, PictureKind::svg);
+    if (svg.empty()) return;
+    CHECK_THAT(svg, Contains("time, s") && Contains("torque, Nm"));
+}
+
+TEST_CASE("in the terminal no line is wider than asked for and nothing but text comes out") {
+    for (const int columns : {40, 80, 132}) {
+        const auto drawn = draw_text(hostile_figure(), columns);
+        if (!drawn) {
+            WARN("SKIPPED: there is no gnuplot here");
+            return;
+        }
+        std::size_t from = 0;
+        for (std::size_t to = drawn->find('\n'); to != std::string::npos; to = drawn->find('\n', from)) {
+            const std::string line = drawn->substr(from, to - from);
+            INFO(line);
+            CHECK(text_width(line) <= static_cast<std::size_t>(columns));
+            CHECK(visible_text(line) == line);
+            from = to + 1;
+        }
+        CHECK_THAT(*drawn, Contains("<script>"));
+    }
+}

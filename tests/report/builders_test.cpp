@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+// Figures show the numbers that the results hold, where they belong.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "analysis/traces.hpp"
+#include "filter/tables.hpp"
+#include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/design/low_pass.hpp"
+#include "ripplenotch/evaluate/bench.hpp"
+#include "ripplenotch/report/comparison_figure.hpp"
+#include "ripplenotch/report/identification_figure.hpp"
+#include "ripplenotch/report/spectrum_figure.hpp"
+#include "ripplenotch/report/table_figure.hpp"
+#include "ripplenotch/report/torque_course.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+// The highest point of a curve.
+struct Top {
+    double x, y;
+};
+Top top_of(const Curve& curve) {
+    Top top{NAN, -INFINITY};
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+        if (curve.y[i] > top.y) top = {curve.x[i], curve.y[i]};
+    return top;
+}
+
+double value_of(const Curve& curve, double x) {
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+        if (std::abs(curve.x[i] - x) < 1e-9 * std::abs(x)) return curve.y[i];
+    return NAN;
+}
+
+Trace at_speed(double speed_deg_s, double seconds = 4.0) {
+    return make_trace({.seconds = seconds,
+                       .speed_deg_s = [speed_deg_s](double) { return speed_deg_s; },
+                       .ripple = {{100.0, 0.8, 0.3}, {200.0, 0.5, 1.0}},
+                       .noise_nm = 0.02});
+}
+
+}  // namespace
+
+TEST_CASE("a spectrum's figure names its peaks and keeps their height, even of a long log") {
+    const Trace trace = at_speed(90.0, 60.0);
+    const Spectrum spectrum = torque_spectrum(trace.view(), {});
+    const ShownSpectrum shown{"", &spectrum};
+    const Figure figure = spectrum_figure("log.csv", {&shown, 1});
+    check_figure(figure);
+    const Panel& panel = figure.panels.front();
+    REQUIRE(panel.lines.size() == 2);
+    CHECK_THAT(panel.lines[0].name, Contains("25 Hz") && Contains("0.8 Nm"));
+    CHECK(panel.lines[1].value == Approx(50.0).margin(0.01));
+    CHECK(panel.curves[0].x.size() < spectrum.hz.size());
+    const auto highest = std::max_element(spectrum.amplitude_nm.begin(), spectrum.amplitude_nm.end());
+    CHECK(top_of(panel.curves[0]).y == *highest);
+    CHECK(axis_text(panel.x) == "frequency, Hz");
+    CHECK_THAT(figure.sentence, Contains("2 lines"));
+}
+
+TEST_CASE("more steady stretches than panels are counted, not hidden") {
+    const Trace trace = at_speed(90.0);
+    const Spectrum spectrum = torque_spectrum(trace.view(), {});
+    const std::vector<ShownSpectrum> shown(20, {"stretch", &spectrum});
+    const Figure figure = spectrum_figure("log.csv", shown);
+    CHECK(figure.panels.size() == most_spectrum_panels);
+    CHECK_THAT(figure.sentence, Contains("20 stretches, of which the first 8 are shown"));
+}
+
+TEST_CASE("order lines run through the ridges of a Campbell diagram and of an order map") {
+    const Trace trace = make_trace({.seconds = 20.0,
+                                    .speed_deg_s = [](double t) { return 20.0 + 7.0 * t; },
+                                    .ripple = {{100.0, 0.8, 0.0}},
+                                    .noise_nm = 0.01});
+    const OutputAngle angle = output_angle(trace.view());
+    const auto speed = smoothed_speed(trace.view());
+    for (const Axis axis : {Axis::time, Axis::angle}) {
+        const SpeedMap map = speed_map(trace.view(), angle.turns, speed, {.axis = axis});
+        const Figure figure = speed_map_figure("log.csv", map, {GearRatio(100.0), {1.0, 2.0}, false});
+        check_figure(figure);
+        const Panel& panel = figure.panels.front();
+        const HeatMap& heat = *panel.map;
+        const std::size_t columns = heat.x_edges.size() - 1;
+        CHECK(heat.highest == Approx(0.8).epsilon(0.15));
+        for (std::size_t column = 0; column < columns; ++column) {
+            std::size_t best = 0;
+            double highest = 0.0;
+            for (std::size_t row = 0; row + 1 < heat.y_edges.size(); ++row) {
+                if (heat.cells[row * columns + column] > highest) {
+                    highest = heat.cells[row * columns + column];
+                    best = row;
+                }
+            }
+            if (highest < 0.4) continue;
+            const double middle_deg_s = 0.5 * (heat.x_edges[column] + heat.x_edges[column + 1]);
+            const double expected =
+                axis == Axis::time ? panel.lines[0].value * middle_deg_s : panel.lines[0].value;
+            const double slack = 2.0 * (heat.y_edges[best + 1] - heat.y_edges[best]) +
+                                 (axis == Axis::time ? 100.0 * map.speed_step_deg_s / 360.0 : 0.0);
+            CHECK(heat.y_edges[best] == Approx(expected).margin(slack));
+        }
+    }
+}
+
+TEST_CASE("speeds that nobody measured are empty columns of a map") {
+    SpeedMap map;
+    map.axis_kind = Axis::time;
+    map.speed_deg_s = {10.0, 12.0, 40.0};
+    map.windows = {1, 1, 1};
+    map.axis = {0.0, 1.0, 2.0};
+    map.amplitude_nm = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}};
+    map.spacing = 1.0;
+    map.speed_step_deg_s = 4.0;
+    const HeatMap heat = *speed_map_figure("log.csv", map, {}).panels.front().map;
+    CHECK(heat.x_edges == std::vector<double>{8.0, 11.0, 14.0, 38.0, 42.0});
+    REQUIRE(heat.cells.size() == 12);
+    CHECK(heat.cells[0] == 1.0);
+    CHECK(heat.cells[1] == 4.0);
+    CHECK(std::isnan(heat.cells[2]));
+    CHECK(heat.cells[3] == 7.0);
+    CHECK(heat.cells[11] == 9.0);
+}
+
+TEST_CASE("identify's figure shows every line at every speed on the fitted ray") {
+    std::vector<Trace> traces;
+    for (const double speed : {60.0, 120.0, 180.0}) traces.push_back(at_speed(speed));
+    std::vector<TraceView> views;
+    for (const Trace& trace : traces) views.push_back(trace.view());
+    const Identification found = identify(views, {});
+    const Figure figure = identification_figure("three logs", found);
+    check_figure(figure);
+    CHECK(figure.sentence == found.verdict);
+    const Panel& panel = figure.panels.front();
+    REQUIRE(panel.curves.size() == 2);
+    REQUIRE(panel.lines.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+        REQUIRE(panel.curves[i].x.size() == 3);
+        for (std::size_t k = 0; k < 3; ++k)
+            CHECK(panel.curves[i].y[k] == Approx(panel.lines[i].value * panel.curves[i].x[k]).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("the candidate table's figure is the paper's figure 4: centres step along the ripple") {
+    const Figure figure = table_figure(ripplenotch::testing::paper_table());
+    check_figure(figure);
+    const Panel& centres = figure.panels.front();
+    REQUIRE(centres.curves.size() == 2);
+    CHECK(centres.curves[0].y.front() == 7.5);  // table 1, candidate 1
+    CHECK(centres.curves[1].y.back() == 95.0);  // candidate 9
+    CHECK(centres.shades.size() == 9);
+    REQUIRE(centres.lines.size() == 2);
+    CHECK(centres.lines[0].value == Approx(100.0 / 360.0));
+    // A step is never further from the ripple than half a band is wide.
+    for (std::size_t i = 0; i < centres.curves[0].x.size(); ++i) {
+        CHECK(centres.curves[0].y[i] ==
+              Approx(centres.lines[0].value * centres.curves[0].x[i]).margin(2.5 + 1e-9));
+    }
+    CHECK(figure.panels[2].curves[0].y.front() == Approx(127.3).margin(0.05));  // delay of band 1, in ms
+}
+
+TEST_CASE("a hole between bands is a hole in the figure") {
+    TableSpec spec = ripplenotch::testing::table_spec();
+    spec.bands = {{DegPerSec(20.0), DegPerSec(40.0)}, {DegPerSec(60.0), DegPerSec(80.0)}};
+    const Figure figure = table_figure(CandidateTable::design(spec));
+    const auto& y = figure.panels.front().curves.front().y;
+    CHECK(std::count_if(y.begin(), y.end(), [](double v) { return std::isnan(v); }) == 1);
+}
+
+TEST_CASE("a response has its nulls, its -3 dB point and the delay that the table states") {
+    const Hertz rate(1000.0);
+    const Cascade notches{design_notch({Hertz(25.0)}, rate), design_notch({Hertz(50.0)}, rate)};
+    const FilterResponse response = filter_response(notches, rate, {});
+    Curve magnitude{"", Ink::blue, CurveStyle::line, response.hz, response.magnitude_db};
+    CHECK(*std::min_element(response.magnitude_db.begin(), response.magnitude_db.end()) ==
+          lowest_magnitude_db);
+    CHECK(std::count_if(response.phase_deg.begin(), response.phase_deg.end(),
+                        [](double v) { return std::isnan(v); }) >= 2);
+    CHECK(response.group_delay_ms.front() == Approx(38.04).margin(0.01));
+    CHECK(response.phase_deg.front() == Approx(0.0).margin(2.0));
+    CHECK(std::is_sorted(response.hz.begin(), response.hz.end()));
+
+    const std::vector<double> cutoff{13.0};
+    const FilterResponse low = filter_response(design_low_pass({Hertz(13.0), 1}, rate), rate, cutoff);
+    CHECK(value_of({"", Ink::blue, CurveStyle::line, low.hz, low.magnitude_db}, 13.0) ==
+          Approx(-3.0103).margin(1e-3));
+    CHECK(value_of({"", Ink::blue, CurveStyle::line, low.hz, low.phase_deg}, 13.0) ==
+          Approx(-45.0).margin(1e-6));
+}
+
+TEST_CASE("step and ramp in a comparison's figure are those that the bench measures") {
+    const std::vector<Contender> contenders{make_contender(parse_spec("none")),
+                                            make_contender(parse_spec("lowpass,cutoff=13rad/s,order=1"))};
+    Comparison comparison;
+    comparison.sample_rate = Hertz(1000.0);
+    comparison.speed = DegPerSec(90.0);
+    comparison.step_nm = 10.0;
+    comparison.ramp_nm_s = 20.0;
+    comparison.lines = RippleLines{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}};
+    for (const Contender& one : contenders) {
+        comparison.methods.push_back(measure_on_signals(one, comparison.sample_rate, comparison.speed, 10.0,
+                                                        20.0, &*comparison.lines));
+    }
+    const Figure figure = comparison_figure(comparison, contenders);
+    check_figure(figure);
+    CHECK(figure.columns == 2);
+    REQUIRE(figure.panels.size() == 5);
+    const Panel& step = figure.panels[1];
+    REQUIRE(step.curves.size() == 2);
+    const double settle_ms = comparison.methods[1].settle_ms->front();
+    const Curve& slow = step.curves[1];
+    for (std::size_t i = 0; i < slow.x.size(); ++i) {
+        if (slow.x[i] < 0.0) CHECK(slow.y[i] == 0.0);
+        if (slow.x[i] > settle_ms + 1.0) CHECK(slow.y[i] == Approx(10.0).epsilon(0.005));
+    }
+    const Panel& ramp = figure.panels[3];
+    const double lag = (ramp.curves[0].y.back() - ramp.curves[1].y.back()) / 20.0;
+    CHECK(1e3 * lag == Approx(*comparison.methods[1].ramp_delay_ms).epsilon(0.02));
+}
+
+TEST_CASE("torque before and after keeps its peaks over two million samples, and the ledger its switches") {
+    TorqueCourse course;
+    const std::size_t count = 2'000'000;
+    for (std::size_t k = 0; k < count; ++k)
+        course.add(0.001 * static_cast<double>(k), 90.0, k == 1'234'567 ? 55.0 : 1.0,
+                   k == 1'234'570 ? -7.0 : 0.5);
+    StreamReport report;
+    report.switches = {{{100, 0, 3, 20.0, 0.4}, 0.1}, {{900, 3, 4, 80.0, -0.2}, 0.9}};
+    report.switch_count = 2;
+    const Figure figure = course.figure("log.csv", "switching", report);
+    check_figure(figure);
+    REQUIRE(figure.panels.size() == 4);
+    const Panel& torque = figure.panels.front();
+    CHECK(top_of(torque.curves[0]).y == 55.0);
+    CHECK(top_of(torque.curves[0]).x == Approx(1234.567));
+    CHECK(*std::min_element(torque.curves[1].y.begin(), torque.curves[1].y.end()) == -7.0);
+    CHECK(torque.curves[0].x.size() < 20000);
+    CHECK(figure.panels[2].curves[0].y == std::vector<double>{0.0, 3.0, 4.0, 4.0});
+    CHECK(figure.panels[3].curves[0].y == std::vector<double>{0.4, -0.2});
+    CHECK_THAT(figure.sentence, Contains("2 changes"));
+}
+
+TEST_CASE("a frontier runs by delay whatever the order of its designs, the choice named") {
+    const std::vector<FrontierPoint> points{{80.0, 40.0, false, ""},
+                                            {20.0, 15.0, true, ""},
+                                            {40.0, 28.0, false, ""},
+                                            {60.0, 20.0, false, "low-pass"}};
+    const Figure figure = frontier_figure("Frontier", "", points);
+    check_figure(figure);
+    const Panel& panel = figure.panels.front();
+    CHECK(panel.curves[0].x == std::vector<double>{20.0, 40.0, 80.0});
+    REQUIRE(panel.lines.size() == 1);
+    CHECK_THAT(panel.lines[0].name, Contains("20 ms") && Contains("15 dB"));
+    CHECK(panel.curves[2].name == "low-pass");
+}
