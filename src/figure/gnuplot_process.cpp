@@ -65,7 +65,8 @@ std::vector<std::string> plain_environment() {
     for (char** entry = environ; *entry != nullptr; ++entry) {
         const std::string_view name(*entry);
         bool ours = false;
-        for (const std::string_view changes : {"LC_", "LANG=", "LANGUAGE=", "TZ=", "GNU", "GDFONTPATH=", "FIT_"})
+        for (const std::string_view changes :
+             {"LC_", "LANG=", "LANGUAGE=", "TZ=", "GNU", "GDFONTPATH=", "FIT_"})
             ours = ours || name.substr(0, changes.size()) == changes;
         if (!ours) kept.emplace_back(name);
     }

@@ -102,6 +102,14 @@ TEST_CASE("a PDF keeps its length when clock and version go, since it counts its
     CHECK(same_pdf("no such thing") == "no such thing");
 }
 
+TEST_CASE("an SVG loses its version and its empty groups, and nothing else") {
+    CHECK(same_svg("<a>\n<desc>Produced by GNUPLOT</desc>\n<g fill=\"none\" color=\"black\">\n</g>\n<g "
+                   "fill=\"none\" "
+                   "color=\"red\">\n<path/></g>\n<text>]]></text>\n</a>") ==
+          "<a>\n\n<g fill=\"none\" color=\"red\">\n<path/></g>\n<text>]]&gt;</text>\n</a>");
+    CHECK(same_svg("").empty());
+}
+
 TEST_CASE("a figure without points is drawn with its axes") {
     const Figure figure{"test", "Empty", "", {{.title = "", .x = {"time", "s"}, .y = {"torque", "Nm"}}}};
     const std::string svg = picture(figure, PictureKind::svg);

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""The pictures of the documentation show what the tool shows today: compared by their data, not by their pixels."""
+
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+import xml.dom.minidom
+
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+FIGURES = SOURCE / "docs" / "figures"
+
+
+def alike(kept, made, path=""):
+    """Where two documents differ, or None. Numbers may differ in their last digits: another compiler, another cosine."""
+    if isinstance(kept, dict) and isinstance(made, dict):
+        if kept.keys() != made.keys():
+            return f"{path}: fields {sorted(kept)} and {sorted(made)}"
+        return next(filter(None, (alike(kept[k], made[k], f"{path}.{k}") for k in kept)), None)
+    if isinstance(kept, list) and isinstance(made, list):
+        if len(kept) != len(made):
+            return f"{path}: {len(kept)} and {len(made)} entries"
+        return next(filter(None, (alike(a, b, f"{path}[{i}]") for i, (a, b) in enumerate(zip(kept, made)))), None)
+    number = (int, float)
+    if isinstance(kept, number) and isinstance(made, number) and not isinstance(kept, bool):
+        return None if math.isclose(kept, made, rel_tol=1e-5, abs_tol=1e-6) else f"{path}: {kept} and {made}"
+    return None if kept == made else f"{path}: {kept!r} and {made!r}"
+
+
+class Figures(unittest.TestCase):
+    def test_every_picture_shows_what_its_command_shows_today(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([SOURCE / "scripts" / "make-figures", folder], capture_output=True, timeout=120,
+                                  env=dict(os.environ, ONLY_DATA="1"))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            made = {path.name: json.loads(path.read_text()) for path in pathlib.Path(folder).glob("*.json")}
+        kept = {path.name: json.loads(path.read_text()) for path in FIGURES.glob("*.json")}
+        self.assertEqual(sorted(kept), sorted(made))
+        for name in kept:
+            kept[name].pop("version"), made[name].pop("version")
+            self.assertIsNone(alike(kept[name], made[name], name), "run scripts/make-figures and look at the pictures")
+
+    def test_every_picture_on_a_page_is_there_with_its_data_and_is_lawful(self):
+        for page in (FIGURES / "README.md", SOURCE / "README.md"):
+            for name in re.findall(r"!\[[^]]+\]\(([^)]+\.svg)\)", page.read_text()):
+                picture = page.parent / name
+                self.assertTrue(picture.with_suffix(".json").is_file(), name)
+                written = " ".join(node.firstChild.data for node in
+                                   xml.dom.minidom.parse(str(picture)).getElementsByTagName("text") if node.firstChild)
+                figure = json.loads(picture.with_suffix(".json").read_text())
+                self.assertIn(figure["title"], written)
+                for panel in figure["panels"]:
+                    self.assertIn(panel["y"]["label"], written)
+
+    def test_pictures_are_small(self):
+        for path in FIGURES.glob("*.svg"):
+            self.assertLess(path.stat().st_size, 300_000, path.name)
+
+
+if __name__ == "__main__":
+    unittest.main()
