@@ -9,7 +9,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double worth_it = 1.05;  ///< a simpler course stays unless it leaves this much more
+// A simpler course stays unless another leaves this much less: one per cent of the ripple's power, 20 dB
+// below it, or a twentieth.
+constexpr double worth_it = 1.05, not_worth_it = 0.01;
 constexpr std::array courses = {Course::nothing, Course::constant, Course::by_direction, Course::by_speed,
                                 Course::local};
 
@@ -26,6 +28,7 @@ struct Sum {
 
 // Speeds in quarter octaves, two directions; what a window takes from another falls with their distance.
 constexpr int bins = 160;
+constexpr int most_bins_apart = 6;
 constexpr double bins_an_octave = 4.0, reach_bins = 1.5;
 
 int speed_bin(double speed_turns_s) {
@@ -61,19 +64,20 @@ class Order {
     }
     [[nodiscard]] Amplitude value(std::size_t i) const { return windows_[i].amplitudes[order_]; }
 
-    /// What a course takes window i to be; without the window itself when it is held out.
+    /// What a course takes window i to be; without the window itself, and what shares samples with it, when
+    /// it is held out.
     [[nodiscard]] Amplitude taken(Course course, std::size_t i, bool held_out) const {
         switch (course) {
             case Course::nothing:
                 return 0.0;
             case Course::constant:
-                return mean(all_, i, held_out, 0.0);
+                return over_all(i, held_out);
             case Course::by_direction:
-                return mean(by_direction_[direction(i)], i, held_out, 0.0);
+                return over_direction(i, held_out);
             case Course::by_speed:
                 return near_speed(i, held_out);
             case Course::local:
-                return near_place(i, held_out);
+                return value(i);
         }
         return 0.0;
     }
@@ -83,39 +87,63 @@ class Order {
         return windows_[i].speed_turns_s < 0.0 ? 1 : 0;
     }
 
-    [[nodiscard]] Amplitude mean(const Sum& sum, std::size_t i, bool held_out, Amplitude otherwise) const {
-        Sum used = sum;
-        if (held_out) used.add(value(i), -weight(i));
-        return used.weight > 1e-9 * sum.weight ? used.value / used.weight : otherwise;
+    // Windows that share samples are held out together.
+    template <class Use>
+    void each_held_out(std::size_t i, Use use) const {
+        const auto shares = [&](std::size_t j) {
+            const double apart = std::abs(windows_[j].middle - windows_[i].middle);
+            return apart < 0.49 * (windows_[j].length + windows_[i].length);
+        };
+        use(i);
+        for (std::size_t j = i; j > 0 && shares(j - 1); --j) use(j - 1);
+        for (std::size_t j = i + 1; j < windows_.size() && shares(j); ++j) use(j);
+    }
+
+    [[nodiscard]] static Amplitude mean(const Sum& used, const Sum& before, Amplitude otherwise) {
+        return used.weight > 1e-9 * before.weight ? used.value / used.weight : otherwise;
+    }
+
+    [[nodiscard]] Amplitude over_all(std::size_t i, bool held_out) const {
+        Sum used = all_;
+        if (held_out) each_held_out(i, [&](std::size_t j) { used.add(value(j), -weight(j)); });
+        return mean(used, all_, 0.0);
+    }
+
+    [[nodiscard]] Amplitude over_direction(std::size_t i, bool held_out) const {
+        const Sum& whole = by_direction_[direction(i)];
+        Sum used = whole;
+        if (held_out) {
+            each_held_out(i, [&](std::size_t j) {
+                if (direction(j) == direction(i)) used.add(value(j), -weight(j));
+            });
+        }
+        return mean(used, whole, 0.0);
+    }
+
+    [[nodiscard]] static double nearness(int bin, int other) {
+        const double distance = static_cast<double>(bin - other) / reach_bins;
+        return std::abs(bin - other) <= most_bins_apart ? std::exp(-0.5 * distance * distance) : 0.0;
     }
 
     [[nodiscard]] Amplitude near_speed(std::size_t i, bool held_out) const {
         const int own = speed_bin(windows_[i].speed_turns_s);
         Sum used;
-        for (int bin = std::max(0, own - 6); bin <= std::min(bins - 1, own + 6); ++bin) {
-            const double distance = static_cast<double>(bin - own) / reach_bins;
-            const double share = std::exp(-0.5 * distance * distance);
+        for (int bin = std::max(0, own - most_bins_apart); bin <= std::min(bins - 1, own + most_bins_apart);
+             ++bin) {
             const Sum& sum = by_speed_[direction(i)][static_cast<std::size_t>(bin)];
-            used.value += share * sum.value;
-            used.weight += share * sum.weight;
+            used.value += nearness(bin, own) * sum.value;
+            used.weight += nearness(bin, own) * sum.weight;
         }
-        return mean(used, i, held_out, mean(all_, i, held_out, 0.0));
+        const Sum whole = used;
+        if (held_out) {
+            each_held_out(i, [&](std::size_t j) {
+                if (direction(j) == direction(i))
+                    used.add(value(j), -nearness(speed_bin(windows_[j].speed_turns_s), own) * weight(j));
+            });
+        }
+        return mean(used, whole, over_all(i, held_out));
     }
 
-    // The windows before and after in the same direction, and the window itself twice as much.
-    [[nodiscard]] Amplitude near_place(std::size_t i, bool held_out) const {
-        Sum used;
-        if (!held_out) used.add(value(i), 2.0 * weight(i));
-        const auto add = [&](std::size_t j) {
-            const bool near = std::abs(windows_[j].middle - windows_[i].middle) < near_turns;
-            if (near && direction(j) == direction(i)) used.add(value(j), weight(j));
-        };
-        if (i > 0) add(i - 1);
-        if (i + 1 < windows_.size()) add(i + 1);
-        return used.weight > 0.0 ? used.value / used.weight : mean(all_, i, held_out, 0.0);
-    }
-
-    static constexpr double near_turns = 20.0;
     const std::vector<RippleWindow>& windows_;
     std::size_t order_;
     double least_variance_ = std::numeric_limits<double>::min();
@@ -142,21 +170,30 @@ std::string_view course_name(Course course) {
     return "";
 }
 
+// What a held-out window shows is the ripple and what else there is at that frequency. A course that knew the
+// ripple exactly would leave that background; how much it leaves beyond it is its own error. A window's own
+// amplitude errs by the background.
 CourseScore choose_course(std::vector<RippleWindow>& windows, std::size_t order) {
     const Order data(windows, order);
-    double power = 0.0;
-    for (std::size_t i = 0; i < windows.size(); ++i) power += data.weight(i) * std::norm(data.value(i));
-    std::array<double, courses.size()> left{};
+    double power = 0.0, background = 0.0;
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+        power += data.weight(i) * std::norm(data.value(i));
+        background += data.weight(i) * std::max(windows[i].background[order], windows[i].variance);
+    }
+    if (!(power > 0.0)) power = 1.0;
+    background = std::min(background / power, 1.0);
+    std::array<double, courses.size()> error{};
     for (std::size_t c = 0; c < courses.size(); ++c) {
         double sum = 0.0;
         for (std::size_t i = 0; i < windows.size(); ++i)
             sum += data.weight(i) * std::norm(data.value(i) - data.taken(courses[c], i, true));
-        left[c] = power > 0.0 ? sum / power : 1.0;
+        error[c] = courses[c] == Course::local ? background : std::max(sum / power - background, 0.0);
     }
-    const double best = *std::min_element(left.begin(), left.end());
-    const auto winner =
-        std::find_if(left.begin(), left.end(), [best](double l) { return l <= worth_it * best; });
-    const CourseScore score{courses[static_cast<std::size_t>(winner - left.begin())], *winner};
+    const double best = *std::min_element(error.begin(), error.end());
+    const auto winner = std::find_if(error.begin(), error.end(), [best](double e) {
+        return e <= std::max(worth_it * best, best + not_worth_it);
+    });
+    const CourseScore score{courses[static_cast<std::size_t>(winner - error.begin())], *winner};
     std::vector<Amplitude> taken(windows.size());
     for (std::size_t i = 0; i < windows.size(); ++i) taken[i] = data.taken(score.course, i, false);
     for (std::size_t i = 0; i < windows.size(); ++i) windows[i].amplitudes[order] = taken[i];

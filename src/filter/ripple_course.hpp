@@ -15,14 +15,14 @@ enum class Course { nothing, constant, by_direction, by_speed, local };
 
 struct CourseScore {
     Course course = Course::nothing;
-    double left =
-        1.0;  ///< ripple power that the other windows do not foretell, over that of no ripple at all
+    double error = 1.0;  ///< power that the course is wrong by, over that of the ripple
 };
 
-/// Tries every course on one order: each window is foretold from the others, and what is left of its
-/// amplitude, weighted by how well it is known, is the score. The lowest wins; a simpler one does unless it
-/// is worse by 5 %. Afterwards `amplitudes[order]` of every window holds what the winner takes it to be, the
-/// window's own included.
+/// Tries every course on one order. Each window is foretold from the others, and what is left of its
+/// amplitude beyond the background, weighted by how well it is known, is the course's error; that of `local`,
+/// which takes the window's own amplitude, is the background. The least wins; a simpler one does unless it is
+/// worse by 5 % and by 1 % of the ripple's power. Afterwards `amplitudes[order]` of every window holds what
+/// the winner takes it to be.
 [[nodiscard]] CourseScore choose_course(std::vector<RippleWindow>& windows, std::size_t order);
 
 }  // namespace ripplenotch

@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "filter/motor_angle.hpp"
@@ -29,9 +30,12 @@ class MotorPath {
 /// Ripple amplitudes in one window: ripple = Re(value exp(-i n theta)), that is cosine + i sine.
 struct RippleWindow {
     double middle = 0.0;         ///< MotorPath::travelled
+    double length = 0.0;         ///< in motor turns
     double speed_turns_s = 0.0;  ///< signed mean speed of the motor
     double variance = 0.0;       ///< of each part of each amplitude, by the fit's own residual
     std::vector<std::complex<double>> amplitudes;
+    /// Per order: mean square of what the same fit finds half an order to its sides, where no ripple is.
+    std::vector<double> background;
 };
 
 struct WindowRule {
@@ -39,7 +43,8 @@ struct WindowRule {
     double longest_s = 2.0;  ///< a cubic follows the torque no longer
 };
 
-/// Cuts a log into windows of `turns` motor turns in one direction and fits a cubic in time and all orders.
+/// Cuts a log into half-overlapping windows of `turns` motor turns in one direction and fits a cubic in time
+/// and all orders, the middle counting most.
 class RippleWindows {
   public:
     RippleWindows(std::vector<double> orders, double sample_rate_hz, WindowRule rule);
@@ -51,6 +56,9 @@ class RippleWindows {
   private:
     void begin(const MotorPath& path);
     void close();
+    void keep_second_half();
+    [[nodiscard]] double background(std::size_t order, std::span<const double> residual,
+                                    std::span<const double> weight) const;
 
     std::vector<double> orders_;
     double rate_hz_;

@@ -129,10 +129,9 @@ class SubtractLearner final : public Learner {
         }
         for (std::size_t i = 0; i < plan_.ripple.orders.size() && !windows.empty(); ++i) {
             const CourseScore score = choose_course(windows, i);
-            notes_.push_back(
-                fmt::format("order {:g}: {}, {:.0f} % of its power foretold by windows held out ({} windows)",
-                            plan_.ripple.orders[i], course_name(score.course),
-                            100.0 * (1.0 - std::min(score.left, 1.0)), windows.size()));
+            notes_.push_back(fmt::format("order {:g}: {}, about {:.1f} % of its power left ({} windows)",
+                                         plan_.ripple.orders[i], course_name(score.course),
+                                         100.0 * std::min(score.error, 1.0), windows.size()));
         }
         return std::make_unique<SubtractingFilter>(plan_, std::move(windows));
     }
