@@ -57,10 +57,12 @@ def contenders(best_q):
              ("tracking, Q 4, no fading", same(f"tracking,{GEAR},q=4,min=0.5Hz,fade=0Hz")),
              ("oscillator, cold", same(OSCILLATOR)),
              ("oscillator, cold, told that the arm rests unloaded", same(f"{OSCILLATOR},rest=0Nm")),
+             ("oscillator, cold, gain scheduled", same(f"{OSCILLATOR},gain=scheduled")),
              ("oscillator, cold, minus-ripple", same(f"{OSCILLATOR},output=minus-ripple")),
              ("oscillator, warm", lambda phase, has: warm(phase) + start[has]),
              ("oscillator, warm, 5 % and 5 deg off", lambda phase, has:
                  f"{OSCILLATOR},amplitudes=0.84Nm:0.475Nm,phases={phase + 5}deg:{phase - 5}deg{start[has]}"),
+             ("oscillator, warm, gain scheduled", lambda phase, has: f"{warm(phase)},gain=scheduled{start[has]}"),
              ("oscillator, warm, minus-ripple", lambda phase, has: f"{warm(phase)},output=minus-ripple{start[has]}"),
              ("subtract", same(f"subtract,{GEAR}"))]
     return rows

@@ -29,9 +29,9 @@ std::vector<std::pair<double, double>> quadratics(const Eigen::MatrixXd& matrix)
 
 }  // namespace
 
-Cascade settled_cascade(const RippleModel& model, double step_turns, bool minus_ripple) {
+Cascade settled_cascade(const RippleModel& model, double step_turns, std::vector<double> gain,
+                        bool minus_ripple) {
     RippleModel used = model;
-    auto gain = settled_gain(used, step_turns);
     if (gain.empty()) {
         if (minus_ripple) return {};
         used.orders.clear();

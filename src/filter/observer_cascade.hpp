@@ -9,7 +9,9 @@
 namespace ripplenotch {
 
 /// From the measured torque to the torque estimate, or to the measured torque less the ripple estimate. Gain
-/// 1 at 0 Hz. At standstill, where ripple and torque cannot be told apart, the amplitudes stand still.
-[[nodiscard]] Cascade settled_cascade(const RippleModel& model, double step_turns, bool minus_ripple);
+/// 1 at 0 Hz. `gain` is in the frame of ripple_rotation; empty at standstill, where ripple and torque cannot
+/// be told apart and the amplitudes stand still.
+[[nodiscard]] Cascade settled_cascade(const RippleModel& model, double step_turns, std::vector<double> gain,
+                                      bool minus_ripple);
 
 }  // namespace ripplenotch

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "filter/gain_schedule.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -34,9 +36,11 @@ double RippleModel::share(double order, double step_turns) const noexcept {
                       0.0, 1.0);
 }
 
-RippleKalman::RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors)
+RippleKalman::RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors,
+                           const GainSchedule* schedule)
     : model_(std::move(model)),
       priors_(std::move(priors)),
+      schedule_(schedule),
       m_(model_.states()),
       torque_noise_(model_.torque_noise()),
       x_(m_),
@@ -80,7 +84,7 @@ void RippleKalman::start(double motor_turns) {
     p_[0] = torque_variance;
     // A hundred times the settled variance: a log may begin amid a motion.
     p_[m_ + 1] = 100.0 * std::numbers::sqrt2 * std::pow(model_.bandwidth_rad_s, 3) * model_.step_s;
-    phase_advance_turns_ = 0.0;
+    surprise_ = 0.0;
 }
 
 void RippleKalman::start_unloaded(double motor_turns, double measured) {
@@ -109,6 +113,12 @@ void RippleKalman::predict(double step_turns) noexcept {
 }
 
 double RippleKalman::next(double measured, double motor_turns, double step_turns) {
+    if (schedule_ != nullptr) {
+        x_[0] += model_.step_s * x_[1];
+        look(motor_turns, step_turns);
+        update_by_schedule(measured, step_turns);
+        return x_[0];
+    }
     predict(step_turns);
     look(motor_turns, step_turns);
     update(measured);
@@ -126,24 +136,49 @@ void RippleKalman::update(double measured) noexcept {
         variance += h_[i] * sum;
     }
     const double scale = 1.0 / variance, surprise = measured - expected;
-    double advance = 0.0, weights = 0.0;
-    for (std::size_t i = 2; i < m_; i += 2) {
-        // ripple = Re(z exp(-i n theta)), z = cosine + i sine: a phase that runs ahead turns z backward.
-        const double c = x_[i], s = x_[i + 1], square = c * c + s * s;
-        const double doubt = p_[i * m_ + i] + p_[(i + 1) * m_ + i + 1];
-        if (square <= 9.0 * doubt) continue;
-        const double turned = (c * ph_[i + 1] - s * ph_[i]) * scale * surprise;
-        const double order = model_.orders[i / 2 - 1];
-        advance -= order * turned;
-        weights += order * order * square;
-    }
-    phase_advance_turns_ = weights > 0.0 ? advance / (2.0 * std::numbers::pi * weights) : 0.0;
+    surprise_ = surprise * scale;
+    settled_variance_ = 0.0;
     for (std::size_t i = 0; i < m_; ++i) {
         const double gain = ph_[i] * scale;
         x_[i] += gain * surprise;
         // Both triangles from the same product, so that P stays symmetric to the last bit.
         for (std::size_t j = i; j < m_; ++j) p_[j * m_ + i] = p_[i * m_ + j] -= gain * ph_[j];
     }
+}
+
+// The schedule's gains are of the frame that turns with the motor; the amplitudes stand still.
+void RippleKalman::update_by_schedule(double measured, double step_turns) noexcept {
+    schedule_->at(step_turns, ph_);
+    double expected = x_[0], taken = ph_[0];
+    for (std::size_t i = 2; i < m_; i += 2) {
+        const double cosine = h_[i], sine = h_[i + 1], ahead = ph_[i], across = ph_[i + 1];
+        ph_[i] = ahead * cosine - across * sine;
+        ph_[i + 1] = ahead * sine + across * cosine;
+        expected += cosine * x_[i] + sine * x_[i + 1];
+        taken += cosine * ph_[i] + sine * ph_[i + 1];
+    }
+    const double surprise = measured - expected;
+    // P h = K (1 + h' P h) = K / (1 - h' K): about the variance of ripple once settled.
+    surprise_ = surprise;
+    settled_variance_ = 1.0 / std::max(1.0 - taken, 1e-3);
+    for (std::size_t i = 0; i < m_; ++i) x_[i] += ph_[i] * surprise;
+}
+
+double RippleKalman::phase_advance_turns() const noexcept {
+    double advance = 0.0, weights = 0.0;
+    for (std::size_t i = 2; i < m_; i += 2) {
+        // ripple = Re(z exp(-i n theta)), z = cosine + i sine: a phase that runs ahead turns z backward.
+        const double c = x_[i], s = x_[i + 1], square = c * c + s * s;
+        const double doubt = schedule_ != nullptr ? 2.0 * settled_variance_ *
+                                                        std::sqrt(ph_[i] * ph_[i] + ph_[i + 1] * ph_[i + 1])
+                                                  : p_[i * m_ + i] + p_[(i + 1) * m_ + i + 1];
+        if (square <= 9.0 * doubt) continue;
+        const double turned = (c * ph_[i + 1] - s * ph_[i]) * surprise_;
+        const double order = model_.orders[i / 2 - 1];
+        advance -= order * turned;
+        weights += order * order * square;
+    }
+    return weights > 0.0 ? advance / (2.0 * std::numbers::pi * weights) : 0.0;
 }
 
 RippleRotation ripple_rotation(const RippleModel& model, double step_turns) {

@@ -36,11 +36,16 @@ struct AmplitudePrior {
     double deviation = 0.0;           ///< of each
 };
 
-/// The filter with its exact gain, worked out at every sample: m = 2 + 2 orders, about m^2 + 4 m
-/// multiplications and additions a sample beside a cosine and a sine per order.
+class GainSchedule;
+
+/// The filter. With its exact gain, worked out at every sample: m = 2 + 2 orders, about 1.5 m^2 + 6 m
+/// multiplications and additions a sample beside a cosine and a sine per order. With a schedule of settled
+/// gains, which must outlive it: about 6 m, and a logarithm; nothing is then known of how well the state is
+/// known.
 class RippleKalman {
   public:
-    RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors);
+    RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors,
+                 const GainSchedule* schedule = nullptr);
 
     /// The first sample, where the torque is anything at all: torque + ripple = 0 is what was measured.
     void start(double motor_turns);
@@ -53,19 +58,22 @@ class RippleKalman {
     [[nodiscard]] double ripple() const noexcept;  ///< at the last sample
     /// By how much the ripple's phase ran ahead of the angle in the last sample, in motor turns: mean over
     /// the orders whose amplitude is known to a third, 0 when none is.
-    [[nodiscard]] double phase_advance_turns() const noexcept { return phase_advance_turns_; }
+    [[nodiscard]] double phase_advance_turns() const noexcept;
 
   private:
     void look(double motor_turns, double step_turns) noexcept;
     void predict(double step_turns) noexcept;
     void update(double measured) noexcept;
+    void update_by_schedule(double measured, double step_turns) noexcept;
 
     RippleModel model_;
     std::vector<AmplitudePrior> priors_;
+    const GainSchedule* schedule_;
     std::size_t m_;
     RippleModel::TorqueNoise torque_noise_;
-    std::vector<double> x_, p_, h_, ph_;  ///< p_ is m by m, row by row
-    double phase_advance_turns_ = 0.0;
+    std::vector<double> x_, p_, h_, ph_;  ///< p_ is m by m, row by row; ph_ the gain times `scale`
+    double surprise_ = 0.0;          ///< what the last sample was off, times what ph_ has to be scaled by
+    double settled_variance_ = 0.0;  ///< of the last measurement, by the schedule
 };
 
 /// The model at one constant speed in the frame that turns with the motor: torque, rate, then for each order

@@ -143,12 +143,18 @@ class TwoPasses(Case):
 
 class Delay(Case):
     def test_the_delay_of_a_tracking_notch_is_listed_by_speed_and_falls_with_it(self):
-        _, metrics = self.filtered("--method", "tracking,gear-ratio=100,orders=1:2")
+        _, metrics = self.filtered("--method", "tracking,gear-ratio=100,orders=1:2,q=2.5")
         speeds = [entry["speed_from_deg_s"] for entry in metrics["delays"]]
         delays = [entry["dc_delay_ms"] for entry in metrics["delays"]]
         self.assertEqual(speeds, [5, 10, 20, 50, 100, 200])
         self.assertEqual(delays[2:], sorted(delays[2:], reverse=True))
         self.assertAlmostEqual(delays[4], 1.5 / (2 * 3.14159265 * 27.7778 * 2.5) * 1e3, delta=0.05)
+
+    def test_without_q_no_notch_of_tracking_delays_by_more_than_four_and_a_half_milliseconds(self):
+        _, metrics = self.filtered("--method", "tracking,gear-ratio=100,orders=1:2")
+        delays = [entry["dc_delay_ms"] for entry in metrics["delays"]]
+        self.assertLess(max(delays), 2 * 4.5 + 0.05)
+        self.assertAlmostEqual(delays[2], 9.0, delta=0.05)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
+#include "filter/gain_schedule.hpp"
 #include "filter/motor_angle.hpp"
 #include "filter/moves.hpp"
 #include "filter/ripple_kalman.hpp"
@@ -255,6 +256,42 @@ TEST_CASE("the exact gain is that of the textbook's matrices, and settles to tha
     const auto settled = settled_gain(model, step);
     for (Eigen::Index i = 0; i < 6; ++i)
         CHECK(settled[static_cast<std::size_t>(i)] == Approx(gain[i]).epsilon(1e-9).margin(1e-12));
+}
+
+TEST_CASE(
+    "the scheduled gain is the settled one of the speed, in either direction, and falls to 0 at standstill") {
+    const RippleModel model{{1.0, 2.0}, 0.001, 2.0 * std::numbers::pi * 15.0, 1.0};
+    const GainSchedule schedule(model);
+    std::vector<double> gain(6), back(6);
+    for (double step = 0.0005; step < 0.22; step *= 1.13) {
+        const auto settled = settled_gain(model, step);
+        schedule.at(step, gain);
+        schedule.at(-step, back);
+        const auto other = settled_gain(model, -step);
+        double size = 0.0;
+        for (const double g : settled) size += g * g;
+        for (std::size_t i = 0; i < 6; ++i) {
+            INFO("step " << step << " gain " << i);
+            // The rate's gain is per second: held against itself.
+            const double scale =
+                i == 1 ? std::abs(settled[1]) : std::sqrt(std::abs(size - settled[1] * settled[1]));
+            CHECK(gain[i] == Approx(settled[i]).margin(0.02 * scale));
+            CHECK(back[i] == Approx(other[i]).margin(0.02 * scale));
+        }
+    }
+    schedule.at(0.0, gain);
+    for (std::size_t i = 2; i < 6; ++i) CHECK(gain[i] == 0.0);
+    RippleModel alone = model;
+    alone.orders.clear();
+    CHECK(gain[0] == Approx(settled_gain(alone, 1.0)[0]).epsilon(1e-12));
+}
+
+TEST_CASE("with scheduled gains a warm start and a reversal leave as little, a cold start more") {
+    CHECK(error_on_move(warm + ",gain=scheduled") < 0.03);
+    CHECK(error_on_move(cold + ",gain=scheduled") < 0.30);
+    const KnownMove move = reversal();
+    const auto out = filtered(*start(cold + ",gain=scheduled"), move.signals.samples());
+    CHECK(rms_error(out, move.true_nm, 8000, 12000) < 0.15);
 }
 
 TEST_CASE("a joint at rest for ten million samples keeps a sound covariance") {

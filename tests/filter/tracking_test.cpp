@@ -230,7 +230,7 @@ TEST_CASE("through a reversal the notch leaves what low speed leaves, and nothin
 }
 
 TEST_CASE(
-    "on the paper's move the default tracking notch leaves 0.26 Nm of 0.65, at Q 4 without fading 0.32") {
+    "on the paper's move the default tracking notch leaves 0.27 Nm of 0.65, at Q 4 without fading 0.32") {
     double raw = 0.0, q4 = 0.0, usual = 0.0;
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const KnownMove move = paper_move(seed);
@@ -243,6 +243,24 @@ TEST_CASE(
     CHECK(raw == Approx(0.65).margin(0.01));
     CHECK(q4 == Approx(0.32).margin(0.01));
     CHECK(usual < 0.28);
+}
+
+TEST_CASE("max-delay narrows a slow line's notch until its delay is that, and leaves a fast one's as it is") {
+    const auto delay_ms = [](const std::string& text, double line_hz) {
+        return 1e3 * group_delay(frozen_at(text, line_hz).cascade, Hertz(0.0), Hertz(1000.0)).value();
+    };
+    const auto rule = [](double hz, double q) { return 1e3 / (2.0 * std::numbers::pi * hz * q); };
+    const std::string one = "tracking,gear-ratio=100,orders=1";
+    for (const double hz : {6.0, 8.0, 12.0, 15.0}) {
+        CHECK(delay_ms(one + ",q=2,max-delay=5ms", hz) == Approx(5.0).epsilon(2e-3));
+        CHECK(delay_ms(one + ",q=2", hz) == Approx(rule(hz, 2.0)).epsilon(5e-3));
+        CHECK(delay_ms(one, hz) == Approx(4.5).epsilon(2e-3));
+    }
+    for (const double hz : {17.0, 40.0}) {
+        CHECK(delay_ms(one + ",q=2,max-delay=5ms", hz) == delay_ms(one + ",q=2", hz));
+        CHECK(gain_db(one + ",max-delay=5ms", hz, hz) < -200.0);
+    }
+    CHECK(delay_ms(one, 60.0) == delay_ms(one + ",q=1.7", 60.0));
 }
 
 TEST_CASE("tracking says what is wrong with its settings") {

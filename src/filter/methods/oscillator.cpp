@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
 
+#include "filter/gain_schedule.hpp"
 #include "filter/methods/list.hpp"
 #include "filter/motor_angle.hpp"
 #include "filter/observer_cascade.hpp"
@@ -24,6 +26,7 @@ namespace {
 constexpr double standing_deg_s = 1.0;  ///< a log that begins slower than this begins at standstill
 
 constexpr std::array<std::string_view, 2> angles = {"best", "velocity"};
+constexpr std::array<std::string_view, 2> gains = {"exact", "scheduled"};
 constexpr std::array<std::string_view, 2> outputs = {"torque", "minus-ripple"};
 
 constexpr std::array keys = {
@@ -65,6 +68,13 @@ constexpr std::array keys = {
         .default_text = "1Nm",
         .above = 0.0,
         .help = "cold start: amplitude that an order may well have"},
+    Key{.name = "gain",
+        .kind = KeyKind::choice,
+        .default_text = "exact",
+        .choices = gains,
+        .help =
+            "exact: worked out at every sample; scheduled: the settled one of the present speed, cheaper, "
+            "slower to start"},
     Key{.name = "rest",
         .dimension = Dimension::torque,
         .help =
@@ -98,6 +108,7 @@ struct Plan {
     bool has_start = false;
     double start_deg = 0.0;
     std::optional<double> rest_nm;
+    bool scheduled = false;
     MotorAngle::Source source = MotorAngle::Source::best;
     bool minus_ripple = false;
     double largest_offset_deg_s = 0.0;
@@ -152,6 +163,7 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
                settings.number("memory")};
     p.has_start = settings.has("start");
     if (settings.has("rest")) p.rest_nm = settings.number("rest");
+    p.scheduled = settings.text("gain") == "scheduled";
     if (p.has_start) p.start_deg = settings.number("start");
     if (settings.text("angle") == "velocity") p.source = MotorAngle::Source::velocity;
     p.minus_ripple = settings.text("output") == "minus-ripple";
@@ -165,8 +177,9 @@ class OscillatorFilter final : public CausalFilter {
     explicit OscillatorFilter(Plan plan)
         : plan_(std::move(plan)),
           angle_(plan_.ripple.gear_ratio, plan_.sample_rate_hz, plan_.source, plan_.start_deg),
-          cold_(plan_.model, plan_.cold),
-          warm_(plan_.model, plan_.warm) {}
+          schedule_(plan_.scheduled ? std::make_unique<GainSchedule>(plan_.model) : nullptr),
+          cold_(plan_.model, plan_.cold, schedule_.get()),
+          warm_(plan_.model, plan_.warm, schedule_.get()) {}
 
     void process(const Samples& in, std::span<double> out) override {
         for (std::size_t k = 0; k < out.size(); ++k) {
@@ -217,6 +230,7 @@ class OscillatorFilter final : public CausalFilter {
 
     Plan plan_;
     MotorAngle angle_;
+    std::unique_ptr<GainSchedule> schedule_;  ///< null for the exact gain
     RippleKalman cold_, warm_;
     RippleKalman* filter_ = nullptr;
     double origin_nm_ = 0.0, correction_deg_s_ = 0.0;
@@ -230,10 +244,18 @@ std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate,
 FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const CandidateTable*, DegPerSec speed) {
     const Plan p = plan(settings, sample_rate);
     const double step_turns = p.ripple.gear_ratio * speed.value() / 360.0 / p.sample_rate_hz;
+    std::vector<double> gain;
+    if (p.scheduled) {
+        gain.resize(p.model.states());
+        GainSchedule(p.model).at(step_turns, gain);
+    } else {
+        gain = settled_gain(p.model, step_turns);
+    }
     const std::string note = step_turns == 0.0 ? "standstill: the ripple's amplitudes keep what they were"
                                                : "settled Kalman filter";
-    return {settled_cascade(p.model, step_turns, p.minus_ripple), note,
-            p.source == MotorAngle::Source::velocity};
+    return {settled_cascade(p.model, step_turns, step_turns == 0.0 ? std::vector<double>{} : gain,
+                            p.minus_ripple),
+            note, p.source == MotorAngle::Source::velocity};
 }
 
 }  // namespace

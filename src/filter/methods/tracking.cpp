@@ -25,7 +25,15 @@ constexpr std::array keys = {
     gear_ratio_key,
     orders_key,
     joint_key,
-    Key{.name = "q", .default_text = "2.5", .above = 0.0, .help = "centre over -3 dB width of each order"},
+    Key{.name = "q",
+        .above = 0.0,
+        .help = "centre over -3 dB width of each order; 1.7 when not given. Alone, it holds at any speed"},
+    Key{.name = "max-delay",
+        .dimension = Dimension::time,
+        .above = 0.0,
+        .help = "of each order's notch: slower lines, whose notch would delay longer, get a narrower one; "
+                "4.5ms when "
+                "neither this nor q is given"},
     Key{.name = "depth",
         .dimension = Dimension::decibel,
         .above = 0.0,
@@ -65,6 +73,8 @@ constexpr std::array keys = {
                 "when not given"},
 };
 
+constexpr double usual_q = 1.7, usual_max_delay_s = 0.0045;
+
 // Lines near half the sample rate cannot be notched; the share falls to nothing before they get there.
 constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
 
@@ -74,6 +84,7 @@ struct Plan {
     std::vector<double> spread;  ///< centres of the composite's notches, relative to the order's
     double sample_rate_hz = 0.0;
     double q_each = 0.0;
+    double narrow_hz = 0.0;   ///< lines below this get a narrower notch, in proportion: one of constant delay
     double depth_gain = 0.0;  ///< at the centre, with full share
     double min_hz = 0.0, fade_hz = 0.0;
     bool parks = false;
@@ -83,6 +94,9 @@ struct Plan {
     /// Where the notch of a line at `hz` is put.
     [[nodiscard]] double center_hz(double hz) const noexcept {
         return std::clamp(hz, min_hz, none_above_rate * sample_rate_hz);
+    }
+    [[nodiscard]] double q_at(double center_hz) const noexcept {
+        return q_each * std::max(1.0, narrow_hz / center_hz);
     }
     [[nodiscard]] double high_share(double hz) const noexcept {
         const double full = full_below_rate * sample_rate_hz, none = none_above_rate * sample_rate_hz;
@@ -127,7 +141,13 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     p.ripple = ripple_orders("tracking", settings);
     p.weights = per_order("tracking", settings, "weights", p.ripple, 1.0);
     p.sample_rate_hz = sample_rate.value();
-    const double q = settings.number("q");
+    const double q = settings.has("q") ? settings.number("q") : usual_q;
+    // A notch delays by 1 / (2 pi f Q).
+    if (settings.has("max-delay") || !settings.has("q")) {
+        const double max_delay_s =
+            settings.has("max-delay") ? settings.number("max-delay") : usual_max_delay_s;
+        p.narrow_hz = 1.0 / (2.0 * std::numbers::pi * q * max_delay_s);
+    }
     const std::string composite = settings.text("composite");
     const std::size_t count = composite == "triple" ? 3 : composite == "double" ? 2 : 1;
     p.q_each = q_of_each(q, static_cast<double>(count));
@@ -217,7 +237,7 @@ class TrackingFilter final : public CausalFilter {
         lines_[line].center_hz = center_hz;
         for (std::size_t j = 0; j < plan_.spread.size(); ++j) {
             const double at = std::numbers::pi * center_hz * plan_.spread[j] / plan_.sample_rate_hz;
-            lines_[line].notches[j].tuning = BandPassTuning::at(std::tan(at), plan_.q_each);
+            lines_[line].notches[j].tuning = BandPassTuning::at(std::tan(at), plan_.q_at(center_hz));
         }
     }
 
@@ -240,7 +260,7 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
         const double left = p.left_at_center(i, hz);
         if (left >= 1.0) continue;
         for (const double relative : p.spread) {
-            NotchSpec notch{.center = Hertz(p.center_hz(hz) * relative), .q = p.q_each};
+            NotchSpec notch{.center = Hertz(p.center_hz(hz) * relative), .q = p.q_at(p.center_hz(hz))};
             if (left > 0.0) notch.depth_db = -20.0 * std::log10(left);
             filter.cascade.push_back(design_notch(notch, sample_rate));
         }
