@@ -10,6 +10,8 @@
 #include <map>
 #include <numeric>
 
+#include "analysis/excess_scatter.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -222,7 +224,7 @@ void fit(std::span<const OrderLine> lines, const Comb& comb, GearRatioFit& resul
         ratio = top / bottom;
         for (const auto& [source, e] : estimates)
             misfit += e.weight * (e.ratio - ratio) * (e.ratio - ratio) / e.variance;
-        scale = freedom > 0.0 ? std::max(1.0, std::sqrt(misfit / freedom)) : 1.0;
+        scale = excess_scatter(misfit, freedom);
     }
     result.value = ratio;
     result.standard_error = scale / std::sqrt(bottom);

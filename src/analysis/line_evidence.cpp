@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "analysis/place_error.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 
 namespace ripplenotch {
@@ -14,7 +15,6 @@ namespace {
 constexpr double tau = 2.0 * std::numbers::pi;
 constexpr double recurrence_chance = 0.01;
 constexpr double most_of_log = 0.6;
-constexpr double hann_variance = 2.343;  // of a Hann-windowed frequency over the Cramer-Rao bound
 
 double noise_at(const Stack& stack, std::size_t sweep, double place) {
     const auto bin = static_cast<std::size_t>(std::lround(std::max(0.0, place / stack.spacing)));
@@ -32,36 +32,6 @@ Piece piece_at(const Sweep& part, const Sweep& whole, Axis axis, double noise, d
     const double scale = part.weight_square_sum / whole.weight_square_sum;
     const double power = std::norm(fourier_point(places(part, axis), part.value, place).value);
     return {power / (noise * scale), part.effective_samples()};
-}
-
-/// Standard error of a place from what the sweeps disagree about: each left out in turn, one Newton step
-/// (jackknife).
-double disagreement(std::span<const Sweep> sweeps, const Stack& stack, double place) {
-    std::vector<std::pair<double, double>> parts;  // slope and curvature of each sweep's power
-    double slope = 0.0, curve = 0.0;
-    for (std::size_t i = 0; i < sweeps.size(); ++i) {
-        const double noise = noise_at(stack, i, place);
-        if (!(noise > 0.0)) continue;
-        const FourierPoint at = fourier_point(places(sweeps[i], stack.axis), sweeps[i].value, place);
-        const double weight = stack.sweep_weights[i] / noise;
-        parts.emplace_back(weight * std::real(std::conj(at.value) * at.first),
-                           weight * (std::norm(at.first) + std::real(std::conj(at.value) * at.second)));
-        slope += parts.back().first;
-        curve += parts.back().second;
-    }
-    double mean = 0.0, square = 0.0, count = 0.0;
-    for (const auto& [own_slope, own_curve] : parts) {
-        if (!(curve - own_curve < 0.0)) continue;
-        const double shift =
-            std::clamp(-(slope - own_slope) / (curve - own_curve), -stack.spacing, stack.spacing);
-        mean += shift;
-        square += shift * shift;
-        count += 1.0;
-    }
-    // Too few sweeps to disagree: amplitude that changes along a sweep moves a line by about a tenth of its
-    // width.
-    if (count < 3.0) return 0.1 * stack.resolution;
-    return std::sqrt(std::max(0.0, (square - mean * mean / count) * (count - 1.0) / count));
 }
 
 }  // namespace
@@ -149,7 +119,7 @@ double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bi
 }
 
 void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, MotionLine& line) {
-    double information = 0.0, weights = 0.0, power = 0.0, noise_power = 0.0, lengths = 0.0;
+    double weights = 0.0, power = 0.0, noise_power = 0.0, lengths = 0.0;
     std::complex<double> together;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
         const Sweep& sweep = sweeps[i];
@@ -159,23 +129,17 @@ void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, Mo
         const std::complex<double> amplitude = 2.0 * sum / sweep.weight_sum;
         const double floor = 4.0 * noise / (sweep.weight_sum * sweep.weight_sum);
         const double weight = stack.sweep_weights[i];
-        const double length = length_of(sweep, stack.axis);
         weights += weight;
         power += weight * std::norm(amplitude);
         noise_power += weight * floor;
         together += weight * amplitude;
         lengths += weight * std::abs(amplitude);
-        // 1/variance = pi^2 L^2 (A^2 / floor^2) / 2.343, from var = 3 S / (pi^2 A^2 L^3) and floor^2 = 3 S /
-        // L.
-        information += std::numbers::pi * std::numbers::pi * length * length *
-                       std::max(0.0, std::norm(amplitude) / floor - 1.0) / hann_variance;
         const double order = stack.axis == Axis::angle ? place : 0.0;
         const double hz = stack.axis == Axis::angle ? order * std::abs(sweep.mean_deg_s) / 360.0 : place;
         line.by_speed.push_back(
             {sweep.mean_deg_s, hz, std::abs(amplitude), std::abs(amplitude) / std::sqrt(floor)});
     }
-    const double bound = information > 0.0 ? 1.0 / std::sqrt(information) : stack.resolution;
-    const double error = std::max(bound, disagreement(sweeps, stack, place));
+    const double error = place_error(sweeps, stack, place);
     if (stack.axis == Axis::angle) {
         line.order_output = place;
         line.order_stderr = error;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the analysis room: how well the sweeps know the place of a line.
+
+#include <span>
+
+#include "ripplenotch/analysis/stack.hpp"
+
+namespace ripplenotch {
+
+/// Standard error of the place of the largest summed power, in turns or hertz. First what the noise beside
+/// the line makes of it (one Newton step, delta method, with the sweeps' own weights). Where the sweeps, or
+/// thirds of them when they are few, put the line more apart than that noise explains, as a phase that
+/// wanders with speed or load does, the error is widened to what they show.
+[[nodiscard]] double place_error(std::span<const Sweep> sweeps, const Stack& stack, double place);
+
+}  // namespace ripplenotch
