@@ -207,7 +207,8 @@ void name_mains(Line& line) {
 }
 
 /// Fits the ratio to what may be orders and writes each line's order per motor turn.
-void add_ratio(std::vector<Reported>& reported, const IdentifyOptions& options, Identification& result) {
+void add_ratio(std::vector<Reported>& reported, const IdentifyOptions& options, bool clock_in_doubt,
+               Identification& result) {
     std::vector<OrderLine> orders;
     std::vector<std::size_t> owner;
     const bool any_certain = std::any_of(reported.begin(), reported.end(),
@@ -218,7 +219,7 @@ void add_ratio(std::vector<Reported>& reported, const IdentifyOptions& options, 
         orders.push_back(*reported[i].order);
         owner.push_back(i);
     }
-    GearRatioResult ratio = fit_gear_ratio(orders, options.hint, options.hinted_orders);
+    GearRatioResult ratio = fit_gear_ratio(orders, {options.hint, options.hinted_orders, clock_in_doubt});
     result.gear_ratio = std::move(ratio.fit);
     for (std::string& note : ratio.notes) result.notes.push_back(std::move(note));
     for (std::size_t i = 0; i < owner.size(); ++i) {
@@ -301,7 +302,9 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
                                   : "steady stretches and order spectrum";
         }
     }
-    add_ratio(reported, options, result);
+    const bool clock_in_doubt =
+        std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
+    add_ratio(reported, options, clock_in_doubt, result);
     for (Reported& r : reported) {
         name_mains(r.line);
         result.lines.push_back(std::move(r.line));

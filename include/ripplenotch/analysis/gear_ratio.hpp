@@ -37,14 +37,21 @@ struct GearRatioResult {
     std::vector<std::string> notes;
 };
 
+/// What is known beside the lines.
+struct RatioQuestion {
+    std::optional<GearRatio> hint{};
+    std::span<const int> hinted_orders{};  ///< n at which the strongest line is believed to stand
+    bool clock_in_doubt = false;  ///< the angle is velocity times time: a wrong clock scales every order
+};
+
 /// n runs from 1 to 8 for a line on its own and to 16 for lines that a comb explains besides. Every candidate
 /// is scored by how unlikely its matches are by chance, by whether odd lines set it apart from its half, by
 /// what real drives look like (ratios 25 to 320, n = 2 most often alone), by catalogue ratios, and by the
-/// hint; the scores are shares of one. The value is left empty unless one candidate has at least 0.7. Fit:
-/// per source the weighted mean over its lines, then over sources by Huber's weights (k = 1.345), the
-/// scatter's excess over the stated errors widening the interval (Student's t).
-/// `hinted_orders`: n at which the strongest line is believed to stand; checked in the same way as the ratio.
-[[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, std::optional<GearRatio> hint,
-                                             std::span<const int> hinted_orders = {});
+/// hint; beside the combs stand ratios that a mistake in the log would explain: a unit of speed, with a hint
+/// also a clock or a scale. The scores are shares of one. The value is left empty unless one comb has at
+/// least 0.7. Fit: per source the weighted mean over its lines, then over sources by Huber's weights
+/// (k = 1.345); where sources scatter more than their errors make likely (1 %), that widens the interval, by
+/// Student's t.
+[[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQuestion& question);
 
 }  // namespace ripplenotch
