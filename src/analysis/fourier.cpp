@@ -45,23 +45,47 @@ constexpr double beta = 2.30 * static_cast<double>(width);
 
 double kernel(double x) { return std::exp(beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0)); }
 
-/// Transform of the kernel at `phase` radians per half width, by the trapezoid rule in x = sin t, where the
-/// integrand and all its derivatives are negligible at both ends.
-double kernel_transform(double phase) {
-    constexpr int nodes = 40;
-    static const auto table = [] {
-        std::array<std::array<double, 2>, nodes> rows{};  // place, weight
-        for (int i = 0; i < nodes; ++i) {
-            const double t = std::numbers::pi / 2.0 * (i + 0.5) / nodes;
-            rows[static_cast<std::size_t>(i)] = {std::sin(t),
-                                                 std::exp(beta * (std::cos(t) - 1.0)) * std::cos(t)};
+/// Transform of the kernel at 0, 1, 2, ... steps of phase (radians per half width), by the trapezoid rule in
+/// x = sin t, where the integrand and all its derivatives are negligible at both ends.
+class KernelTransform {
+  public:
+    explicit KernelTransform(double step) : step_(step) {
+        for (std::size_t i = 0; i < nodes; ++i) {
+            const double t = std::numbers::pi / 2.0 * (static_cast<double>(i) + 0.5) / nodes;
+            place_[i] = std::sin(t);
+            weight_[i] = std::exp(beta * (std::cos(t) - 1.0)) * std::cos(t) * std::numbers::pi / nodes;
+            turn_real_[i] = std::cos(step * place_[i]);
+            turn_imaginary_[i] = std::sin(step * place_[i]);
         }
-        return rows;
-    }();
-    double sum = 0.0;
-    for (const auto& [place, weight] : table) sum += weight * std::cos(phase * place);
-    return sum * std::numbers::pi / nodes;
-}
+    }
+
+    double next() {
+        // Cosines of evenly spaced phases turn by a constant; they are set anew before rounding adds up.
+        if (count_ % 256 == 0) {
+            for (std::size_t i = 0; i < nodes; ++i) {
+                const double phase = step_ * static_cast<double>(count_) * place_[i];
+                real_[i] = weight_[i] * std::cos(phase);
+                imaginary_[i] = weight_[i] * std::sin(phase);
+            }
+        }
+        ++count_;
+        double sum = 0.0;
+        for (std::size_t i = 0; i < nodes; ++i) {
+            sum += real_[i];
+            const double real = real_[i] * turn_real_[i] - imaginary_[i] * turn_imaginary_[i];
+            imaginary_[i] = real_[i] * turn_imaginary_[i] + imaginary_[i] * turn_real_[i];
+            real_[i] = real;
+        }
+        return sum;
+    }
+
+  private:
+    static constexpr std::size_t nodes = 40;
+    using Row = std::array<double, nodes>;
+    double step_;
+    std::size_t count_ = 0;
+    Row place_{}, weight_{}, turn_real_{}, turn_imaginary_{}, real_{}, imaginary_{};
+};
 
 void spread(std::span<const double> where, std::span<const double> value, double spacing,
             std::span<double> grid) {
@@ -127,7 +151,8 @@ std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> whe
     sums.resize(count);
     const double half = static_cast<double>(width) / 2.0;
     const double step = tau * half / static_cast<double>(grid.size());
-    for (std::size_t k = 0; k < count; ++k) sums[k] /= half * kernel_transform(step * static_cast<double>(k));
+    KernelTransform transform(step);
+    for (std::complex<double>& sum : sums) sum /= half * transform.next();
     return sums;
 }
 
