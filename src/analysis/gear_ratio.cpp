@@ -144,7 +144,7 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
         (certain || best.hinted || best.listed)) {
         result.order_of_line = best.n;
         fit(lines, best, result.fit);
-        if (hint && best.hinted) add(scale_rival(best, result.fit, *hint));
+        if (hint && best.hinted && certain) add(scale_rival(best, result.fit, *hint));
         result.fit.candidates = scored(combs, rivals);
         // The robust fit moves the value a little from where the comparison of combs left it; one ratio, one
         // number.
