@@ -278,3 +278,28 @@ TEST_CASE(
     CHECK(all_covered >= 93 * all_given / 100);
     CHECK(all_covered <= 97 * all_given / 100);
 }
+
+TEST_CASE("half a second lost in the middle of a log makes no line, moves none and raises no floor") {
+    const auto with_gap = [](Trace trace) {
+        const auto cut = [&](std::vector<double>& values) {
+            values.erase(values.begin() + 2300, values.begin() + 2800);
+        };
+        for (auto* values : {&trace.time_s, &trace.velocity_deg_s, &trace.torque_nm, &trace.position_deg})
+            cut(*values);
+        return trace;
+    };
+    std::vector<Trace> whole, broken;
+    for (const double speed : {60.0, 120.0, 180.0}) {
+        whole.push_back(at_speed(speed, static_cast<std::uint32_t>(speed)));
+        broken.push_back(with_gap(whole.back()));
+    }
+    const Identification before = identify_all(whole), after = identify_all(broken);
+    REQUIRE(after.gear_ratio.value.has_value());
+    CHECK_THAT(*after.gear_ratio.value, WithinAbs(100.0, 0.01));
+    REQUIRE(after.lines.size() == before.lines.size());
+    for (std::size_t i = 0; i < after.lines.size(); ++i) {
+        CHECK_THAT(after.lines[i].amplitude_nm, WithinRel(before.lines[i].amplitude_nm, 0.02));
+        // Half the length, half the power that a line has over the noise of a bin: 0.7 of its height.
+        CHECK(after.lines[i].snr > 0.6 * before.lines[i].snr);
+    }
+}
