@@ -14,6 +14,7 @@
 
 #include "cli/command.hpp"
 #include "cli/options_implementation.hpp"
+#include "cli/progress_bar.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/version.hpp"
 
@@ -108,6 +109,7 @@ int run(int argc, char** argv) {
     }
     try {
         app.parse(argc, argv);
+        const ProgressBar bar(words);  // gone before a complaint is printed
         return static_cast<int>(work());
     } catch (const CLI::CallForHelp& request) {
         return app.exit(request);
@@ -119,8 +121,8 @@ int run(int argc, char** argv) {
         const std::string option = what.substr(0, what.find(':'));
         const bool twice = what.find("At Most 1 required") != std::string::npos;
         return complain(ExitCode::usage, running,
-                        fmt::format("{}; see {} {} --help", twice ? option + " is given more than once" : what,
-                                    tool_name, running));
+                        fmt::format("{}; see {} {} --help",
+                                    twice ? option + " is given more than once" : what, tool_name, running));
     } catch (const CLI::ParseError& error) {
         return complain(ExitCode::usage, running,
                         fmt::format("{}; see {} {} --help", error.what(), tool_name, running));

@@ -10,6 +10,7 @@
 #include "cli/options_implementation.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/version.hpp"
 
 namespace ripplenotch {
@@ -232,10 +233,12 @@ ReadOptions LogOptions::resolve() const {
 
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings) {
     if (common.quiet) return;
+    Progress::current().step_aside();
     for (const std::string& warning : warnings) fmt::print(stderr, "{}: warning: {}\n", tool_name, warning);
 }
 
 void say(const CommonOptions& common, std::string_view sentence) {
+    Progress::current().step_aside();
     if (common.verbose && !common.quiet) fmt::print(stderr, "{}: {}\n", tool_name, sentence);
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -68,6 +69,7 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
             raise<UsageError>(
                 "standard input is a terminal; name a file, or pipe one in: cat log.csv | ripplenotch ...");
         }
+        Progress::current().begin("reading", "B", 0);
         return;
     }
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -78,6 +80,8 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
         ::close(descriptor_);
         raise<FileError>("{}: is a directory; name a log file in it", path);
     }
+    const bool sized = S_ISREG(status.st_mode) && status.st_size > 0;
+    Progress::current().begin("reading", "B", sized ? static_cast<std::uint64_t>(status.st_size) : 0);
 }
 
 ByteSource::ByteSource(const std::string& path, std::string name) : ByteSource(path) {
@@ -99,7 +103,10 @@ std::size_t ByteSource::read(char* into, std::size_t size) {
     }
     while (true) {
         const ssize_t got = ::read(descriptor_, into, size);
-        if (got >= 0) return static_cast<std::size_t>(got);
+        if (got >= 0) {
+            Progress::current().add(static_cast<std::uint64_t>(got));
+            return static_cast<std::size_t>(got);
+        }
         if (errno != EINTR) raise<FileError>("{}: cannot read: {}", name_, reason());
     }
 }
@@ -146,6 +153,8 @@ ByteSink::~ByteSink() {
 }
 
 void ByteSink::write(std::string_view bytes) {
+    static const bool to_terminal = ::isatty(STDOUT_FILENO) == 1;
+    if (to_terminal && descriptor_ == STDOUT_FILENO) Progress::current().step_aside();
     write_fully(descriptor_, bytes, path_ == "-" ? "standard output" : path_);
 }
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ripplenotch/core/progress.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -62,12 +64,14 @@ void write_table(ByteSink& sink, std::span<const NumberColumn> columns, MakeTabl
     const auto table = make(sink, {});
     table->begin(names);
     const std::size_t rows = columns.empty() ? 0 : columns[0].values.size();
+    Progress::current().begin("writing", "rows", rows);
     for (std::size_t first = 0; first < rows; first += rows_at_once) {
         std::vector<std::span<const double>> parts;
         for (const NumberColumn& column : columns) {
             parts.push_back(std::span(column.values).subspan(first, std::min(rows_at_once, rows - first)));
         }
         table->rows(parts);
+        Progress::current().add(parts.front().size());
     }
     table->end();
 }

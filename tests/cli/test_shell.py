@@ -7,6 +7,7 @@ import pathlib
 import pty
 import subprocess
 import tempfile
+import time
 import unittest
 
 TOOL = os.environ["RIPPLENOTCH"]
@@ -79,6 +80,54 @@ class Terminals(unittest.TestCase):
         done = self.on_terminal(["info", "-"], stdin_is_terminal=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn(b"terminal", done.stderr)
+
+
+class Progress(unittest.TestCase):
+    """On a terminal, after a second, and gone afterwards."""
+
+    def slow(self, words, terminal=True, seconds=1.8):
+        """Runs with a reader of standard output that lets it wait; what came on standard error, and how it ended."""
+        with tempfile.TemporaryDirectory() as folder:
+            log = pathlib.Path(folder, "long.csv")
+            head, *rows = LOG.read_text().splitlines()
+            speed = "\n".join(row.split(",", 1)[1] for row in rows)
+            log.write_text(head.split(",", 1)[1] + "\n" + "\n".join([speed] * 60) + "\n")
+            ours, theirs = pty.openpty()
+            process = subprocess.Popen([TOOL, "filter", log, "--sample-rate", "1kHz", "--method", LOWPASS, *words],
+                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                       stderr=theirs if terminal else subprocess.PIPE,
+                                       env=dict(os.environ, TERM="xterm"))
+            os.close(theirs)
+            time.sleep(seconds)
+            process.stdout.read()
+            process.stdout.close()
+            code = process.wait(timeout=60)
+            said = b"" if terminal else process.stderr.read()
+            if process.stderr:
+                process.stderr.close()
+            while terminal:
+                try:
+                    piece = os.read(ours, 65536)
+                except OSError:  # the other end is closed
+                    break
+                if not piece:
+                    break
+                said += piece
+            os.close(ours)
+            return code, said.decode()
+
+    def test_work_longer_than_a_second_shows_share_rate_and_time_left_and_tidies_up(self):
+        code, said = self.slow([])
+        self.assertEqual(code, 0, said)
+        self.assertRegex(said, r"filter: reading \[=*>? *\] +\d+ %  [0-9.]+ [kM]?B/s  \d+ s left")
+        self.assertTrue(said.endswith("\r\x1b[K"), repr(said[-40:]))
+        for line in said.split("\r"):
+            self.assertLess(len(line.replace("\x1b[K", "")), 80)
+
+    def test_nothing_is_shown_to_who_is_no_terminal_or_wants_quiet_or_for_quick_work(self):
+        self.assertEqual(self.slow([], terminal=False), (0, ""))
+        self.assertEqual(self.slow(["-q"]), (0, ""))
+        self.assertEqual(self.slow([], seconds=0.0), (0, ""))
 
 
 class Files(unittest.TestCase):

@@ -14,6 +14,7 @@
 #include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/comparison.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/evaluate/match_low_pass.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -106,10 +107,12 @@ Comparison compare_on_signals(const Request& request, const Field& field, std::o
     comparison.step_nm = request.step_nm;
     comparison.ramp_nm_s = request.ramp_nm_s;
     comparison.lines = std::move(lines);
+    Progress::current().begin("measuring", "methods", field.contenders.size());
     for (const Contender& contender : field.contenders) {
         comparison.methods.push_back(measure_on_signals(contender, comparison.sample_rate, comparison.speed,
                                                         comparison.step_nm, comparison.ramp_nm_s,
                                                         comparison.lines ? &*comparison.lines : nullptr));
+        Progress::current().add(1);
     }
     if (wants_match(request)) add_match_at_speed(comparison, request);
     return comparison;
@@ -119,8 +122,10 @@ Comparison compare_on_signals(const Request& request, const Field& field, std::o
 void add_methods(Comparison& comparison, const std::vector<Contender>& contenders, const ComparedLog& log,
                  const CommonOptions& common) {
     std::optional<LogLevels> levels;
+    Progress::current().begin("measuring on the log", "", 0);
     if (comparison.lines) levels = measure_on_log(contenders, log, *comparison.lines);
-    for (std::size_t i = 0; i < contenders.size(); ++i) {
+    Progress::current().begin("measuring", "methods", contenders.size());
+    for (std::size_t i = 0; i < contenders.size(); ++i, Progress::current().add(1)) {
         MethodFigures figures = measure_on_signals(contenders[i], comparison.sample_rate, comparison.speed,
                                                    comparison.step_nm, comparison.ramp_nm_s, nullptr);
         if (levels) {

@@ -11,6 +11,7 @@
 #include "cli/identify_text.hpp"
 #include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/identification.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/report/identification_figure.hpp"
 
@@ -111,8 +112,13 @@ ExitCode run(Request& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     std::vector<Identification> found;
-    for (const Joint& joint : read_all_joints(request, provenance))
+    const std::vector<Joint> joints = read_all_joints(request, provenance);
+    // How long one joint takes cannot be told beforehand.
+    Progress::current().begin("looking for lines", "joints", joints.size() > 1 ? joints.size() : 0);
+    for (const Joint& joint : joints) {
         found.push_back(identified(joint, request));
+        if (joints.size() > 1) Progress::current().add(1);
+    }
 
     if (request.plot.wanted() && found.size() > 1)
         raise<UsageError>("--plot draws one joint, and --joint all found {}; name one", found.size());

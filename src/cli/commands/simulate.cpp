@@ -12,6 +12,7 @@
 #include "cli/joint_model.hpp"
 #include "ripplenotch/artifact/simulation.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 #include "ripplenotch/model/motion.hpp"
@@ -187,6 +188,7 @@ ExitCode simulate(const SimulateOptions& options) {
     ByteSink sink(options.common.output, options.common.overwrite(), format.binary);
     Course course = course_of(options);
     const Hertz sample_rate = course.motion.sample_rate;
+    Progress::current().begin("simulating", "", 0);
     const auto gap = followed(options, model, course);
     const auto columns = make_columns(options, model, std::move(course));
     format.write_columns(sink, columns);
