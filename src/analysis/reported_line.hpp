@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the analysis room: lines as identify reports them, from what steady stretches or motion show.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "ripplenotch/analysis/gear_ratio.hpp"
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/steady_lines.hpp"
+
+namespace ripplenotch {
+
+/// A line as it is reported, and as the gear ratio sees it when it may turn with the joint.
+struct Reported {
+    Line line;
+    std::optional<OrderLine> order;
+};
+
+[[nodiscard]] Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
+                                   const SteadyLine& found, const IdentifyOptions& options);
+
+/// Line number `source` of a motion; folds are told with the rate of the samples.
+[[nodiscard]] Reported from_motion(const MotionLines& motion, std::size_t source,
+                                   const IdentifyOptions& options, double rate_hz);
+
+/// Says of a tone that it is mains or a multiple of it, within the doubt about its frequency.
+void name_mains(Line& line);
+
+}  // namespace ripplenotch
