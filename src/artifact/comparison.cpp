@@ -38,6 +38,8 @@ Json method_to_json(const MethodFigures& figures) {
     json["residual_rms_nm"] = or_null(figures.residual_rms_nm);
     json["residual_peak_to_peak_nm"] = or_null(figures.residual_peak_to_peak_nm);
     json["switches"] = or_null(figures.switches);
+    json["largest_jump_nm"] = or_null(figures.largest_jump_nm);
+    json["error_rms_nm"] = or_null(figures.error_rms_nm);
     json["note"] = figures.note;
     return json;
 }

@@ -51,6 +51,9 @@ std::vector<ViewColumn> columns_of(const Comparison& comparison) {
         {"", "Nm p-p", [](const MethodFigures& f) { return fixed(f.residual_peak_to_peak_nm, 3); }});
     columns.push_back({"switches", "",
                        [](const MethodFigures& f) { return f.switches ? std::to_string(*f.switches) : ""; }});
+    columns.push_back(
+        {"largest", "jump, Nm", [](const MethodFigures& f) { return fixed(f.largest_jump_nm, 3); }});
+    columns.push_back({"error", "Nm rms", [](const MethodFigures& f) { return fixed(f.error_rms_nm, 4); }});
     return columns;
 }
 

@@ -16,6 +16,7 @@ constexpr std::size_t block_rows = 4096;
 struct Runner {
     std::unique_ptr<CausalFilter> filter;
     std::vector<double> out;
+    double error_squares = 0.0;
 };
 
 double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
@@ -43,11 +44,22 @@ void fill_levels(MethodFigures& figures, const RippleLevels& levels, std::size_t
     figures.residual_peak_to_peak_nm = levels.residual_peak_to_peak_nm[signal];
 }
 
-// Feeds rows [first, first + count) to every method and to the meter; signal 0 is the log's own torque.
-void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView& block) {
+double largest_jump_nm(const CausalFilter& filter) {
+    double largest = 0.0;
+    for (const Switch& change : filter.switches()) largest = std::max(largest, std::abs(change.jump_nm));
+    return largest;
+}
+
+// Feeds a block to every method and to the meter; signal 0 is the log's own torque. `truth_nm` may be empty.
+void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView& block,
+               std::span<const double> truth_nm) {
     for (Runner& runner : runners) {
         runner.out.resize(block.size());
         runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, runner.out);
+        for (std::size_t k = 0; k < truth_nm.size(); ++k) {
+            const double error = runner.out[k] - truth_nm[k];
+            runner.error_squares += error * error;
+        }
     }
     std::vector<double> signals(runners.size() + 1);
     for (std::size_t k = 0; k < block.size(); ++k) {
@@ -136,8 +148,14 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
     std::vector<Runner> runners;
     for (const Contender& contender : contenders) runners.push_back({filter_for(contender, log), {}});
     RippleMeter meter(lines.gear_ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);
+    std::size_t done = 0;
     for_each_block(
-        log, [&](const TraceView& block) { run_block(runners, meter, block); },
+        log,
+        [&](const TraceView& block) {
+            const auto truth = log.truth_nm.empty() ? log.truth_nm : log.truth_nm.subspan(done, block.size());
+            run_block(runners, meter, block, truth);
+            done += block.size();
+        },
         [&] {
             meter.split();
             for (Runner& runner : runners) runner.filter->restart();
@@ -153,7 +171,14 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
         MethodFigures figures;
         figures.method = contenders[i].text;
         fill_levels(figures, levels, i + 1);
-        if (contenders[i].method->needs_table) figures.switches = runners[i].filter->switch_count();
+        if (contenders[i].method->needs_table) {
+            figures.switches = runners[i].filter->switch_count();
+            figures.largest_jump_nm = largest_jump_nm(*runners[i].filter);
+        }
+        if (!log.truth_nm.empty()) {
+            const auto rows = static_cast<double>(log.truth_nm.size());
+            figures.error_rms_nm = std::sqrt(runners[i].error_squares / rows);
+        }
         result.methods.push_back(std::move(figures));
     }
     return result;

@@ -29,8 +29,9 @@ TEST_CASE("what was not measured is null, never zero and never missing") {
     CHECK(json["schema"] == "ripplenotch/comparison/1");
     for (const char* name : {"step_nm", "ramp_nm_s", "gear_ratio", "match"}) CHECK(json.at(name).is_null());
     const Json& method = json["methods"][0];
-    for (const char* name : {"settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms",
-                             "ripple_rms_nm", "residual_rms_nm", "residual_peak_to_peak_nm", "switches"}) {
+    for (const char* name :
+         {"settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "ripple_rms_nm",
+          "residual_rms_nm", "residual_peak_to_peak_nm", "switches", "largest_jump_nm", "error_rms_nm"}) {
         CHECK(method.at(name).is_null());
     }
     CHECK(method["attenuation_db"] == Json::array());

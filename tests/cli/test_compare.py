@@ -71,7 +71,7 @@ class Signals(Case):
         _, rows = self.compare("--ramp", "20Nm/s", "--sample-rate", "1kHz", *methods(NOTCHES))
         self.assertEqual(list(rows[NOTCHES]), [
             "method", "settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "attenuation_db", "ripple_rms_nm",
-            "residual_rms_nm", "residual_peak_to_peak_nm", "switches", "note"])
+            "residual_rms_nm", "residual_peak_to_peak_nm", "switches", "largest_jump_nm", "error_rms_nm", "note"])
         for name in ("settle_ms", "overshoot_percent", "ripple_rms_nm", "residual_rms_nm", "switches"):
             self.assertIsNone(rows[NOTCHES][name])
         self.assertEqual(rows[NOTCHES]["attenuation_db"], [])
@@ -254,6 +254,52 @@ class Refusals(unittest.TestCase):
     def test_files_that_cannot_be_used(self):
         self.refused(["no-such.csv", *methods(NOTCHES)], "no-such.csv", code=4)
         self.refused([*SIGNALS, *methods("switching,table=no-such.json")], "no-such.json", code=4)
+
+
+class Truth(Case):
+    JOINT = ["--gear-ratio", "100", "--motion", "ramp,to-speed=170deg/s,duration=3s", "--sample-rate", "1kHz"]
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        for name, more in (("true.csv", []), ("log.csv", ["--ripple", "1:0.8Nm:0deg", "--noise", "0.05Nm"])):
+            done = run("simulate", *self.JOINT, "--effect", "offset,torque_nm=4", *more, "-o", name, folder=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        done = run("design", *RIPPLE, "--sample-rate", "1kHz", "--speed", "18:180:18", "-o", "table.json",
+                   folder=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def torque(self, name):
+        lines = (pathlib.Path(self.folder) / name).read_text().splitlines()[1:]
+        return [float(line.split(",")[2]) for line in lines]
+
+    def test_the_error_is_the_rms_difference_from_the_true_torque(self):
+        reset = "switching,table=table.json,transition=reset"
+        _, rows = self.compare("log.csv", "--truth", "true.csv", *RIPPLE, *methods(reset), folder=self.folder)
+        for method, row in rows.items():
+            done = run("filter", "--method", method, "log.csv", "-o", "out.csv", "--force", "--json",
+                       folder=self.folder)
+            out, truth = self.torque("out.csv"), self.torque("true.csv")
+            expected = math.sqrt(sum((a - b) ** 2 for a, b in zip(out, truth)) / len(out))
+            self.assertAlmostEqual(row["error_rms_nm"], expected, places=9)
+            jumps = [abs(s["jump_nm"]) for s in json.loads(done.stdout)["switches"]]
+            self.assertEqual(row["largest_jump_nm"], max(jumps) if method == reset else None)
+
+    def test_a_truth_that_cannot_be_held_against_the_log_is_refused(self):
+        words = ["compare", "log.csv", *methods("none")]
+        short = self.folder + "/short.csv"
+        lines = (pathlib.Path(self.folder) / "true.csv").read_text().splitlines()
+        pathlib.Path(short).write_text("\n".join(lines[:-5]) + "\n")
+        done = run(*words, *RIPPLE, "--truth", "short.csv", folder=self.folder)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("short.csv has 2995 rows, log.csv has 3000", done.stderr)
+        done = run(*words, "--truth", "true.csv", folder=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--gear-ratio", done.stderr)
+        done = run("compare", *SIGNALS, *methods("none"), "--truth", "true.csv", folder=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--truth goes with a LOG", done.stderr)
 
 
 if __name__ == "__main__":

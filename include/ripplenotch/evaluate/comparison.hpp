@@ -32,6 +32,8 @@ struct MethodFigures {
     std::optional<double> residual_rms_nm,
         residual_peak_to_peak_nm;  ///< torque minus its trend, as RippleMeter does
     std::optional<std::size_t> switches;
+    std::optional<double> largest_jump_nm;  ///< at a change of filter; empty for methods that do not switch
+    std::optional<double> error_rms_nm;     ///< against ComparedLog::truth_nm
 };
 
 /// The lines that a comparison looks at; `amplitude_nm` weighs them against each other where there is no log.
@@ -83,6 +85,8 @@ struct Comparison {
 struct ComparedLog {
     TraceView trace;
     std::span<const std::size_t> gap_rows;
+    std::span<const double> truth_nm =
+        {};  ///< the torque without ripple and noise, row by row, where it is known
 };
 
 /// Median of |v| over the samples that move: faster than a twentieth of the fastest. 0 for a log at rest.

@@ -30,7 +30,7 @@ struct Request {
     CommonOptions common;
     PlotRequest plot;
     LogOptions log_options;
-    std::string log;
+    std::string log, truth;
     std::vector<std::string> methods;
     LinesRequest lines;
     std::optional<double> step_nm, ramp_nm_s, match_attenuation_db;
@@ -86,6 +86,7 @@ void add_match_at_speed(Comparison& comparison, const Request& request) {
 }
 
 Comparison compare_on_signals(const Request& request, const Field& field, std::optional<RippleLines> lines) {
+    if (!request.truth.empty()) raise<UsageError>("--truth goes with a LOG");
     if (!request.step_nm && !request.ramp_nm_s) {
         raise<UsageError>("nothing to compare on; give a LOG, or --step 10Nm, or --ramp 20Nm/s");
     }
@@ -163,6 +164,19 @@ void add_match_on_log(Comparison& comparison, const Request& request, const Comp
     add_methods(comparison, {make_contender(parse_spec(*comparison.match->low_pass))}, log, request.common);
 }
 
+// The torque that a perfect sensor would have given, row by row: another log of the same motion.
+std::vector<double> true_torque(const Request& request, std::size_t rows, Provenance& provenance) {
+    if (request.truth.empty()) return {};
+    Log truth = read_log(request.truth, request.log_options.resolve());
+    provenance.inputs.push_back(input_record(request.truth));
+    provenance.inputs.back().rows = truth.trace.size();
+    if (truth.trace.size() != rows) {
+        raise<DataError>("--truth {} has {} rows, {} has {}; they have to be of the same motion, row by row",
+                         request.truth, truth.trace.size(), request.log, rows);
+    }
+    return std::move(truth.trace.torque_nm);
+}
+
 Comparison compare_on_log(const Request& request, const Field& field, std::optional<RippleLines> lines,
                           Provenance& provenance) {
     if (request.log_options.joint == "all")
@@ -175,6 +189,10 @@ Comparison compare_on_log(const Request& request, const Field& field, std::optio
     std::vector<std::size_t> gap_rows;
     for (const Gap& gap : log.timebase.gaps) gap_rows.push_back(gap.row);
     ComparedLog compared{log.trace.view(), gap_rows};
+    if (!request.truth.empty() && !lines)
+        raise<UsageError>("--truth needs --gear-ratio and --orders, or --joint-file, as all figures on a log do");
+    const std::vector<double> truth = true_torque(request, log.trace.size(), provenance);
+    compared.truth_nm = truth;
     // The filters are those that the filter command would run.
     if (!log.layout.stated_rate) compared.trace.sample_rate = nominal_rate(log.trace.sample_rate);
 
@@ -231,6 +249,8 @@ std::function<ExitCode()> attach(Options& options) {
     options.number("--step", request->step_nm, Dimension::torque, "torque step to settle from");
     options.number("--ramp", request->ramp_nm_s, Dimension::torque_rate,
                    "torque ramp to measure the delay on");
+    options.text("--truth", request->truth, "LOG",
+                 "the same log without ripple and noise: each method's error against its torque");
     options.flag(
         "--match-lowpass", request->match_low_pass,
         "find the low-pass that takes out as much ripple as the first other method, and compare it too");
