@@ -9,11 +9,13 @@
 
 #include "cli/command.hpp"
 #include "cli/joint_facts.hpp"
+#include "cli/plot_request.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/vold_kalman.hpp"
 #include "ripplenotch/artifact/track.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/report/track_figure.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -24,6 +26,7 @@ constexpr std::array<std::string_view, 2> against_names = {"time", "speed"};
 
 struct Request {
     CommonOptions common;
+    PlotRequest plot;
     LogOptions log;
     std::string path, method = "ls", amplitude = "peak", against = "time";
     std::vector<double> orders, output_orders, tones_hz;
@@ -188,8 +191,31 @@ std::string why_none(const TrackReport& report) {
                        window);
 }
 
+void write_columns(const Request& request, const LogFormat& format, const TrackReport& report) {
+    std::vector<NumberColumn> columns;
+    for (TrackColumn& column : track_columns(report))
+        columns.push_back({column.name, std::move(column.values)});
+    ByteSink sink(request.common.output, request.common.overwrite(), format.binary);
+    format.write_columns(sink, columns);
+    sink.finish();
+}
+
+Figure figure_of(const Request& request, const TrackReport& report) {
+    std::vector<std::string> names;
+    for (const TrackLabel& label : report.labels) names.push_back(label.words());
+    const TrackScale scale{amplitude_factor(report.kind), request.amplitude == "rms" ? "rms"
+                                                          : request.amplitude == "peak-to-peak"
+                                                              ? "peak to peak"
+                                                              : "amplitude, zero to peak"};
+    Figure figure = report.by_speed ? track_figure(request.path, *report.by_speed, names, scale)
+                                    : track_figure(request.path, report.tracks, names, scale);
+    figure.sentence = track_verdict(report);
+    return figure;
+}
+
 ExitCode run(Request& request, const std::string& command_line) {
     check(request);
+    check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     take_joint_file(request, provenance);
     const LogFormat& format = output_format(request.common.output, std::nullopt);
@@ -222,15 +248,11 @@ ExitCode run(Request& request, const std::string& command_line) {
         report.by_speed = gather_by_speed(report.tracks, request.speed_step.value_or(DegPerSec(0.0)));
     if (request.common.json) {
         write_all(request.common.output, track_text(report, provenance), request.common.overwrite());
-        return ExitCode::done;
+    } else {
+        say(request.common, track_verdict(report));
+        if (!request.plot.instead_of(request.common.output)) write_columns(request, format, report);
     }
-    say(request.common, track_verdict(report));
-    std::vector<NumberColumn> columns;
-    for (TrackColumn& column : track_columns(report))
-        columns.push_back({column.name, std::move(column.values)});
-    ByteSink sink(request.common.output, request.common.overwrite(), format.binary);
-    format.write_columns(sink, columns);
-    sink.finish();
+    draw_plot(request.plot, request.common, provenance, [&] { return figure_of(request, report); });
     return ExitCode::done;
 }
 
@@ -261,6 +283,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.choice("--against", request->against, against_names, "rows by time, or gathered by signed speed");
     options.quantity("--speed-step", request->speed_step, Dimension::speed,
                      "width of a row's speeds; about 24 rows when left out");
+    attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };

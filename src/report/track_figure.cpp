@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/report/track_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ripplenotch/figure/min_max.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_ribbon_rows = 2000;
+
+struct TrackPanels {
+    Panel amplitude, phase;
+};
+
+TrackPanels panels_over(const PlotAxis& x, const TrackScale& scale) {
+    TrackPanels panels{{.title = "Amplitude", .x = x, .y = {scale.label, "Nm"}},
+                       {.title = "Phase against the angle of the shaft",
+                        .x = x,
+                        .y = {"phase", "deg"},
+                        .legend = false,
+                        .height = 0.7}};
+    panels.amplitude.y.from = 0.0;
+    panels.phase.y.from = -180.0;
+    panels.phase.y.to = 180.0;
+    return panels;
+}
+
+void add_line(TrackPanels& panels, const std::string& name, Ink ink, const std::vector<double>& x,
+              std::vector<double> amplitude_nm, const std::vector<double>& half_width_nm,
+              const std::vector<double>& phase_deg, const TrackScale& scale) {
+    Ribbon ribbon{"", ink, x, {}, {}};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        amplitude_nm[i] *= scale.factor;
+        ribbon.low.push_back(std::max(0.0, amplitude_nm[i] - scale.factor * half_width_nm[i]));
+        ribbon.high.push_back(amplitude_nm[i] + scale.factor * half_width_nm[i]);
+    }
+    // A ribbon of more rows than a picture has columns would be a blur.
+    if (x.size() <= most_ribbon_rows) panels.amplitude.ribbons.push_back(std::move(ribbon));
+    panels.amplitude.curves.push_back(thinned({name, ink, CurveStyle::line, x, std::move(amplitude_nm)}));
+    panels.phase.curves.push_back(thinned({name, ink, CurveStyle::points, x, phase_deg}));
+}
+
+Figure figure_of(const std::string& source, TrackPanels panels) {
+    return {"track",
+            fmt::format("Lines of the torque along the log: {}", source),
+            "",
+            {std::move(panels.amplitude), std::move(panels.phase)}};
+}
+
+}  // namespace
+
+Figure track_figure(const std::string& source, const OrderTracks& tracks, std::span<const std::string> names,
+                    const TrackScale& scale) {
+    TrackPanels panels = panels_over({"time", "s"}, scale);
+    for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
+        std::vector<double> twice = tracks.lines[i].standard_error_nm;
+        for (double& error : twice) error *= 2.0;
+        add_line(panels, names[i], series_ink(i), tracks.time_s, tracks.lines[i].amplitude_nm, twice,
+                 tracks.lines[i].phase_deg, scale);
+    }
+    return figure_of(source, std::move(panels));
+}
+
+Figure track_figure(const std::string& source, const SpeedTrack& tracks, std::span<const std::string> names,
+                    const TrackScale& scale) {
+    TrackPanels panels = panels_over({"joint speed", "deg/s"}, scale);
+    for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
+        add_line(panels, names[i], series_ink(i), tracks.speed_deg_s, tracks.lines[i].amplitude_nm,
+                 tracks.lines[i].spread_nm, tracks.lines[i].phase_deg, scale);
+    }
+    return figure_of(source, std::move(panels));
+}
+
+}  // namespace ripplenotch
