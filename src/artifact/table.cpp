@@ -40,6 +40,17 @@ Json band_to_json(const Band& band) {
     json["settle_band_percent"] = band.settle_band_percent;
     json["overshoot_percent"] = band.overshoot_percent;
     json["worst_attenuation_db"] = band.worst_attenuation_db;
+    json["held_attenuation_db"] = band.held_attenuation_db;
+    if (!band.predicted_residual_nm.empty()) json["predicted_residual_nm"] = band.predicted_residual_nm;
+    return json;
+}
+
+Json note_to_json(const DesignNote& note) {
+    Json json;
+    json["min_attenuation_db"] = note.min_attenuation_db ? Json(*note.min_attenuation_db) : Json(nullptr);
+    json["max_delay_ms"] = note.max_delay ? Json(1e3 * note.max_delay->value()) : Json(nullptr);
+    json["reason"] = note.reason;
+    json["no_notch_below_deg_s"] = note.slowest ? Json(note.slowest->value()) : Json(nullptr);
     return json;
 }
 
@@ -78,6 +89,16 @@ void compare(const Fields& fields, std::string_view name, double stored, double 
         "{} is {}, but the table's own bands and notches give {}; run 'ripplenotch design' again instead "
         "of editing the file",
         fields.where(name), shortest(stored), shortest(computed));
+}
+
+void compare_list(Fields& fields, std::string_view name, const std::vector<double>& computed) {
+    const std::vector<double> stored = numbers_at(fields, name);
+    if (stored.size() != computed.size()) {
+        raise<DataError>("{} has {} entries, expected {}", fields.where(name), stored.size(),
+                         computed.size());
+    }
+    for (std::size_t i = 0; i < stored.size(); ++i)
+        compare(fields, fmt::format("{}[{}]", name, i), stored[i], computed[i], figure_tolerance);
 }
 
 CandidateNotch notch_from_json(const Json& json, const std::string& source, const std::string& path,
@@ -127,6 +148,7 @@ Band band_from_json(const Json& json, const std::string& source, const std::stri
     }
     spec.settle_band_percent = fields.number("settle_band_percent");
     try {
+        check_ripple(spec);
         measure_band(band, spec);
     } catch (const UsageError& error) {
         raise<DataError>("{}: {}: {}", source, path, error.what());
@@ -138,28 +160,29 @@ Band band_from_json(const Json& json, const std::string& source, const std::stri
             1.5e3 / spec.sample_rate.value());
     compare(fields, "overshoot_percent", fields.number("overshoot_percent"), band.overshoot_percent,
             figure_tolerance);
-    const std::vector<double> worst = numbers_at(fields, "worst_attenuation_db");
-    if (worst.size() != band.worst_attenuation_db.size()) {
-        raise<DataError>("{} has {} entries, expected {}", fields.where("worst_attenuation_db"), worst.size(),
-                         band.worst_attenuation_db.size());
-    }
-    for (std::size_t i = 0; i < worst.size(); ++i) {
-        compare(fields, fmt::format("worst_attenuation_db[{}]", i), worst[i], band.worst_attenuation_db[i],
+    compare_list(fields, "worst_attenuation_db", band.worst_attenuation_db);
+    if (fields.find("held_attenuation_db") != nullptr) {
+        compare(fields, "held_attenuation_db", fields.number("held_attenuation_db"), band.held_attenuation_db,
                 figure_tolerance);
     }
+    if (fields.find("predicted_residual_nm") != nullptr)
+        compare_list(fields, "predicted_residual_nm", band.predicted_residual_nm);
     fields.finish();
     return band;
 }
 
 }  // namespace
 
-std::string table_to_json(const CandidateTable& table, const Provenance& provenance) {
+std::string table_to_json(const CandidateTable& table, const Provenance& provenance, const DesignNote& note) {
     const TableSpec& spec = table.spec();
     Json json = document_head("table", provenance);
     json["sample_rate_hz"] = spec.sample_rate.value();
     json["gear_ratio"] = spec.gear_ratio.value();
     json["orders"] = Json::array();
     for (const Order order : spec.orders) json["orders"].push_back(order.value());
+    if (spec.ratio_error > 0.0) json["gear_ratio_error_percent"] = 100.0 * spec.ratio_error;
+    if (!spec.amplitude_nm.empty()) json["amplitude_nm"] = spec.amplitude_nm;
+    if (!note.reason.empty()) json["designed_for"] = note_to_json(note);
     json["width"] = width_rule_name(spec.width);
     json["bands"] = Json::array();
     for (const Band& band : table.bands()) json["bands"].push_back(band_to_json(band));
@@ -171,11 +194,14 @@ std::string table_to_json(const CandidateTable& table, const Provenance& provena
 CandidateTable table_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "table");
     Fields fields(json, source, "");
-    fields.ignore({"schema", "tool", "version", "command", "inputs"});
+    fields.ignore({"schema", "tool", "version", "command", "inputs", "designed_for"});
     TableSpec spec;
     spec.sample_rate = Hertz(fields.number("sample_rate_hz"));
     spec.gear_ratio = GearRatio(fields.number("gear_ratio"));
     for (const double order : numbers_at(fields, "orders")) spec.orders.emplace_back(order);
+    if (fields.find("gear_ratio_error_percent") != nullptr)
+        spec.ratio_error = fields.number("gear_ratio_error_percent") / 100.0;
+    if (fields.find("amplitude_nm") != nullptr) spec.amplitude_nm = numbers_at(fields, "amplitude_nm");
     spec.width =
         choice_at(fields, "width", std::array{WidthRule::analog, WidthRule::digital}, width_rule_name);
     constexpr std::array rules = {OutsideRule::pass, OutsideRule::hold, OutsideRule::fade};
@@ -202,18 +228,29 @@ CandidateTable load_table(const std::string& path) {
     return table_from_json(read_all(path), path == "-" ? "standard input" : path);
 }
 
+bool one_q_a_band(const CandidateTable& table) {
+    for (const Band& band : table.bands())
+        for (const CandidateNotch& notch : band.notches)
+            if (notch.notch.q != band.notches.front().notch.q) return false;
+    return true;
+}
+
 std::string table_to_csv(const CandidateTable& table) {
     std::string csv = "number,speed_from_deg_s,speed_to_deg_s";
     const std::size_t orders = table.spec().orders.size();
     for (std::size_t i = 1; i <= orders; ++i) csv += fmt::format(",center_{}_hz", i);
-    csv += ",q,dc_delay_ms,settle_ms,overshoot_percent";
+    const bool one_q = one_q_a_band(table);
+    if (one_q) csv += ",q";
+    for (std::size_t i = 1; !one_q && i <= orders; ++i) csv += fmt::format(",q_{}", i);
+    csv += ",dc_delay_ms,settle_ms,overshoot_percent";
     for (std::size_t i = 1; i <= orders; ++i) csv += fmt::format(",worst_attenuation_{}_db", i);
     csv += "\n";
     for (const Band& band : table.bands()) {
         csv += fmt::format("{},{},{}", band.number, shortest(band.from.value()), shortest(band.to.value()));
         for (const CandidateNotch& notch : band.notches) csv += "," + shortest(notch.notch.center.value());
-        csv += fmt::format(",{},{:.3f},{:.3f},{:.3f}", shortest(band.notches.front().notch.q),
-                           1e3 * band.dc_delay.value(), 1e3 * band.settle.value(), band.overshoot_percent);
+        for (std::size_t i = 0; i < (one_q ? 1 : orders); ++i) csv += "," + shortest(band.notches[i].notch.q);
+        csv += fmt::format(",{:.3f},{:.3f},{:.3f}", 1e3 * band.dc_delay.value(), 1e3 * band.settle.value(),
+                           band.overshoot_percent);
         for (const double worst : band.worst_attenuation_db) csv += fmt::format(",{:.2f}", worst);
         csv += "\n";
     }

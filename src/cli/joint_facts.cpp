@@ -8,6 +8,7 @@
 #include "ripplenotch/artifact/identification.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {
@@ -40,7 +41,15 @@ JointFacts load_joint_facts(const std::string& path, std::optional<GearRatio> ge
     JointFacts facts;
     facts.source = path == "-" ? "standard input" : path;
     facts.gear_ratio = gear_ratio;
-    if (!gear_ratio && found.gear_ratio.value) facts.gear_ratio = GearRatio(*found.gear_ratio.value);
+    if (!gear_ratio && found.gear_ratio.value) {
+        const double value = *found.gear_ratio.value;
+        facts.gear_ratio = GearRatio(value);
+        const double off = std::max(found.gear_ratio.ci95_high - value, value - found.gear_ratio.ci95_low);
+        // Six digits in per cent, so that --ratio-error says exactly the same.
+        if (off > 0.0 && std::isfinite(off))
+            facts.ratio_error =
+                *parse_number(fmt::format("{:.6g}", std::min(49.0, 100.0 * off / value))) / 100.0;
+    }
     facts.sample_rate = nominal_rate(found.sample_rate);
     std::map<double, double> amplitude_of;
     for (const Line& line : found.lines) {

@@ -14,7 +14,8 @@ namespace ripplenotch {
 struct JointFacts {
     std::string source;  ///< for messages
     std::optional<GearRatio> gear_ratio;
-    std::vector<Order> orders;         ///< of the lines that follow the speed, lowest first, each once
+    double ratio_error = 0.0;   ///< share: the further end of the file's 95 % interval; 0 with --gear-ratio
+    std::vector<Order> orders;  ///< of the lines that follow the speed, lowest first, each once
     std::vector<double> amplitude_nm;  ///< one per order
     DegPerSec slowest, fastest;        ///< |v| at which those lines were seen; both 0 without lines
     Hertz sample_rate;                 ///< nominal: what filter designs for on the same log

@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 
 namespace ripplenotch {
 
-/// What the table is for, one row a band, and two sentences: the delays, and what happens outside the bands.
-[[nodiscard]] std::string table_to_text(const CandidateTable& table);
+/// What the table is for, one row a band, and sentences: the delays, what happens outside the bands, and what
+/// it was designed for.
+[[nodiscard]] std::string table_to_text(const CandidateTable& table, const DesignNote& note = {});
 
 /// One sentence for each band whose middle can be notched but which reaches beyond half the sample rate,
 /// where the line of the highest order comes back as an alias.

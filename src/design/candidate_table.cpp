@@ -21,30 +21,6 @@ std::string band_label(int number, DegPerSec from, DegPerSec to) {
     return fmt::format("band {} ({}-{} deg/s)", number, shortest(from.value()), shortest(to.value()));
 }
 
-void check_spec(const TableSpec& spec) {
-    if (!(spec.gear_ratio.value() > 0.0) || !std::isfinite(spec.gear_ratio.value())) {
-        raise<UsageError>("gear ratio {} is not above 0", shortest(spec.gear_ratio.value()));
-    }
-    if (!(spec.sample_rate.value() > 0.0) || !std::isfinite(spec.sample_rate.value())) {
-        raise<UsageError>("the sample rate is {} Hz; it must be known and above 0 Hz",
-                          shortest(spec.sample_rate.value()));
-    }
-    if (spec.orders.empty()) raise<UsageError>("no orders to notch; the paper's are 1 and 2");
-    for (std::size_t i = 0; i < spec.orders.size(); ++i) {
-        if (!(spec.orders[i].value() > 0.0) || !std::isfinite(spec.orders[i].value())) {
-            raise<UsageError>("order {} is not above 0", shortest(spec.orders[i].value()));
-        }
-        if (i > 0 && !(spec.orders[i - 1] < spec.orders[i])) {
-            raise<UsageError>("order {} does not come after order {}; each order once, lowest first",
-                              shortest(spec.orders[i].value()), shortest(spec.orders[i - 1].value()));
-        }
-    }
-    if (!(spec.settle_band_percent > 0.0 && spec.settle_band_percent < 100.0)) {
-        raise<UsageError>("settling band {} % is outside 0 to 100 %", shortest(spec.settle_band_percent));
-    }
-    if (spec.bands.empty()) raise<UsageError>("no speed bands to design for");
-}
-
 void check_bands(const std::vector<std::pair<DegPerSec, DegPerSec>>& bands) {
     for (std::size_t i = 0; i < bands.size(); ++i) {
         const auto [from, to] = bands[i];
@@ -92,20 +68,70 @@ void check_stored(const Band& band, int number, const TableSpec& spec) {
     }
 }
 
-// Least attenuation of one order's line while the joint speed runs through the band, both edges included.
-double worst_attenuation_db(std::span<const Biquad> cascade, const TableSpec& spec, Order order,
-                            const Band& band) {
-    double largest_gain = 0.0;
+// What is left of the lines while the joint speed runs through the band, both edges included, and the gear
+// ratio through its interval: a ratio that is 1 % higher looks like a joint that is 1 % faster.
+struct Left {
+    std::vector<double> largest_gain;  // per order
+    double largest_together = 0.0;     // of all orders by their amplitudes; of the weakest line without them
+};
+
+Left largest_left(std::span<const Biquad> cascade, const TableSpec& spec, const Band& band) {
+    double all = 0.0;
+    for (const double amplitude : spec.amplitude_nm) all += amplitude * amplitude;
+    const double from = band.from.value() * (1.0 - spec.ratio_error),
+                 to = band.to.value() * (1.0 + spec.ratio_error);
+    Left left{std::vector<double>(spec.orders.size())};
     for (int i = 0; i <= grid_points; ++i) {
-        const double speed =
-            band.from.value() + (band.to.value() - band.from.value()) * static_cast<double>(i) / grid_points;
-        const Hertz at = ripple_frequency(order, spec.gear_ratio, DegPerSec(speed));
-        largest_gain = std::max(largest_gain, std::abs(response(cascade, at, spec.sample_rate)));
+        const double speed = from + (to - from) * static_cast<double>(i) / grid_points;
+        double together = 0.0;
+        for (std::size_t n = 0; n < spec.orders.size(); ++n) {
+            const Hertz at = ripple_frequency(spec.orders[n], spec.gear_ratio, DegPerSec(speed));
+            const double gain = std::abs(response(cascade, at, spec.sample_rate));
+            left.largest_gain[n] = std::max(left.largest_gain[n], gain);
+            if (all > 0.0) together += std::pow(spec.amplitude_nm[n] * gain, 2) / all;
+        }
+        left.largest_together = std::max(left.largest_together, std::sqrt(together));
     }
-    return -20.0 * std::log10(largest_gain);
+    if (!(all > 0.0))
+        left.largest_together = *std::max_element(left.largest_gain.begin(), left.largest_gain.end());
+    return left;
 }
 
 }  // namespace
+
+void check_ripple(const TableSpec& spec) {
+    if (!(spec.gear_ratio.value() > 0.0) || !std::isfinite(spec.gear_ratio.value())) {
+        raise<UsageError>("gear ratio {} is not above 0", shortest(spec.gear_ratio.value()));
+    }
+    if (!(spec.sample_rate.value() > 0.0) || !std::isfinite(spec.sample_rate.value())) {
+        raise<UsageError>("the sample rate is {} Hz; it must be known and above 0 Hz",
+                          shortest(spec.sample_rate.value()));
+    }
+    if (spec.orders.empty()) raise<UsageError>("no orders to notch; the paper's are 1 and 2");
+    for (std::size_t i = 0; i < spec.orders.size(); ++i) {
+        if (!(spec.orders[i].value() > 0.0) || !std::isfinite(spec.orders[i].value())) {
+            raise<UsageError>("order {} is not above 0", shortest(spec.orders[i].value()));
+        }
+        if (i > 0 && !(spec.orders[i - 1] < spec.orders[i])) {
+            raise<UsageError>("order {} does not come after order {}; each order once, lowest first",
+                              shortest(spec.orders[i].value()), shortest(spec.orders[i - 1].value()));
+        }
+    }
+    if (!(spec.settle_band_percent > 0.0 && spec.settle_band_percent < 100.0)) {
+        raise<UsageError>("settling band {} % is outside 0 to 100 %", shortest(spec.settle_band_percent));
+    }
+    if (!(spec.ratio_error >= 0.0 && spec.ratio_error < 0.5)) {
+        raise<UsageError>("an error of {} % of the gear ratio is outside 0 to 50 %",
+                          shortest(100.0 * spec.ratio_error));
+    }
+    if (!spec.amplitude_nm.empty() && spec.amplitude_nm.size() != spec.orders.size()) {
+        raise<UsageError>("{} ripple amplitudes for {} orders", spec.amplitude_nm.size(), spec.orders.size());
+    }
+    for (const double amplitude : spec.amplitude_nm) {
+        if (!(amplitude > 0.0) || !std::isfinite(amplitude))
+            raise<UsageError>("ripple amplitude {} Nm is not above 0", shortest(amplitude));
+    }
+}
 
 std::string_view outside_rule_name(OutsideRule rule) {
     switch (rule) {
@@ -168,14 +194,20 @@ void measure_band(Band& band, const TableSpec& spec) {
     band.settle = figures.settle;
     band.settle_band_percent = spec.settle_band_percent;
     band.overshoot_percent = figures.overshoot_percent;
+    const Left left = largest_left(cascade, spec, band);
+    band.held_attenuation_db = -20.0 * std::log10(left.largest_together);
     band.worst_attenuation_db.clear();
-    for (const CandidateNotch& notch : band.notches) {
-        band.worst_attenuation_db.push_back(worst_attenuation_db(cascade, spec, notch.order, band));
+    band.predicted_residual_nm.clear();
+    for (std::size_t n = 0; n < left.largest_gain.size(); ++n) {
+        band.worst_attenuation_db.push_back(-20.0 * std::log10(left.largest_gain[n]));
+        if (!spec.amplitude_nm.empty())
+            band.predicted_residual_nm.push_back(spec.amplitude_nm[n] * left.largest_gain[n]);
     }
 }
 
 CandidateTable CandidateTable::design(const TableSpec& spec) {
-    check_spec(spec);
+    check_ripple(spec);
+    if (spec.bands.empty()) raise<UsageError>("no speed bands to design for");
     check_bands(spec.bands);
     CandidateTable table;
     table.spec_ = spec;
@@ -203,7 +235,8 @@ CandidateTable CandidateTable::design(const TableSpec& spec) {
 CandidateTable CandidateTable::from_bands(TableSpec spec, std::vector<Band> bands) {
     spec.bands.clear();
     for (const Band& band : bands) spec.bands.emplace_back(band.from, band.to);
-    check_spec(spec);
+    check_ripple(spec);
+    if (spec.bands.empty()) raise<UsageError>("no speed bands to design for");
     check_bands(spec.bands);
     for (std::size_t i = 0; i < bands.size(); ++i) check_stored(bands[i], static_cast<int>(i) + 1, spec);
     CandidateTable table;

@@ -120,8 +120,9 @@ class FromJoint(unittest.TestCase):
         return json.loads(done.stdout)
 
     def test_ratio_orders_and_rate_come_from_the_file(self):
+        said = ["--ratio-error", "0.2", "--amplitudes", "0.5,0.5"]
         self.assertEqual(self.table(joint(), "--speed", "18:180:18")["bands"],
-                         json.loads(design(*PAPER, "--json").stdout)["bands"])
+                         json.loads(design(*PAPER, *said, "--json").stdout)["bands"])
 
     def test_an_option_wins_over_the_file(self):
         table = self.table(joint(), "--speed", "18:180:18", "--orders", "2", "--gear-ratio", "50",
@@ -292,6 +293,139 @@ class Limits(unittest.TestCase):
     def test_a_limit_that_is_kept_is_exit_code_0(self):
         done = design(*PAPER, "--max-delay-ms", "128", "--min-attenuation-db", "18")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+
+GOAL = with_option(with_option(PAPER, "--q"), "--speed", "18:180")
+
+
+class Goals(unittest.TestCase):
+    """--min-attenuation and --max-delay: what is left open is chosen to hold them."""
+
+    def table(self, *words, stdin=None):
+        done = design(*words, "--json", stdin=stdin)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_every_band_holds_the_attenuation_and_the_delay(self):
+        table = self.table(*GOAL, "--min-attenuation", "20dB", "--max-delay", "20ms")
+        self.assertEqual((table["bands"][0]["speed_from_deg_s"], table["bands"][-1]["speed_to_deg_s"]), (18, 180))
+        for before, band in zip([None, *table["bands"]], table["bands"]):
+            self.assertGreaterEqual(min(band["worst_attenuation_db"]), 20)
+            self.assertLessEqual(band["dc_delay_ms"], 20)
+            if before:
+                self.assertEqual(before["speed_to_deg_s"], band["speed_from_deg_s"])
+        self.assertEqual(table["designed_for"]["min_attenuation_db"], 20)
+        self.assertEqual(table["designed_for"]["max_delay_ms"], 20)
+
+    def test_one_band_less_is_refused_with_what_so_many_do_hold(self):
+        count = len(self.table(*GOAL, "--min-attenuation", "20dB", "--max-delay", "20ms")["bands"])
+        done = design(*GOAL, "--min-attenuation", "20dB", "--max-delay", "20ms", "--max-bands", str(count - 1))
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn(f"takes {count} bands, more than --max-bands {count - 1}; so many hold 19.", done.stderr)
+
+    def test_a_delay_alone_gives_the_best_attenuation_within_it(self):
+        table = self.table(*GOAL, "--max-delay", "20ms", "--max-bands", "12")
+        self.assertEqual(len(table["bands"]), 12)
+        held = min(b["held_attenuation_db"] for b in table["bands"])
+        self.assertLess(max(b["held_attenuation_db"] for b in table["bands"]) - held, 0.1)
+        done = design(*GOAL, "--max-delay", "20ms", "--max-bands", "12", "--min-attenuation", f"{held + 0.05:.3f}dB")
+        self.assertEqual(done.returncode, 1)
+
+    def test_an_attenuation_alone_says_which_delay_it_took_and_why(self):
+        done = design(*GOAL, "--min-attenuation", "20dB")
+        self.assertRegex(done.stdout, r"Chosen: the fewest bands that hold 20 dB with notches that settle soonest at 18 deg/s")
+
+    def test_stated_bands_keep_their_edges_and_a_stated_q_its_value(self):
+        bands = self.table(*with_option(PAPER, "--q"), "--max-delay", "40ms")["bands"]
+        self.assertEqual([b["speed_from_deg_s"] for b in bands], [float(r[1]) for r in TABLE_1])
+        self.assertLessEqual(max(b["dc_delay_ms"] for b in bands), 40)
+        for band in self.table(*GOAL, "--q", "1", "--min-attenuation", "20dB")["bands"]:
+            self.assertEqual([n["q"] for n in band["notches"]], [1, 1])
+            self.assertGreaterEqual(min(band["worst_attenuation_db"]), 20)
+
+    def test_the_joints_amplitudes_and_interval_count(self):
+        weak = json.loads(joint())
+        weak["lines"][1]["amplitude_nm"] = 0.05
+        table = self.table("-", "--speed", "18:180", "--min-attenuation", "20dB", "--max-delay", "20ms",
+                           stdin=json.dumps(weak))
+        self.assertEqual(table["amplitude_nm"], [0.5, 0.05])
+        self.assertEqual(table["gear_ratio_error_percent"], 0.2)
+        strong = self.table("-", "--speed", "18:180", "--min-attenuation", "20dB", "--max-delay", "20ms", stdin=joint())
+        self.assertLess(len(table["bands"]), len(strong["bands"]))
+        for band in table["bands"]:
+            self.assertGreaterEqual(band["held_attenuation_db"], 20)
+            for left, amplitude, db in zip(band["predicted_residual_nm"], (0.5, 0.05), band["worst_attenuation_db"]):
+                self.assertAlmostEqual(left, amplitude * 10 ** (-db / 20), places=9)
+
+    def test_a_designed_table_is_one_that_filter_takes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            design(*GOAL, "--min-attenuation", "20dB", "--max-delay", "20ms", "-o", "table.json", folder=folder)
+            log = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data" / "paper_move_2s.csv"
+            done = subprocess.run([TOOL, "filter", str(log), "--table", "table.json", "-o", "out.csv"], cwd=folder,
+                                  capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_the_same_goal_gives_the_same_bytes(self):
+        words = (*GOAL, "--min-attenuation", "26dB", "--max-delay", "30ms", "--json")
+        self.assertEqual(design(*words).stdout, design(*words).stdout)
+
+    def test_what_cannot_be_held_is_exit_code_1_names_the_limit_and_writes_nothing(self):
+        for words, parts in (
+                (["--max-delay", "5ms"], ["--max-delay 5 ms cannot be met at 18 deg/s", "only from 34.36 deg/s on"]),
+                (["--max-delay", "20ms", "--min-attenuation", "40dB", "--ratio-error", "0.5"],
+                 ["--min-attenuation 40 dB cannot be held at 18 deg/s within --max-delay 20 ms", "0.5 % off"]),
+                (["--min-attenuation", "40dB", "--depth", "30dB"], ["--depth 30 dB"])):
+            done = design(*GOAL, *words)
+            self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (1, "", 1), done.stderr)
+            for part in parts:
+                self.assertIn(part, done.stderr)
+
+    def test_what_leaves_nothing_to_choose_or_makes_no_sense_is_exit_code_2(self):
+        for words, part in (
+                ([*PAPER, "--min-attenuation", "20dB"], "nothing is left to choose"),
+                ([*PAPER, "--max-bands", "5"], "--max-bands needs something to hold"),
+                ([*GOAL, "--min-attenuation", "20dB", "--max-bands", "2.5"], "--max-bands 2.5 is not a whole number"),
+                ([*with_option(GOAL, "--speed", "0:180"), "--max-delay", "20ms"], "standstill"),
+                ([*GOAL, "--frontier", "--q", "1"], "leave --q out"),
+                ([*GOAL, "--max-delay", "20ms", "--ratio-error", "-1"], "--ratio-error -1 % is negative"),
+                ([*GOAL, "--max-delay", "20ms", "--amplitudes", "0.5"], "1 ripple amplitudes for 2 orders")):
+            done = design(*words)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn(part, done.stderr)
+
+
+class FrontierCurve(unittest.TestCase):
+    def test_text_json_and_csv_agree_and_one_point_is_recommended_with_its_reason(self):
+        words = (*GOAL, "--frontier", "--min-attenuation", "20dB")
+        found = json.loads(design(*words, "--json").stdout)
+        self.assertEqual(found["schema"], "ripplenotch/frontier/1")
+        rows = list(csv.DictReader(io.StringIO(design(*words, "--format", "csv").stdout)))
+        self.assertEqual([int(r["bands"]) for r in rows], [p["bands"] for p in found["points"]])
+        self.assertEqual([r["recommended"] for r in rows].count("1"), 1)
+        at = found["recommended"]["point"]
+        self.assertEqual(rows[at]["recommended"], "1")
+        for name in ("bands", "attenuation_db", "delay_ms"):
+            self.assertEqual(found["recommended"][name], found["points"][at][name])
+        text = design(*words).stdout
+        line, = [l for l in text.split("\n") if l.startswith("Recommended: ")]
+        self.assertIn(found["recommended"]["reason"], line)
+        self.assertEqual(text.count("<- recommended"), 1)
+
+    def test_the_recommended_point_is_the_table_that_design_writes(self):
+        for words in (["--min-attenuation", "20dB"], ["--max-delay", "25ms"],
+                      ["--min-attenuation", "20dB", "--max-delay", "25ms"]):
+            point = json.loads(design(*GOAL, *words, "--frontier", "--json").stdout)["recommended"]
+            bands = json.loads(design(*GOAL, *words, "--json").stdout)["bands"]
+            self.assertEqual(point["bands"], len(bands))
+            self.assertAlmostEqual(point["delay_ms"], max(b["dc_delay_ms"] for b in bands), places=9)
+            self.assertAlmostEqual(point["attenuation_db"], min(b["held_attenuation_db"] for b in bands), places=9)
+
+    def test_more_attenuation_costs_more_delay_all_along_the_curve(self):
+        points = json.loads(design(*GOAL, "--frontier", "--json").stdout)["points"]
+        self.assertGreater(len(points), 5)
+        for before, after in zip(points, points[1:]):
+            self.assertGreater(after["attenuation_db"], before["attenuation_db"])
+            self.assertGreater(after["delay_ms"], before["delay_ms"])
 
 
 class Warnings(unittest.TestCase):

@@ -30,6 +30,8 @@ struct Band {
     double settle_band_percent = 0.5;
     double overshoot_percent = 0.0;
     std::vector<double> worst_attenuation_db;  ///< per order, anywhere in the band
+    double held_attenuation_db = 0.0;  ///< of all orders by TableSpec::amplitude_nm; else of the weakest line
+    std::vector<double> predicted_residual_nm;  ///< per order, at most left of it; empty without amplitudes
 
     [[nodiscard]] Cascade cascade() const;
 };
@@ -47,6 +49,8 @@ struct TableSpec {
     double q = 0.25;
     double depth_db = infinite_depth_db;
     WidthRule width = WidthRule::analog;
+    double ratio_error = 0.0;            ///< share by which the true gear ratio may be off, 0 <= it < 0.5
+    std::vector<double> amplitude_nm{};  ///< of the ripple, zero to peak, one per order; empty when unknown
     double settle_band_percent = 0.5;
     OutsideRule below = OutsideRule::pass;
     OutsideRule above = OutsideRule::hold;
@@ -56,8 +60,12 @@ struct TableSpec {
 [[nodiscard]] std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(DegPerSec from, DegPerSec to,
                                                                             DegPerSec spacing);
 
-/// Fills in what follows from a band's edges and notches: dc_delay, settle, overshoot_percent,
-/// worst_attenuation_db (of the whole cascade, over speeds from..to, at the line of each order).
+/// Throws UsageError unless everything in `spec` but its bands and notches makes sense.
+void check_ripple(const TableSpec& spec);
+
+/// Fills in what follows from a band's edges and notches: dc_delay, settle, overshoot_percent, and how far
+/// the whole cascade attenuates the line of each order, over speeds from..to and gear ratios within
+/// ratio_error.
 void measure_band(Band& band, const TableSpec& spec);
 
 /// Sorted, non-overlapping bands with their filters; an object of this type is always valid.

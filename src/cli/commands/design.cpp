@@ -9,10 +9,10 @@
 #include <memory>
 
 #include "cli/command.hpp"
-#include "cli/joint_facts.hpp"
-#include "cli/plot_request.hpp"
-#include "cli/speed_bands.hpp"
+#include "cli/design_request.hpp"
+#include "cli/frontier_text.hpp"
 #include "cli/table_text.hpp"
+#include "ripplenotch/artifact/frontier.hpp"
 #include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/report/table_figure.hpp"
@@ -24,143 +24,6 @@ constexpr std::array<std::string_view, 2> width_names = {"analog", "digital"};
 constexpr std::array<std::string_view, 3> rule_names = {"pass", "hold", "fade"};
 constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
 
-struct Request {
-    CommonOptions common;
-    PlotRequest plot;
-    std::string joint;
-    std::optional<double> gear_ratio, depth_db, max_delay_ms, min_attenuation_db;
-    std::vector<double> orders;
-    std::optional<Hertz> sample_rate, spacing;
-    std::optional<std::string> speed, bands;
-    double q = 0.25, settle_band_percent = 0.5;
-    std::string width = "analog", below = "pass", above = "hold", form;
-};
-
-OutsideRule rule_of(const std::string& name) {
-    if (name == "hold") return OutsideRule::hold;
-    return name == "fade" ? OutsideRule::fade : OutsideRule::pass;
-}
-
-// --spacing is that of the lowest order's centres, which is how the paper states its table: 5 Hz is 18 deg/s
-// at 1:100.
-DegPerSec width_of_spacing(Hertz spacing, const TableSpec& spec) {
-    if (!(spacing.value() > 0.0))
-        raise<UsageError>("--spacing {} Hz is not above 0", shortest(spacing.value()));
-    return DegPerSec(360.0 * spacing.value() / (spec.orders.front().value() * spec.gear_ratio.value()));
-}
-
-// Nobody wants bands of 17.9993 deg/s because the gear ratio is known to five digits.
-DegPerSec two_digits(DegPerSec width) {
-    return DegPerSec(*parse_number(fmt::format("{:.1e}", width.value())));
-}
-
-// Bands about 5 Hz apart in the lowest order, as the paper's, over the speeds at which the lines were seen.
-std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const Request& request, const TableSpec& spec,
-                                                        const JointFacts& joint) {
-    if (!(joint.fastest.value() > 0.0)) {
-        raise<UsageError>("{} has no line that follows the speed; give --speed FROM:TO:WIDTH", joint.source);
-    }
-    const double width = request.spacing ? width_of_spacing(*request.spacing, spec).value()
-                                         : two_digits(width_of_spacing(Hertz(5.0), spec)).value();
-    double from = std::floor(joint.slowest.value());
-    double to = joint.fastest.value();
-    // A joint seen at one speed only gets one band around it.
-    if (to - from < width) from = std::max(0.0, 0.5 * (from + to) - 0.5 * width);
-    const double limit_deg_s =
-        180.0 * spec.sample_rate.value() / (spec.orders.back().value() * spec.gear_ratio.value());
-    const double wanted = std::max(1.0, std::ceil((to - from) / width - 1e-9));
-    double count = wanted;
-    while (count > 0.0 && from + (count - 0.5) * width >= limit_deg_s) count -= 1.0;
-    if (count < 1.0) {
-        raise<UsageError>(
-            "{}: order {} is not below half the sample rate, {} Hz, at {:.6g} deg/s, the slowest speed "
-            "seen; choose lower --orders or --speed",
-            joint.source, shortest(spec.orders.back().value()), shortest(0.5 * spec.sample_rate.value()),
-            from + 0.5 * width);
-    }
-    if (count < wanted) {
-        say_warnings(
-            request.common,
-            std::vector{fmt::format(
-                "{}: lines were seen up to {:.6g} deg/s, but from {:.6g} deg/s on order {} "
-                "is not below half the sample rate; the bands end at {:.6g} deg/s",
-                joint.source, to, limit_deg_s, shortest(spec.orders.back().value()), from + count * width)});
-    }
-    to = from + count * width;
-    return bands_by_spacing(DegPerSec(from), DegPerSec(to), DegPerSec(width));
-}
-
-std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const Request& request, const TableSpec& spec,
-                                                      const std::optional<JointFacts>& joint) {
-    if (request.bands) {
-        if (request.speed || request.spacing) {
-            raise<UsageError>("--bands lists the bands; it cannot be combined with --speed or --spacing");
-        }
-        return parse_speed_bands(*request.bands, "--bands");
-    }
-    if (!request.speed) {
-        if (joint) return bands_seen(request, spec, *joint);
-        raise<UsageError>(
-            "no speeds to design for; give --speed FROM:TO:WIDTH (18:180:18) or --bands FROM:TO,FROM:TO");
-    }
-    const SpeedRange range = parse_speed_range(*request.speed, "--speed");
-    if (range.width && request.spacing) {
-        raise<UsageError>(
-            "--speed {} already says how wide a band is; leave out its third number or --spacing",
-            *request.speed);
-    }
-    if (!range.width && !request.spacing) {
-        raise<UsageError>(
-            "--speed {} does not say how wide a band is; write FROM:TO:WIDTH or add --spacing 5Hz",
-            *request.speed);
-    }
-    return bands_by_spacing(range.from, range.to,
-                            range.width ? *range.width : width_of_spacing(*request.spacing, spec));
-}
-
-std::optional<GearRatio> asked_ratio(const std::optional<double>& value) {
-    return value ? std::optional(GearRatio(*value)) : std::nullopt;
-}
-
-// Options first, then joint.json, else the option that is missing.
-void fill_joint(TableSpec& spec, const Request& request, const std::optional<JointFacts>& joint) {
-    if (!request.gear_ratio && !joint) {
-        raise<UsageError>("the gear ratio is missing; give --gear-ratio, for example 100");
-    }
-    spec.gear_ratio = request.gear_ratio ? GearRatio(*request.gear_ratio) : gear_ratio_of(*joint);
-    if (!request.sample_rate && !joint) {
-        raise<UsageError>("the sample rate is missing; give --sample-rate, for example 1kHz");
-    }
-    spec.sample_rate = request.sample_rate ? *request.sample_rate : joint->sample_rate;
-    for (const double order : request.orders) spec.orders.emplace_back(order);
-    std::sort(spec.orders.begin(), spec.orders.end());
-    if (spec.orders.empty() && joint) spec.orders = joint->orders;
-    if (spec.orders.empty()) {
-        raise<UsageError>("no orders to notch{}; give --orders, for example 1,2",
-                          joint ? fmt::format(": {} has no line that follows the speed", joint->source) : "");
-    }
-    // Otherwise --spacing would divide by it before the table is checked.
-    if (!(spec.gear_ratio.value() > 0.0)) {
-        raise<UsageError>("gear ratio {} is not above 0", shortest(spec.gear_ratio.value()));
-    }
-    if (!(spec.orders.front().value() > 0.0)) {
-        raise<UsageError>("order {} is not above 0", shortest(spec.orders.front().value()));
-    }
-}
-
-TableSpec spec_of(const Request& request, const std::optional<JointFacts>& joint) {
-    TableSpec spec;
-    fill_joint(spec, request, joint);
-    spec.q = request.q;
-    if (request.depth_db) spec.depth_db = *request.depth_db;
-    spec.width = request.width == "digital" ? WidthRule::digital : WidthRule::analog;
-    spec.settle_band_percent = request.settle_band_percent;
-    spec.below = rule_of(request.below);
-    spec.above = rule_of(request.above);
-    spec.bands = bands_of(request, spec, joint);
-    return spec;
-}
-
 // The options that would give this table without a joint.json and without arithmetic.
 std::string option_line(const TableSpec& spec) {
     std::string orders, bands;
@@ -169,12 +32,18 @@ std::string option_line(const TableSpec& spec) {
         bands +=
             fmt::format("{}{}:{}", bands.empty() ? "" : ",", shortest(from.value()), shortest(to.value()));
     }
-    return fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
-                       shortest(spec.gear_ratio.value()), orders, shortest(spec.sample_rate.value()), bands);
+    std::string line =
+        fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
+                    shortest(spec.gear_ratio.value()), orders, shortest(spec.sample_rate.value()), bands);
+    if (spec.ratio_error > 0.0) line += fmt::format(" --ratio-error {}", shortest(100.0 * spec.ratio_error));
+    std::string amplitudes;
+    for (const double amplitude : spec.amplitude_nm)
+        amplitudes += (amplitudes.empty() ? " --amplitudes " : ",") + shortest(amplitude);
+    return line + amplitudes;
 }
 
 // Asked for by name, else by --json, else by the name of the output file.
-std::string form_of(const Request& request) {
+std::string form_of(const DesignRequest& request) {
     if (request.common.json) {
         if (!request.form.empty() && request.form != "json") {
             raise<UsageError>("--json and --format {} ask for two different outputs", request.form);
@@ -190,7 +59,7 @@ std::string form_of(const Request& request) {
 }
 
 // Limits that the caller set: what breaks them is said, and the table is written all the same.
-std::vector<std::string> violations(const Request& request, const CandidateTable& table) {
+std::vector<std::string> violations(const DesignRequest& request, const CandidateTable& table) {
     std::vector<std::string> sentences;
     for (const Band& band : table.bands()) {
         const std::string label =
@@ -213,21 +82,55 @@ std::vector<std::string> violations(const Request& request, const CandidateTable
     return sentences;
 }
 
-ExitCode run(const Request& request, const std::string& command_line) {
+struct Drawn {
+    CandidateTable table;
+    DesignNote note;
+};
+
+// By what the table has to hold, or as it was spelled out.
+Drawn draw(const DesignRequest& request, const TableSpec& spec, const std::optional<JointFacts>& joint) {
+    if (!request.has_goal()) {
+        if (request.max_bands)
+            raise<UsageError>("--max-bands needs something to hold: --min-attenuation or --max-delay");
+        return {CandidateTable::design(spec), {}};
+    }
+    const DesignGoal goal = design_goal(request, spec, joint);
+    DesignChoice choice = design_for(spec, goal);
+    DesignNote note{goal.min_attenuation_db, goal.max_delay, choice.reason, std::nullopt};
+    if (goal.max_delay) note.slowest = slowest_within(spec, *goal.max_delay);
+    return {std::move(choice.table), std::move(note)};
+}
+
+ExitCode print_frontier(const DesignRequest& request, const std::string& form, const TableSpec& spec,
+                        const std::optional<JointFacts>& joint, const Provenance& provenance) {
+    const Frontier frontier = design_frontier(spec, design_goal(request, spec, joint));
+    const std::string text = form == "json"  ? frontier_to_json(frontier, provenance)
+                             : form == "csv" ? frontier_to_csv(frontier)
+                                             : frontier_to_text(frontier);
+    write_all(request.common.output, text, request.common.overwrite());
+    return ExitCode::done;
+}
+
+ExitCode run(const DesignRequest& request, const std::string& command_line) {
     const std::string form = form_of(request);
     check_plot(request.plot, request.common);
+    if (request.plot.wanted() && request.frontier)
+        raise<UsageError>("--plot draws a table; with --frontier use --format csv for the curve");
     std::optional<JointFacts> joint;
     Provenance provenance{{}, command_line};
     if (!request.joint.empty()) {
-        joint = load_joint_facts(request.joint, asked_ratio(request.gear_ratio));
+        const auto ratio = request.gear_ratio ? std::optional(GearRatio(*request.gear_ratio)) : std::nullopt;
+        joint = load_joint_facts(request.joint, ratio);
         provenance.inputs.push_back(input_record(request.joint));
     }
-    const CandidateTable table = CandidateTable::design(spec_of(request, joint));
+    const TableSpec spec = design_spec(request, joint);
+    if (request.frontier) return print_frontier(request, form, spec, joint, provenance);
+    const auto [table, note] = draw(request, spec, joint);
     say(request.common, fmt::format("designed as if with {}", option_line(table.spec())));
     say_warnings(request.common, alias_warnings(table));
-    const std::string text = form == "json"  ? table_to_json(table, provenance)
+    const std::string text = form == "json"  ? table_to_json(table, provenance, note)
                              : form == "csv" ? table_to_csv(table)
-                                             : table_to_text(table);
+                                             : table_to_text(table, note);
     write_all(request.common.output, text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, [&] { return table_figure(table); });
     const auto broken = violations(request, table);
@@ -236,20 +139,32 @@ ExitCode run(const Request& request, const std::string& command_line) {
 }
 
 std::function<ExitCode()> attach(Options& options) {
-    auto request = std::make_shared<Request>();
+    auto request = std::make_shared<DesignRequest>();
     options.argument("JOINT", request->joint, false, "joint.json from identify; - is standard input");
     options.number("--gear-ratio", request->gear_ratio, Dimension::none, "motor turns per output turn");
     options.numbers("--orders", request->orders, Dimension::none,
                     "ripple lines to notch, in cycles per motor turn, e.g. 1,2");
+    options.numbers("--amplitudes", request->amplitudes_nm, Dimension::torque,
+                    "of the ripple, zero to peak, one per order (default: those in JOINT)");
     options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
                      "rate at which the filter will run");
     options.text("--speed", request->speed, "FROM:TO[:WIDTH]",
-                 "bands of equal width in deg/s, e.g. 18:180:18");
+                 "bands of equal width in deg/s, e.g. 18:180:18; without WIDTH for a goal to divide");
     options.quantity("--spacing", request->spacing, Dimension::frequency,
                      "instead of WIDTH: distance of the lowest order's centres");
     options.text("--bands", request->bands, "FROM:TO,...",
                  "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
-    options.number("--q", request->q, Dimension::none, "centre over -3 dB width; 0.25 is the paper's twin-T");
+    options.number("--min-attenuation", request->goal_attenuation_db, Dimension::decibel,
+                   "choose bands and Q that hold this at every speed of every band, e.g. 20dB");
+    options.quantity("--max-delay", request->goal_delay, Dimension::time,
+                     "choose bands and Q whose DC delay is no longer, e.g. 20ms");
+    options.number("--max-bands", request->max_bands, Dimension::none, "no more bands than this are chosen");
+    options.flag("--frontier", request->frontier,
+                 "the trade-off curve between attenuation, delay and bands, instead of a table");
+    options.number("--ratio-error", request->ratio_error_percent, Dimension::none,
+                   "per cent by which the gear ratio may be off (default: the interval in JOINT, else 0)");
+    options.number("--q", request->q, Dimension::none,
+                   "centre over -3 dB width (default: 0.25, the paper's twin-T, or what a goal takes)");
     options.number("--depth", request->depth_db, Dimension::decibel,
                    "attenuation at the centre; a full null when left out");
     options.choice("--width", request->width, width_names,

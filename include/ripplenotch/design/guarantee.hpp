@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Tables from what they have to hold: a worst attenuation, a longest delay, or both. Bands and Q follow.
+
+#include <optional>
+#include <string>
+
+#include "ripplenotch/core/units.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
+
+namespace ripplenotch {
+
+/// What is asked of a table. At least one of attenuation and delay; what is not stated is chosen.
+struct DesignGoal {
+    std::optional<double>
+        min_attenuation_db;            ///< held at every speed of every band (Band::held_attenuation_db)
+    std::optional<Seconds> max_delay;  ///< DC group delay of every band
+    std::optional<double> q;           ///< of all notches; else each band and order gets its own
+    std::optional<int> most_bands;     ///< at least 1
+    DegPerSec from, to;                ///< speeds to cover, when TableSpec::bands is empty
+};
+
+/// A table and why it is this one of those that hold the goal: a clause, "because ..." left out.
+struct DesignChoice {
+    CandidateTable table;
+    std::string reason;
+    Seconds delay;  ///< that the Qs were chosen for; 0 when they were stated or fixed bands left no choice
+};
+
+/// Finds the table. With TableSpec::bands empty the bands are as few as hold the attenuation, each as wide as
+/// the worst speed and gear ratio in it allow, and within the delay (without one: that of the notches which
+/// settle soonest at the lowest speed). With a delay alone they are as many as still add a quarter of a
+/// decibel each, or most_bands. With TableSpec::bands the Qs alone are chosen. With amplitudes the orders
+/// count by them. Throws UsageError on a goal that makes no sense and Error with ExitCode::limit_violated,
+/// naming the limit and what would hold, when no table can.
+[[nodiscard]] DesignChoice design_for(TableSpec spec, const DesignGoal& goal);
+
+/// The lowest speed at which notches for these orders, as narrow as a design may take them (Q 5), delay by no
+/// more than `delay`; empty when they do not at any speed below half the sample rate.
+[[nodiscard]] std::optional<DegPerSec> slowest_within(const TableSpec& spec, Seconds delay);
+
+}  // namespace ripplenotch

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "design/band_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace ripplenotch {
+namespace {
+
+constexpr int points_a_side = 9;        // over which the largest gain of a trial band is looked for
+constexpr double as_exact = 1e-9;       // share of a Q or a centre to which searches go
+constexpr double edge_as_exact = 1e-7;  // of a band's edge, from the side on which it still holds
+
+// The end of the first stretch, from `low` upward, on which `holds` is true; `high` when it never fails.
+template <class Holds>
+double first_failure(double low, double high, const Holds& holds) {
+    double good = low, step = 1e-4 * low;
+    while (good < high) {
+        const double next = std::min(good + step, high);
+        if (!holds(next)) {
+            double bad = next;
+            while (bad - good > edge_as_exact * good) {
+                const double middle = 0.5 * (good + bad);
+                (holds(middle) ? good : bad) = middle;
+            }
+            return good;
+        }
+        good = next;
+        step = std::min(2.0 * step, 0.05 * good);
+    }
+    return high;
+}
+
+}  // namespace
+
+BandFit::BandFit(const TableSpec& spec, bool shaped)
+    : spec_(spec),
+      shaped_(shaped),
+      shape_(spec.orders.size(), 1.0),
+      hz_per_deg_s_(spec.orders.size()),
+      floor_gain_(std::pow(10.0, -spec.depth_db / 20.0)) {
+    double all = 0.0;
+    for (const double amplitude : spec.amplitude_nm) all += amplitude * amplitude;
+    for (std::size_t i = 0; i < spec.orders.size(); ++i) {
+        hz_per_deg_s_[i] = spec.orders[i].value() * spec.gear_ratio.value() / 360.0;
+        if (spec.amplitude_nm.empty()) continue;
+        weight_.push_back(spec.amplitude_nm[i] * spec.amplitude_nm[i] / all);
+        // Least delay sum 1/(n Q) for a given ripple left sum (a Q)^2: Q goes with (n a^2)^(-1/3).
+        if (shaped) {
+            const double order = spec.orders[i].value() / spec.orders[0].value();
+            shape_[i] = 1.0 / std::cbrt(order * weight_[i] / weight_[0]);
+        }
+    }
+}
+
+double BandFit::q_each(std::size_t order, double q) const {
+    return shaped_ ? std::clamp(q * shape_[order], widest_q, narrowest_q) : q;
+}
+
+// The digital rule is the analogue one at another Q: alpha = sin W / (2 Q') there.
+double BandFit::damping(double warped, double q) const {
+    if (spec_.width == WidthRule::analog) return 1.0 / q;
+    const double sine = 2.0 * warped / (1.0 + warped * warped);
+    return 2.0 * std::tan(std::atan(warped) / q) / sine;
+}
+
+double BandFit::warped(std::size_t order, double speed_deg_s) const {
+    return std::tan(std::numbers::pi * hz_per_deg_s_[order] * speed_deg_s / spec_.sample_rate.value());
+}
+
+Tuning BandFit::tuned(double center_deg_s, double q) const {
+    Tuning tuning{center_deg_s, {}, {}, {}};
+    for (std::size_t i = 0; i < shape_.size(); ++i) {
+        tuning.q.push_back(q_each(i, q));
+        tuning.warped.push_back(warped(i, center_deg_s));
+        tuning.damping.push_back(damping(tuning.warped.back(), tuning.q.back()));
+    }
+    return tuning;
+}
+
+std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) const {
+    if (rule.q) return tuned(center_deg_s, *rule.q);
+    // From where all orders are as wide as they may be to where all are as narrow, whatever their shape.
+    double low = narrowest_q, high = widest_q;
+    for (const double shape : shape_) {
+        low = std::min(low, widest_q / shape);
+        high = std::max(high, narrowest_q / shape);
+    }
+    std::vector<double> tangents;
+    for (std::size_t i = 0; i < shape_.size(); ++i) tangents.push_back(warped(i, center_deg_s));
+    const auto within = [&](double q) {
+        double samples = 0.0;
+        for (std::size_t i = 0; i < tangents.size(); ++i)
+            samples += delay_samples(tangents[i], damping(tangents[i], q_each(i, q)));
+        return samples / spec_.sample_rate.value() <= *rule.delay_s;
+    };
+    if (within(low)) return tuned(center_deg_s, low);
+    if (!within(high)) return std::nullopt;
+    while (high - low > as_exact * high) {
+        const double middle = std::sqrt(low * high);
+        (within(middle) ? high : low) = middle;
+    }
+    return tuned(center_deg_s, high);
+}
+
+// theory.md, equation 5, with alpha = sin W damping / 2 and sin W / (1 - cos W) = 1 / tan(W/2).
+double BandFit::delay_samples(double warped, double damping) const {
+    return 0.5 * damping * (1.0 - floor_gain_) / warped;
+}
+
+double BandFit::delay_s(const Tuning& tuning) const {
+    double samples = 0.0;
+    for (std::size_t i = 0; i < tuning.warped.size(); ++i)
+        samples += delay_samples(tuning.warped[i], tuning.damping[i]);
+    return samples / spec_.sample_rate.value();
+}
+
+double BandFit::gain(const Tuning& tuning, double speed_deg_s) const {
+    double together = 0.0, largest = 0.0;
+    for (std::size_t line = 0; line < hz_per_deg_s_.size(); ++line) {
+        const double t = warped(line, speed_deg_s);
+        double power = 1.0;
+        for (std::size_t i = 0; i < tuning.warped.size(); ++i) {
+            const double r = t / tuning.warped[i];
+            const double off = (1.0 - r * r) * (1.0 - r * r), across = std::pow(r * tuning.damping[i], 2);
+            power *= (off + floor_gain_ * floor_gain_ * across) / (off + across);
+        }
+        largest = std::max(largest, power);
+        if (!weight_.empty()) together += weight_[line] * power;
+    }
+    return std::sqrt(weight_.empty() ? largest : together);
+}
+
+double BandFit::worst_gain(const Tuning& tuning, double from_deg_s, double to_deg_s) const {
+    const double from = from_deg_s * (1.0 - spec_.ratio_error), to = to_deg_s * (1.0 + spec_.ratio_error);
+    double worst = 0.0;
+    for (int i = 0; i < points_a_side; ++i) {
+        const double share = static_cast<double>(i) / (points_a_side - 1);
+        worst = std::max(worst, gain(tuning, from + share * (to - from)));
+    }
+    return worst;
+}
+
+std::optional<double> BandFit::reach(double from_deg_s, double end_deg_s, double most_gain,
+                                     const QRule& rule) const {
+    const auto held = [&](double center, double from, double to) {
+        const auto tuning = tune(center, rule);
+        return tuning && worst_gain(*tuning, from, to) <= most_gain;
+    };
+    if (!held(from_deg_s, from_deg_s, from_deg_s)) return std::nullopt;
+    // A centre further up serves speeds further up, as far as the lower edge is still held.
+    const double center =
+        first_failure(from_deg_s, end_deg_s, [&](double at) { return held(at, from_deg_s, at); });
+    const Tuning tuning = *tune(center, rule);
+    return first_failure(center, end_deg_s,
+                         [&](double to) { return worst_gain(tuning, center, to) <= most_gain; });
+}
+
+std::optional<Tuning> BandFit::balanced(double from_deg_s, double to_deg_s, const QRule& rule) const {
+    double low = from_deg_s, high = to_deg_s;
+    while (high - low > as_exact * high) {
+        const double middle = 0.5 * (low + high);
+        const auto tuning = tune(middle, rule);
+        if (!tuning) {
+            low = middle;  // a delay is easier met further up
+            continue;
+        }
+        const double below = worst_gain(*tuning, from_deg_s, middle);
+        const double above = worst_gain(*tuning, middle, to_deg_s);
+        (below < above ? low : high) = middle;
+    }
+    return tune(high, rule);
+}
+
+std::optional<std::vector<double>> BandFit::edges(double from_deg_s, double to_deg_s, double most_gain,
+                                                  const QRule& rule, std::size_t most) const {
+    std::vector<double> found = {from_deg_s};
+    while (found.back() < to_deg_s) {
+        if (found.size() > most) return std::nullopt;
+        const auto next = reach(found.back(), to_deg_s, most_gain, rule);
+        if (!next || !(*next > found.back() * (1.0 + 1e-9))) return std::nullopt;
+        found.push_back(*next);
+    }
+    return found;
+}
+
+}  // namespace ripplenotch
