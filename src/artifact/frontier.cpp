@@ -9,7 +9,7 @@
 namespace ripplenotch {
 namespace {
 
-Json point_to_json(const FrontierPoint& point) {
+Json point_to_json(const TradePoint& point) {
     Json json;
     json["bands"] = point.bands;
     json["attenuation_db"] = point.attenuation_db;
@@ -38,7 +38,7 @@ std::string frontier_to_json(const Frontier& frontier, const Provenance& provena
     json["max_delay_ms"] = goal.max_delay ? Json(1e3 * goal.max_delay->value()) : Json(nullptr);
     json["max_bands"] = goal.most_bands ? Json(*goal.most_bands) : Json(nullptr);
     json["points"] = Json::array();
-    for (const FrontierPoint& point : frontier.points) json["points"].push_back(point_to_json(point));
+    for (const TradePoint& point : frontier.points) json["points"].push_back(point_to_json(point));
     json["recommended"] = point_to_json(frontier.points[frontier.recommended]);
     json["recommended"]["point"] = frontier.recommended;
     json["recommended"]["reason"] = frontier.reason;
@@ -51,7 +51,7 @@ std::string frontier_to_csv(const Frontier& frontier) {
     std::string csv =
         "bands,attenuation_db,delay_ms,q_least,q_largest,settle_ms,overshoot_percent,recommended\n";
     for (std::size_t i = 0; i < frontier.points.size(); ++i) {
-        const FrontierPoint& point = frontier.points[i];
+        const TradePoint& point = frontier.points[i];
         csv += fmt::format("{},{:.2f},{:.3f},{},{},{:.3f},{:.3f},{}\n", point.bands, point.attenuation_db,
                            1e3 * point.delay.value(), shortest(point.least_q), shortest(point.largest_q),
                            1e3 * point.settle.value(), point.overshoot_percent,

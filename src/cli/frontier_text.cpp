@@ -13,7 +13,7 @@ namespace {
 
 std::string plain(double value) { return fmt::format("{:.4g}", value); }
 
-std::string q_range(const FrontierPoint& point) {
+std::string q_range(const TradePoint& point) {
     if (point.least_q == point.largest_q) return fmt::format("{:.3g}", point.least_q);
     return fmt::format("{:.3g}-{:.3g}", point.least_q, point.largest_q);
 }
@@ -48,14 +48,14 @@ std::string frontier_to_text(const Frontier& frontier) {
         {"dB held", "ms", "", "", fmt::format("ms to {} %", plain(frontier.spec.settle_band_percent)), "%",
          ""}};
     for (std::size_t i = 0; i < frontier.points.size(); ++i) {
-        const FrontierPoint& point = frontier.points[i];
+        const TradePoint& point = frontier.points[i];
         rows.push_back({fmt::format("{:.1f}", point.attenuation_db),
                         fmt::format("{:.1f}", 1e3 * point.delay.value()), std::to_string(point.bands),
                         q_range(point), fmt::format("{:.0f}", 1e3 * point.settle.value()),
                         fmt::format("{:.1f}", point.overshoot_percent),
                         i == frontier.recommended ? "<- recommended" : ""});
     }
-    const FrontierPoint& chosen = frontier.points[frontier.recommended];
+    const TradePoint& chosen = frontier.points[frontier.recommended];
     std::string text = heading(frontier) + text_table(rows, "r");
     text +=
         fmt::format("\nRecommended: {:.1f} dB with {:.1f} ms in {} band{}: {}.\n", chosen.attenuation_db,

@@ -76,24 +76,28 @@ struct Left {
 };
 
 Left largest_left(std::span<const Biquad> cascade, const TableSpec& spec, const Band& band) {
+    const std::size_t lines = band.notches.size();
+    const bool weighed = spec.amplitude_nm.size() == lines && lines > 0;
     double all = 0.0;
     for (const double amplitude : spec.amplitude_nm) all += amplitude * amplitude;
     const double from = band.from.value() * (1.0 - spec.ratio_error),
                  to = band.to.value() * (1.0 + spec.ratio_error);
-    Left left{std::vector<double>(spec.orders.size())};
+    Left left{std::vector<double>(lines)};
     for (int i = 0; i <= grid_points; ++i) {
         const double speed = from + (to - from) * static_cast<double>(i) / grid_points;
         double together = 0.0;
-        for (std::size_t n = 0; n < spec.orders.size(); ++n) {
-            const Hertz at = ripple_frequency(spec.orders[n], spec.gear_ratio, DegPerSec(speed));
+        for (std::size_t n = 0; n < lines; ++n) {
+            const Hertz at = ripple_frequency(band.notches[n].order, spec.gear_ratio, DegPerSec(speed));
             const double gain = std::abs(response(cascade, at, spec.sample_rate));
             left.largest_gain[n] = std::max(left.largest_gain[n], gain);
-            if (all > 0.0) together += std::pow(spec.amplitude_nm[n] * gain, 2) / all;
+            if (weighed) {
+                together += std::pow(spec.amplitude_nm[n] * gain, 2) / all;
+            } else {
+                together = std::max(together, gain * gain);
+            }
         }
         left.largest_together = std::max(left.largest_together, std::sqrt(together));
     }
-    if (!(all > 0.0))
-        left.largest_together = *std::max_element(left.largest_gain.begin(), left.largest_gain.end());
     return left;
 }
 
@@ -200,7 +204,7 @@ void measure_band(Band& band, const TableSpec& spec) {
     band.predicted_residual_nm.clear();
     for (std::size_t n = 0; n < left.largest_gain.size(); ++n) {
         band.worst_attenuation_db.push_back(-20.0 * std::log10(left.largest_gain[n]));
-        if (!spec.amplitude_nm.empty())
+        if (spec.amplitude_nm.size() == left.largest_gain.size())
             band.predicted_residual_nm.push_back(spec.amplitude_nm[n] * left.largest_gain[n]);
     }
 }

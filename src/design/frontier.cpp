@@ -16,8 +16,8 @@ namespace {
 constexpr std::array attenuations_db = {6.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 60.0};
 constexpr double step_of_bands = 1.26;  // ten points a decade
 
-FrontierPoint point_of(const CandidateTable& table) {
-    FrontierPoint point;
+TradePoint point_of(const CandidateTable& table) {
+    TradePoint point;
     point.bands = table.bands().size();
     point.attenuation_db = table.bands().front().held_attenuation_db;
     point.least_q = point.largest_q = table.bands().front().notches.front().notch.q;
@@ -35,7 +35,7 @@ FrontierPoint point_of(const CandidateTable& table) {
 }
 
 /// A table with so many bands at that delay, as good as it gets.
-std::optional<FrontierPoint> best(const BandSearch& search, std::size_t bands, double delay_s) {
+std::optional<TradePoint> best(const BandSearch& search, std::size_t bands, double delay_s) {
     const QRule rule = search.rule(delay_s);
     const auto held = search.attenuation_db(bands, rule);
     if (!held) return std::nullopt;
@@ -52,7 +52,7 @@ std::vector<std::size_t> counts(std::size_t from, std::size_t to) {
 }
 
 // Attenuation against delay with so many bands.
-void add_by_attenuation(std::vector<FrontierPoint>& points, const BandSearch& search, std::size_t bands) {
+void add_by_attenuation(std::vector<TradePoint>& points, const BandSearch& search, std::size_t bands) {
     for (const double db : attenuations_db) {
         const auto delay = search.delay_s(db + rounding_db, bands);
         if (!delay) return;
@@ -64,7 +64,7 @@ void add_by_attenuation(std::vector<FrontierPoint>& points, const BandSearch& se
 }
 
 // Bands against delay for one attenuation, the delay within `most_s`.
-void add_by_bands(std::vector<FrontierPoint>& points, const BandSearch& search, double attenuation_db,
+void add_by_bands(std::vector<TradePoint>& points, const BandSearch& search, double attenuation_db,
                   std::optional<double> most_s, std::optional<std::size_t> most_bands) {
     const double widest_s = most_s ? std::min(*most_s, search.most_delay_s()) : search.most_delay_s();
     const auto fewest = search.bands(attenuation_db + rounding_db, search.rule(widest_s));
@@ -80,22 +80,22 @@ void add_by_bands(std::vector<FrontierPoint>& points, const BandSearch& search, 
 }
 
 // Bands against attenuation for one delay.
-void add_by_delay(std::vector<FrontierPoint>& points, const BandSearch& search, double delay_s,
+void add_by_delay(std::vector<TradePoint>& points, const BandSearch& search, double delay_s,
                   std::size_t last) {
     for (const std::size_t count : counts(1, last))
         if (const auto point = best(search, count, delay_s)) points.push_back(*point);
 }
 
 // The point a design would take, put in its place among the others; one that it beats by nothing gives way.
-std::size_t insert(std::vector<FrontierPoint>& points, const FrontierPoint& chosen, bool by_attenuation) {
-    const auto key = [by_attenuation](const FrontierPoint& point) {
+std::size_t insert(std::vector<TradePoint>& points, const TradePoint& chosen, bool by_attenuation) {
+    const auto key = [by_attenuation](const TradePoint& point) {
         return by_attenuation ? point.attenuation_db : static_cast<double>(point.bands);
     };
     const double near = by_attenuation ? 0.05 : 0.5;
-    const auto same = [&](const FrontierPoint& point) { return std::abs(key(point) - key(chosen)) < near; };
+    const auto same = [&](const TradePoint& point) { return std::abs(key(point) - key(chosen)) < near; };
     points.erase(std::remove_if(points.begin(), points.end(), same), points.end());
     const auto place = std::find_if(points.begin(), points.end(),
-                                    [&](const FrontierPoint& point) { return key(point) > key(chosen); });
+                                    [&](const TradePoint& point) { return key(point) > key(chosen); });
     const auto index = static_cast<std::size_t>(place - points.begin());
     points.insert(place, chosen);
     return index;
@@ -140,7 +140,7 @@ Frontier design_frontier(TableSpec spec, DesignGoal goal) {
     } else {
         add_by_delay(points, search, goal.max_delay->value(), most.value_or(2 * choice.table.bands().size()));
     }
-    const FrontierPoint chosen = point_of(choice.table);
+    const TradePoint chosen = point_of(choice.table);
     frontier.recommended = insert(points, chosen, by_attenuation);
     frontier.slowest = slowest_within(spec, chosen.delay);
     return frontier;

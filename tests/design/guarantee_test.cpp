@@ -327,7 +327,7 @@ TEST_CASE("the point that a frontier recommends is the table that the same goal 
              {goal(20.0, std::nullopt), goal(std::nullopt, 20.0), goal(15.0, 40.0)}) {
             const Frontier frontier = design_frontier(spec, asked);
             const DesignChoice choice = design_for(spec, asked);
-            const FrontierPoint& point = frontier.points[frontier.recommended];
+            const TradePoint& point = frontier.points[frontier.recommended];
             CHECK(point.bands == choice.table.bands().size());
             CHECK(point.delay.value() == largest_delay_s(choice.table));
             CHECK(frontier.reason == choice.reason);

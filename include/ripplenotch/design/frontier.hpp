@@ -13,7 +13,7 @@
 namespace ripplenotch {
 
 /// Figures of one whole table, each that of its worst band.
-struct FrontierPoint {
+struct TradePoint {
     std::size_t bands = 0;
     double attenuation_db = 0.0;  ///< held everywhere
     Seconds delay;                ///< DC group delay
@@ -26,7 +26,7 @@ struct FrontierPoint {
 struct Frontier {
     TableSpec spec;  ///< without bands
     DesignGoal goal;
-    std::vector<FrontierPoint> points;
+    std::vector<TradePoint> points;
     std::size_t recommended = 0;       ///< index; the table that design_for gives for the same goal
     std::string reason;                ///< why it: a clause
     std::optional<DegPerSec> slowest;  ///< of the recommended delay: see slowest_within

@@ -108,14 +108,21 @@ ExitCode print_frontier(const DesignRequest& request, const std::string& form, c
                              : form == "csv" ? frontier_to_csv(frontier)
                                              : frontier_to_text(frontier);
     write_all(request.common.output, text, request.common.overwrite());
+    draw_plot(request.plot, request.common, provenance, [&] {
+        std::vector<FrontierPoint> points;
+        for (std::size_t i = 0; i < frontier.points.size(); ++i) {
+            const TradePoint& point = frontier.points[i];
+            points.push_back(
+                {1e3 * point.delay.value(), point.attenuation_db, i == frontier.recommended, ""});
+        }
+        return frontier_figure("Attenuation against delay", frontier.reason, points);
+    });
     return ExitCode::done;
 }
 
 ExitCode run(const DesignRequest& request, const std::string& command_line) {
     const std::string form = form_of(request);
     check_plot(request.plot, request.common);
-    if (request.plot.wanted() && request.frontier)
-        raise<UsageError>("--plot draws a table; with --frontier use --format csv for the curve");
     std::optional<JointFacts> joint;
     Provenance provenance{{}, command_line};
     if (!request.joint.empty()) {
