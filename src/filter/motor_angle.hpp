@@ -8,7 +8,9 @@ namespace ripplenotch {
 
 /// Feeds on samples in order. From the position while it agrees with the velocity (unwrapped at half turns of
 /// the joint); from the velocity by trapezoids where there is no position, or once it has turned out to be
-/// another joint's or constant.
+/// another joint's or constant. While the motor turns slowly, a position that trembles about the velocity is
+/// smoothed: to whoever ties a ripple to the angle, a trembling angle under a steady torque says that there
+/// is none.
 class MotorAngle {
   public:
     enum class Source : std::uint8_t { best, velocity };
@@ -29,12 +31,20 @@ class MotorAngle {
 
   private:
     void check(double by_velocity_deg, double by_position_deg) noexcept;
+    [[nodiscard]] double trembling() const noexcept;
+    [[nodiscard]] double follow(double by_velocity_deg, double by_position_deg) noexcept;
 
     double gear_ratio_, step_s_;
     Source source_;
     double start_deg_;
     double joint_deg_ = 0.0, step_turns_ = 0.0, last_velocity_ = 0.0, last_position_ = 0.0;
     double checked_velocity_deg_ = 0.0, checked_position_deg_ = 0.0;
+    double ahead_deg_ = 0.0;   ///< of joint_deg_: where the position is
+    double beside_ = 0.0;      ///< motor turns by which the position left the velocity in the last sample
+    double covariance_ = 0.0;  ///< of that with the sample before, while slow
+    double excess_ = 0.0;      ///< mean square of that beyond what a poor clock explains, while slow
+    double slow_speed_ = 0.0;  ///< mean motor turns in a sample, while slow
+    double judged_ = 0.0;      ///< samples that it is a mean of
     bool started_ = false, from_velocity_ = false;
 };
 

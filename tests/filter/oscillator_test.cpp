@@ -208,6 +208,47 @@ TEST_CASE("a position of another joint is noticed and the velocity taken") {
     CHECK(angle.from_velocity());
 }
 
+TEST_CASE(
+    "a position with noise or in steps is smoothed while the motor is slow, and costs next to nothing") {
+    const auto noisy = [](KnownMove& move, std::uint64_t seed) {
+        add_white_noise(move.signals.position_deg, 0.02, seed, NoiseChannel::spikes);
+    };
+    const auto in_steps = [](KnownMove& move, std::uint64_t) {
+        for (double& p : move.signals.position_deg) p = 0.1 * std::round(10.0 * p);
+    };
+    CHECK(error_on_move(cold, noisy) < 0.1);
+    CHECK(error_on_move(warm, noisy) < 0.03);
+    CHECK(error_on_move(cold, in_steps) < 0.15);
+    CHECK(error_on_move(warm, in_steps) < 0.05);
+}
+
+TEST_CASE("an exact position is the angle, whatever the velocity's offset, noise or clock") {
+    const KnownMove move = paper_move(1);
+    for (const char* fault : {"offset", "noise", "clock"}) {
+        INFO(fault);
+        Signals s = move.signals;
+        if (fault == std::string("offset")) {
+            for (double& v : s.velocity_deg_s) v += 1.0;
+        } else if (fault == std::string("noise")) {
+            add_white_noise(s.velocity_deg_s, 1.0, 4, NoiseChannel::velocity);
+        } else {
+            // Every twentieth row holds the row before, as a log that was polled does.
+            for (std::size_t k = 20; k < 2000; k += 20) {
+                s.velocity_deg_s[k] = s.velocity_deg_s[k - 1];
+                s.position_deg[k] = s.position_deg[k - 1];
+            }
+        }
+        MotorAngle angle(100.0, 1000.0, MotorAngle::Source::best, 0.0);
+        double worst = 0.0;
+        for (std::size_t k = 0; k < 2000; ++k) {
+            angle.next(s.velocity_deg_s[k], &s.position_deg[k]);
+            if (k > 6) worst = std::max(worst, std::abs(angle.turns() - 100.0 * s.position_deg[k] / 360.0));
+        }
+        // A hundredth of a turn is 3.6 degrees of order 1.
+        CHECK(worst < 0.01);
+    }
+}
+
 TEST_CASE("a position wrapped at 360 degrees is the same as one that is not") {
     KnownMove move = reversal();
     const auto straight = filtered(*start(cold), move.signals.samples());
