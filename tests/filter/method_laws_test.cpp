@@ -23,6 +23,8 @@ std::string some_number(const Key& key, std::mt19937& engine) {
     };
     // Told of another torque at rest, the oscillator would rightly call the constant ripple.
     if (key.name == "rest") return fmt::format("{}Nm", constant_nm);
+    // Without it the oscillator is linear, and its frozen filter exact.
+    if (key.name == "slip") return "0";
     if (key.name == "gear-ratio") return fmt::format("{:.3f}", between(60.0, 140.0));
     switch (key.dimension) {
         case Dimension::frequency:

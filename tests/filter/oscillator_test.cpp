@@ -196,6 +196,30 @@ TEST_CASE("a velocity that is 1 deg/s off is corrected by the ripple itself when
     CHECK(unaided > 3.0 * followed);
 }
 
+TEST_CASE("a gear ratio that is 2 per cent wrong is corrected by the ripple itself") {
+    // 20 to 40 deg/s, ripple of 2 and 1 Nm.
+    KnownMove move;
+    double angle = 0.0;
+    for (std::size_t k = 0; k < 15000; ++k) {
+        const double t = static_cast<double>(k) / 1000.0, v = std::min(20.0 + 2.0 * t, 40.0);
+        angle += v / 1000.0;
+        const double theta = 100.0 * angle * std::numbers::pi / 180.0;
+        move.true_nm.push_back(10.0);
+        move.signals.velocity_deg_s.push_back(v);
+        move.signals.position_deg.push_back(angle);
+        move.signals.torque_nm.push_back(10.0 + 2.0 * std::sin(theta + 0.3) + std::sin(2.0 * theta + 1.1));
+    }
+    const auto left = [&](const std::string& text) {
+        return rms_error(filtered(*start(text), move.signals.samples()), move.true_nm, 3000);
+    };
+    for (const char* ratio : {"98", "102"}) {
+        const std::string wrong = std::string("oscillator,orders=1:2,gear-ratio=") + ratio;
+        CHECK(left(wrong) < 0.1);
+        CHECK(left(wrong + ",slip=0") > 0.5);
+    }
+    CHECK(left(cold) < 0.01);
+}
+
 TEST_CASE("a position of another joint is noticed and the velocity taken") {
     KnownMove move = paper_move(2);
     std::fill(move.signals.position_deg.begin(), move.signals.position_deg.end(), 90.0);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -23,7 +24,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double standing_deg_s = 1.0;  ///< a log that begins slower than this begins at standstill
+constexpr double slowest_corrected_turns = 1e-5;  ///< of the motor in a sample
+constexpr double standing_deg_s = 1.0;            ///< a log that begins slower than this begins at standstill
 
 constexpr std::array<std::string_view, 2> angles = {"best", "velocity"};
 constexpr std::array<std::string_view, 2> gains = {"exact", "scheduled"};
@@ -94,6 +96,11 @@ constexpr std::array keys = {
         .default_text = "2deg/s",
         .above = 0.0,
         .help = "angle from velocity: largest offset of the velocity that the ripple may correct"},
+    Key{.name = "slip",
+        .default_text = "0.03",
+        .above = -std::numeric_limits<double>::min(),
+        .at_most = 0.2,
+        .help = "angle from position: largest share by which the ripple may correct the gear ratio"},
     Key{.name = "output",
         .kind = KeyKind::choice,
         .default_text = "torque",
@@ -111,7 +118,7 @@ struct Plan {
     bool scheduled = false;
     MotorAngle::Source source = MotorAngle::Source::best;
     bool minus_ripple = false;
-    double largest_offset_deg_s = 0.0;
+    double largest_offset_deg_s = 0.0, largest_slip = 0.0;
     double sample_rate_hz = 0.0;
     double noise_nm = 0.0;
 };
@@ -168,6 +175,7 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     if (settings.text("angle") == "velocity") p.source = MotorAngle::Source::velocity;
     p.minus_ripple = settings.text("output") == "minus-ripple";
     p.largest_offset_deg_s = settings.number("offset");
+    p.largest_slip = settings.number("slip");
     plan_priors(p, settings);
     return p;
 }
@@ -203,7 +211,7 @@ class OscillatorFilter final : public CausalFilter {
   private:
     void begin(double torque_nm, double velocity_deg_s, bool has_position) {
         started_ = true;
-        correction_deg_s_ = 0.0;
+        correction_deg_s_ = slip_ = slipped_turns_ = 0.0;
         // Phases mean something only where it is known where the joint stands.
         filter_ = has_position || plan_.has_start ? &warm_ : &cold_;
         const bool known = plan_.rest_nm && std::abs(velocity_deg_s) < standing_deg_s;
@@ -215,17 +223,21 @@ class OscillatorFilter final : public CausalFilter {
         }
     }
 
+    // An angle that runs at a wrong rate turns the phase: what the ripple itself says of the rate is added to
+    // it, slowly against the time that the amplitudes take.
     void run(double measured) {
-        filter_->next(measured, angle_.turns(), angle_.step_turns());
-        if (!angle_.from_velocity()) return;
-        // A velocity that is off turns the phase: what the ripple itself says of the speed is added to it,
-        // slowly against the time that the amplitudes take.
-        const double share = std::abs(angle_.step_turns()) / (4.0 * plan_.model.memory_turns);
-        const double ahead_deg_s =
-            filter_->phase_advance_turns() * 360.0 / plan_.ripple.gear_ratio * plan_.sample_rate_hz;
-        const double limit = plan_.largest_offset_deg_s;
-        correction_deg_s_ =
-            std::clamp(correction_deg_s_ + std::min(share, 0.01) * ahead_deg_s, -limit, limit);
+        const double moved = angle_.step_turns(), step = moved * (1.0 + slip_);
+        slipped_turns_ += moved * slip_;
+        filter_->next(measured, angle_.turns() + slipped_turns_, step);
+        const double share = std::min(std::abs(step) / (4.0 * plan_.model.memory_turns), 0.01);
+        const double ahead_turns = share * filter_->phase_advance_turns();
+        if (angle_.from_velocity()) {
+            const double ahead_deg_s = ahead_turns * 360.0 / plan_.ripple.gear_ratio * plan_.sample_rate_hz;
+            const double limit = plan_.largest_offset_deg_s;
+            correction_deg_s_ = std::clamp(correction_deg_s_ + ahead_deg_s, -limit, limit);
+        } else if (std::abs(step) > slowest_corrected_turns) {
+            slip_ = std::clamp(slip_ + ahead_turns / step, -plan_.largest_slip, plan_.largest_slip);
+        }
     }
 
     Plan plan_;
@@ -234,6 +246,7 @@ class OscillatorFilter final : public CausalFilter {
     RippleKalman cold_, warm_;
     RippleKalman* filter_ = nullptr;
     double origin_nm_ = 0.0, correction_deg_s_ = 0.0;
+    double slip_ = 0.0, slipped_turns_ = 0.0;  ///< correction of the gear ratio, as a share; what it came to
     bool started_ = false;
 };
 
@@ -255,7 +268,7 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
                                                : "settled Kalman filter";
     return {settled_cascade(p.model, step_turns, step_turns == 0.0 ? std::vector<double>{} : gain,
                             p.minus_ripple),
-            note, p.source == MotorAngle::Source::velocity};
+            note, p.source == MotorAngle::Source::velocity || p.largest_slip > 0.0};
 }
 
 }  // namespace
