@@ -65,6 +65,8 @@ Json panel_json(const Panel& panel) {
     Json json{{"title", panel.title},
               {"x", axis_json(panel.x, x_range(panel))},
               {"y", axis_json(panel.y, y_range(panel))},
+              {"legend", panel.legend},
+              {"height", panel.height},
               {"map", panel.map ? map_json(*panel.map) : Json(nullptr)},
               {"shades", Json::array()},
               {"ribbons", Json::array()},
@@ -94,6 +96,7 @@ Json panel_json(const Panel& panel) {
         json["lines"].push_back({{"name", line.name},
                                  {"ink", ink_rgb(line.ink)},
                                  {"run", run_name(line.run)},
+                                 {"dashed", line.dashed},
                                  {"value", number_json(line.value)}});
     }
     return json;

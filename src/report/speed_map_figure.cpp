@@ -92,14 +92,15 @@ Figure speed_map_figure(const std::string& source, const SpeedMap& map, const Ma
             panel.lines.push_back(std::move(line));
         }
     }
-    Figure figure{campbell ? "campbell" : "order-map",
-                  fmt::format("{} of the torque: {}", campbell ? "Campbell diagram" : "Order map", source),
-                  fmt::format("{} speeds, resolution {:.3g} {}{}.", map.speed_deg_s.size(), map.resolution,
-                              campbell ? "Hz" : "orders",
-                              panel.lines.empty() ? std::string()
-                                                  : fmt::format("; dashed: orders of a gear ratio of {:.6g}",
-                                                                lines.gear_ratio->value())),
-                  {}};
+    Figure figure{
+        campbell ? "campbell" : "order-map",
+        fmt::format("{} of the torque: {}", campbell ? "Campbell diagram" : "Order map", source),
+        fmt::format("{} speeds, resolution {:.3g} {}{}.", map.speed_deg_s.size(), map.resolution,
+                    campbell ? "Hz" : "orders",
+                    panel.lines.empty() ? std::string()
+                                        : fmt::format("; lines are orders of a gear ratio of {:.6g}",
+                                                      lines.gear_ratio->value())),
+        {}};
     figure.panels.push_back(std::move(panel));
     return figure;
 }

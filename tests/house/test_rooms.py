@@ -21,7 +21,7 @@ SEES = {
     "evaluate": {"core", "filter", "analysis", "design"},
     "figure": {"core"},
     "report": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "figure"},
-    "artifact": {"core", "figure", "log", "analysis", "design", "filter", "evaluate", "model", "export"},
+    "artifact": {"core", "figure", "report", "log", "analysis", "design", "filter", "evaluate", "model", "export"},
     "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "artifact", "figure", "report"},
 }
 

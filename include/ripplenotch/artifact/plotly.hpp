@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <string>
+
+#include "ripplenotch/figure/figure.hpp"
+
+namespace ripplenotch {
+
+/// A figure for plotly.js 3: {"data": [...], "layout": {...}}, panels one under the other, equal time axes
+/// linked. Names are escaped for plotly's own markup; the text holds no "<", so that it can stand in a page.
+[[nodiscard]] std::string plotly_text(const Figure& figure);
+
+}  // namespace ripplenotch

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A page as a value: what is said about some results, before anybody turns it into HTML. All text is text:
+// whoever renders it escapes it.
+
+#include <string>
+#include <vector>
+
+#include "ripplenotch/figure/figure.hpp"
+
+namespace ripplenotch {
+
+struct PageFact {
+    std::string name, value;
+};
+
+struct PageTable {
+    std::string title;
+    std::vector<std::string> header;
+    std::vector<std::vector<std::string>> rows;  ///< as many cells as the header
+};
+
+/// One result.
+struct PageSection {
+    std::string title;    ///< what it is and of which file
+    std::string verdict;  ///< one sentence with numbers; may be empty
+    std::vector<PageFact> facts;
+    std::vector<Figure> figures;
+    std::vector<PageTable> tables;
+    std::string command;           ///< that makes it again
+    std::vector<PageFact> inputs;  ///< name and SHA-256
+    std::string json;              ///< the result itself, one object
+};
+
+struct Page {
+    std::string title;
+    std::vector<PageSection> sections;
+};
+
+}  // namespace ripplenotch

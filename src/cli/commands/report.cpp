@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch report: one self-contained HTML page from any mix of results.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "ripplenotch/artifact/plotly.hpp"
+#include "ripplenotch/artifact/result_section.hpp"
+#include "ripplenotch/figure/gnuplot.hpp"
+#include "ripplenotch/report/html_page.hpp"
+
+namespace ripplenotch {
+namespace {
+
+struct Request {
+    std::vector<std::string> results;
+    std::string output = "-", title = "ripplenotch report";
+    std::optional<std::string> plotly;
+    bool no_plotly = false, force = false, quiet = false;
+};
+
+// Where the build and the installation put it, as seen from the program itself.
+std::optional<std::string> installed_plotly() {
+    std::error_code failed;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", failed);
+    if (failed) return std::nullopt;
+    for (const auto& share :
+         {program.parent_path().parent_path() / "share", program.parent_path() / "share"}) {
+        const auto file = share / "ripplenotch" / "plotly-cartesian.min.js";
+        if (std::filesystem::exists(file, failed)) return file.string();
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> plotly_text_of(const Request& request) {
+    if (request.no_plotly) return std::nullopt;
+    const auto path = request.plotly ? request.plotly : installed_plotly();
+    if (!path) {
+        CommonOptions common;
+        common.quiet = request.quiet;
+        say_warnings(
+            common,
+            std::vector<std::string>{
+                "plotly.js is not installed (scripts/setup does it where there is npm), so the page carries "
+                "pictures instead of plots"});
+        return std::nullopt;
+    }
+    std::string text = read_all(*path);
+    // Such a text would end the script that it stands in.
+    if (text.find("</script") != std::string::npos)
+        raise<DataError>("{}: holds the end of a script; this is not plotly.js", *path);
+    return text;
+}
+
+ExitCode run(const Request& request) {
+    Page page{request.title, {}};
+    for (const std::string& path : request.results) {
+        page.sections.push_back(section_of_result(read_all(path), path == "-" ? "standard input" : path));
+    }
+    const HtmlParts parts{plotly_text_of(request), plotly_text,
+                          [](const Figure& figure) { return draw_picture(figure, PictureKind::svg); }};
+    write_all(request.output, html_page(page, parts),
+              request.force ? ByteSink::Overwrite::yes : ByteSink::Overwrite::no);
+    return ExitCode::done;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    const auto request = std::make_shared<Request>();
+    options.arguments(
+        "RESULT", request->results, true,
+        "JSON that commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
+        "(--plot FILE.json); - is standard input");
+    options.text("-o,--output", request->output, "FILE", "where the page goes; - is standard output");
+    options.text("--title", request->title, "TEXT", "of the page");
+    options.text("--plotly", request->plotly, "FILE",
+                 "plotly.js to put into the page, instead of the installed one");
+    options.flag("--no-plotly", request->no_plotly, "pictures by gnuplot instead of interactive plots");
+    options.flag("--force", request->force, "overwrite existing files");
+    options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
+    return [request] { return run(*request); };
+}
+
+}  // namespace
+
+const Command commands::report{
+    .name = "report",
+    .summary = "one HTML page from any mix of results",
+    .description =
+        "Puts results into one self-contained page: verdicts first, key numbers, plots to zoom into, tables, "
+        "and the "
+        "command\nthat makes each again. The page loads nothing from anywhere.\n"
+        "Example: ripplenotch report joint.json table.json torque.json -o page.html",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

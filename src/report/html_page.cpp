@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/report/html_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/version.hpp"
+#include "ripplenotch/figure/visible_text.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::string_view style = R"css(
+:root { color-scheme: light; }
+body { font: 16px/1.45 system-ui, sans-serif; color: #1b1b1b; background: #fff; margin: 0 auto; max-width: 62rem;
+  padding: 1rem; overflow-wrap: anywhere; }
+h1 { font-size: 1.35rem; margin: .2rem 0 1rem; }
+h2 { font-size: 1.1rem; margin: 2.2rem 0 .3rem; border-top: 1px solid #bbb; padding-top: 1rem; }
+h3 { font-size: 1rem; margin: 1.2rem 0 .2rem; }
+.verdict { font-size: 1.15rem; font-weight: 600; margin: .3rem 0 1rem; }
+.facts { display: flex; flex-wrap: wrap; gap: .6rem; margin: 0 0 1rem; padding: 0; list-style: none; }
+.facts li { border: 1px solid #ccc; border-radius: .4rem; padding: .3rem .7rem; }
+.facts b { display: block; font-size: 1.05rem; }
+.facts span, .note, figcaption { color: #444; font-size: .9rem; }
+figure { margin: 1.2rem 0; }
+.plot { width: 100%; }
+figure img { width: 100%; height: auto; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .2rem .7rem; text-align: right; border-bottom: 1px solid #ddd; overflow-wrap: normal; }
+th:first-child, td:first-child, .words { text-align: left; }
+pre { background: #f3f3f3; padding: .6rem; overflow-x: auto; font-size: .85rem; white-space: pre-wrap; }
+details { margin: .6rem 0; }
+@media print { body { max-width: none; padding: 0; } details, .modebar { display: none; }
+  figure, table { break-inside: avoid; } }
+)css";
+
+constexpr std::string_view draw_all = R"js(
+for (const source of document.querySelectorAll("script[data-figure]")) {
+  const place = document.getElementById(source.dataset.figure);
+  const figure = JSON.parse(source.textContent);
+  const config = {responsive: true, displaylogo: false, showSendToCloud: false, plotlyServerURL: "",
+                  modeBarButtonsToRemove: ["lasso2d", "select2d"]};
+  Plotly.newPlot(place, figure.data, figure.layout, config).then(() => {
+    place.dataset.drawn = figure.data.length;
+    place.dataset.points = figure.data.reduce((sum, trace) => sum + (trace.x ? trace.x.length : 0), 0);
+  });
+}
+)js";
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        unsigned block = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            block = (block << 8U) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        for (std::size_t k = 0; k < 4; ++k)
+            text +=
+                i + k <= bytes.size() ? digits[(block >> (18U - 6U * static_cast<unsigned>(k))) & 63U] : '=';
+    }
+    return text;
+}
+
+bool is_number(std::string_view cell) {
+    return cell == "-" ||
+           (!cell.empty() && cell.find_first_not_of("0123456789+-.e, ") == std::string_view::npos);
+}
+
+// As a content security policy names a script.
+std::string script_hash(std::string_view script) {
+    Sha256 hash;
+    hash.update(script);
+    const std::string hex = hash.hex();
+    std::string bytes;
+    for (std::size_t i = 0; i < hex.size(); i += 2)
+        bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+    return "'sha256-" + base64(bytes) + "'";
+}
+
+class Writer {
+  public:
+    explicit Writer(const HtmlParts& parts) : parts_(parts) {}
+
+    void write(const Page& page) {
+        head(page.title);
+        put("<h1>{}</h1>\n", shown(page.title));
+        if (!parts_.plotly_js) {
+            put("<p class=\"note\">plotly.js was not found when this page was made, so the figures are "
+                "pictures: no zoom, no "
+                "values under the pointer.</p>\n");
+        }
+        for (const PageSection& one : page.sections) section(one);
+        put("<p class=\"note\">Made by {} {}; this page loads nothing from anywhere.</p>\n", tool_name,
+            version());
+        if (parts_.plotly_js) put("<script>{}</script>\n<script>{}</script>\n", *parts_.plotly_js, draw_all);
+        put("</body>\n</html>\n");
+    }
+    [[nodiscard]] std::string take() { return std::move(text_); }
+
+  private:
+    template <class... Args>
+    void put(fmt::format_string<Args...> format, Args&&... args) {
+        fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+    }
+    static std::string shown(std::string_view text) { return html_escaped(visible_text(text)); }
+
+    void head(const std::string& title) {
+        std::string scripts = "'none'";
+        if (parts_.plotly_js) scripts = script_hash(*parts_.plotly_js) + " " + script_hash(draw_all);
+        put("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+            "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; "
+            "style-src "
+            "'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
+            "<style>{}</style>\n</head>\n<body>\n",
+            scripts, shown(title), style);
+    }
+
+    void section(const PageSection& one) {
+        put("<section>\n<h2>{}</h2>\n", shown(one.title));
+        if (!one.verdict.empty()) put("<p class=\"verdict\">{}</p>\n", shown(one.verdict));
+        if (!one.facts.empty()) {
+            put("<ul class=\"facts\">\n");
+            for (const PageFact& fact : one.facts)
+                put("<li><b>{}</b><span>{}</span></li>\n", shown(fact.value), shown(fact.name));
+            put("</ul>\n");
+        }
+        for (const Figure& drawn : one.figures) figure(drawn, drawn.title != one.title);
+        for (const PageTable& shown_table : one.tables) table(shown_table);
+        reproduce(one);
+        put("</section>\n");
+    }
+
+    void figure(const Figure& drawn, bool titled) {
+        const std::string id = fmt::format("figure-{}", ++figures_);
+        put("<figure>\n");
+        if (titled) put("<h3>{}</h3>\n", shown(drawn.title));
+        if (!drawn.sentence.empty()) put("<figcaption>{}</figcaption>\n", shown(drawn.sentence));
+        if (parts_.plotly_js) {
+            put("<div class=\"plot\" id=\"{0}\"></div>\n<script type=\"application/json\" "
+                "data-figure=\"{0}\">{1}</script>\n",
+                id, parts_.plotly_figure(drawn));
+        } else if (const auto svg = parts_.svg(drawn)) {
+            put("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">\n", shown(drawn.title), base64(*svg));
+        } else {
+            put("<p class=\"note\">Neither plotly.js nor gnuplot was found to draw this figure; its numbers "
+                "are in the result "
+                "below.</p>\n");
+        }
+        put("</figure>\n");
+    }
+
+    void table(const PageTable& one) {
+        put("<h3>{}</h3>\n<div class=\"scroll\"><table>\n<thead><tr>", shown(one.title));
+        for (std::size_t c = 0; c < one.header.size(); ++c) {
+            const bool words = !one.rows.empty() && !is_number(one.rows.front()[c]);
+            put("<th{}>{}</th>", words ? " class=\"words\"" : "", shown(one.header[c]));
+        }
+        put("</tr></thead>\n<tbody>\n");
+        for (const auto& row : one.rows) {
+            put("<tr>");
+            for (const std::string& cell : row)
+                put("<td{}>{}</td>", is_number(cell) ? "" : " class=\"words\"", shown(cell));
+            put("</tr>\n");
+        }
+        put("</tbody>\n</table></div>\n");
+    }
+
+    void reproduce(const PageSection& one) {
+        if (!one.command.empty()) put("<h3>Made by</h3>\n<pre>{}</pre>\n", shown(one.command));
+        if (!one.inputs.empty()) {
+            PageTable inputs{"From", {"file", "SHA-256"}, {}};
+            for (const PageFact& input : one.inputs) inputs.rows.push_back({input.name, input.value});
+            table(inputs);
+        }
+        // Shown as text and kept as data: a program finds it by its type.
+        if (one.json.empty()) return;
+        put("<details><summary>The result as JSON</summary><pre>{}</pre></details>\n",
+            html_escaped(one.json));
+    }
+
+    const HtmlParts& parts_;
+    std::string text_;
+    int figures_ = 0;
+};
+
+}  // namespace
+
+std::string html_escaped(std::string_view text) {
+    std::string escaped;
+    escaped.reserve(text.size());
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                escaped += "&amp;";
+                break;
+            case '<':
+                escaped += "&lt;";
+                break;
+            case '>':
+                escaped += "&gt;";
+                break;
+            case '"':
+                escaped += "&quot;";
+                break;
+            case '\'':
+                escaped += "&#39;";
+                break;
+            default:
+                escaped += c;
+        }
+    }
+    return escaped;
+}
+
+std::string html_page(const Page& page, const HtmlParts& parts) {
+    Writer writer(parts);
+    writer.write(page);
+    return writer.take();
+}
+
+}  // namespace ripplenotch

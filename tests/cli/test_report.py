@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch report: pages as a browser without a network sees them."""
+
+import html.parser
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+DATA = SOURCE / "data"
+PLOTLY = SOURCE / "scripts/report-assets/node_modules/plotly.js-cartesian-dist-min/plotly-cartesian.min.js"
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+needs_browser = unittest.skipUnless(BROWSER and PLOTLY.is_file(), "SKIPPED: there is no Chromium or no plotly.js here")
+
+
+def run(*words, folder=None, **environment):
+    return subprocess.run([TOOL, *map(str, words)], capture_output=True, cwd=folder, timeout=120,
+                          stdin=subprocess.DEVNULL, env=dict(os.environ, **environment))
+
+
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.path = pathlib.Path(cls.folder.name)
+        os.symlink(DATA, cls.path / "data")
+        for command in (
+                "identify data/paper_60deg_s.csv data/paper_120deg_s.csv data/paper_180deg_s.csv --json -o joint.json",
+                "design joint.json --speed 18:180:18 --json -o table.json",
+                "filter data/paper_move_2s.csv --table table.json -o out.csv --metrics metrics.json --plot torque.json",
+                "spectrum data/paper_90deg_s.csv -o s.csv --plot spectrum.json",
+                "spectrum data/paper_move_2s.csv --map campbell --gear-ratio 100 -o m.csv --plot campbell.json",
+                "compare --step 10Nm --ramp 20Nm/s --speed 90deg/s --sample-rate 1kHz --gear-ratio 100 --orders 1,2 "
+                "--method lowpass,cutoff=13Hz --json -o comparison.json --plot responses.json"):
+            done = run(*command.split(), folder=cls.path)
+            assert done.returncode == 0, done.stderr
+
+    RESULTS = ["joint.json", "table.json", "metrics.json", "torque.json", "spectrum.json", "campbell.json",
+               "comparison.json", "responses.json"]
+
+    def page(self, *words):
+        done = run("report", *words, "-q", "-o", "page.html", "--force", folder=self.path)
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+        return (self.path / "page.html").read_text()
+
+    def open(self, name):
+        """The page as Chromium leaves it, what it said on the console, and every address it asked for."""
+        with tempfile.TemporaryDirectory() as profile:
+            log = pathlib.Path(profile, "net.json")
+            began = time.monotonic()
+            done = subprocess.run(
+                [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}/p",
+                 "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
+                 "--host-resolver-rules=MAP * ~NOTFOUND", f"--log-net-log={log}", "--enable-logging=stderr",
+                 "--virtual-time-budget=8000", "--dump-dom", f"file://{self.path / name}"],
+                capture_output=True, timeout=120)
+            took = time.monotonic() - began
+            console = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if "CONSOLE" in line]
+            asked = re.findall(r'"url":"(\w+:[^"]*)"', log.read_text()) if log.is_file() else []
+        ours = [url for url in asked if not re.match(r"(chrome|devtools|data|blob|about)", url)
+                and "google" not in url and "gvt1" not in url]
+        return done.stdout.decode(), console, ours, took
+
+    @needs_browser
+    def test_every_plot_is_drawn_without_a_network_and_without_a_complaint(self):
+        html_text = self.page(*self.RESULTS, "--plotly", PLOTLY)
+        drawn, console, asked, took = self.open("page.html")
+        self.assertEqual(console, [])
+        self.assertEqual([url for url in asked if not url.startswith("file:")], [])
+        figures = [json.loads(text) for text in
+                   re.findall(r'data-figure="[^"]*">(.*?)</script>', html_text)]
+        self.assertEqual(len(figures), 6)
+        for number, figure in enumerate(figures, 1):
+            place = re.search(rf'<div class="plot[^>]*id="figure-{number}"[^>]*>', drawn)[0]
+            self.assertIn(f'data-drawn="{len(figure["data"])}"', place)
+            points = sum(len(trace["x"]) for trace in figure["data"])
+            self.assertIn(f'data-points="{points}"', place)
+            for name, axis in figure["layout"].items():
+                if re.fullmatch(r"[xy]axis\d*", name):
+                    self.assertIn(axis["title"]["text"].replace("&#37;", "%"), drawn)
+        self.assertLess(took, 20.0)
+
+    @needs_browser
+    def test_hostile_names_are_text_in_the_browser(self):
+        hostile = "<img src=x onerror=document.title='pwned'> <b>bold %{x} `q`.csv"
+        os.symlink(DATA / "paper_90deg_s.csv", self.path / hostile)
+        done = run("spectrum", hostile, "-o", "h.csv", "--plot", "hostile.json", "--force", folder=self.path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.page("hostile.json", "--plotly", PLOTLY, "--title", "<script>document.title='pwned'</script>")
+        drawn, console, asked, _ = self.open("page.html")
+        self.assertNotIn("<img src=x", drawn)
+        self.assertNotIn("<title>pwned", drawn)
+        self.assertEqual(console, [])
+        self.assertIn("&lt;b&gt;bold", drawn)
+
+    @needs_browser
+    def test_a_page_of_two_million_samples_is_small_and_opens_at_once(self):
+        log = self.path / "long.npy"
+        if not log.exists():
+            done = run("simulate", "--gear-ratio", "100", "--ripple", "1:0.8Nm", "--motion",
+                       "constant,speed=90deg/s,duration=2000s", "--sample-rate", "1kHz", "--noise", "0.05Nm", "-o", log)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        done = run("filter", log, "--method", "lowpass,cutoff=13Hz", "-o", self.path / "long_out.npy", "--plot",
+                   self.path / "long.json", "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.page("long.json", "--plotly", PLOTLY)
+        self.assertLess((self.path / "page.html").stat().st_size, 8_000_000)
+        drawn, console, _, took = self.open("page.html")
+        self.assertEqual(console, [])
+        self.assertIn("data-drawn", drawn)
+        self.assertLess(took, 20.0)  # with the start of the browser, on a busy machine
+
+    def test_the_same_results_give_the_same_bytes(self):
+        words = [*self.RESULTS, "--no-plotly"]
+        self.assertEqual(self.page(*words), self.page(*words))
+
+    def test_a_page_is_well_formed_and_names_what_made_each_result(self):
+        text = self.page(*self.RESULTS, "--no-plotly")
+
+        class Balance(html.parser.HTMLParser):
+            stack, void = [], {"meta", "img", "br", "link", "input"}
+
+            def handle_starttag(self, tag, _):
+                if tag not in self.void:
+                    self.stack.append(tag)
+
+            def handle_endtag(self, tag):
+                assert self.stack.pop() == tag, tag
+
+        parser = Balance()
+        parser.feed(text)
+        self.assertEqual(parser.stack, [])
+        for part in ("ripplenotch design joint.json --speed 18:180:18", "Ripple at orders 1 and 2", "attenuation, dB",
+                     "gear ratio value", "Content-Security-Policy", "viewport"):
+            self.assertIn(part, text)
+        self.assertNotIn("http", text.replace("http-equiv", ""))
+
+    def test_what_is_no_result_is_named(self):
+        for name, text in (("log.csv", "a,b\n1,2\n"), ("x.json", "{}"), ("y.json", '{"schema": "ripplenotch/joint/1"}')):
+            (self.path / name).write_text(text)
+            done = run("report", name, folder=self.path)
+            self.assertEqual((done.returncode, done.stdout), (3, b""), name)
+            self.assertIn(name.encode(), done.stderr)
+        self.assertEqual(run("report").returncode, 2)
+        self.assertEqual(run("report", "nowhere.json", folder=self.path).returncode, 4)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/report/html_page.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "filter/tables.hpp"
+#include "ripplenotch/artifact/figure.hpp"
+#include "ripplenotch/artifact/plotly.hpp"
+#include "ripplenotch/artifact/result_section.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/report/table_figure.hpp"
+
+using namespace ripplenotch;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string hostile = "<script>alert(1)</script> \"'&%{x} <b>$a$ ]]> \x1b[2J";
+
+Figure full_figure() {
+    Panel panel{.title = hostile, .x = {"frequency", "Hz", PlotScale::logarithmic}, .y = {hostile, "Nm"}};
+    panel.curves.push_back({hostile, Ink::blue, CurveStyle::steps, {1.0, 2.0, 4.0}, {0.0, NAN, 0.5}});
+    panel.curves.push_back({"stems", Ink::green, CurveStyle::stems, {1.5}, {0.25}});
+    panel.ribbons.push_back({"ribbon", Ink::green, {1.0, 4.0}, {0.0, 0.2}, {0.5, 0.7}});
+    panel.lines.push_back({hostile, NamedLine::Run::at_x, 2.0, Ink::black, false});
+    panel.lines.push_back({"ray", NamedLine::Run::ray, 0.1});
+    panel.shades.push_back({"3", Ink::sky, 1.0, 2.0, -INFINITY, INFINITY});
+    panel.height = 0.5;
+    panel.legend = false;
+    Panel map{.title = "", .x = {"speed", "deg/s"}, .y = {"order", ""}};
+    map.map =
+        HeatMap{"amplitude", "Nm", PlotScale::logarithmic, 0.1, 1.0, {0.0, 1.0, 2.0}, {0.0, 1.0}, {NAN, 0.8}};
+    return {"test", hostile, hostile, {panel, map}, 2};
+}
+
+HtmlParts parts_with(std::optional<std::string> plotly) {
+    return {std::move(plotly), plotly_text,
+            [](const Figure&) { return std::optional<std::string>("<svg/>"); }};
+}
+
+std::string figure_json(const Figure& figure) { return figure_text(figure, {}); }
+
+}  // namespace
+
+TEST_CASE("a figure survives the way to JSON and back") {
+    for (const Figure& figure : {full_figure(), table_figure(ripplenotch::testing::paper_table())}) {
+        const std::string text = figure_json(figure);
+        CHECK(figure_json(figure_from_json(text, "a.json")) == text);
+    }
+}
+
+TEST_CASE("a figure that is none is refused with the field and the reason") {
+    const auto broken = [](const char* pointer, const nlohmann::ordered_json& value) {
+        auto json = nlohmann::ordered_json::parse(figure_json(full_figure()));
+        json[nlohmann::ordered_json::json_pointer(pointer)] = value;
+        return json.dump();
+    };
+    const auto says = [](const std::string& text, const std::string& part) {
+        CHECK_THROWS_WITH(figure_from_json(text, "a.json"), Contains("a.json") && Contains(part));
+    };
+    says(broken("/panels/0/curves/0/style", "wiggly"), "style");
+    says(broken("/panels/0/curves/0/ink", "red"), "ink");
+    says(broken("/panels/0/curves/0/x", {1.0}), "differ in length");
+    says(broken("/panels/0/curves/0/y", {"<script>", 1, 2}), "numbers and null");
+    says(broken("/panels/0/x/from", 0.0), "span");
+    says(broken("/panels/0/extra", 1), "extra");
+    says(broken("/panels", nlohmann::ordered_json::array()), "no panel");
+    says(broken("/schema", "ripplenotch/joint/1"), "schema");
+    says("{", "not JSON");
+}
+
+TEST_CASE("plotly gets every curve, map and name of a figure, and no markup") {
+    const std::string text = plotly_text(full_figure());
+    CHECK(text.find('<') == std::string::npos);
+    const auto json = nlohmann::json::parse(text);
+    REQUIRE(json["data"].size() == 5);  // two curves, a ribbon's two edges, a map
+    CHECK(json["layout"]["xaxis"]["type"] == "log");
+    CHECK(json["layout"]["xaxis2"]["title"]["text"] == "speed, deg/s");
+    const std::string name = json["data"][2]["name"];
+    CHECK_THAT(name, !Contains("<") && !Contains("%{") && !Contains("$"));
+    CHECK_THAT(name, Contains("&#60;script&#62;"));
+    for (const auto& note : json["layout"]["annotations"])
+        CHECK_THAT(note["text"].get<std::string>(), !Contains("<") && !Contains("\x1b"));
+    const auto& map = json["data"][4];
+    CHECK(map["type"] == "heatmap");
+    CHECK(map["z"][0][0].is_null());
+    CHECK(map["customdata"][0][1] == 0.8);
+}
+
+TEST_CASE("axes that show the same time are linked, others are not") {
+    Figure figure = full_figure();
+    figure.panels = {figure.panels[1], figure.panels[1], figure.panels[0]};
+    const auto layout = nlohmann::json::parse(plotly_text(figure))["layout"];
+    CHECK_FALSE(layout["xaxis"].contains("matches"));
+    CHECK(layout["xaxis2"]["matches"] == "x");
+    CHECK_FALSE(layout["xaxis3"].contains("matches"));
+}
+
+TEST_CASE("a page shows hostile text as text and lets no script run but its own two") {
+    const std::string text = figure_json(full_figure());
+    Page page{hostile, {section_of_result(text, hostile)}};
+    page.sections[0].facts.push_back({hostile, hostile});
+    page.sections[0].tables.push_back({hostile, {hostile}, {{hostile}}});
+    page.sections[0].command = page.sections[0].json = hostile;
+    const std::string html = html_page(page, parts_with("var Plotly;"));
+    CHECK_THAT(html, !Contains("<script>alert") && !Contains("<b>$a$"));
+    CHECK_THAT(html, Contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
+    CHECK_THAT(html, Contains("default-src 'none'") && Contains("script-src 'sha256-") &&
+                         !Contains("http://") && !Contains("https://"));
+    std::size_t scripts = 0;
+    for (std::size_t at = html.find("<script"); at != std::string::npos; at = html.find("<script", at + 1))
+        ++scripts;
+    CHECK(scripts == 3);  // plotly, ours, and one block of data
+    CHECK(html == html_page(page, parts_with("var Plotly;")));
+}
+
+TEST_CASE("the hash in the policy is that of the script: the empty one's is known") {
+    const std::string html = html_page({"t", {}}, parts_with(""));
+    CHECK_THAT(html, Contains("'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='"));
+}
+
+TEST_CASE("without plotly the page carries pictures, says so, and runs no script") {
+    const Page page{"t", {section_of_result(figure_json(full_figure()), "a.json")}};
+    const std::string html = html_page(page, parts_with(std::nullopt));
+    CHECK_THAT(html,
+               Contains("src=\"data:image/svg+xml;base64,PHN2Zy8+\"") && Contains("plotly.js was not found"));
+    CHECK_THAT(html, Contains("script-src 'none'") && !Contains("<script"));
+}
+
+TEST_CASE("any result becomes verdict, facts and tables with units from its names") {
+    const std::string text = R"({"schema": "ripplenotch/diagnosis/1", "command": "ripplenotch diagnose x",
+        "inputs": [{"name": "x.csv", "sha256": "ab"}], "verdict": "explained", "samples": 500,
+        "rounds": [{"effect": "coulomb-friction", "status": "confirmed", "gap_before_nm": 2.0, "gap_after_nm": 0.5,
+                    "where": {"direction": "both"}},
+                   {"effect": "ripple", "status": "ambiguous", "gap_before_nm": 0.5, "gap_after_nm": 0.1}],
+        "gap": {"before_nm": 2.0, "after_nm": 0.1, "noise_floor_nm": 0.09, "closed_percent": 99.0}, "named": ["coulomb-friction"]})";
+    const PageSection section = section_of_result(text, "d.json");
+    CHECK(section.verdict == "explained");
+    REQUIRE(section.tables.size() == 1);
+    CHECK(section.tables[0].header[2] == "gap before, Nm");
+    CHECK(section.tables[0].rows[1][0] == "ripple");
+    REQUIRE(section.figures.size() == 1);
+    CHECK(section.figures[0].panels[0].curves[0].y == std::vector<double>{2.0, 0.5, 0.1});
+    CHECK(section.figures[0].panels[0].lines[1].name == "2: ripple (ambiguous)");
+    bool told = false;
+    for (const PageFact& fact : section.facts)
+        told = told || (fact.name == "gap closed, %" && fact.value == "99");
+    CHECK(told);
+    CHECK(section.inputs.size() == 1);
+}
+
+TEST_CASE("what is no result is refused by name") {
+    CHECK_THROWS_WITH(section_of_result("time_s,torque_nm\n", "log.csv"),
+                      Contains("log.csv") && Contains("not JSON"));
+    CHECK_THROWS_WITH(section_of_result("[1]", "a.json"),
+                      Contains("a.json") && Contains("expected a result"));
+    CHECK_THROWS_WITH(section_of_result("{\"schema\": \"other/1\"}", "a.json"), Contains("other/1"));
+    CHECK_THROWS_AS(section_of_result("{\"schema\": \"ripplenotch/joint/1\"}", "a.json"), DataError);
+}
