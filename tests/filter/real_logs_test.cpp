@@ -94,7 +94,7 @@ struct Tried {
 };
 
 const std::vector<Tried> tried = {
-    {"tracking", 12.0},        {"oscillator", 12.0},          {"oscillator,output=minus-ripple", 12.0},
+    {"tracking", 12.0},        {"oscillator", 18.0},          {"oscillator,output=minus-ripple", 12.0},
     {"subtract", 18.0},        {"oscillator,memory=2", 12.0}, {"tracking,q=2.5", {}},
     {"subtract,turns=4", 15.0}};
 
