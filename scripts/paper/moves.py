@@ -31,8 +31,19 @@ def simulate_moves(tool, data):
             tool.text("simulate", *JOINT, *ripple, *MOVE, *noise, "--velocity-noise", "0.15deg/s", "--no-position",
                       "-o", names[1], "--force")
             made[phase, seed] = names
+        identify_joint(tool, ripple, phase)
     truth = tool.log("simulate", *JOINT, *MOVE)["torque_nm"]
     return made, truth
+
+
+def identify_joint(tool, ripple, phase):
+    """joint_PHASE.json, from runs at three speeds: gear ratio, amplitudes, and phases tied to the position."""
+    runs = []
+    for speed in (60, 120, 180):
+        runs.append(f"run_{phase}_{speed}.csv")
+        tool.text("simulate", *JOINT, *ripple, "--motion", f"constant,speed={speed}deg/s,duration=4s,from=90deg",
+                  "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", str(speed), "-o", runs[-1], "--force")
+    tool.text("identify", *runs, "-o", f"joint_{phase}.json", "--force", "-q")
 
 
 def filtered(tool, method, log):
@@ -60,6 +71,8 @@ def contenders(best_q):
              ("oscillator, cold, gain scheduled", same(f"{OSCILLATOR},gain=scheduled")),
              ("oscillator, cold, minus-ripple", same(f"{OSCILLATOR},output=minus-ripple")),
              ("oscillator, warm", lambda phase, has: warm(phase) + start[has]),
+             ("oscillator, warm from what identify finds in runs at 60, 120, 180 deg/s",
+              lambda phase, has: f"oscillator,joint=joint_{phase}.json{start[has]}"),
              ("oscillator, warm, 5 % and 5 deg off", lambda phase, has:
                  f"{OSCILLATOR},amplitudes=0.84Nm:0.475Nm,phases={phase + 5}deg:{phase - 5}deg{start[has]}"),
              ("oscillator, warm, gain scheduled", lambda phase, has: f"{warm(phase)},gain=scheduled{start[has]}"),

@@ -81,7 +81,9 @@ class Move(unittest.TestCase):
         self.assertLessEqual(self.at_90_degrees("subtract"), 0.055)
         for phases in ("90", "0"):
             for angle in ("position", "velocity"):
-                self.assertLessEqual(self.errors["oscillator, warm"][f"error_phases_{phases}_{angle}_nm"], 0.05)
+                for start in ("oscillator, warm",
+                              "oscillator, warm from what identify finds in runs at 60, 120, 180 deg/s"):
+                    self.assertLessEqual(self.errors[start][f"error_phases_{phases}_{angle}_nm"], 0.05)
         self.assertLessEqual(abs(self.errors["oscillator, warm"]["delay_ms"]), 1.0)
 
     def test_told_that_the_arm_rests_unloaded_the_cold_oscillator_stays_below_a_fifth_at_any_phase(self):
