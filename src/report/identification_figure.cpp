@@ -53,7 +53,7 @@ Panel frequency_panel(const Identification& found) {
 Panel residual_panel(const GearRatioFit& fit) {
     Panel panel{.title = "What the fit of the gear ratio leaves of the frequency",
                 .x = {"joint speed", "deg/s"},
-                .y = {"measured less fitted", "Hz"},
+                .y = {"residual", "Hz"},
                 .height = 0.6};
     panel.x.from = 0.0;
     Curve curve{"", Ink::blue, CurveStyle::points, {}, {}};

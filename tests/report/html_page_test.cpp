@@ -80,8 +80,12 @@ TEST_CASE("plotly gets every curve, map and name of a figure, and no markup") {
     const std::string name = json["data"][2]["name"];
     CHECK_THAT(name, !Contains("<") && !Contains("%{") && !Contains("$"));
     CHECK_THAT(name, Contains("&#60;script&#62;"));
-    for (const auto& note : json["layout"]["annotations"])
-        CHECK_THAT(note["text"].get<std::string>(), !Contains("<") && !Contains("\x1b"));
+    for (const auto& note : json["layout"]["annotations"]) {
+        std::string words = note["text"];
+        for (std::size_t at = words.find("<br>"); at != std::string::npos; at = words.find("<br>"))
+            words.erase(at, 4);
+        CHECK_THAT(words, !Contains("<") && !Contains("\x1b"));
+    }
     const auto& map = json["data"][4];
     CHECK(map["type"] == "heatmap");
     CHECK(map["z"][0][0].is_null());
