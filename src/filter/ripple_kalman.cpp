@@ -135,7 +135,15 @@ void RippleKalman::update(double measured) noexcept {
         expected += h_[i] * x_[i];
         variance += h_[i] * sum;
     }
-    const double scale = 1.0 / variance, surprise = measured - expected;
+    const double surprise = measured - expected;
+    // What the model holds for next to impossible is no ripple that grew overnight but a torque that jumped.
+    if (model_.jump > 0.0 && surprise * surprise > model_.jump * model_.jump * variance) {
+        const double added = surprise * surprise;
+        p_[0] += added;
+        ph_[0] += added;
+        variance += added;
+    }
+    const double scale = 1.0 / variance;
     surprise_ = surprise * scale;
     settled_variance_ = 0.0;
     for (std::size_t i = 0; i < m_; ++i) {

@@ -15,6 +15,7 @@ struct RippleModel {
     double step_s = 0.0;
     double bandwidth_rad_s = 0.0;  ///< of the torque: where its spectrum sinks below the noise
     double memory_turns = 0.0;     ///< of the motor, over which an amplitude may change
+    double jump = 0.0;  ///< surprise, in its own deviations, beyond which the torque jumped; 0: never
 
     [[nodiscard]] std::size_t states() const { return 2 + 2 * orders.size(); }
     /// What the torque's second derivative adds in one step: variances of torque and rate, and their

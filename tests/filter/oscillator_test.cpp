@@ -386,6 +386,23 @@ TEST_CASE("a line beyond half the sample rate is not taken for torque") {
     CHECK(rms_error(out, s.torque_nm) < 0.01);
 }
 
+TEST_CASE("a torque that jumps comes out at once where a jump is looked for, and rings where it is not") {
+    Signals s;
+    std::vector<double> truth;
+    for (std::size_t k = 0; k < 3000; ++k) {
+        const double theta = 0.05 * std::numbers::pi * static_cast<double>(k);  // 25 Hz
+        s.velocity_deg_s.push_back(90.0);
+        s.position_deg.push_back(0.09 * static_cast<double>(k));
+        truth.push_back(k < 2000 ? 0.0 : 10.0);
+        s.torque_nm.push_back(truth.back() + 0.8 * std::cos(theta) + 0.5 * std::cos(2.0 * theta + 1.0));
+    }
+    add_white_noise(s.torque_nm, 0.05, 3, NoiseChannel::torque);
+    CHECK(rms_error(filtered(*start(cold + ",jump=12"), s.samples()), truth, 2000, 2100) < 0.06);
+    CHECK(rms_error(filtered(*start(cold), s.samples()), truth, 2000, 2100) > 1.0);
+    CHECK(rms_error(filtered(*start(cold + ",jump=12"), s.samples()), truth, 500, 2000) < 0.03);
+    CHECK_THROWS_WITH(start(cold + ",jump=12,gain=scheduled"), Catch::Contains("gain=exact"));
+}
+
 TEST_CASE("oscillator says what is wrong with its settings") {
     CHECK_THROWS_WITH(start(cold + ",phases=0:0"), Catch::Contains("without amplitudes"));
     CHECK_THROWS_WITH(start(cold + ",amplitudes=0.8"), Catch::Contains("1 values for 2 orders"));

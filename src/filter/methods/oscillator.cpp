@@ -96,6 +96,13 @@ constexpr std::array keys = {
         .default_text = "2deg/s",
         .above = 0.0,
         .help = "angle from velocity: largest offset of the velocity that the ripple may correct"},
+    Key{.name = "jump",
+        .default_text = "0",
+        .above = -std::numeric_limits<double>::min(),
+        .at_most = 1e6,
+        .help = "a sample that is off by more than this many of its deviations is a jump of the torque, not "
+                "ripple; "
+                "0: none is"},
     Key{.name = "slip",
         .default_text = "0.03",
         .above = -std::numeric_limits<double>::min(),
@@ -167,10 +174,13 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
             shortest(bandwidth_hz), shortest(0.25 * p.sample_rate_hz));
     }
     p.model = {p.ripple.orders, 1.0 / p.sample_rate_hz, 2.0 * std::numbers::pi * bandwidth_hz,
-               settings.number("memory")};
+               settings.number("memory"), settings.number("jump")};
     p.has_start = settings.has("start");
     if (settings.has("rest")) p.rest_nm = settings.number("rest");
     p.scheduled = settings.text("gain") == "scheduled";
+    if (p.scheduled && p.model.jump > 0.0)
+        raise<UsageError>(
+            "method oscillator, jump: needs gain=exact, which knows how far off a sample may be");
     if (p.has_start) p.start_deg = settings.number("start");
     if (settings.text("angle") == "velocity") p.source = MotorAngle::Source::velocity;
     p.minus_ripple = settings.text("output") == "minus-ripple";
