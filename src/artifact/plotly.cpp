@@ -53,6 +53,7 @@ class PlotlyPanel {
                                               {"yref", "paper"},
                                               {"x", 0},
                                               {"xshift", 12.0 - left_margin_px},
+                                              {"align", "left"},
                                               {"y", top + (names_px(true) + 6.0) / total_px},
                                               {"xanchor", "left"},
                                               {"yanchor", "bottom"},

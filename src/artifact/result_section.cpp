@@ -51,10 +51,28 @@ Spoken spoken(std::string name) {
     return {name, unit};
 }
 
+bool is_span(const Json& json) {
+    return json.is_array() && json.size() == 2 && json[0].is_number() && json[1].is_number();
+}
+
+std::string value_text(const Json& json);
+
+// "0.5 to 2.25; 4 to 5": stretches of time, of speed.
+std::string spans_text(const Json& spans) {
+    constexpr std::size_t most = 4;
+    std::string joined;
+    for (std::size_t i = 0; i < std::min(spans.size(), most); ++i)
+        joined +=
+            fmt::format("{}{} to {}", i > 0 ? "; " : "", value_text(spans[i][0]), value_text(spans[i][1]));
+    return spans.size() > most ? fmt::format("{}; and {} more", joined, spans.size() - most) : joined;
+}
+
 std::string value_text(const Json& json) {
     if (json.is_null()) return "-";
     if (json.is_string()) return json.get<std::string>();
     if (json.is_number_float()) return fmt::format("{:.7g}", json.get<double>() + 0.0);
+    if (json.is_array() && !json.empty() && std::all_of(json.begin(), json.end(), is_span))
+        return spans_text(json);
     if (json.is_array()) {
         std::string joined;
         for (const Json& entry : json) joined += (joined.empty() ? "" : ", ") + value_text(entry);
@@ -88,6 +106,23 @@ bool says_nothing(const std::string& cell) {
     return cell.empty() || cell == "-" || cell.ends_with(" values");
 }
 
+// What a parameter was fitted to: {"level_nm": {"value": 1, "ci95": [0.9, 1.1]}} is "level 1 (0.9 to 1.1)
+// Nm".
+std::string parameters_text(const Json& parameters) {
+    std::string joined;
+    for (const auto& [name, entry] : parameters.items()) {
+        const Spoken said = spoken(name);
+        const Json value = entry.is_object() ? entry.value("value", Json()) : entry;
+        const Json interval = entry.is_object() ? entry.value("ci95", Json()) : Json();
+        joined += fmt::format(
+            "{}{} {}{}{}", joined.empty() ? "" : "; ", said.name, value_text(value),
+            is_span(interval) ? fmt::format(" ({} to {})", value_text(interval[0]), value_text(interval[1]))
+                              : "",
+            said.unit.empty() ? "" : " " + said.unit);
+    }
+    return joined;
+}
+
 // A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms".
 void cells_of(const Json& row, const std::string& prefix, const std::string& unit,
               std::vector<std::pair<std::string, std::string>>& cells) {
@@ -95,7 +130,9 @@ void cells_of(const Json& row, const std::string& prefix, const std::string& uni
         const Spoken said = spoken(name);
         const std::string full = prefix + said.name;
         const std::string in = said.unit.empty() ? unit : said.unit;
-        if (entry.is_object() && entry.size() <= 6) {
+        if (name == "parameters" && entry.is_object()) {
+            cells.emplace_back("parameters (95 % interval)", parameters_text(entry));
+        } else if (entry.is_object() && entry.size() <= 6) {
             cells_of(entry, full + " ", in, cells);
         } else if (is_short_list(entry)) {
             for (std::size_t i = 0; i < entry.size(); ++i)
@@ -146,7 +183,7 @@ void add_field(PageSection& section, const std::string& name, const Json& json) 
             const Spoken outer = spoken(name);
             if (is_table(entry)) {
                 section.tables.push_back(table_of(name + " " + inner, entry));
-            } else if (!entry.is_null() && !(entry.is_array() && entry.empty())) {
+            } else if (inner != "schema" && !entry.is_null() && !(entry.is_array() && entry.empty())) {
                 const Spoken said = spoken(inner);
                 const std::string unit = said.unit.empty() ? outer.unit : said.unit;
                 section.facts.push_back(
@@ -164,6 +201,15 @@ void add_field(PageSection& section, const std::string& name, const Json& json) 
 double number_or(const Json& json, const char* name, double otherwise) {
     const auto found = json.find(name);
     return found != json.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
+// "explained: coulomb-friction, tone; gap from 1.01 to 0.0493 Nm rms, noise floor 0.0494 Nm"
+std::string diagnosis_in_words(const Json& json) {
+    const Json gap = json.value("gap", Json::object()), named = json.value("named", Json::array());
+    return fmt::format("{}: {}; gap from {:.3g} to {:.3g} Nm rms, noise floor {:.3g} Nm",
+                       json.value("verdict", "?"), named.empty() ? "no effect is named" : value_text(named),
+                       number_or(gap, "before_nm", 0.0), number_or(gap, "after_nm", 0.0),
+                       number_or(gap, "noise_floor_nm", 0.0));
 }
 
 Figure gap_of(const Json& json, const std::string& source) {
@@ -200,6 +246,7 @@ void add_figures(PageSection& section, const std::string& kind, const Json& json
     } else if (kind == "table") {
         section.figures.push_back(table_figure(table_from_json(text, source)));
     } else if (kind == "diagnosis") {
+        section.verdict = diagnosis_in_words(json);
         section.figures.push_back(gap_of(json, source));
     }
 }

@@ -136,13 +136,19 @@ TEST_CASE("any result becomes verdict, facts and tables with units from its name
     const std::string text = R"({"schema": "ripplenotch/diagnosis/1", "command": "ripplenotch diagnose x",
         "inputs": [{"name": "x.csv", "sha256": "ab"}], "verdict": "explained", "samples": 500,
         "rounds": [{"effect": "coulomb-friction", "status": "confirmed", "gap_before_nm": 2.0, "gap_after_nm": 0.5,
-                    "where": {"direction": "both"}},
+                    "parameters": {"level_nm": {"value": 1.0, "ci95": [0.9, 1.1]}},
+                    "where": {"direction": "both", "time_s": [[0.5, 2.25], [4, 5]]}},
                    {"effect": "ripple", "status": "ambiguous", "gap_before_nm": 0.5, "gap_after_nm": 0.1}],
         "gap": {"before_nm": 2.0, "after_nm": 0.1, "noise_floor_nm": 0.09, "closed_percent": 99.0}, "named": ["coulomb-friction"]})";
     const PageSection section = section_of_result(text, "d.json");
-    CHECK(section.verdict == "explained");
+    CHECK(section.verdict == "explained: coulomb-friction; gap from 2 to 0.1 Nm rms, noise floor 0.09 Nm");
     REQUIRE(section.tables.size() == 1);
-    CHECK(section.tables[0].header[2] == "gap before, Nm");
+    const std::vector<std::string> header{
+        "effect",          "status",       "gap before, Nm", "gap after, Nm", "parameters (95 % interval)",
+        "where direction", "where time, s"};
+    CHECK(section.tables[0].header == header);
+    CHECK(section.tables[0].rows[0][4] == "level 1 (0.9 to 1.1) Nm");
+    CHECK(section.tables[0].rows[0][6] == "0.5 to 2.25; 4 to 5");
     CHECK(section.tables[0].rows[1][0] == "ripple");
     REQUIRE(section.figures.size() == 1);
     CHECK(section.figures[0].panels[0].curves[0].y == std::vector<double>{2.0, 0.5, 0.1});
