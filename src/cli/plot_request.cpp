@@ -98,13 +98,24 @@ void draw_plot(const PlotRequest& request, const CommonOptions& common, const Pr
 }
 
 void WatchedWriter::write(const RowBlock& block, std::span<const double> torque_nm) {
-    for (std::size_t k = 0; k < block.size(); ++k)
-        course_.add(block.time_s[k], block.velocity_deg_s[k], block.torque_nm[k], torque_nm[k]);
-    if (writer_) writer_->write(block, torque_nm);
+    std::string bytes;
+    prepare(block, torque_nm, bytes);
+    put(block, torque_nm, bytes);
 }
 
-void WatchedWriter::finish(std::string_view tail) {
-    if (writer_) writer_->finish(tail);
+void WatchedWriter::prepare(const RowBlock& block, std::span<const double> torque_nm,
+                            std::string& bytes) const {
+    if (writer_) writer_->prepare(block, torque_nm, bytes);
+}
+
+void WatchedWriter::put(const RowBlock& block, std::span<const double> torque_nm, std::string_view bytes) {
+    for (std::size_t k = 0; k < block.size(); ++k)
+        course_.add(block.time_s[k], block.velocity_deg_s[k], block.torque_nm[k], torque_nm[k]);
+    if (writer_) writer_->put(block, torque_nm, bytes);
+}
+
+void WatchedWriter::finish() {
+    if (writer_) writer_->finish();
 }
 
 }  // namespace ripplenotch

@@ -39,7 +39,9 @@ class WatchedWriter : public LogWriter {
   public:
     explicit WatchedWriter(std::unique_ptr<LogWriter> writer) : writer_(std::move(writer)) {}
     void write(const RowBlock& block, std::span<const double> torque_nm) override;
-    void finish(std::string_view tail) override;
+    void prepare(const RowBlock& block, std::span<const double> torque_nm, std::string& bytes) const override;
+    void put(const RowBlock& block, std::span<const double> torque_nm, std::string_view bytes) override;
+    void finish() override;
     [[nodiscard]] const TorqueCourse& course() const { return course_; }
 
   private:

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <iterator>
 
 namespace ripplenotch {
@@ -26,6 +27,30 @@ std::optional<std::uint64_t> scaled_surely(double magnitude, int decimals) {
     // The product is off by at most half a unit in its last place, 1.2e-16 of itself.
     if (std::abs(rest - 0.5) <= 4e-16 * scaled) return std::nullopt;
     return static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0);
+}
+
+constexpr auto digit_pairs = [] {
+    std::array<char, 200> pairs{};
+    for (std::size_t i = 0; i < 100; ++i) {
+        pairs[2 * i] = static_cast<char>('0' + i / 10);
+        pairs[2 * i + 1] = static_cast<char>('0' + i % 10);
+    }
+    return pairs;
+}();
+
+/// The last `count` digits of a number, zeros before it where it is short, ending just before `end`.
+void write_digits(char* end, std::uint64_t value, int count) {
+    for (; count >= 2; count -= 2, value /= 100) {
+        end -= 2;
+        std::memcpy(end, digit_pairs.data() + 2 * (value % 100), 2);
+    }
+    if (count > 0) *--end = static_cast<char>('0' + value % 10);
+}
+
+int digits_in(std::uint64_t value) {
+    int count = 1;
+    for (std::uint64_t bound = 10; value >= bound && count < 19; bound *= 10) ++count;
+    return count;
 }
 
 }  // namespace
@@ -61,18 +86,16 @@ void append_fixed(std::string& out, double value, int decimals) {
         fmt::format_to(std::back_inserter(out), FMT_COMPILE("{:.{}f}"), value, decimals);
         return;
     }
-    const fmt::format_int digits(*scaled);
+    const auto unit = static_cast<std::uint64_t>(powers_of_ten[static_cast<std::size_t>(decimals)]);
+    const std::uint64_t whole = *scaled / unit, fraction = *scaled % unit;
     std::array<char, 32> text;
     char* at = text.data();
     if (std::signbit(value)) *at++ = '-';
-    const int before = static_cast<int>(digits.size()) - decimals;  // the decimal mark
-    if (before > 0) {
-        at = std::copy_n(digits.data(), before, at);
-        if (decimals > 0) *at++ = '.';
-        at = std::copy_n(digits.data() + before, decimals, at);
-    } else {
-        at = std::fill_n(std::copy_n("0.", 2, at), -before, '0');
-        at = std::copy_n(digits.data(), digits.size(), at);
+    const int before = digits_in(whole);
+    write_digits(at += before, whole, before);
+    if (decimals > 0) {
+        *at++ = '.';
+        write_digits(at += decimals, fraction, decimals);
     }
     out.append(text.data(), static_cast<std::size_t>(at - text.data()));
 }

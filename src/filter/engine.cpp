@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "filter/block_pipeline.hpp"
 #include "filter/held_rows.hpp"
-#include "filter/write_behind.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -102,7 +102,10 @@ Trace LogStream::read_head() {
     std::size_t bytes = 0;
     while (head.size() < clock_rows && bytes < most_read_ahead_bytes) {
         RowBlock block;
-        if (!reader_->next(block)) break;
+        if (!reader_->next(block)) {
+            read_whole_ = true;
+            break;
+        }
         std::size_t count = 0;
         while (count < block.size() && head.size() + count < clock_rows &&
                (count >= block.row_end.size() || bytes + block.row_end[count] < most_read_ahead_bytes)) {
@@ -147,20 +150,12 @@ void LogStream::measure_clock(const Trace& head, double gap_steps) {
     gap_s_ = gap_steps * clock.median_step.value();
 }
 
-bool LogStream::next(RowBlock& block) {
-    if (read_ahead_.empty()) return reader_->next(block);
-    block = std::move(read_ahead_.front());
-    read_ahead_.pop_front();
-    return true;
-}
-
 // The state of one pass over the log.
 struct LogStream::Pass {
     const LogStream& stream;
     CausalFilter& filter;
     RippleMeter* meter;
     StreamReport report{};
-    std::vector<double> out{};
     double last_time_s = 0.0;
     HeldRows held{stream.moving_deg_s_};
     double duration_s = 0.0;  // gaps left out
@@ -190,7 +185,7 @@ struct LogStream::Pass {
         return false;
     }
 
-    void filter_rows(const RowBlock& block, std::size_t first, std::size_t count) {
+    void filter_rows(const RowBlock& block, std::size_t first, std::size_t count, std::vector<double>& out) {
         const auto part = [first, count](const std::vector<double>& values) {
             return values.empty() ? std::span<const double>{} : std::span(values).subspan(first, count);
         };
@@ -204,14 +199,14 @@ struct LogStream::Pass {
         }
     }
 
-    void take(const RowBlock& block) {
+    void take(const RowBlock& block, std::vector<double>& out) {
         out.resize(block.size());
         std::size_t first = 0;
         for (std::size_t k = 0; k < block.size(); ++k) {
             const bool any_before = report.rows + k > 0;
             const bool gap = any_before && step_to(block, k);
             if (gap) {
-                filter_rows(block, first, k - first);
+                filter_rows(block, first, k - first, out);
                 filter.restart();
                 if (meter != nullptr) meter->split();
                 first = k;
@@ -219,7 +214,7 @@ struct LogStream::Pass {
             held.add(block, k, any_before && !gap);
             last_time_s = block.time_s[k];
         }
-        filter_rows(block, first, block.size() - first);
+        filter_rows(block, first, block.size() - first, out);
         const auto switches = filter.switches();
         for (std::size_t i = report.switches.size(); i < switches.size(); ++i) {
             report.switches.push_back({switches[i], block.time_s[switches[i].sample - report.rows]});
@@ -229,20 +224,30 @@ struct LogStream::Pass {
     }
 };
 
-StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter) {
+StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter,
+                            std::size_t threads) {
     Pass pass{*this, filter, meter};
-    RowBlock block;
-    if (writer == nullptr) {
-        while (next(block)) pass.take(block);
-    } else {
-        WriteBehind behind(*writer);
-        while (next(block)) {
-            pass.take(block);
-            behind.write(block, pass.out);
-        }
-        behind.join();
-        writer->finish(reader_->tail());
-    }
+    BlockSteps steps;
+    steps.fetch = [&](BlockItem& item) {
+        if (read_ahead_.empty()) return reader_->fetch(item.block);
+        item.block = std::move(read_ahead_.front());
+        read_ahead_.pop_front();
+        item.accepted = true;
+        return true;
+    };
+    steps.parse = [&](BlockItem& item) { reader_->parse(item.block); };
+    steps.filter = [&](BlockItem& item) {
+        if (!item.accepted) reader_->accept(item.block);
+        pass.take(item.block, item.torque_nm);
+    };
+    steps.prepare = [&](BlockItem& item) {
+        if (writer != nullptr) writer->prepare(item.block, item.torque_nm, item.bytes);
+    };
+    steps.put = [&](BlockItem& item) {
+        if (writer != nullptr) writer->put(item.block, item.torque_nm, item.bytes);
+    };
+    run_blocks(steps, read_whole_ ? 1 : threads);
+    if (writer != nullptr) writer->finish();
     pass.report.held_samples = pass.held.count();
     pass.report.switch_count = filter.switch_count();
     if (pass.duration_s > 0.0)

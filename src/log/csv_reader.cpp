@@ -15,9 +15,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t piece_size = std::size_t{1} << 20;
+constexpr std::size_t piece_size = std::size_t{1} << 19;
 constexpr std::size_t sniff_size = std::size_t{1} << 16;
-enum Slot : std::size_t { time_slot, velocity_slot, torque_slot, position_slot };
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 // Reads on until `size` bytes are there; true when the source ended before.
@@ -79,11 +78,23 @@ void CsvReader::plan_columns() {
     }
     std::sort(wanted_.begin(), wanted_.end(),
               [](const auto& a, const auto& b) { return a.column < b.column; });
-    parser_.emplace(dialect_.rules, dialect_.columns, wanted_, static_cast<std::size_t>(torque_slot));
+    quick_.emplace(RowPlan{dialect_.rules, dialect_.line_end, dialect_.columns, wanted_, factors_});
 }
 
-// Whole lines into `bytes`, the rest into carry_. False when there is nothing more.
-bool CsvReader::fill(std::string& bytes) {
+bool CsvReader::next(RowBlock& block) {
+    if (!fetch(block)) {
+        if (rows_ == 0) raise<DataError>("{}: read no row, expected rows of numbers", source_->name());
+        return false;
+    }
+    parse(block);
+    accept(block);
+    return true;
+}
+
+// Whole lines into block.bytes, the rest into carry_.
+bool CsvReader::fetch(RowBlock& block) {
+    block.clear();
+    std::string& bytes = block.bytes;
     bytes.swap(carry_);
     carry_.clear();
     while (true) {
@@ -91,75 +102,91 @@ bool CsvReader::fill(std::string& bytes) {
         if (end != std::string::npos) {
             carry_.assign(bytes, end + 1);
             bytes.resize(end + 1);
-            last_line_complete_ = true;
             return true;
         }
-        if (at_end_) {
-            last_line_complete_ = false;
-            return !bytes.empty();
-        }
-        if (bytes.size() > longest_line) {
+        if (at_end_) return !bytes.empty();
+        if (bytes.size() > longest_line) return true;  // accept() has the line's number
+        const std::size_t have = bytes.size();
+        bytes.resize(have + piece_size);
+        const std::size_t got = source_->read(bytes.data() + have, piece_size);
+        at_end_ = got == 0;
+        bytes.resize(have + got);
+    }
+}
+
+void CsvReader::parse(RowBlock& block) const { block.parsed_bytes = quick_->take(block, 0, not_a_number); }
+
+void CsvReader::accept(RowBlock& block) {
+    block.first_row = rows_;
+    if (!continues(block)) block.drop_rows();
+    note_quick_rows(block, 0);
+    std::size_t begin = block.parsed_bytes;
+    while (begin < block.bytes.size()) {
+        const std::size_t found = block.bytes.find(dialect_.line_end, begin);
+        last_line_complete_ = found != std::string::npos;
+        const std::size_t end = last_line_complete_ ? found : block.bytes.size();
+        if (end - begin > longest_line) {
             raise<DataError>(
                 "{}:{}: read a line of more than 1 MiB, expected rows of {} cells; check that this is a text "
                 "log",
                 source_->name(), line_, dialect_.columns);
         }
-        buffer_.resize(piece_size);
-        const std::size_t got = source_->read(buffer_.data(), buffer_.size());
-        at_end_ = got == 0;
-        bytes.append(buffer_.data(), got);
-    }
-}
-
-bool CsvReader::next(RowBlock& block) {
-    block.first_row = rows_;
-    block.bytes.clear();
-    block.held_bad_values = 0;
-    for (auto* values : {&block.time_s, &block.velocity_deg_s, &block.torque_nm, &block.position_deg})
-        values->clear();
-    for (auto* offsets : {&block.torque_begin, &block.torque_end, &block.row_end}) offsets->clear();
-
-    std::string pending;  // comments and blank lines before the first row of the block
-    while (true) {
-        if (!fill(block.bytes)) {
-            if (rows_ == 0) raise<DataError>("{}: read no row, expected rows of numbers", source_->name());
-            tail_ = std::move(pending);
-            block.bytes.clear();
-            return false;
-        }
-        std::size_t begin = pending.size();
-        if (begin > 0) block.bytes.insert(0, pending);
-        while (begin < block.bytes.size()) {
-            const char* const base = block.bytes.data();
-            const void* const found =
-                std::memchr(base + begin, dialect_.line_end, block.bytes.size() - begin);
-            const std::size_t end = found == nullptr
-                                        ? block.bytes.size()
-                                        : static_cast<std::size_t>(static_cast<const char*>(found) - base);
-            take_line(block, begin, end);
-            ++line_;
-            begin = end + 1;
-        }
-        if (block.size() > 0) return true;
-        if (block.bytes.size() > longest_line) {
+        const bool row = take_line(block, begin, end);
+        bytes_without_row_ = row ? 0 : bytes_without_row_ + end - begin;
+        ++line_;
+        begin = end + 1;
+        if (bytes_without_row_ > longest_line) {
             raise<DataError>(
                 "{}:{}: read more than 1 MiB without a row, expected rows of numbers; remove the comments",
                 source_->name(), line_);
         }
-        pending.swap(block.bytes);
+        if (!row || end_mark_seen_ || begin >= block.bytes.size()) continue;
+        const std::size_t before = block.size();
+        begin = quick_->take(block, begin, before_[time_slot]);
+        note_quick_rows(block, before);
     }
 }
 
-void CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
+// True when the rows that were parsed on their own may follow those before. Where not, the careful way finds
+// the place and the words.
+bool CsvReader::continues(const RowBlock& block) const {
+    if (block.size() == 0) return true;
+    if (end_mark_seen_) return false;
+    if (!layout_.chosen.time) return true;
+    ParsedRow first;
+    static_cast<void>(quick_->parse(std::string_view(block.bytes).substr(0, block.row_end[0]), first));
+    return !(first.values[time_slot] < before_[time_slot]);
+}
+
+// What the next line, and messages about it, need to know of rows that were taken at once.
+void CsvReader::note_quick_rows(RowBlock& block, std::size_t before) {
+    const std::size_t count = block.size() - before;
+    if (count == 0) return;
+    if (!layout_.chosen.time && layout_.stated_rate) {
+        for (std::size_t i = 0; i < count; ++i)
+            block.time_s[before + i] = static_cast<double>(rows_ + i) / layout_.stated_rate->value();
+    }
+    rows_ += count;
+    line_ += count;
+    bytes_without_row_ = 0;
+    const std::string_view bytes(block.bytes.data(), block.row_end.back());
+    const std::size_t line_end = bytes.rfind(dialect_.line_end);
+    ParsedRow last;
+    if (quick_->parse(bytes.substr(line_end == std::string_view::npos ? 0 : line_end + 1), last))
+        before_ = last.values;
+}
+
+// False for a comment, a blank line and the end mark.
+bool CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
     const char* const base = block.bytes.data();
     if (end > begin && base[end - 1] == '\r') --end;
+    const std::string_view line(base + begin, end - begin);
     ParsedRow row;
-    if (!parser_->parse(base + begin, base + end, row)) {
-        const std::string_view line(base + begin, end - begin);
-        if (is_blank_line(line) || is_comment_line(line)) return;
+    if (!quick_->parse(line, row)) {
+        if (is_blank_line(line) || is_comment_line(line)) return false;
         if (line == "EOF") {
             end_mark_seen_ = true;
-            return;
+            return false;
         }
         parse_carefully(line, block, row);
     }
@@ -167,11 +194,11 @@ void CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
         complain(1,
                  "read a row after the line EOF, expected the end; remove the line EOF or what follows it");
     append_row(block, row);
-    block.torque_begin.push_back(
-        row.torque_begin == nullptr ? begin : static_cast<std::size_t>(row.torque_begin - base));
-    block.torque_end.push_back(row.torque_begin == nullptr ? begin
-                                                           : static_cast<std::size_t>(row.torque_end - base));
-    block.row_end.push_back(static_cast<std::size_t>(row.content_end - base));
+    const auto place = [base](const char* at) { return static_cast<std::uint32_t>(at - base); };
+    block.torque_begin.push_back(place(row.torque_begin == nullptr ? line.data() : row.torque_begin));
+    block.torque_end.push_back(place(row.torque_begin == nullptr ? line.data() : row.torque_end));
+    block.row_end.push_back(place(row.content_end));
+    return true;
 }
 
 void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row) {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "log/row_parser.hpp"
+#include "log/quick_rows.hpp"
 #include "log/text_dialect.hpp"
 #include "ripplenotch/log/format.hpp"
 
@@ -19,14 +19,17 @@ class CsvReader : public LogReader {
     [[nodiscard]] const Layout& layout() const override { return layout_; }
     [[nodiscard]] std::string_view head() const override { return head_; }
     bool next(RowBlock& block) override;
-    [[nodiscard]] std::string_view tail() const override { return tail_; }
+    bool fetch(RowBlock& block) override;
+    void parse(RowBlock& block) const override;
+    void accept(RowBlock& block) override;
 
     [[nodiscard]] const TextDialect& dialect() const { return dialect_; }
 
   private:
     void plan_columns();
-    bool fill(std::string& bytes);
-    void take_line(RowBlock& block, std::size_t begin, std::size_t end);
+    void note_quick_rows(RowBlock& block, std::size_t before);
+    [[nodiscard]] bool continues(const RowBlock& block) const;
+    bool take_line(RowBlock& block, std::size_t begin, std::size_t end);
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
     double read_cell(std::string_view line, const Cell& cell, std::size_t slot, RowBlock& block);
     void append_row(RowBlock& block, const ParsedRow& row);
@@ -36,15 +39,15 @@ class CsvReader : public LogReader {
     ReadOptions options_;
     TextDialect dialect_;
     Layout layout_;
-    std::string head_, tail_;
-    std::vector<char> buffer_;        ///< one piece, as read
+    std::string head_;
     std::string carry_;               ///< bytes after the last complete line
     bool at_end_ = false;             ///< the source has no more bytes
-    bool last_line_complete_ = true;  ///< the line being read has its line end
+    bool last_line_complete_ = true;  ///< the line being taken has its line end
     bool end_mark_seen_ = false;      ///< a line "EOF"
     std::size_t line_ = 1;            ///< number of the line being read
     std::size_t rows_ = 0;
-    std::optional<RowParser> parser_;
+    std::size_t bytes_without_row_ = 0;
+    std::optional<QuickRows> quick_;
     std::vector<WantedColumn> wanted_;
     std::array<double, 4> factors_{};
     std::array<double, 4> before_{};  ///< the row before, as in the file

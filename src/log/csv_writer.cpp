@@ -68,57 +68,65 @@ void CsvWriter::write_head(const CsvReader& reader) {
     sink_->write(changed);
 }
 
-void CsvWriter::append_number(double value, std::string_view as_in) {
-    const std::size_t from = text_.size();
+void CsvWriter::append_number(std::string& text, double value, std::string_view as_in) const {
+    const std::size_t from = text.size();
     switch (options_.decimals) {
         case WriteOptions::Decimals::shortest:
-            append_shortest(text_, value);
+            append_shortest(text, value);
             break;
         case WriteOptions::Decimals::input:
-            append_fixed(text_, value, decimals_of(as_in, rules_.decimal_mark));
+            append_fixed(text, value, decimals_of(as_in, rules_.decimal_mark));
             break;
         case WriteOptions::Decimals::fixed:
-            append_fixed(text_, value, options_.fixed_decimals);
+            append_fixed(text, value, options_.fixed_decimals);
             break;
     }
     if (rules_.decimal_mark == '.') return;
-    const std::size_t mark = text_.find('.', from);
-    if (mark != std::string::npos) text_[mark] = rules_.decimal_mark;
+    const std::size_t mark = text.find('.', from);
+    if (mark != std::string::npos) text[mark] = rules_.decimal_mark;
 }
 
 void CsvWriter::write(const RowBlock& block, std::span<const double> torque_nm) {
-    text_.clear();
+    std::string bytes;
+    prepare(block, torque_nm, bytes);
+    put(block, torque_nm, bytes);
+}
+
+void CsvWriter::prepare(const RowBlock& block, std::span<const double> torque_nm, std::string& text) const {
+    text.clear();
+    text.reserve(block.bytes.size() + 16 * block.size());
     const std::string_view bytes = block.bytes;
+    std::size_t done = 0;
     // Cells whose bad values were replaced do not hold what block.torque_nm says.
     const bool as_written = options_.decimals != WriteOptions::Decimals::fixed && block.held_bad_values == 0;
-    std::size_t done = 0;
     for (std::size_t i = 0; i < block.size(); ++i) {
         const std::string_view cell =
             bytes.substr(block.torque_begin[i], block.torque_end[i] - block.torque_begin[i]);
         const double value = torque_nm[i] / factor_;
         if (options_.append) {
-            text_.append(bytes, done, block.row_end[i] - done);
-            text_ += rules_.delimiter;
+            text.append(bytes, done, block.row_end[i] - done);
+            text += rules_.delimiter;
             const bool quoted = rules_.delimiter == ',' && rules_.decimal_mark == ',';
-            if (quoted) text_ += '"';
-            append_number(value, cell);
-            if (quoted) text_ += '"';
+            if (quoted) text += '"';
+            append_number(text, value, cell);
+            if (quoted) text += '"';
             done = block.row_end[i];
         } else if (as_written && torque_nm[i] == block.torque_nm[i]) {
             continue;  // a value that nobody changed keeps its text
         } else {
-            text_.append(bytes, done, block.torque_begin[i] - done);
-            append_number(value, cell);
+            text.append(bytes, done, block.torque_begin[i] - done);
+            append_number(text, value, cell);
             done = block.torque_end[i];
         }
     }
-    text_.append(bytes, done);
-    sink_->write(text_);
+    text.append(bytes, done);
 }
 
-void CsvWriter::finish(std::string_view tail) {
-    sink_->write(tail);
-    sink_->finish();
+void CsvWriter::put(const RowBlock& /*block*/, std::span<const double> /*torque_nm*/,
+                    std::string_view bytes) {
+    sink_->write(bytes);
 }
+
+void CsvWriter::finish() { sink_->finish(); }
 
 }  // namespace ripplenotch

@@ -95,11 +95,7 @@ void NpyReader::decide(const ReadOptions& options) {
 
 bool NpyReader::next(RowBlock& block) {
     block.first_row = rows_;
-    block.held_bad_values = 0;
-    block.bytes.clear();
-    for (auto* values : {&block.time_s, &block.velocity_deg_s, &block.torque_nm, &block.position_deg})
-        values->clear();
-    for (auto* offsets : {&block.torque_begin, &block.torque_end, &block.row_end}) offsets->clear();
+    block.clear();
 
     const std::size_t size = header_.record_size;
     const std::size_t left = header_.rows - rows_;
@@ -170,9 +166,10 @@ void NpyReader::take_row(RowBlock& block, std::size_t offset) {
     take(chosen.torque, torque_before_, block.torque_nm);
     if (chosen.position) take(chosen.position, position_before_, block.position_deg);
     const std::size_t torque = chosen.torque ? offset + header_.fields[*chosen.torque].offset : offset;
-    block.torque_begin.push_back(torque);
-    block.torque_end.push_back(chosen.torque ? torque + header_.fields[*chosen.torque].size : torque);
-    block.row_end.push_back(offset + header_.record_size);
+    const std::size_t torque_end = chosen.torque ? torque + header_.fields[*chosen.torque].size : torque;
+    block.torque_begin.push_back(static_cast<std::uint32_t>(torque));
+    block.torque_end.push_back(static_cast<std::uint32_t>(torque_end));
+    block.row_end.push_back(static_cast<std::uint32_t>(offset + header_.record_size));
     ++rows_;
 }
 

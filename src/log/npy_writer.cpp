@@ -76,10 +76,7 @@ void NpyWriter::write(const RowBlock& block, std::span<const double> torque_nm) 
     sink_->write(records_);
 }
 
-void NpyWriter::finish(std::string_view tail) {
-    sink_->write(tail);
-    sink_->finish();
-}
+void NpyWriter::finish() { sink_->finish(); }
 
 void NpyTableWriter::begin(std::span<const std::string> names) {
     std::vector<std::string> fields;

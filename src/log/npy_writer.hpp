@@ -17,7 +17,7 @@ class NpyWriter : public LogWriter {
     /// Throws UsageError when the torque is an integer and would be rounded (--append adds a float instead).
     NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, const WriteOptions& options);
     void write(const RowBlock& block, std::span<const double> torque_nm) override;
-    void finish(std::string_view tail) override;
+    void finish() override;
 
   private:
     std::unique_ptr<ByteSink> sink_;

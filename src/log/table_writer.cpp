@@ -33,8 +33,7 @@ class Converter : public LogWriter {
         table_->rows(columns);
     }
 
-    // Bytes of the other format have no place in this one.
-    void finish(std::string_view /*tail*/) override {
+    void finish() override {
         table_->end();
         sink_->finish();
     }

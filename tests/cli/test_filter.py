@@ -296,5 +296,64 @@ class RealLogs(Case):
                     self.assertRegex(done.stderr.decode(), "--joint|--kt|--columns|--sample-rate")
 
 
+class Threads(Case):
+    """A log of several megabytes, cut into blocks that are worked on side by side."""
+
+    ROWS = 150_000
+
+    def setUp(self):
+        super().setUp()
+        rows = ["time_s,velocity_deg_s,torque_nm,note"]
+        for k in range(self.ROWS):
+            rows.append(f"{k / 1000:.3f},{60 * math.sin(k / 3000):.6f},{math.sin(k / 40) + math.sin(k / 7000):.6f},n{k}")
+        for k, comment in ((2, "# between rows, with, commas"), (70_000, "# a line, longer"), (self.ROWS, "EOF")):
+            rows.insert(k, comment)
+        self.text = "\n".join(rows) + "\n"
+        self.log = self.write("long.csv", self.text)
+
+    def test_any_number_of_threads_gives_the_same_bytes_from_file_and_pipe(self):
+        rows = self.text.splitlines()
+        rows.append(rows.pop(rows.index("EOF")))  # an end mark stands at the end
+        text = "\n".join(rows) + "\n"
+        log = self.write("ended.csv", text)
+        expected = None
+        for threads in (1, 2, 3, 8):
+            for source, stdin in ((log, None), ("-", text.encode())):
+                got = self.good("filter", source, "--method", LOWPASS, "--threads", threads, "-q", stdin=stdin).stdout
+                expected = expected or got
+                self.assertEqual(got, expected)
+        lines = expected.decode().splitlines()
+        self.assertEqual(len(lines), len(rows))
+        for mine, theirs in zip(lines, rows):
+            if theirs.startswith(("#", "EOF", "time")):
+                self.assertEqual(mine, theirs)
+            else:
+                self.assertEqual([cell for i, cell in enumerate(mine.split(",")) if i != 2],
+                                 [cell for i, cell in enumerate(theirs.split(",")) if i != 2])
+
+    def test_a_bad_row_is_named_with_its_line_and_what_came_before_is_the_same(self):
+        rows = self.text.splitlines()
+        for line, bad, said in ((90_000, "oops", "5: read 1 cells, expected 4"),
+                                (self.ROWS + 2, "9999,1,1,n", "1: read a row after the line EOF")):
+            text = "\n".join([*rows[:line], bad, *rows[line + 1:]]).encode()
+            outputs = set()
+            for threads in (1, 2, 5):
+                done = self.run_tool("filter", "-", "--method", LOWPASS, "--threads", threads, "-q", stdin=text)
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertIn(f"standard input:{line + 1}:{said}", done.stderr.decode())
+                outputs.add(done.stdout)
+            self.assertEqual(len(outputs), 1)
+
+    def test_time_that_runs_backward_between_blocks_is_found_at_its_line(self):
+        rows = self.text.splitlines()
+        for line in range(20_000, 140_000, 30_000):
+            row = rows[line - 1]
+            text = "\n".join([*rows[:line], "0.001" + row[row.index(","):], *rows[line:]]).encode()
+            for threads in (1, 4):
+                done = self.run_tool("filter", "-", "--method", LOWPASS, "--threads", threads, "-q", stdin=text)
+                self.assertEqual(done.returncode, 3)
+                self.assertIn(f"standard input:{line + 1}:1: read the time 0.001 after", done.stderr.decode())
+
+
 if __name__ == "__main__":
     unittest.main()

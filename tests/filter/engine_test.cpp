@@ -64,7 +64,7 @@ class Collector final : public LogWriter {
         REQUIRE(block.first_row == values.size());
         values.insert(values.end(), torque_nm.begin(), torque_nm.end());
     }
-    void finish(std::string_view) override { finished = true; }
+    void finish() override { finished = true; }
     std::vector<double> values;
     bool finished = false;
 };

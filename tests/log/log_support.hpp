@@ -81,7 +81,7 @@ inline std::string rewritten(const std::string& bytes, const TorqueMap& map, con
         for (std::size_t i = 0; i < block.size(); ++i) torque[i] = map(block.torque_nm[i]);
         writer->write(block, torque);
     }
-    writer->finish(reader->tail());
+    writer->finish();
     return read_all(out.string());
 }
 

@@ -75,17 +75,18 @@ class LogStream {
     [[nodiscard]] std::optional<int> torque_decimals() const { return torque_decimals_; }
 
     /// Carries the whole log through `filter`, once. `writer` and `meter` may be null; the meter gets two
-    /// signals, raw and filtered torque. Throws DataError when time runs backward.
-    StreamReport run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter);
+    /// signals, raw and filtered torque. Throws DataError when time runs backward. The result is the same
+    /// for any number of `threads`; logs that were read whole at once take one.
+    StreamReport run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter, std::size_t threads = 1);
 
   private:
     struct Pass;
     Trace read_head();
     void measure_clock(const Trace& head, double gap_steps);
-    bool next(RowBlock& block);
 
     std::unique_ptr<LogReader> reader_;
     std::deque<RowBlock> read_ahead_;
+    bool read_whole_ = false;
     Hertz measured_rate_, design_rate_;
     std::optional<int> torque_decimals_;
     double moving_deg_s_ = 0.0;  ///< slower is standing, as far as held samples go

@@ -3,6 +3,7 @@
 // A log format is a record: one file in src/log/formats, one line in formats.def. Law tests run over the
 // whole list.
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,11 +22,23 @@ struct RowBlock {
     std::vector<double> time_s, velocity_deg_s, torque_nm,
         position_deg;   ///< equal lengths; position may be empty
     std::string bytes;  ///< the rows as they stand in the file, line ends included
-    std::vector<std::size_t> torque_begin, torque_end;  ///< per row, offsets into `bytes` of the torque cell
-    std::vector<std::size_t> row_end;  ///< per row, offset just past the row's last byte of content
-    std::size_t held_bad_values = 0;   ///< cells replaced because hold_bad_values was set
+    std::vector<std::uint32_t> torque_begin,
+        torque_end;                      ///< per row, offsets into `bytes` of the torque cell
+    std::vector<std::uint32_t> row_end;  ///< per row, offset just past the row's last byte of content
+    std::size_t parsed_bytes = 0;        ///< of `bytes`; between LogReader's steps only
+    std::size_t held_bad_values = 0;     ///< cells replaced because hold_bad_values was set
 
     [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
+    /// Forgets the rows, not their bytes.
+    void drop_rows() {
+        for (auto* values : {&time_s, &velocity_deg_s, &torque_nm, &position_deg}) values->clear();
+        for (auto* places : {&torque_begin, &torque_end, &row_end}) places->clear();
+        held_bad_values = parsed_bytes = 0;
+    }
+    void clear() {
+        drop_rows();
+        bytes.clear();
+    }
 };
 
 /// Reads one log from start to end in bounded memory.
@@ -35,11 +48,16 @@ class LogReader {
     [[nodiscard]] virtual const Layout& layout() const = 0;
     /// The bytes before the first row (header, comments), to be passed on as they are.
     [[nodiscard]] virtual std::string_view head() const = 0;
-    /// Fills `block` with the next rows; false when there are none left. Block boundaries carry no meaning.
-    /// Throws DataError with file, line and column.
+    /// Fills `block` with the next rows; false when there are none left. Block boundaries carry no meaning; a
+    /// block may hold bytes and no row (comments). Throws DataError with file, line and column.
     virtual bool next(RowBlock& block) = 0;
-    /// Bytes after the last row (comments, a final line such as EOF), known once next() has returned false.
-    [[nodiscard]] virtual std::string_view tail() const { return {}; }
+
+    /// next() in three steps, so that several blocks can be parsed at once: fetch() and accept() take the
+    /// blocks one after another, in the order of the log, parse() takes any number of them at a time. Errors
+    /// are accept()'s, with the same words and places as next()'s.
+    virtual bool fetch(RowBlock& block) { return next(block); }
+    virtual void parse(RowBlock& /*block*/) const {}
+    virtual void accept(RowBlock& /*block*/) {}
 };
 
 struct WriteOptions {
@@ -57,8 +75,17 @@ class LogWriter {
     /// `torque_nm` has block.size() entries, in newton-metres; it is written in the unit of the torque
     /// column.
     virtual void write(const RowBlock& block, std::span<const double> torque_nm) = 0;
-    /// Completes the file; nothing appears under its name before. `tail` from the reader.
-    virtual void finish(std::string_view tail) = 0;
+
+    /// write() in two steps: prepare() makes the bytes, of several blocks at a time; put() takes the blocks
+    /// one after another. Writers that have nothing to prepare do all in put().
+    virtual void prepare(const RowBlock& /*block*/, std::span<const double> /*torque_nm*/,
+                         std::string& /*bytes*/) const {}
+    virtual void put(const RowBlock& block, std::span<const double> torque_nm, std::string_view /*bytes*/) {
+        write(block, torque_nm);
+    }
+
+    /// Completes the file; nothing appears under its name before.
+    virtual void finish() = 0;
 };
 
 /// A table of named numeric columns to be written as a new log (simulate, conversions, spectra).

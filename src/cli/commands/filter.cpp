@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <thread>
 
 #include "cli/chosen_method.hpp"
 #include "cli/command.hpp"
@@ -21,6 +23,8 @@
 namespace ripplenotch {
 namespace {
 
+constexpr int most_threads = 64;
+
 struct Request {
     CommonOptions common;
     PlotRequest plot;
@@ -31,6 +35,7 @@ struct Request {
     std::optional<double> gear_ratio;
     std::vector<double> orders;
     double gap_steps = default_gap_steps;
+    int threads = 0;
     bool append = false;
 };
 
@@ -166,6 +171,12 @@ Provenance provenance_of(const Request& request, const Job& job, const ChosenMet
     return provenance;
 }
 
+std::size_t threads_of(const Request& request) {
+    constexpr unsigned enough = 4;  // reading, filtering and writing take one block at a time
+    if (request.threads > 0) return static_cast<std::size_t>(request.threads);
+    return std::clamp(std::thread::hardware_concurrency(), 1U, enough);
+}
+
 // The filter of a method that looks at the whole log first, from a pass of its own.
 std::unique_ptr<CausalFilter> learn(const Request& request, const ChosenMethod& method, const Spool& spool) {
     LogStream stream(open_log(spool.open(), request.log.resolve()), request.gap_steps);
@@ -216,7 +227,7 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
         watched = watching.get();
         writer = std::move(watching);
     }
-    metrics.stream = stream.run(*filter, writer.get(), meter ? &*meter : nullptr);
+    metrics.stream = stream.run(*filter, writer.get(), meter ? &*meter : nullptr, threads_of(request));
 
     if (meter) metrics.levels = meter->levels();
     metrics.delays = method.delays(stream.design_rate());
@@ -274,6 +285,8 @@ std::function<ExitCode()> attach(Options& options) {
                  "joint.json with gear ratio and orders, for the same");
     options.number("--gap", request->gap_steps, Dimension::none,
                    "a step in time of more than this many median steps starts a new run");
+    options.count("--threads", request->threads, 0, most_threads,
+                  "threads for long logs; the output is the same for any number; 0 is one a core, at most 4");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common);

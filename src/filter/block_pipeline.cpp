@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "filter/block_pipeline.hpp"
+
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t blocks_a_thread = 2;
+
+/// Does one step of a block that has not failed; keeps the failure for put's turn.
+template <typename Step>
+void attempt(BlockItem& item, const Step& step) {
+    if (item.error) return;
+    try {
+        step(item);
+    } catch (...) {
+        item.error = std::current_exception();
+    }
+}
+
+void renew(BlockItem& item) {
+    item.accepted = false;
+    item.error = nullptr;
+}
+
+void run_alone(const BlockSteps& steps) {
+    BlockItem item;
+    for (; steps.fetch(item); renew(item)) {
+        if (!item.accepted) steps.parse(item);
+        steps.filter(item);
+        steps.prepare(item);
+        steps.put(item);
+    }
+}
+
+}  // namespace
+
+void run_blocks(const BlockSteps& steps, std::size_t threads) {
+    if (threads < 2) {
+        run_alone(steps);
+        return;
+    }
+    // At most so many blocks are on their way, so a slot is free again when its turn comes round.
+    std::vector<BlockItem> slots(blocks_a_thread * threads);
+    std::size_t fetched = 0;
+    bool fetch_failed = false, filter_failed = false;
+    const auto fetch = [&](tbb::flow_control& flow) -> BlockItem* {
+        BlockItem& item = slots[fetched++ % slots.size()];
+        renew(item);
+        bool more = !fetch_failed;
+        attempt(item, [&](BlockItem& one) { more = more && steps.fetch(one); });
+        fetch_failed = item.error != nullptr;
+        if (!more) flow.stop();
+        return &item;
+    };
+    const auto parse = [&](BlockItem* item) {
+        if (!item->accepted) attempt(*item, steps.parse);
+        return item;
+    };
+    const auto filter = [&](BlockItem* item) {
+        // What comes after a failed block has no past to go on from.
+        if (!filter_failed) attempt(*item, steps.filter);
+        filter_failed = filter_failed || item->error;
+        return item;
+    };
+    const auto prepare = [&](BlockItem* item) {
+        attempt(*item, steps.prepare);
+        return item;
+    };
+    const auto put = [&](BlockItem* item) {
+        if (item->error) std::rethrow_exception(item->error);
+        steps.put(*item);
+    };
+    using tbb::filter_mode;
+    tbb::task_arena arena(static_cast<int>(threads));
+    arena.execute([&] {
+        tbb::parallel_pipeline(
+            slots.size(), tbb::make_filter<void, BlockItem*>(filter_mode::serial_in_order, fetch) &
+                              tbb::make_filter<BlockItem*, BlockItem*>(filter_mode::parallel, parse) &
+                              tbb::make_filter<BlockItem*, BlockItem*>(filter_mode::serial_in_order, filter) &
+                              tbb::make_filter<BlockItem*, BlockItem*>(filter_mode::parallel, prepare) &
+                              tbb::make_filter<BlockItem*, void>(filter_mode::serial_in_order, put));
+    });
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "log/quick_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "ripplenotch/core/number.hpp"
+
+using namespace ripplenotch;
+
+namespace {
+
+constexpr double no_time = std::numeric_limits<double>::quiet_NaN();
+
+/// Three columns, all wanted: velocity, torque, position.
+QuickRows three_columns(char delimiter = ',', char mark = '.', char line_end = '\n') {
+    return QuickRows({{delimiter, mark},
+                      line_end,
+                      3,
+                      {{0, velocity_slot}, {1, torque_slot}, {2, position_slot}},
+                      {1.0, 1.0, 1.0, 1.0}});
+}
+
+bool same_bits(double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+/// A number as some program may have written it.
+std::string written(std::mt19937_64& random) {
+    const auto pick = [&](int below) {
+        return static_cast<int>(random() % static_cast<std::uint64_t>(below));
+    };
+    const double value = std::bit_cast<double>(random());
+    switch (pick(8)) {
+        case 0:
+            return fmt::format("{:.{}f}", (static_cast<double>(random() >> 11) - 4.5e15) * 1e-12, pick(10));
+        case 1:
+            return fmt::format("{}", static_cast<std::int64_t>(random() >> pick(60)));
+        case 2:
+            return fmt::format("{}", std::isfinite(value) ? value : 0.0);  // any exponent
+        case 3:
+            return fmt::format("{:.17g}", std::sin(static_cast<double>(random() % 1000000)));
+        case 4:
+            return fmt::format("{:.18e}", std::isfinite(value) ? value : 1.0);  // numpy.savetxt
+        case 5:
+            return fmt::format("{}{}.", pick(2) == 0 ? "-" : "", pick(1000));
+        case 6:
+            return fmt::format("{}.{}", pick(2) == 0 ? "-" : "", pick(1000000));
+        default:
+            return fmt::format("-0.{:0{}d}", pick(10), 1 + pick(12));
+    }
+}
+
+/// Numbers, of 3 * rows, that the vectors or the scalar way read otherwise than parse_number does.
+std::size_t misread(std::uint64_t seed, std::size_t rows) {
+    std::mt19937_64 random(seed);
+    std::vector<std::string> cells;
+    RowBlock vectors, scalars;
+    for (std::size_t i = 0; i < 3 * rows; ++i) {
+        cells.push_back(written(random));
+        vectors.bytes += cells.back() + (i % 3 < 2 ? "," : i % 7 == 0 ? "\r\n" : "\n");
+    }
+    scalars.bytes = vectors.bytes;
+    QuickRows quick = three_columns();
+    REQUIRE(quick.take(vectors, 0, no_time) == vectors.bytes.size());
+    quick.use_scalar_way();
+    REQUIRE(quick.take(scalars, 0, no_time) == scalars.bytes.size());
+    REQUIRE(vectors.size() == rows);
+    REQUIRE(scalars.size() == rows);
+    REQUIRE(vectors.torque_begin == scalars.torque_begin);
+    REQUIRE(vectors.torque_end == scalars.torque_end);
+    REQUIRE(vectors.row_end == scalars.row_end);
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < rows; ++i) {
+        const auto expect = [&](std::size_t column, double got, double other) {
+            const double want = *parse_number(cells[3 * i + column]);
+            different += same_bits(got, want) && same_bits(other, want) ? 0 : 1;
+        };
+        expect(0, vectors.velocity_deg_s[i], scalars.velocity_deg_s[i]);
+        expect(1, vectors.torque_nm[i], scalars.torque_nm[i]);
+        expect(2, vectors.position_deg[i], scalars.position_deg[i]);
+        const std::size_t begin = vectors.torque_begin[i], size = vectors.torque_end[i] - begin;
+        different += vectors.bytes.compare(begin, size, cells[3 * i + 1]) == 0 ? 0 : 1;
+    }
+    return different;
+}
+
+}  // namespace
+
+TEST_CASE("numbers of many rows at once are those of the careful reader, bit for bit", "[log]") {
+    CHECK(misread(7, 60000) == 0);
+}
+
+// Half a minute: ctest leaves it out, `test_log "[.kernels]"` runs it.
+TEST_CASE("thirty million numbers at once are those of the careful reader, bit for bit", "[.kernels]") {
+    for (std::uint64_t seed = 100; seed < 200; ++seed) CHECK(misread(seed, 100000) == 0);
+}
+
+TEST_CASE("rows are taken at once up to the first that is not certainly right, wherever it stands", "[log]") {
+    const std::string good = "1.5,-2.25,300\n";
+    for (const std::string bad :
+         {"1.5,-2.25\n", "1.5,-2.25,3,4\n", "# 1,2,3\n", "\n", "1.5,\"2\",3\n", "1.5,2x,3\n", "1.5,,3\n",
+          "1.5,.,3\n", "1.5,-,3\n", "1.5,--2,3\n", "1.5,1.2.3,3\n", "1.5,nan,3\n", "1.5,1e999,3\n", "EOF\n",
+          "1.5,2;3,4\n", "1.5,2,3", "1,2,\n", "1,2,0x10\n", "1,2,3\r\r\n"}) {
+        for (const int before : {0, 1, 2, 5, 600, 2000}) {
+            for (const bool scalar : {false, true}) {
+                CAPTURE(bad, before, scalar);
+                RowBlock block;
+                for (int i = 0; i < before; ++i) block.bytes += good;
+                block.bytes += bad + good;
+                QuickRows quick = three_columns();
+                if (scalar) quick.use_scalar_way();
+                CHECK(quick.take(block, 0, no_time) == static_cast<std::size_t>(before) * good.size());
+                CHECK(block.size() == static_cast<std::size_t>(before));
+            }
+        }
+    }
+}
+
+TEST_CASE("taking goes on behind a row that was taken otherwise, and keeps what it has", "[log]") {
+    RowBlock block;
+    block.bytes = "1,2,3\n4,5\n6,7,8\n9,10,11\n";
+    const QuickRows quick = three_columns();
+    CHECK(quick.take(block, 0, no_time) == 6);
+    CHECK(quick.take(block, 10, no_time) == block.bytes.size());
+    CHECK(block.torque_nm == std::vector<double>{2, 7, 10});
+    CHECK(block.torque_begin == std::vector<std::uint32_t>{2, 12, 18});
+}
+
+TEST_CASE("time that runs backward ends what is taken at once", "[log]") {
+    for (const bool scalar : {false, true}) {
+        QuickRows quick({{',', '.'}, '\n', 2, {{0, time_slot}, {1, torque_slot}}, {1.0, 1.0, 1.0, 1.0}});
+        if (scalar) quick.use_scalar_way();
+        RowBlock block;
+        block.bytes = "1,5\n2,5\n2,6\n1.999,7\n3,8\n";
+        CHECK(quick.take(block, 0, no_time) == 12);
+        CHECK(quick.take(block, 12, 2.0) == 12);
+        CHECK(block.time_s == std::vector<double>{1, 2, 2});
+    }
+}
+
+TEST_CASE("decimal commas, semicolons, lone carriage returns and wide rows are taken at once as well",
+          "[log]") {
+    RowBlock block;
+    block.bytes = "1,5;-2,25;3\r4;5,125;6\r";
+    const QuickRows quick = three_columns(';', ',', '\r');
+    CHECK(quick.take(block, 0, no_time) == block.bytes.size());
+    CHECK(block.torque_nm == std::vector<double>{-2.25, 5.125});
+    // 400 columns of 30 characters: a row longer than the stretch that is searched at once is left alone.
+    QuickRows wide({{',', '.'}, '\n', 400, {{399, torque_slot}}, {1.0, 1.0, 1.0, 1.0}});
+    RowBlock rows;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 399; ++column) rows.bytes += std::string(29, 'x') + ",";
+        rows.bytes += "7.5\n";
+    }
+    const std::size_t taken = wide.take(rows, 0, no_time);
+    CHECK((taken == 0 || taken == rows.bytes.size()));
+    wide.use_scalar_way();
+    CHECK(wide.take(rows, taken, no_time) == rows.bytes.size());
+    CHECK(rows.torque_nm == std::vector<double>{7.5, 7.5, 7.5});
+}
