@@ -245,6 +245,7 @@ StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter
     };
     steps.put = [&](BlockItem& item) {
         if (writer != nullptr) writer->put(item.block, item.torque_nm, item.bytes);
+        if (item.block.failure) std::rethrow_exception(item.block.failure);
     };
     run_blocks(steps, read_whole_ ? 1 : threads);
     if (writer != nullptr) writer->finish();

@@ -88,6 +88,7 @@ bool CsvReader::next(RowBlock& block) {
     }
     parse(block);
     accept(block);
+    if (block.failure) std::rethrow_exception(block.failure);
     return true;
 }
 
@@ -121,30 +122,39 @@ void CsvReader::accept(RowBlock& block) {
     if (!continues(block)) block.drop_rows();
     note_quick_rows(block, 0);
     std::size_t begin = block.parsed_bytes;
-    while (begin < block.bytes.size()) {
-        const std::size_t found = block.bytes.find(dialect_.line_end, begin);
-        last_line_complete_ = found != std::string::npos;
-        const std::size_t end = last_line_complete_ ? found : block.bytes.size();
-        if (end - begin > longest_line) {
-            raise<DataError>(
-                "{}:{}: read a line of more than 1 MiB, expected rows of {} cells; check that this is a text "
-                "log",
-                source_->name(), line_, dialect_.columns);
-        }
-        const bool row = take_line(block, begin, end);
-        bytes_without_row_ = row ? 0 : bytes_without_row_ + end - begin;
-        ++line_;
-        begin = end + 1;
-        if (bytes_without_row_ > longest_line) {
-            raise<DataError>(
-                "{}:{}: read more than 1 MiB without a row, expected rows of numbers; remove the comments",
-                source_->name(), line_);
-        }
-        if (!row || end_mark_seen_ || begin >= block.bytes.size()) continue;
-        const std::size_t before = block.size();
-        begin = quick_->take(block, begin, before_[time_slot]);
-        note_quick_rows(block, before);
+    try {
+        while (begin < block.bytes.size()) begin = take_on(block, begin);
+    } catch (const Error&) {
+        block.failure = std::current_exception();
+        block.bytes.resize(begin);
     }
+}
+
+// The line at `begin`, and what can be taken at once behind it; returns where the next line begins.
+std::size_t CsvReader::take_on(RowBlock& block, std::size_t begin) {
+    const std::size_t found = block.bytes.find(dialect_.line_end, begin);
+    last_line_complete_ = found != std::string::npos;
+    const std::size_t end = last_line_complete_ ? found : block.bytes.size();
+    if (end - begin > longest_line) {
+        raise<DataError>(
+            "{}:{}: read a line of more than 1 MiB, expected rows of {} cells; check that this is a text log",
+            source_->name(), line_, dialect_.columns);
+    }
+    const bool row = take_line(block, begin, end);
+    bytes_without_row_ = row ? 0 : bytes_without_row_ + end - begin;
+    ++line_;
+    const std::size_t next = std::min(end + 1, block.bytes.size());
+    if (bytes_without_row_ > longest_line) {
+        raise<DataError>(
+            "{}:{}: read more than 1 MiB without a row, expected rows of numbers; remove the comments",
+            source_->name(), line_);
+    }
+    // A row that needed care is seldom alone.
+    if (!plain_row_ || end_mark_seen_ || next == block.bytes.size()) return next;
+    const std::size_t before = block.size();
+    const std::size_t taken = quick_->take(block, next, before_[time_slot]);
+    note_quick_rows(block, before);
+    return taken;
 }
 
 // True when the rows that were parsed on their own may follow those before. Where not, the careful way finds
@@ -182,7 +192,8 @@ bool CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
     if (end > begin && base[end - 1] == '\r') --end;
     const std::string_view line(base + begin, end - begin);
     ParsedRow row;
-    if (!quick_->parse(line, row)) {
+    plain_row_ = quick_->parse(line, row);
+    if (!plain_row_) {
         if (is_blank_line(line) || is_comment_line(line)) return false;
         if (line == "EOF") {
             end_mark_seen_ = true;

@@ -29,6 +29,7 @@ class CsvReader : public LogReader {
     void plan_columns();
     void note_quick_rows(RowBlock& block, std::size_t before);
     [[nodiscard]] bool continues(const RowBlock& block) const;
+    std::size_t take_on(RowBlock& block, std::size_t begin);
     bool take_line(RowBlock& block, std::size_t begin, std::size_t end);
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
     double read_cell(std::string_view line, const Cell& cell, std::size_t slot, RowBlock& block);
@@ -43,6 +44,7 @@ class CsvReader : public LogReader {
     std::string carry_;               ///< bytes after the last complete line
     bool at_end_ = false;             ///< the source has no more bytes
     bool last_line_complete_ = true;  ///< the line being taken has its line end
+    bool plain_row_ = false;          ///< the line taken last was a row that needed no care
     bool end_mark_seen_ = false;      ///< a line "EOF"
     std::size_t line_ = 1;            ///< number of the line being read
     std::size_t rows_ = 0;

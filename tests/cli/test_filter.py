@@ -334,7 +334,7 @@ class Threads(Case):
     def test_a_bad_row_is_named_with_its_line_and_what_came_before_is_the_same(self):
         rows = self.text.splitlines()
         for line, bad, said in ((90_000, "oops", "5: read 1 cells, expected 4"),
-                                (self.ROWS + 2, "9999,1,1,n", "1: read a row after the line EOF")):
+                                (self.ROWS + 1, "9999,1,1,n", "1: read a row after the line EOF")):
             text = "\n".join([*rows[:line], bad, *rows[line + 1:]]).encode()
             outputs = set()
             for threads in (1, 2, 5):

@@ -4,6 +4,7 @@
 // whole list.
 
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <span>
 #include <string>
@@ -25,8 +26,9 @@ struct RowBlock {
     std::vector<std::uint32_t> torque_begin,
         torque_end;                      ///< per row, offsets into `bytes` of the torque cell
     std::vector<std::uint32_t> row_end;  ///< per row, offset just past the row's last byte of content
-    std::size_t parsed_bytes = 0;        ///< of `bytes`; between LogReader's steps only
-    std::size_t held_bad_values = 0;     ///< cells replaced because hold_bad_values was set
+    std::exception_ptr failure;       ///< what is wrong behind the last row; for when the rows are done with
+    std::size_t parsed_bytes = 0;     ///< of `bytes`; between LogReader's steps only
+    std::size_t held_bad_values = 0;  ///< cells replaced because hold_bad_values was set
 
     [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
     /// Forgets the rows, not their bytes.
@@ -34,6 +36,7 @@ struct RowBlock {
         for (auto* values : {&time_s, &velocity_deg_s, &torque_nm, &position_deg}) values->clear();
         for (auto* places : {&torque_begin, &torque_end, &row_end}) places->clear();
         held_bad_values = parsed_bytes = 0;
+        failure = nullptr;
     }
     void clear() {
         drop_rows();
@@ -53,8 +56,9 @@ class LogReader {
     virtual bool next(RowBlock& block) = 0;
 
     /// next() in three steps, so that several blocks can be parsed at once: fetch() and accept() take the
-    /// blocks one after another, in the order of the log, parse() takes any number of them at a time. Errors
-    /// are accept()'s, with the same words and places as next()'s.
+    /// blocks one after another, in the order of the log, parse() takes any number of them at a time. A row
+    /// that is wrong ends the block before it and is its `failure`, so that what has been done until then
+    /// does not depend on how the bytes arrived; next() throws it.
     virtual bool fetch(RowBlock& block) { return next(block); }
     virtual void parse(RowBlock& /*block*/) const {}
     virtual void accept(RowBlock& /*block*/) {}
