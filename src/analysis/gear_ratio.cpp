@@ -129,6 +129,8 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
     const auto add = [&](const std::optional<RatioRival>& rival) {
         if (rival) rivals.push_back(*rival);
     };
+    for (RatioRival& rival : fold_rivals(lines, hint, question.hinted_orders))
+        rivals.push_back(std::move(rival));
     if (hint && question.clock_in_doubt && rivals.empty()) add(clock_rival(best, *hint));
     if (hint) check_hint(combs, lines, *hint, result.notes);
     if (!question.hinted_orders.empty() && !hint &&
@@ -150,7 +152,9 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
         // number.
         if (result.fit.value) result.fit.candidates.front().value = *result.fit.value;
     }
-    for (RatioRival& rival : rivals) result.notes.push_back(std::move(rival.note));
+    for (RatioRival& rival : rivals) {
+        if (!rival.note.empty()) result.notes.push_back(std::move(rival.note));
+    }
     return result;
 }
 

@@ -24,6 +24,7 @@ void add_ratio(std::vector<Reported>& reported, const IdentifyOptions& options, 
         // Where some lines surely turn with the joint, the doubtful ones have no say.
         if (!reported[i].order || (any_certain && !reported[i].order->certain)) continue;
         orders.push_back(*reported[i].order);
+        if (!reported[i].line.order_output_seen) orders.back().could_be = reported[i].line.could_be;
         owner.push_back(i);
     }
     GearRatioResult ratio = fit_gear_ratio(orders, {options.hint, options.hinted_orders, clock_in_doubt});

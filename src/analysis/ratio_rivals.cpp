@@ -53,6 +53,23 @@ std::vector<RatioRival> unit_rivals(const Comb& best, std::optional<GearRatio> h
     return rivals;
 }
 
+std::vector<RatioRival> fold_rivals(std::span<const OrderLine> lines, std::optional<GearRatio> hint,
+                                    std::span<const int> hinted_orders) {
+    std::vector<RatioRival> rivals;
+    if (lines.size() != 1) return rivals;
+    for (const double order : lines[0].could_be) {
+        OrderLine image = lines[0];
+        image.order_output = order;
+        image.observations.clear();
+        for (const Comb& comb : all_combs(std::span(&image, 1), hint, hinted_orders)) {
+            if (!usual_ratio(comb.ratio)) continue;
+            rivals.push_back({comb.ratio, comb.nats,
+                              fmt::format("if folded from order {:.4g}; {}", order, comb.reason), ""});
+        }
+    }
+    return rivals;
+}
+
 std::optional<RatioRival> clock_rival(const Comb& best, GearRatio hint) {
     const double factor = best.ratio / hint.value();
     if (std::abs(factor - 1.0) < hint_share) return std::nullopt;

@@ -3,6 +3,7 @@
 // Internal to the analysis room: ratios that the lines would show if the log were not what it says it is.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,11 @@ struct RatioRival {
 /// Units of speed mixed up (rad, rpm, turns, a factor of 60), where that makes an unusual ratio a usual one
 /// of the catalogue or of the hint.
 [[nodiscard]] std::vector<RatioRival> unit_rivals(const Comb& best, std::optional<GearRatio> hint);
+
+/// For a line on its own that may be the image of a higher order: the ratios of what it could be.
+[[nodiscard]] std::vector<RatioRival> fold_rivals(std::span<const OrderLine> lines,
+                                                  std::optional<GearRatio> hint,
+                                                  std::span<const int> hinted_orders);
 
 /// A clock that is off, where only the clock makes an angle of the speed, and the hint would then hold.
 [[nodiscard]] std::optional<RatioRival> clock_rival(const Comb& best, GearRatio hint);

@@ -212,3 +212,20 @@ TEST_CASE("a ratio half a per cent off a hint names the scale error, one within 
     const std::vector right{line_at(100.0, 0.8), line_at(200.0, 0.5)};
     CHECK(fit_gear_ratio(right, {GearRatio(100.0)}).notes.empty());
 }
+
+TEST_CASE(
+    "a lone line that may be an image leaves the ratio open, and what it could be stands among the "
+    "candidates") {
+    OrderLine line = line_at(49.5, 0.03, 0.3);
+    line.certain = false;
+    line.could_be = {100.6, 199.6, 250.5};
+    const auto result = fit_gear_ratio(std::vector{line}, {});
+    CHECK_FALSE(result.fit.value.has_value());
+    CHECK_THAT(result.fit.candidates.front().value, WithinRel(99.8, 0.01));  // 2 of it is 199.6
+    CHECK_THAT(result.fit.candidates.front().reason, Contains("folded from order"));
+    CHECK(std::any_of(result.fit.candidates.begin(), result.fit.candidates.end(),
+                      [](const RatioCandidate& one) { return std::abs(one.value - 49.5) < 0.1; }));
+    double total = 0.0;
+    for (const RatioCandidate& one : result.fit.candidates) total += one.score;
+    CHECK(total <= 1.0 + 1e-12);
+}

@@ -28,6 +28,7 @@ struct OrderLine {
     double amplitude_nm = 0.0;
     bool certain = true;  ///< false: it may also be a fixed tone
     std::vector<OrderObservation> observations;
+    std::vector<double> could_be = {};  ///< orders beyond half the sample rate that would look the same
 };
 
 struct GearRatioResult {
