@@ -47,7 +47,7 @@ def identify_joint(tool, ripple, phase):
 
 
 def filtered(tool, method, log):
-    return tool.log("filter", "--method", method, log, "-q")["torque_nm"]
+    return tool.torque("filter", "--method", method, log, "-q")
 
 
 def contenders(best_q):
