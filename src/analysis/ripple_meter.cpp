@@ -19,7 +19,8 @@ constexpr double fewest_samples_a_period = 3.0;
 constexpr double reversal_turns = 0.25;  ///< back from the furthest angle by more: the joint has turned round
 constexpr Eigen::Index trend_terms =
     4;  ///< a cubic: a quadratic leaks into order 2 where a joint turns round
-constexpr std::size_t most_peaks = 4096;  ///< values kept for the median
+constexpr std::size_t parts_of_window = 16;  ///< in each of which the speed counts as constant
+constexpr std::size_t most_peaks = 4096;     ///< values kept for the median
 
 // A median of any number of values in bounded memory: every stride-th window is kept, and when the store is
 // full every second one of those.
@@ -47,6 +48,7 @@ struct ThinnedMedian {
 // Sums over windows; amplitudes are weighted by rows.
 struct Sums {
     std::vector<double> amplitude_squared;  ///< [order * signals + signal]
+    std::vector<double> expected_squared;   ///< [order], of gains
     std::vector<double> residual_squared;   ///< [signal]
     std::vector<ThinnedMedian> peak_to_peak;
     std::vector<double> ripple_peak_to_peak;
@@ -72,6 +74,7 @@ struct RippleMeter::State {
     double last_velocity = 0.0, last_position = 0.0;
     std::size_t seen = 0;
     Sums sums;
+    LineGains gains;
 
     [[nodiscard]] double turned(double velocity_deg_s, const double* position_deg) const {
         double moved_deg = 0.0;
@@ -130,7 +133,22 @@ struct RippleMeter::State {
     }
 
     void measure(std::size_t rows, Sums& into) const;
+    void expect_in(std::size_t rows, Sums& into) const;
 };
+
+// What the fit of a window sees is the mean of the filtered line's amplitude and phase over it.
+void RippleMeter::State::expect_in(std::size_t rows, Sums& into) const {
+    const std::size_t parts = std::min(parts_of_window, rows - 1);
+    std::vector<std::complex<double>> now(orders.size()), mean(orders.size());
+    for (std::size_t part = 0; part < parts; ++part) {
+        const std::size_t first = (rows - 1) * part / parts, last = (rows - 1) * (part + 1) / parts;
+        const double seconds = static_cast<double>(last - first) / sample_rate_hz;
+        gains(std::abs(turns[last] - turns[first]) * 360.0 / ratio / seconds, now);
+        for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += now[i] / static_cast<double>(parts);
+    }
+    for (std::size_t i = 0; i < mean.size(); ++i)
+        into.expected_squared[i] += static_cast<double>(rows) * std::norm(mean[i]);
+}
 
 // Fits all signals over the first `rows` rows of the window under way.
 void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
@@ -175,6 +193,7 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
         into.peak_to_peak[j].add(spread(detrended));
         into.ripple_peak_to_peak[j] = std::max(into.ripple_peak_to_peak[j], spread(ripple));
     }
+    if (gains) expect_in(rows, into);
     into.turns += turned_by;
     into.seconds += static_cast<double>(rows - 1) / sample_rate_hz;
     into.rows += rows;
@@ -201,6 +220,7 @@ RippleMeter::RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz s
     state_->most_rows =
         static_cast<std::size_t>(std::clamp(longest_window_s * sample_rate.value(), 64.0, 65536.0));
     state_->sums.amplitude_squared.resize(orders.size() * signals);
+    state_->sums.expected_squared.resize(orders.size());
     state_->sums.residual_squared.resize(signals);
     state_->sums.peak_to_peak.resize(signals);
     state_->sums.ripple_peak_to_peak.resize(signals);
@@ -213,6 +233,8 @@ RippleMeter& RippleMeter::operator=(RippleMeter&&) noexcept = default;
 void RippleMeter::add(double velocity_deg_s, const double* position_deg, std::span<const double> torque_nm) {
     state_->add(velocity_deg_s, position_deg, torque_nm);
 }
+
+void RippleMeter::expect(LineGains gains) { state_->gains = std::move(gains); }
 
 void RippleMeter::split() {
     if (state_->has_last) static_cast<void>(state_->close(state_->sums));
@@ -231,6 +253,8 @@ RippleLevels RippleMeter::levels() const {
         for (std::size_t j = 0; j < state_->signals; ++j) {
             level.amplitude_nm.push_back(std::sqrt(sums.amplitude_squared[i * state_->signals + j] / rows));
         }
+        if (state_->gains && sums.windows > 0)
+            level.expected_gain = std::sqrt(sums.expected_squared[i] / rows);
         levels.orders.push_back(std::move(level));
     }
     for (std::size_t j = 0; j < state_->signals; ++j) {

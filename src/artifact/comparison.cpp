@@ -2,6 +2,7 @@
 #include "ripplenotch/artifact/comparison.hpp"
 
 #include "artifact/json.hpp"
+#include "artifact/ledger_json.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
 
@@ -29,6 +30,8 @@ Json method_to_json(const MethodFigures& figures) {
     json["overshoot_percent"] = or_null(figures.overshoot_percent);
     json["ramp_delay_ms"] = or_null(figures.ramp_delay_ms);
     json["dc_delay_ms"] = or_null(figures.dc_delay_ms);
+    json["phase_lag_deg"] = or_null(figures.phase_lag_deg);
+    json["crossover_db"] = or_null(figures.crossover_db);
     json["attenuation_db"] = Json::array();
     for (const OrderAttenuation& entry : figures.attenuation) {
         json["attenuation_db"].push_back(
@@ -41,6 +44,10 @@ Json method_to_json(const MethodFigures& figures) {
     json["largest_jump_nm"] = or_null(figures.largest_jump_nm);
     json["error_rms_nm"] = or_null(figures.error_rms_nm);
     json["note"] = figures.note;
+    json["within_max_delay_from_deg_s"] =
+        figures.within_from ? Json(figures.within_from->value()) : Json(nullptr);
+    json["ledger"] = Json::array();
+    for (const LedgerEntry& entry : figures.ledger) json["ledger"].push_back(ledger_entry_to_json(entry));
     return json;
 }
 
@@ -65,6 +72,7 @@ std::string comparison_text(const Comparison& comparison, const Provenance& prov
     json["speed_deg_s"] = comparison.speed.value();
     json["step_nm"] = or_null(comparison.step_nm);
     json["ramp_nm_s"] = or_null(comparison.ramp_nm_s);
+    json["crossover_hz"] = comparison.crossover ? Json(comparison.crossover->value()) : Json(nullptr);
     json["gear_ratio"] = comparison.lines ? Json(comparison.lines->gear_ratio.value()) : Json(nullptr);
     json["orders"] = Json::array();
     if (comparison.lines) {

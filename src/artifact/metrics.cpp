@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "artifact/json.hpp"
+#include "artifact/ledger_json.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -12,7 +13,9 @@ Json pair_to_json(const std::vector<double>& values) {
     return {{"raw", finite_or_null(values[0])}, {"filtered", finite_or_null(values[1])}};
 }
 
-Json order_to_json(const OrderLevel& level) {
+Json order_to_json(const FilterMetrics& metrics, std::size_t order) {
+    const OrderLevel& level = metrics.levels->orders[order];
+    const auto predicted = predicted_nm(metrics, order);
     const auto attenuation = attenuation_db(level);
     Json json;
     json["order"] = level.order;
@@ -20,6 +23,8 @@ Json order_to_json(const OrderLevel& level) {
     json["raw_nm"] = finite_or_null(level.amplitude_nm[0]);
     json["filtered_nm"] = finite_or_null(level.amplitude_nm[1]);
     json["attenuation_db"] = attenuation ? Json(*attenuation) : Json(nullptr);
+    json["predicted_nm"] = predicted ? finite_or_null(*predicted) : Json(nullptr);
+    if (predicted) json["predicted_from"] = metrics.amplitude_nm.empty() ? "log" : "joint";
     return json;
 }
 
@@ -34,7 +39,8 @@ void add_levels(Json& json, const FilterMetrics& metrics) {
         }
     } else {
         const RippleLevels& levels = *metrics.levels;
-        for (const OrderLevel& level : levels.orders) json["orders"].push_back(order_to_json(level));
+        for (std::size_t i = 0; i < levels.orders.size(); ++i)
+            json["orders"].push_back(order_to_json(metrics, i));
         json["residual_rms_nm"] = pair_to_json(levels.residual_rms_nm);
         json["residual_peak_to_peak_nm"] = pair_to_json(levels.residual_peak_to_peak_nm);
         json["ripple_peak_to_peak_nm"] = pair_to_json(levels.ripple_peak_to_peak_nm);
@@ -47,18 +53,6 @@ void add_levels(Json& json, const FilterMetrics& metrics) {
                        {"measured_share", metrics.levels->measured_share},
                        {"too_slow", metrics.levels->windows_too_slow},
                        {"too_few_samples", metrics.levels->windows_too_few_samples}};
-}
-
-Json delay_to_json(const FilterDelay& delay) {
-    Json json;
-    if (delay.band > 0) json["band"] = delay.band;
-    if (delay.to.value() > 0.0) {
-        json["speed_from_deg_s"] = delay.from.value();
-        json["speed_to_deg_s"] = delay.to.value();
-    }
-    json["filter"] = delay.filter;
-    json["dc_delay_ms"] = 1e3 * delay.dc_delay.value();
-    return json;
 }
 
 Json switch_to_json(const TimedSwitch& entry) {
@@ -84,6 +78,7 @@ void add_stream(Json& json, const FilterMetrics& metrics) {
         json["gaps"].push_back({{"row", gap.row}, {"from_s", gap.from_s}, {"to_s", gap.to_s}});
     }
     json["repeated_times"] = stream.repeated_times;
+    json["speed_deg_s"] = {finite_or_null(stream.slowest_deg_s), finite_or_null(stream.fastest_deg_s)};
     json["held_samples"] = stream.held_samples;
     json["held_bad_values"] = stream.held_bad_values;
 }
@@ -96,6 +91,14 @@ std::optional<double> attenuation_db(const OrderLevel& level) {
     return 20.0 * std::log10(raw / filtered);
 }
 
+std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order) {
+    if (!metrics.levels || metrics.levels->windows == 0) return std::nullopt;
+    const OrderLevel& level = metrics.levels->orders[order];
+    if (!level.expected_gain) return std::nullopt;
+    const double before = metrics.amplitude_nm.empty() ? level.amplitude_nm[0] : metrics.amplitude_nm[order];
+    return before * *level.expected_gain;
+}
+
 std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& provenance) {
     Json json = document_head("metrics", provenance);
     json["source"] = metrics.source;
@@ -103,8 +106,9 @@ std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& prov
     json["method"] = metrics.method;
     add_stream(json, metrics);
     add_levels(json, metrics);
+    json["crossover_hz"] = metrics.crossover ? Json(metrics.crossover->value()) : Json(nullptr);
     json["delays"] = Json::array();
-    for (const FilterDelay& delay : metrics.delays) json["delays"].push_back(delay_to_json(delay));
+    for (const LedgerEntry& entry : metrics.delays) json["delays"].push_back(ledger_entry_to_json(entry));
     json["switch_count"] = metrics.stream.switch_count;
     json["switches"] = Json::array();
     for (const TimedSwitch& entry : metrics.stream.switches)

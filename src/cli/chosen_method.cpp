@@ -11,23 +11,6 @@
 
 namespace ripplenotch {
 
-std::vector<FilterDelay> ChosenMethod::delays(Hertz sample_rate) const {
-    std::vector<FilterDelay> delays;
-    const auto add = [&](int band, DegPerSec from, DegPerSec to) {
-        const FrozenFilter filter = frozen(sample_rate, 0.5 * (from + to));
-        delays.push_back({band, from, to, filter.note, group_delay(filter.cascade, Hertz(0.0), sample_rate)});
-    };
-    if (has_key(*method, "gear-ratio")) {
-        for (const double speed : {5.0, 10.0, 20.0, 50.0, 100.0, 200.0})
-            add(0, DegPerSec(speed), DegPerSec(speed));
-    } else if (table == nullptr) {
-        add(0, DegPerSec(0.0), DegPerSec(0.0));
-    } else {
-        for (const Band& band : table->bands()) add(band.number, band.from, band.to);
-    }
-    return delays;
-}
-
 ChosenMethod choose_method(const std::string& spec_text, const std::optional<std::string>& table,
                            const GearOptions& gear) {
     Spec spec = parse_spec(spec_text);

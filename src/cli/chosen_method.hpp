@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/artifact/metrics.hpp"
 #include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
@@ -38,9 +38,8 @@ struct ChosenMethod {
     [[nodiscard]] FrozenFilter frozen(Hertz sample_rate, DegPerSec speed) const {
         return method->frozen(*settings, sample_rate, table.get(), speed);
     }
-    /// Of every band when the method has a table, at typical speeds when it follows the gear, else of its
-    /// filter.
-    [[nodiscard]] std::vector<FilterDelay> delays(Hertz sample_rate) const;
+    /// The same for the measurements of the evaluate room.
+    [[nodiscard]] Contender contender() const { return {text, method, *settings, table}; }
 };
 
 /// `spec_text` as --method takes it; `table` is a table.json for methods that need one and name none. Throws

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "cli/ledger_text.hpp"
 #include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
@@ -40,6 +41,11 @@ std::vector<ViewColumn> columns_of(const Comparison& comparison) {
         {"overshoot", "%", [](const MethodFigures& f) { return fixed(f.overshoot_percent, 1); }});
     columns.push_back({"ramp delay", "ms", [](const MethodFigures& f) { return fixed(f.ramp_delay_ms, 1); }});
     columns.push_back({"DC delay", "ms", [](const MethodFigures& f) { return fixed(f.dc_delay_ms, 1); }});
+    if (comparison.crossover) {
+        columns.push_back({fmt::format("lag at {:g} Hz", comparison.crossover->value()), "deg",
+                           [](const MethodFigures& f) { return fixed(f.phase_lag_deg, 1); }});
+        columns.push_back({"", "dB", [](const MethodFigures& f) { return fixed(f.crossover_db, 1); }});
+    }
     for (std::size_t i = 0; comparison.lines && i < comparison.lines->orders.size(); ++i) {
         columns.push_back({fmt::format("order {}", shortest(comparison.lines->orders[i].value())), "dB",
                            [i](const MethodFigures& f) { return attenuation(f, i); }});
@@ -109,7 +115,7 @@ std::string comparison_view(const Comparison& comparison) {
         sentence.front() = 'N';  // all of them begin with "no low-pass"
         text += sentence + ".\n";
     }
-    return text;
+    return text + ledger_text(comparison);
 }
 
 }  // namespace ripplenotch

@@ -11,22 +11,64 @@
 namespace ripplenotch {
 namespace {
 
-std::string ripple_line(const OrderLevel& level) {
-    const auto attenuation = attenuation_db(level);
-    return fmt::format("order {:g} (mean {:.4g} Hz): {:.3g} Nm before, {:.3g} Nm after{}", level.order,
+std::string ripple_line(const FilterMetrics& metrics, std::size_t order) {
+    const OrderLevel& level = metrics.levels->orders[order];
+    const auto attenuation = attenuation_db(level), predicted = predicted_nm(metrics, order);
+    return fmt::format("order {:g} (mean {:.4g} Hz): {:.3g} Nm before, {:.3g} Nm after{}{}", level.order,
                        level.mean_hz, level.amplitude_nm[0], level.amplitude_nm[1],
-                       attenuation ? fmt::format(", {:.1f} dB", *attenuation) : "");
+                       attenuation ? fmt::format(", {:.1f} dB", *attenuation) : "",
+                       predicted ? fmt::format("; predicted {:.3g} Nm", *predicted) : "");
 }
 
-std::string delay_line(const std::vector<FilterDelay>& delays) {
-    const auto by_delay = [](const FilterDelay& a, const FilterDelay& b) { return a.dc_delay < b.dc_delay; };
-    const auto [least, most] = std::minmax_element(delays.begin(), delays.end(), by_delay);
-    const auto milliseconds = [](const FilterDelay& delay) { return rounded(1e3 * delay.dc_delay.value(), 1); };
-    if (delays.size() == 1) return fmt::format("delay at 0 Hz: {} ms", milliseconds(*least));
-    const auto where = [](const FilterDelay& delay) {
-        return delay.band > 0 ? fmt::format("band {}", delay.band)
-                              : fmt::format("at {:g} deg/s", delay.from.value());
+std::string where(const LedgerEntry& entry) {
+    return entry.band > 0 ? fmt::format("band {}", entry.band)
+                          : fmt::format("at {:g} deg/s", entry.from.value());
+}
+
+std::string crossover_line(const std::vector<LedgerEntry>& entries, Hertz crossover) {
+    const auto by_lag = [](const LedgerEntry& a, const LedgerEntry& b) {
+        return a.phase_lag_deg.value_or(0.0) < b.phase_lag_deg.value_or(0.0);
     };
+    const auto [least, most] = std::minmax_element(entries.begin(), entries.end(), by_lag);
+    const std::string at = fmt::format("phase lag at {:g} Hz: ", crossover.value());
+    const auto degrees = [](const LedgerEntry& entry) {
+        return rounded(entry.phase_lag_deg.value_or(0.0), 1);
+    };
+    if (entries.size() == 1) return fmt::format("{}{} deg", at, degrees(*least));
+    return fmt::format("{}{} deg ({}) to {} deg ({})", at, degrees(*least), where(*least), degrees(*most),
+                       where(*most));
+}
+
+// A joint that crosses a band's edge back and forth on the noise of its speed switches for nothing; two
+// changes a second is more than a motion through the bands makes.
+constexpr double many_switches_a_second = 2.0;
+
+std::string switches_line(const StreamReport& stream) {
+    std::string text = fmt::format("{} changes of filter", stream.switch_count);
+    std::size_t back = 0;
+    for (std::size_t i = 1; i < stream.switches.size(); ++i)
+        back += stream.switches[i].change.to_band == stream.switches[i - 1].change.from_band ? 1 : 0;
+    const double seconds = stream.measured_rate.value() > 0.0
+                               ? static_cast<double>(stream.rows) / stream.measured_rate.value()
+                               : 0.0;
+    if (2 * back > stream.switches.size() &&
+        static_cast<double>(stream.switch_count) > many_switches_a_second * seconds) {
+        text += fmt::format(
+            ", {:.3g} a second, {:.0f} % of them straight back: the speed is noisy at a band's edge; try "
+            "hysteresis=1deg/s",
+            static_cast<double>(stream.switch_count) / seconds,
+            100.0 * static_cast<double>(back) / static_cast<double>(stream.switches.size() - 1));
+    }
+    return text;
+}
+
+std::string delay_line(const std::vector<LedgerEntry>& delays) {
+    const auto by_delay = [](const LedgerEntry& a, const LedgerEntry& b) { return a.dc_delay < b.dc_delay; };
+    const auto [least, most] = std::minmax_element(delays.begin(), delays.end(), by_delay);
+    const auto milliseconds = [](const LedgerEntry& delay) {
+        return rounded(1e3 * delay.dc_delay.value(), 1);
+    };
+    if (delays.size() == 1) return fmt::format("delay at 0 Hz: {} ms", milliseconds(*least));
     return fmt::format("delay at 0 Hz: {} ms ({}) to {} ms ({})", milliseconds(*least), where(*least),
                        milliseconds(*most), where(*most));
 }
@@ -75,7 +117,7 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
                                 stream.measured_rate.value(), stream.gap_count, stream.held_samples));
     if (metrics.levels && metrics.levels->windows > 0) {
         const RippleLevels& levels = *metrics.levels;
-        for (const OrderLevel& level : levels.orders) lines.push_back(ripple_line(level));
+        for (std::size_t i = 0; i < levels.orders.size(); ++i) lines.push_back(ripple_line(metrics, i));
         lines.push_back(fmt::format(
             "ripple at most {:.3g} Nm peak to peak before, {:.3g} Nm after; residual {:.3g} Nm rms before, "
             "{:.3g} Nm "
@@ -84,7 +126,9 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
             levels.residual_rms_nm[1], levels.windows, 100.0 * levels.measured_share));
     }
     if (!metrics.delays.empty()) lines.push_back(delay_line(metrics.delays));
-    if (metrics.table_rate) lines.push_back(fmt::format("{} changes of filter", stream.switch_count));
+    if (metrics.crossover && !metrics.delays.empty())
+        lines.push_back(crossover_line(metrics.delays, *metrics.crossover));
+    if (metrics.table_rate) lines.push_back(switches_line(stream));
     return lines;
 }
 

@@ -219,6 +219,11 @@ struct LogStream::Pass {
         for (std::size_t i = report.switches.size(); i < switches.size(); ++i) {
             report.switches.push_back({switches[i], block.time_s[switches[i].sample - report.rows]});
         }
+        for (std::size_t k = 0; k < block.size(); ++k) {
+            const double speed = std::abs(block.velocity_deg_s[k]);
+            report.slowest_deg_s = report.rows + k == 0 ? speed : std::min(report.slowest_deg_s, speed);
+            report.fastest_deg_s = std::max(report.fastest_deg_s, speed);
+        }
         report.rows += block.size();
         report.held_bad_values += block.held_bad_values;
     }

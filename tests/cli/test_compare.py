@@ -70,8 +70,9 @@ class Signals(Case):
     def test_every_method_has_the_promised_fields_and_null_where_nothing_was_asked(self):
         _, rows = self.compare("--ramp", "20Nm/s", "--sample-rate", "1kHz", *methods(NOTCHES))
         self.assertEqual(list(rows[NOTCHES]), [
-            "method", "settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "attenuation_db", "ripple_rms_nm",
-            "residual_rms_nm", "residual_peak_to_peak_nm", "switches", "largest_jump_nm", "error_rms_nm", "note"])
+            "method", "settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "phase_lag_deg",
+            "crossover_db", "attenuation_db", "ripple_rms_nm", "residual_rms_nm", "residual_peak_to_peak_nm", "switches",
+            "largest_jump_nm", "error_rms_nm", "note", "within_max_delay_from_deg_s", "ledger"])
         for name in ("settle_ms", "overshoot_percent", "ripple_rms_nm", "residual_rms_nm", "switches"):
             self.assertIsNone(rows[NOTCHES][name])
         self.assertEqual(rows[NOTCHES]["attenuation_db"], [])

@@ -3,8 +3,11 @@
 // Ripple amplitude per order of one or several torque signals along the same motion, in bounded memory: least
 // squares of trend and orders in the motor angle over windows of whole motor turns.
 
+#include <complex>
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,8 +17,9 @@ namespace ripplenotch {
 
 struct OrderLevel {
     double order = 0.0;
-    double mean_hz = 0.0;              ///< mean of n Kg |v| / 360 over the windows
-    std::vector<double> amplitude_nm;  ///< per signal, zero to peak, rms over windows
+    double mean_hz = 0.0;                 ///< mean of n Kg |v| / 360 over the windows
+    std::vector<double> amplitude_nm;     ///< per signal, zero to peak, rms over windows
+    std::optional<double> expected_gain;  ///< what expect()'s filter leaves of the line, rms over windows
 };
 
 struct RippleLevels {
@@ -28,6 +32,10 @@ struct RippleLevels {
     std::size_t windows_too_slow = 0;              ///< dropped: not four turns within 2 s
     double measured_share = 0.0;                   ///< samples in windows / samples seen
 };
+
+/// Complex gains of a filter for the lines of all orders at one joint speed, in the order of the meter's
+/// orders.
+using LineGains = std::function<void(double speed_deg_s, std::span<std::complex<double>> gains)>;
 
 /// Feed rows in order; ask at the end. Signals are measured on the same windows, so that ratios are
 /// attenuations.
@@ -48,6 +56,9 @@ class RippleMeter {
     /// position_deg may be nullptr: then the angle is integrated velocity. `torque_nm` has one value per
     /// signal.
     void add(double velocity_deg_s, const double* position_deg, std::span<const double> torque_nm);
+    /// Works out what a filter should leave at the speeds of the very windows that are measured. Call it
+    /// before add().
+    void expect(LineGains gains);
     /// A gap: what comes next does not continue the window under way.
     void split();
     [[nodiscard]] RippleLevels levels() const;

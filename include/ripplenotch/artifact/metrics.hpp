@@ -9,18 +9,10 @@
 #include "ripplenotch/analysis/ripple_meter.hpp"
 #include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/core/units.hpp"
+#include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {
-
-/// Delay of a filter that can come into force: of the only one, or of one band.
-struct FilterDelay {
-    int band = 0;        ///< 0 when the method has no bands
-    DegPerSec from, to;  ///< of the band, or twice the speed of a filter that follows it; both 0 for one that
-                         ///< does neither
-    std::string filter;  ///< what it is, in words
-    Seconds dc_delay;    ///< group delay at 0 Hz at the log's rate; a ramp comes late by this
-};
 
 struct FilterMetrics {
     std::string source, joint, method;  ///< the method as it would be typed again
@@ -29,11 +21,17 @@ struct FilterMetrics {
     StreamReport stream;
     std::optional<GearRatio> gear_ratio;  ///< empty when unknown: then there are no levels
     std::optional<RippleLevels> levels;   ///< of two signals, raw and filtered torque
-    std::vector<FilterDelay> delays;
+    std::vector<double> amplitude_nm;     ///< that table or joint state, one per order; empty when unknown
+    std::vector<LedgerEntry> delays;
+    std::optional<Hertz> crossover;  ///< that the ledger's phase lags are for
 };
 
 /// Attenuation of one order in dB; empty when there was nothing to attenuate or nothing was left.
 [[nodiscard]] std::optional<double> attenuation_db(const OrderLevel& level);
+
+/// What the filter's own response says is left of one order at the speeds of this log: of the amplitude that
+/// table or joint state, else of what the log shows before filtering. Empty when it was not worked out.
+[[nodiscard]] std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order);
 
 /// The whole text of metrics.json, schema ripplenotch/metrics/1; same metrics, same bytes.
 [[nodiscard]] std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& provenance);

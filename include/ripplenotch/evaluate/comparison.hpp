@@ -11,6 +11,7 @@
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/evaluate/ledger.hpp"
 
 namespace ripplenotch {
 
@@ -27,6 +28,9 @@ struct MethodFigures {
     std::string note;                                ///< e.g. "band 4: 72-90 deg/s"
     std::optional<std::array<double, 4>> settle_ms;  ///< per entry of settle_bands_percent (bench.hpp)
     std::optional<double> overshoot_percent, ramp_delay_ms, dc_delay_ms;
+    std::optional<double> phase_lag_deg, crossover_db;  ///< at Comparison::crossover
+    std::vector<LedgerEntry> ledger;                    ///< empty unless asked for
+    std::optional<DegPerSec> within_from;               ///< lowest speed above which it keeps a delay limit
     std::vector<OrderAttenuation> attenuation;
     std::optional<double> ripple_rms_nm;  ///< of the orders alone, over the measured windows
     std::optional<double> residual_rms_nm,
@@ -58,10 +62,12 @@ struct Comparison {
     Hertz sample_rate;
     DegPerSec speed;  ///< for delays and attenuation; on a log its median moving speed
     std::optional<double> step_nm, ramp_nm_s;
+    std::optional<Hertz> crossover;  ///< of the control loop
     std::optional<RippleLines> lines;
     std::optional<LowPassMatch> match;
     std::vector<MethodFigures> methods;
     bool on_log = false;
+    DegPerSec slowest, fastest;         ///< |v| of the log
     std::size_t rows = 0, windows = 0;  ///< of the log; windows that RippleMeter measured
     double measured_share = 0.0;
 

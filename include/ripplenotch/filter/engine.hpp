@@ -56,6 +56,7 @@ struct StreamReport {
     std::size_t held_bad_values = 0;    ///< cells replaced because the caller asked for it
     std::vector<TimedSwitch> switches;  ///< as listed by the filter
     std::size_t switch_count = 0;
+    double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< of |v|; both 0 without a row
 };
 
 /// One log on its way through a filter.

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/command.hpp"
+#include "cli/comparison_costs.hpp"
 #include "cli/comparison_view.hpp"
 #include "cli/contenders.hpp"
 #include "cli/joint_facts.hpp"
@@ -35,6 +36,7 @@ struct Request {
     LinesRequest lines;
     std::optional<double> step_nm, ramp_nm_s, match_attenuation_db;
     std::optional<DegPerSec> speed;
+    CostRequest costs;
     bool match_low_pass = false;
     int match_order = 1;
 };
@@ -190,7 +192,8 @@ Comparison compare_on_log(const Request& request, const Field& field, std::optio
     for (const Gap& gap : log.timebase.gaps) gap_rows.push_back(gap.row);
     ComparedLog compared{log.trace.view(), gap_rows};
     if (!request.truth.empty() && !lines)
-        raise<UsageError>("--truth needs --gear-ratio and --orders, or --joint-file, as all figures on a log do");
+        raise<UsageError>(
+            "--truth needs --gear-ratio and --orders, or --joint-file, as all figures on a log do");
     const std::vector<double> truth = true_torque(request, log.trace.size(), provenance);
     compared.truth_nm = truth;
     // The filters are those that the filter command would run.
@@ -202,6 +205,12 @@ Comparison compare_on_log(const Request& request, const Field& field, std::optio
     comparison.sample_rate = compared.trace.sample_rate;
     check_table_rates(field, comparison.sample_rate, log.layout.source, request.common);
     comparison.speed = request.speed ? *request.speed : median_moving_speed(compared.trace);
+    for (const double velocity : compared.trace.velocity_deg_s) {
+        const DegPerSec speed(std::abs(velocity));
+        comparison.slowest =
+            comparison.fastest == DegPerSec(0.0) ? speed : std::min(comparison.slowest, speed);
+        comparison.fastest = std::max(comparison.fastest, speed);
+    }
     comparison.step_nm = request.step_nm.value_or(default_step_nm);
     comparison.ramp_nm_s = request.ramp_nm_s.value_or(default_ramp_nm_s);
     comparison.lines = std::move(lines);
@@ -220,9 +229,12 @@ ExitCode run(const Request& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const Field field = load_contenders(request.methods, request.lines, provenance);
     auto lines = lines_of(request.lines, field, provenance);
-    const Comparison comparison = request.log.empty()
-                                      ? compare_on_signals(request, field, std::move(lines))
-                                      : compare_on_log(request, field, std::move(lines), provenance);
+    if (request.costs.gates.min_attenuation_db && !lines)
+        raise<UsageError>("--min-attenuation-db needs to know the ripple; give --gear-ratio and --orders");
+    Comparison comparison = request.log.empty()
+                                ? compare_on_signals(request, field, std::move(lines))
+                                : compare_on_log(request, field, std::move(lines), provenance);
+    add_costs(comparison, request.costs, field);
     const std::string text =
         request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison);
     write_all(request.common.output, text, request.common.overwrite());
@@ -232,7 +244,9 @@ ExitCode run(const Request& request, const std::string& command_line) {
             shown.push_back(make_contender(parse_spec(*comparison.match->low_pass)));
         return comparison_figure(comparison, shown);
     });
-    return ExitCode::done;
+    const auto broken = violations(comparison, request.costs, field);
+    say_warnings(request.common, broken);
+    return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
 }
 
 std::function<ExitCode()> attach(Options& options) {
@@ -257,6 +271,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.count("--match-order", request->match_order, 1, 20, "order of that low-pass");
     options.number("--match-attenuation", request->match_attenuation_db, Dimension::decibel,
                    "find the low-pass of this ripple attenuation instead");
+    attach_costs(options, request->costs);
     attach_plot(options, request->plot);
     attach_log(options, request->log_options);
     attach_common(options, request->common);

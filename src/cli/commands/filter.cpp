@@ -11,7 +11,9 @@
 
 #include "cli/chosen_method.hpp"
 #include "cli/command.hpp"
+#include "cli/filter_gear.hpp"
 #include "cli/filter_summary.hpp"
+#include "cli/gates.hpp"
 #include "cli/joint_facts.hpp"
 #include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/metrics.hpp"
@@ -34,6 +36,8 @@ struct Request {
     std::optional<std::string> table, output_format, metrics, out_directory, joint_file;
     std::optional<double> gear_ratio;
     std::vector<double> orders;
+    std::optional<Hertz> crossover;
+    Gates gates;
     double gap_steps = default_gap_steps;
     int threads = 0;
     bool append = false;
@@ -43,12 +47,6 @@ struct Request {
 struct Job {
     std::string log, output;
     std::optional<std::string> metrics;
-};
-
-/// Whose ripple the metrics are about.
-struct Gear {
-    std::optional<GearRatio> ratio;
-    std::vector<Order> orders;
 };
 
 // One number of digits for the whole column: a log's own cells may leave out trailing zeros.
@@ -68,31 +66,6 @@ WriteOptions write_options(const Request& request, std::optional<int> log_decima
         options.fixed_decimals = static_cast<int>(*number);
     }
     return options;
-}
-
-// Stated, else the method's own, else from the joint file, else from the table.
-Gear gear_of(const Request& request, const ChosenMethod& method) {
-    Gear gear;
-    if (method.table != nullptr) {
-        gear.ratio = method.table->spec().gear_ratio;
-        gear.orders = method.table->spec().orders;
-    }
-    if (request.joint_file) {
-        const JointFacts joint = load_joint_facts(*request.joint_file);
-        if (joint.gear_ratio) gear.ratio = joint.gear_ratio;
-        if (!joint.orders.empty()) gear.orders = joint.orders;
-    }
-    const Settings& settings = *method.settings;
-    if (settings.has("gear-ratio")) {
-        gear.ratio = GearRatio(settings.number("gear-ratio"));
-        gear.orders.clear();
-        for (const double order : settings.list("orders")) gear.orders.emplace_back(order);
-    }
-    if (request.gear_ratio) gear.ratio = GearRatio(*request.gear_ratio);
-    if (!request.orders.empty()) gear.orders.clear();
-    for (const double order : request.orders) gear.orders.emplace_back(order);
-    if (gear.ratio && gear.orders.empty()) gear.orders = {Order(1.0), Order(2.0)};
-    return gear;
 }
 
 std::vector<Job> jobs_of(const Request& request) {
@@ -155,6 +128,8 @@ void check(const Request& request) {
     if (request.plot.wanted() && request.logs.size() > 1)
         raise<UsageError>("--plot draws one log, and {} are given; filter them one by one",
                           request.logs.size());
+    if (request.crossover && !(request.crossover->value() > 0.0))
+        raise<UsageError>("--crossover {} Hz is not above 0", shortest(request.crossover->value()));
     if (request.common.json && request.metrics) raise<UsageError>("--json is --metrics -; give one of them");
 }
 
@@ -188,7 +163,8 @@ std::unique_ptr<CausalFilter> learn(const Request& request, const ChosenMethod& 
     return filter;
 }
 
-void run_job(const Request& request, const Job& job, const ChosenMethod& method, const Gear& gear,
+/// True when everything is within the limits.
+bool run_job(const Request& request, const Job& job, const ChosenMethod& method, const Gear& gear,
              const std::string& command_line) {
     std::optional<Spool> spool;
     if (method.method->learner != nullptr) spool.emplace(job.log);
@@ -208,9 +184,18 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
     if (method.table != nullptr) metrics.table_rate = method.table->spec().sample_rate;
     metrics.gear_ratio = gear.ratio;
 
-    const bool wanted = job.metrics || request.common.json || request.common.verbose;
+    const bool told = job.metrics || request.common.json || request.common.verbose || request.crossover;
+    const bool wanted = told || request.gates.min_attenuation_db;
     std::optional<RippleMeter> meter;
-    if (wanted && gear.ratio) meter.emplace(*gear.ratio, gear.orders, stream.design_rate(), 2);
+    if (wanted && gear.ratio) {
+        meter.emplace(*gear.ratio, gear.orders, stream.design_rate(), 2);
+        if (predictable(method)) meter->expect(gains_of(method, gear, stream.design_rate()));
+    }
+    if (told) {
+        metrics.crossover = request.crossover;
+        metrics.amplitude_nm = gear.amplitude_nm;
+        metrics.delays = delay_ledger(method.contender(), stream.design_rate(), {request.crossover, true});
+    }
     const auto filter = spool ? learn(request, method, *spool) : method.start(stream.design_rate());
     // Both outputs are opened before the work, so that a name that is taken costs nobody an hour.
     std::optional<ByteSink> metrics_sink;
@@ -230,7 +215,6 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
     metrics.stream = stream.run(*filter, writer.get(), meter ? &*meter : nullptr, threads_of(request));
 
     if (meter) metrics.levels = meter->levels();
-    metrics.delays = method.delays(stream.design_rate());
     say_warnings(request.common, filter_warnings(metrics));
     if (wanted && !gear.ratio) {
         const std::string no_gear =
@@ -243,10 +227,14 @@ void run_job(const Request& request, const Job& job, const ChosenMethod& method,
             metrics_to_json(metrics, provenance_of(request, job, method, metrics.stream.rows, command_line)));
         metrics_sink->finish();
     }
-    if (watched == nullptr) return;
-    draw_plot(request.plot, request.common,
-              provenance_of(request, job, method, metrics.stream.rows, command_line),
-              [&] { return watched->course().figure(metrics.source, method.text, metrics.stream); });
+    if (watched != nullptr) {
+        draw_plot(request.plot, request.common,
+                  provenance_of(request, job, method, metrics.stream.rows, command_line),
+                  [&] { return watched->course().figure(metrics.source, method.text, metrics.stream); });
+    }
+    const auto broken = filter_violations(request.gates, method.contender(), metrics);
+    say_warnings(request.common, broken);
+    return broken.empty();
 }
 
 ExitCode run(const Request& request, const std::string& command_line) {
@@ -254,9 +242,17 @@ ExitCode run(const Request& request, const std::string& command_line) {
     const ChosenMethod method =
         choose_method(request.method.empty() ? "switching" : request.method, request.table,
                       {request.gear_ratio, request.orders, request.joint_file});
-    const Gear gear = gear_of(request, method);
-    for (const Job& job : jobs_of(request)) run_job(request, job, method, gear, command_line);
-    return ExitCode::done;
+    const Gear gear = gear_of(request.joint_file, request.gear_ratio, request.orders, method);
+    if (request.gates.min_attenuation_db && !gear.ratio) {
+        raise<UsageError>(
+            "--min-attenuation-db needs to know where the ripple is; give --gear-ratio and --orders, or "
+            "--joint-file");
+    }
+    bool within = true;
+    for (const Job& job : jobs_of(request)) {
+        if (!run_job(request, job, method, gear, command_line)) within = false;
+    }
+    return within ? ExitCode::done : ExitCode::limit_violated;
 }
 
 std::function<ExitCode()> attach(Options& options) {
@@ -283,6 +279,9 @@ std::function<ExitCode()> attach(Options& options) {
                     "the same (default for the metrics: the method's, else 1,2)");
     options.text("--joint-file", request->joint_file, "FILE",
                  "joint.json with gear ratio and orders, for the same");
+    options.quantity("--crossover", request->crossover, Dimension::frequency,
+                     "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");
+    attach_gates(options, request->gates);
     options.number("--gap", request->gap_steps, Dimension::none,
                    "a step in time of more than this many median steps starts a new run");
     options.count("--threads", request->threads, 0, most_threads,

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "cli/ledger_text.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "cli/text_table.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::string where(const LedgerEntry& entry) {
+    if (entry.band > 0)
+        return fmt::format("{}: {:.5g}-{:.5g}", entry.band, entry.from.value(), entry.to.value());
+    return entry.to.value() > 0.0 ? fmt::format("{:g}", entry.from.value()) : "any";
+}
+
+std::vector<std::string> row(const LedgerEntry& entry, bool crossover) {
+    std::vector<std::string> cells = {where(entry), rounded(1e3 * entry.dc_delay.value(), 1)};
+    cells.push_back(entry.ramp_delay ? rounded(1e3 * entry.ramp_delay->value(), 1) : "-");
+    for (std::size_t i = 0; i < settle_bands_percent.size(); ++i)
+        cells.push_back(entry.step ? rounded(1e3 * entry.step->settle[i].value(), 0) : "-");
+    cells.push_back(entry.step ? rounded(entry.step->overshoot_percent, 1) : "-");
+    if (crossover) {
+        cells.push_back(entry.phase_lag_deg ? rounded(*entry.phase_lag_deg, 1) : "-");
+        cells.push_back(entry.crossover_db ? rounded(*entry.crossover_db, 1) : "-");
+    }
+    return cells;
+}
+
+}  // namespace
+
+std::string ledger_text(const Comparison& comparison) {
+    std::string text;
+    for (const MethodFigures& figures : comparison.methods) {
+        if (figures.within_from) {
+            text += figures.within_from->value() > 0.0
+                        ? fmt::format("{}: within the delay limit from {:.3g} deg/s on.\n", figures.method,
+                                      figures.within_from->value())
+                        : fmt::format("{}: within the delay limit at every speed.\n", figures.method);
+        }
+        if (figures.ledger.empty()) continue;
+        std::vector<std::vector<std::string>> rows = {{"speed", "DC delay", "ramp delay", "settles, ms"},
+                                                      {"deg/s", "ms", "ms"}};
+        for (std::size_t i = 0; i < settle_bands_percent.size(); ++i) {
+            if (i > 0) rows[0].push_back("");
+            rows[1].push_back(fmt::format("to {} %", settle_bands_percent[i]));
+        }
+        rows[0].push_back("overshoot");
+        rows[1].push_back("%");
+        if (comparison.crossover) {
+            rows[0].push_back(fmt::format("lag at {:g} Hz", comparison.crossover->value()));
+            rows[0].push_back("gain");
+            rows[1].insert(rows[1].end(), {"deg", "dB"});
+        }
+        for (const LedgerEntry& entry : figures.ledger)
+            rows.push_back(row(entry, comparison.crossover.has_value()));
+        text += fmt::format("\n{}\n", figures.method) + text_table(rows, "r");
+    }
+    return text;
+}
+
+}  // namespace ripplenotch
