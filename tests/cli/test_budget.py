@@ -244,6 +244,23 @@ class LowSpeed(Case):
         self.assertAlmostEqual(peak["pass"], max(raw) - min(raw), places=9)
         self.assertLess(peak["hold"], 0.9 * peak["pass"])
 
+    def test_through_a_reversal_every_causal_notch_leaves_most_of_the_ripple_and_a_locked_ripple_little(self):
+        # -40 to 40 deg/s at 8 deg/s^2; the four seconds around standstill; the true torque is 2 Nm throughout.
+        self.log("reversal.csv", lambda t: 8.0 * t - 40.0, seconds=10.0)
+
+        def left_nm(method):
+            _, out = self.filtered("reversal.csv", method)
+            return math.sqrt(sum((y - 2.0) ** 2 for y in out[3000:7000]) / 4000)
+
+        raw = left_nm("none")
+        self.assertAlmostEqual(raw, math.hypot(*RIPPLE_NM) / math.sqrt(2), delta=0.05)
+        for method in ("switching,table=table.json", "switching,table=table.json,below=hold",
+                       "switching,table=table.json,below=fade", "tracking,gear-ratio=100,orders=1:2",
+                       "tracking,gear-ratio=100,orders=1:2,low=park", "lowpass,cutoff=3Hz,order=2"):
+            self.assertGreater(left_nm(method), 0.4 * raw, method)
+        for method in ("oscillator,gear-ratio=100,orders=1:2", "subtract,gear-ratio=100,orders=1:2"):
+            self.assertLess(left_nm(method), 0.08 * raw, method)
+
     def test_design_names_the_speed_below_which_no_notch_keeps_the_delay(self):
         words = ["design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--max-delay", "20ms"]
         text = self.ok(*words, "--speed", "18:180").stdout
