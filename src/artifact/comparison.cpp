@@ -73,6 +73,8 @@ std::string comparison_text(const Comparison& comparison, const Provenance& prov
     json["step_nm"] = or_null(comparison.step_nm);
     json["ramp_nm_s"] = or_null(comparison.ramp_nm_s);
     json["crossover_hz"] = comparison.crossover ? Json(comparison.crossover->value()) : Json(nullptr);
+    json["no_notch_below_deg_s"] =
+        comparison.no_notch_below ? Json(comparison.no_notch_below->value()) : Json(nullptr);
     json["gear_ratio"] = comparison.lines ? Json(comparison.lines->gear_ratio.value()) : Json(nullptr);
     json["orders"] = Json::array();
     if (comparison.lines) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cli/comparison_costs.hpp"
 
+#include "ripplenotch/design/guarantee.hpp"
+
 namespace ripplenotch {
 
 void attach_costs(Options& options, CostRequest& request) {
@@ -12,6 +14,14 @@ void attach_costs(Options& options, CostRequest& request) {
 
 void add_costs(Comparison& comparison, const CostRequest& request, const Field& field) {
     comparison.crossover = request.crossover;
+    if (request.gates.max_delay_ms && comparison.lines) {
+        TableSpec notches;
+        notches.gear_ratio = comparison.lines->gear_ratio;
+        notches.orders = comparison.lines->orders;
+        notches.sample_rate = comparison.sample_rate;
+        comparison.max_delay = Seconds(1e-3 * *request.gates.max_delay_ms);
+        comparison.no_notch_below = slowest_within(notches, *comparison.max_delay);
+    }
     for (std::size_t i = 0; i < field.contenders.size(); ++i) {
         const Contender& contender = field.contenders[i];
         MethodFigures& figures = comparison.methods[i];
@@ -23,7 +33,7 @@ void add_costs(Comparison& comparison, const CostRequest& request, const Field& 
         }
         if (request.ledger)
             figures.ledger = delay_ledger(contender, comparison.sample_rate, {request.crossover, true});
-        if (request.gates.max_delay_ms && contender.settings.has("gear-ratio")) {
+        if (request.gates.max_delay_ms && (contender.table || contender.settings.has("gear-ratio"))) {
             figures.within_from =
                 within_from(contender, comparison.sample_rate, Seconds(1e-3 * *request.gates.max_delay_ms));
         }

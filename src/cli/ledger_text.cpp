@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "cli/frontier_text.hpp"
 #include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -59,6 +60,8 @@ std::string ledger_text(const Comparison& comparison) {
             rows.push_back(row(entry, comparison.crossover.has_value()));
         text += fmt::format("\n{}\n", figures.method) + text_table(rows, "r");
     }
+    if (comparison.no_notch_below)
+        text += "\n" + slowest_sentence(*comparison.max_delay, *comparison.no_notch_below) + "\n";
     return text;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "export/structure.hpp"
+#include "ripplenotch/design/speed_regions.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -13,18 +14,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t samples_a_region = 6;
 constexpr std::size_t most_regions_visited = 24;
-
-BankRegion outside(double to, OutsideRule rule, int band, double edge, double fade_end) {
-    switch (rule) {
-        case OutsideRule::pass:
-            return {to};
-        case OutsideRule::hold:
-            return {to, region_holds};
-        case OutsideRule::fade:
-            return {to, band, edge, fade_end};
-    }
-    return {to};
-}
 
 template <class Real, template <class> class Structure>
 class Bank {
@@ -102,23 +91,15 @@ void run_in(GoldenVector& golden, const std::vector<BankRegion>& regions, const 
 
 std::vector<BankRegion> bank_regions(const FilterSet& filters) {
     if (!filters.by_speed()) return {{infinity, 0}};
+    std::vector<std::pair<DegPerSec, DegPerSec>> edges;
+    for (const ExportBand& band : filters.bands) edges.emplace_back(band.from, band.to);
     std::vector<BankRegion> regions;
-    double reached = 0.0;
-    for (std::size_t i = 0; i < filters.bands.size(); ++i) {
-        const double from = filters.bands[i].from.value(), to = filters.bands[i].to.value();
-        const int band = static_cast<int>(i);
-        if (i == 0) {
-            regions.push_back(outside(from, filters.below, band, from, from / 2.0));
-        } else if (from > reached) {
-            const double middle = (reached + from) / 2.0;
-            regions.push_back(outside(middle, filters.below, band - 1, reached, middle));
-            regions.push_back(outside(from, filters.below, band, from, middle));
-        }
-        regions.push_back({to, band});
-        reached = to;
+    for (const SpeedRegion& region : speed_regions(edges, filters.below, filters.above)) {
+        const int band = region.holds                       ? region_holds
+                         : region.candidate == no_candidate ? region_passes
+                                                            : region.candidate;
+        regions.push_back({region.to_deg_s, band, region.full_deg_s, region.none_deg_s});
     }
-    const int last = static_cast<int>(filters.bands.size()) - 1;
-    regions.push_back(outside(infinity, filters.above, last, reached, 1.5 * reached));
     return regions;
 }
 

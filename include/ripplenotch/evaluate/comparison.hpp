@@ -62,7 +62,9 @@ struct Comparison {
     Hertz sample_rate;
     DegPerSec speed;  ///< for delays and attenuation; on a log its median moving speed
     std::optional<double> step_nm, ramp_nm_s;
-    std::optional<Hertz> crossover;  ///< of the control loop
+    std::optional<Hertz> crossover;           ///< of the control loop
+    std::optional<Seconds> max_delay;         ///< a limit of the user's
+    std::optional<DegPerSec> no_notch_below;  ///< no notch of any method can keep it there
     std::optional<RippleLines> lines;
     std::optional<LowPassMatch> match;
     std::vector<MethodFigures> methods;
