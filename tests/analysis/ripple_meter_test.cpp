@@ -180,3 +180,39 @@ TEST_CASE("a meter refuses what it cannot measure") {
     const std::array negative = {Order(-1.0)};
     CHECK_THROWS_AS(RippleMeter(GearRatio(100.0), negative, Hertz(1000.0), 1), UsageError);
 }
+
+TEST_CASE("the expected gain is that of the speeds of the windows, phase and all") {
+    const auto expected = [](const std::function<double(double)>& speed, const LineGains& gains) {
+        RippleMeter meter(GearRatio(ratio), orders, Hertz(1000.0), 1);
+        meter.expect(gains);
+        double angle_deg = 0.0;
+        for (int k = 0; k < 8000; ++k) {
+            const double v = speed(k / 1000.0);
+            angle_deg += v / 1000.0;
+            meter.add(v, &angle_deg, std::array{std::sin(ratio * angle_deg * std::numbers::pi / 180.0)});
+        }
+        const RippleLevels levels = meter.levels();
+        REQUIRE(levels.windows > 5);
+        return std::array{*levels.orders[0].expected_gain, *levels.orders[1].expected_gain};
+    };
+    const LineGains by_speed = [](double speed, std::span<std::complex<double>> gains) {
+        gains[0] = speed / 100.0;
+        gains[1] = 0.25;
+    };
+    const auto steady = expected([](double) { return 60.0; }, by_speed);
+    CHECK(steady[0] == Approx(0.6).epsilon(1e-6));
+    CHECK(steady[1] == Approx(0.25));
+    // Along a ramp from 40 to 80 deg/s the gain is the root of the mean square speed, over rows.
+    const auto ramp = expected([](double t) { return 40.0 + 5.0 * t; }, by_speed);
+    CHECK(ramp[0] ==
+          Approx(std::sqrt((40.0 * 40.0 + 40.0 * 80.0 + 80.0 * 80.0) / 3.0) / 100.0).epsilon(0.02));
+    // A line whose sign turns in the middle of a window is one that the window's fit sees as nothing.
+    int calls = 0;
+    const auto turning = expected([](double) { return 60.0; },
+                                  [&calls](double, std::span<std::complex<double>> gains) {
+                                      gains[0] = gains[1] = calls++ % 16 < 8 ? 1.0 : -1.0;
+                                  });
+    CHECK(turning[0] == Approx(0.0).margin(1e-12));
+    RippleMeter plain(GearRatio(ratio), orders, Hertz(1000.0), 1);
+    CHECK_FALSE(plain.levels().orders[0].expected_gain.has_value());
+}
