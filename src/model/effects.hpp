@@ -26,7 +26,8 @@ inline constexpr Parameter ripple_order_parameter = {
     .unit = "",
     .help = "of the ripple that it changes, in cycles per motor revolution; 0 is every order",
     .upper = 1000.0,
-    .left_out = LeftOut::assumed};
+    .left_out = LeftOut::assumed,
+    .hint = Hint::ripple_orders};
 [[nodiscard]] inline bool concerns(Order order, double parameter) {
     return parameter == 0.0 || parameter == order.value();
 }

@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "model/fit_coordinates.hpp"
+#include "model/weighing.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -17,54 +19,40 @@ using Eigen::VectorXd;
 
 // A column of the scaled Jacobian with less than this of its length outside the others is not told from them.
 constexpr double not_told = 1e-7;
-// Improvement of the sum of squares at which a search ends, relative.
-constexpr double settled = 1e-9;
+
+// A point with what has been computed there.
+struct Place {
+    std::vector<double> point;
+    Prediction prediction;
+    VectorXd residual;  ///< weighed, measured less predicted
+};
 
 class Problem {
   public:
     Problem(const Model& model, const Motion& motion, std::span<const double> torque_nm,
-            const FitOptions& options)
-        : coordinates(model, options.first_guess), motion_(motion), torque_nm_(torque_nm), options_(options) {
-        const std::size_t behind = options.noise_color.size();
-        std::size_t since_unused = 0;
-        for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-            const bool used = options.use.empty() || options.use[k] != 0;
-            since_unused = used ? since_unused + 1 : 0;
-            if (since_unused > behind) rows_.push_back(k);
-        }
-        if (rows_.size() <= coordinates.list().size()) {
-            raise<UsageError>("{} samples are too few to fit {} values", rows_.size(),
-                              coordinates.list().size());
-        }
+            const FitOptions& options, const Weighing& weighing)
+        : coordinates(model, options.first_guess),
+          motion_(motion),
+          torque_nm_(torque_nm),
+          weighing_(weighing) {
+        const std::size_t samples = weighing.rows().size(), values = coordinates.list().size();
+        if (samples <= values + weighing.taken())
+            raise<UsageError>("{} samples are too few to fit {} values", samples, values);
     }
 
-    // Whitened measured less predicted torque of the samples used.
-    [[nodiscard]] VectorXd residual(const std::vector<double>& point) const {
-        std::vector<double> left = predict_nm(coordinates.at(point), motion_);
+    [[nodiscard]] Place at(std::vector<double> point) const {
+        Prediction prediction(coordinates.at(point), motion_);
+        std::vector<double> left = prediction.torque_nm();
         for (std::size_t k = 0; k < left.size(); ++k) left[k] = torque_nm_[k] - left[k];
-        VectorXd whitened(static_cast<Index>(rows_.size()));
-        for (std::size_t r = 0; r < rows_.size(); ++r) {
-            double value = left[rows_[r]];
-            for (std::size_t i = 0; i < options_.noise_color.size(); ++i)
-                value -= options_.noise_color[i] * left[rows_[r] - i - 1];
-            whitened[static_cast<Index>(r)] = value;
-        }
-        return whitened;
+        return {std::move(point), std::move(prediction), weighed(left)};
     }
 
     // Change of the residual with each coordinate: exact for linear ones, central differences for the others.
-    [[nodiscard]] MatrixXd slopes(const std::vector<double>& point, const VectorXd& here,
-                                  const std::vector<std::size_t>& moving) const {
-        MatrixXd columns(here.size(), static_cast<Index>(moving.size()));
+    [[nodiscard]] MatrixXd slopes(const Place& place, const std::vector<std::size_t>& moving) const {
+        MatrixXd columns(place.residual.size(), static_cast<Index>(moving.size()));
         for (std::size_t m = 0; m < moving.size(); ++m) {
-            const Coordinate& coordinate = coordinates.list()[moving[m]];
-            std::vector<double> up = point, down = point;
-            up[moving[m]] = std::min(point[moving[m]] + coordinate.step, coordinate.upper);
-            if (!coordinate.linear)
-                down[moving[m]] = std::max(point[moving[m]] - coordinate.step, coordinate.lower);
-            const double width = up[moving[m]] - down[moving[m]];
             columns.col(static_cast<Index>(m)) =
-                ((coordinate.linear ? here : residual(down)) - residual(up)) / width;
+                weighed(slope_nm(place.prediction, coordinates, place.point, moving[m]));
         }
         return columns;
     }
@@ -72,10 +60,13 @@ class Problem {
     Coordinates coordinates;
 
   private:
+    [[nodiscard]] VectorXd weighed(const std::vector<double>& torque_nm) const {
+        const std::vector<double> numbers = weighing_(torque_nm);
+        return Eigen::Map<const VectorXd>(numbers.data(), static_cast<Index>(numbers.size()));
+    }
     const Motion& motion_;
     std::span<const double> torque_nm_;
-    const FitOptions& options_;
-    std::vector<std::size_t> rows_;
+    const Weighing& weighing_;
 };
 
 // The triangle of an orthogonal factorisation of the slopes, with each column scaled to length 1.
@@ -110,15 +101,14 @@ VectorXd damped_step(const Factored& factored, double damping) {
 }
 
 // Coordinates that may move: all but those at a bound whose best step leads out of it.
-std::vector<std::size_t> free_to_move(const Problem& problem, const std::vector<double>& point,
-                                      const VectorXd& residual, bool only_linear) {
+std::vector<std::size_t> free_to_move(const Problem& problem, const Place& place, bool only_linear) {
     std::vector<std::size_t> moving;
     const auto& list = problem.coordinates.list();
     for (std::size_t c = 0; c < list.size(); ++c) {
         if (only_linear && !list[c].linear) continue;
-        const bool low = point[c] <= list[c].lower, high = point[c] >= list[c].upper;
+        const bool low = place.point[c] <= list[c].lower, high = place.point[c] >= list[c].upper;
         if (low || high) {
-            const double downhill = problem.slopes(point, residual, {c}).col(0).dot(residual);
+            const double downhill = problem.slopes(place, {c}).col(0).dot(place.residual);
             if ((low && downhill <= 0.0) || (high && downhill >= 0.0)) continue;
         }
         moving.push_back(c);
@@ -127,8 +117,7 @@ std::vector<std::size_t> free_to_move(const Problem& problem, const std::vector<
 }
 
 struct Search {
-    std::vector<double> point;
-    VectorXd residual;
+    Place place;
     int iterations = 0;
     bool converged = false;
 };
@@ -143,48 +132,54 @@ std::vector<double> moved(const Problem& problem, std::vector<double> point,
     return point;
 }
 
-void descend(const Problem& problem, Search& search, bool only_linear, int most_iterations) {
-    double damping = 1e-9;
+// One step from here: the first of ever shorter ones that lowers the sum of squares. Returns false when none
+// does.
+bool step_down(const Problem& problem, Search& search, const std::vector<std::size_t>& moving,
+               double& damping) {
+    const Factored factored = factor(problem.slopes(search.place, moving), search.place.residual);
+    const double before = search.place.residual.squaredNorm();
+    for (; damping <= 1e6; damping *= 10.0) {
+        Place next = problem.at(moved(problem, search.place.point, moving, damped_step(factored, damping)));
+        if (next.residual.squaredNorm() >= before) continue;
+        search.place = std::move(next);
+        damping = std::max(damping / 10.0, 1e-12);
+        return true;
+    }
+    return false;
+}
+
+void descend(const Problem& problem, Search& search, bool only_linear, const FitOptions& options) {
+    double damping = 1e-12;
     search.converged = false;
-    for (int i = 0; i < most_iterations && !search.converged; ++i) {
-        const auto moving = free_to_move(problem, search.point, search.residual, only_linear);
+    const auto& list = problem.coordinates.list();
+    for (int i = 0; i < options.most_iterations && !search.converged; ++i) {
+        const auto moving = free_to_move(problem, search.place, only_linear);
         if (moving.empty()) {
             search.converged = true;
             return;
         }
         ++search.iterations;
-        const Factored factored =
-            factor(problem.slopes(search.point, search.residual, moving), search.residual);
-        const double before = search.residual.squaredNorm();
-        while (true) {
-            auto point = moved(problem, search.point, moving, damped_step(factored, damping));
-            VectorXd residual = problem.residual(point);
-            const double after = residual.squaredNorm();
-            if (after < before) {
-                search.converged = before - after <= settled * before;
-                search.point = std::move(point);
-                search.residual = std::move(residual);
-                damping = std::max(damping / 10.0, 1e-12);
-                break;
-            }
-            damping *= 10.0;
-            if (damping > 1e6) {  // not a step of any length lowers it: this is the minimum
-                search.converged = true;
-                break;
-            }
-        }
+        const double before = search.place.residual.squaredNorm();
+        const bool lower = step_down(problem, search, moving, damping);
+        const double gained = before - search.place.residual.squaredNorm();
+        // One step solves what is linear, unless a bound cut it short.
+        const bool solved = std::all_of(moving.begin(), moving.end(), [&](std::size_t c) {
+            return list[c].linear && search.place.point[c] > list[c].lower &&
+                   search.place.point[c] < list[c].upper;
+        });
+        search.converged = !lower || gained <= options.settled * before || solved;
     }
 }
 
 // Row by row; -1 for what the log does not tell.
-std::vector<double> covariance_at(const Problem& problem, const Search& search) {
+std::vector<double> covariance_at(const Problem& problem, const Search& search, double samples) {
     const std::size_t n = problem.coordinates.list().size();
     std::vector<double> covariance(n * n, -1.0);
-    const auto moving = free_to_move(problem, search.point, search.residual, false);
+    const auto moving = free_to_move(problem, search.place, false);
     if (moving.empty()) return covariance;
-    const Factored factored = factor(problem.slopes(search.point, search.residual, moving), search.residual);
+    const Factored factored = factor(problem.slopes(search.place, moving), search.place.residual);
     const Index m = static_cast<Index>(moving.size());
-    const double variance = search.residual.squaredNorm() / static_cast<double>(search.residual.size() - m);
+    const double variance = search.place.residual.squaredNorm() / (samples - static_cast<double>(m));
     // Small singular values belong to combinations that the log does not tell; what takes part in one is
     // unknown.
     const Eigen::JacobiSVD<MatrixXd> svd(factored.triangle, Eigen::ComputeFullV);
@@ -211,23 +206,51 @@ std::vector<double> covariance_at(const Problem& problem, const Search& search) 
 
 }  // namespace
 
+std::vector<double> slope_nm(const Prediction& prediction, const Coordinates& coordinates,
+                             const std::vector<double>& point, std::size_t c) {
+    const Coordinate& coordinate = coordinates.list()[c];
+    const auto at = [&](double value) {
+        std::vector<double> other = point;
+        other[c] = value;
+        return prediction.changed(coordinate.term, coordinates.at(other).terms[coordinate.term]);
+    };
+    const double up = std::min(point[c] + coordinate.step, coordinate.upper);
+    const double down = coordinate.linear ? point[c] : std::max(point[c] - coordinate.step, coordinate.lower);
+    std::vector<double> slope = at(up);
+    if (!coordinate.linear) {
+        const auto below = at(down);
+        for (std::size_t k = 0; k < slope.size(); ++k) slope[k] -= below[k];
+    }
+    for (double& value : slope) value /= up - down;
+    return slope;
+}
+
 Fit fit(const Model& model, const Motion& motion, std::span<const double> torque_nm,
         const FitOptions& options) {
-    const Problem problem(model, motion, torque_nm, options);
-    Search search;
-    for (const Coordinate& coordinate : problem.coordinates.list()) search.point.push_back(coordinate.start);
-    search.residual = problem.residual(search.point);
+    const Weighing own(torque_nm.size(), options.use, options.noise_color);
+    const Weighing& weighing = options.weighing != nullptr ? *options.weighing : own;
+    const Problem problem(model, motion, torque_nm, options, weighing);
+    std::vector<double> start;
+    for (const Coordinate& coordinate : problem.coordinates.list()) start.push_back(coordinate.start);
+    Search search{problem.at(std::move(start))};
     // What is linear is right for the first guess of the rest before the rest moves.
-    descend(problem, search, true, 2);
-    descend(problem, search, false, options.most_iterations);
+    FitOptions briefly = options;
+    briefly.most_iterations = std::min(2, options.most_iterations);
+    descend(problem, search, true, briefly);
+    const auto& list = problem.coordinates.list();
+    if (!std::all_of(list.begin(), list.end(), [](const Coordinate& c) { return c.linear; }))
+        descend(problem, search, false, options);
     Fit found;
-    found.model = problem.coordinates.at(search.point);
+    found.model = problem.coordinates.at(search.place.point);
     for (std::size_t i = 0; i < model.terms.size(); ++i) {
         if (model.terms[i].effect->chance) found.model.terms[i] = model.terms[i];
     }
-    found.values = problem.coordinates.values(search.point, covariance_at(problem, search));
-    found.samples = static_cast<std::size_t>(search.residual.size());
-    found.residual_rms_nm = std::sqrt(search.residual.squaredNorm() / static_cast<double>(found.samples));
+    found.samples = weighing.rows().size();
+    found.values = problem.coordinates.values(
+        search.place.point,
+        covariance_at(problem, search, static_cast<double>(found.samples - weighing.taken())));
+    found.residual_rms_nm =
+        std::sqrt(search.place.residual.squaredNorm() / static_cast<double>(found.samples));
     found.iterations = search.iterations;
     found.converged = search.converged;
     return found;

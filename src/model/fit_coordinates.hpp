@@ -41,4 +41,11 @@ class Coordinates {
     std::vector<Coordinate> list_;
 };
 
+class Prediction;
+
+/// How the prediction changes with a coordinate, per unit of it: exact for linear ones, by central
+/// differences for the others. `prediction` is that of coordinates.at(point).
+[[nodiscard]] std::vector<double> slope_nm(const Prediction& prediction, const Coordinates& coordinates,
+                                           const std::vector<double>& point, std::size_t c);
+
 }  // namespace ripplenotch

@@ -16,6 +16,10 @@ namespace {
 constexpr std::size_t coefficients = 4;  // of a cubic
 constexpr std::size_t fewest = 5;        // samples that a cubic is fitted to
 
+// A rest: speeds within so many standard deviations of their noise, for so many smoothing windows. Nothing
+// that moves faster than the last of these rests, however noisy the log.
+constexpr double rest_deviations = 4.5, rest_windows = 3.0, most_at_rest_deg_s = 0.5;
+
 struct Window {
     std::size_t first, end;  ///< samples [first, end)
 };
@@ -82,6 +86,31 @@ std::vector<double> integrated(const TraceView& log) {
     return position_deg;
 }
 
+// Speeds that cannot be told from zero for long enough are a rest: there the joint has neither speed nor
+// acceleration, and noise must not look like a motion to and fro.
+void hold_rests(const TraceView& log, Seconds smoothing, double samples_in_window, Motion& motion) {
+    double squares = 0.0;
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        const double off = log.velocity_deg_s[k] - motion.velocity_deg_s[k];
+        squares += off * off;
+    }
+    // Variance of the middle of a cubic fitted to n samples: 9 / (4 n) of one sample's.
+    const double noise_deg_s =
+        std::sqrt(squares / static_cast<double>(log.size()) * 2.25 / samples_in_window);
+    const double still_deg_s = std::min(rest_deviations * noise_deg_s, most_at_rest_deg_s);
+    for (std::size_t first = 0; first < log.size();) {
+        std::size_t end = first;
+        while (end < log.size() && std::abs(motion.velocity_deg_s[end]) <= still_deg_s) ++end;
+        if (end > first && log.time_s[end - 1] - log.time_s[first] >= rest_windows * smoothing.value()) {
+            const auto from = static_cast<std::ptrdiff_t>(first),
+                       count = static_cast<std::ptrdiff_t>(end - first);
+            std::fill_n(motion.velocity_deg_s.begin() + from, count, 0.0);
+            std::fill_n(motion.acceleration_deg_s2.begin() + from, count, 0.0);
+        }
+        first = std::max(end, first + 1);
+    }
+}
+
 }  // namespace
 
 Motion motion_along(const TraceView& log, Seconds smoothing) {
@@ -105,6 +134,9 @@ Motion motion_along(const TraceView& log, Seconds smoothing) {
         }
         std::tie(motion.velocity_deg_s[k], motion.acceleration_deg_s2[k]) = cubic_at(log, k, window);
     }
+    const double in_window =
+        std::max(smoothing.value() * log.sample_rate.value(), static_cast<double>(fewest));
+    hold_rests(log, smoothing, in_window, motion);
     return motion;
 }
 

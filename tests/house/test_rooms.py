@@ -16,13 +16,14 @@ SEES = {
     "analysis": {"core"},
     "design": {"core"},
     "model": {"core"},
+    "diagnose": {"core", "model", "analysis"},
     "filter": {"core", "log", "analysis", "design"},
     "export": {"core", "design"},
     "evaluate": {"core", "filter", "analysis", "design"},
     "figure": {"core"},
-    "report": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "figure"},
-    "artifact": {"core", "figure", "report", "log", "analysis", "design", "filter", "evaluate", "model", "export"},
-    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "artifact", "figure", "report"},
+    "report": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
+    "artifact": {"core", "figure", "report", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose"},
+    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose", "artifact", "figure", "report"},
 }
 
 # Third-party header -> the files that may include it.

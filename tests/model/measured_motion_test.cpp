@@ -97,14 +97,14 @@ TEST_CASE("times with jitter and a gap are taken as they are") {
 }
 
 TEST_CASE("noise on the velocity is smoothed as a cubic over the window does") {
-    Motion m = make_motion("rest,duration=40s", 1000_Hz);
+    Motion m = make_motion("constant,speed=40deg/s,duration=40s", 1000_Hz);
     std::mt19937_64 engine(4);
     std::normal_distribution<double> noise(0.0, 0.15);
-    for (double& v : m.velocity_deg_s) v = noise(engine);
+    for (double& v : m.velocity_deg_s) v += noise(engine);
     const Motion measured = motion_along(logged(m, false).view());
     double speed = 0.0, acceleration = 0.0;
     for (std::size_t k = 100; k + 100 < m.size(); ++k) {
-        speed += measured.velocity_deg_s[k] * measured.velocity_deg_s[k];
+        speed += std::pow(measured.velocity_deg_s[k] - 40.0, 2);
         acceleration += measured.acceleration_deg_s2[k] * measured.acceleration_deg_s2[k];
     }
     const double count = static_cast<double>(m.size() - 200);
@@ -113,6 +113,22 @@ TEST_CASE("noise on the velocity is smoothed as a cubic over the window does") {
     CHECK(std::sqrt(speed / count) == Approx(0.15 * std::sqrt(9.0 / 4.0 / 51.0)).epsilon(0.05));
     CHECK(std::sqrt(acceleration / count) ==
           Approx(0.15 * 1000.0 * std::sqrt(75.0 / (51.0 * 51.0 * 51.0))).epsilon(0.05));
+}
+
+TEST_CASE("a rest is a rest, whatever the noise on its speed, and a slow motion is none") {
+    std::mt19937_64 engine(5);
+    std::normal_distribution<double> noise(0.0, 0.15);
+    for (const double speed_deg_s : {0.0, 0.3, -1.0}) {
+        const std::string slow = "constant,speed=" + std::to_string(speed_deg_s) + "deg/s,duration=3s";
+        const std::vector<std::string> specs = {slow, "poly6,to=40deg,duration=1s"};
+        Motion m = make_motion(specs, 1000_Hz);
+        for (double& v : m.velocity_deg_s) v += noise(engine);
+        const Motion measured = motion_along(logged(m, true).view());
+        std::size_t still = 0;
+        for (std::size_t k = 0; k < 2900; ++k) still += measured.velocity_deg_s[k] == 0.0 ? 1U : 0U;
+        CHECK(still == (speed_deg_s == 0.0 ? 2900U : 0U));
+        CHECK(measured.velocity_deg_s[3500] > 20.0);
+    }
 }
 
 TEST_CASE("a model along a log of its own motion predicts its own torque") {

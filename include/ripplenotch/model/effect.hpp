@@ -32,6 +32,14 @@ enum class LeftOut {
     assumed,  ///< `start` is taken: a log hardly tells it
 };
 
+/// What a log itself says about where a search for a parameter may begin, beside Parameter::tried.
+enum class Hint {
+    none,
+    ripple_orders,  ///< at the orders of the model's own ripple terms
+    tones,          ///< at the strongest lines of the residual against time, in hertz
+    gear_ratios,    ///< where the gear ratio would put the model's ripple on lines of the log
+};
+
 /// One number of an effect. Aggregate, so that tables read as data.
 struct Parameter {
     std::string_view name;  ///< with its unit: "inertia_kgm2", "amplitude_nm", "phase_deg"
@@ -44,6 +52,8 @@ struct Parameter {
     bool linear = false;              ///< the torque is an affine function of this parameter
     bool logarithmic = false;         ///< a search moves in its logarithm; lower is above 0
     LeftOut left_out = LeftOut::fitted;
+    std::span<const double> tried = {};  ///< where a screening begins; `start` when there are none
+    Hint hint = Hint::none;              ///< further places to begin at
 };
 
 /// The dimension whose base unit is the parameter's unit, so that values can be typed with any unit of it.
@@ -61,6 +71,10 @@ enum class Side {
     converter,  ///< transforms what is logged, noise included
 };
 [[nodiscard]] std::string_view side_name(Side side);
+
+/// What an effect's torque is mainly a function of: where it is looked for, and what can pass for it.
+enum class Domain { time, position, speed, order, frequency };
+[[nodiscard]] std::string_view domain_name(Domain domain);
 
 /// Another cause that leaves nearly the same residual, and what tells the two apart.
 struct LookAlike {
@@ -91,6 +105,7 @@ struct Effect {
     std::span<const LookAlike> look_alikes;
     std::string_view source;  ///< who described it
     Side side = Side::joint;
+    Domain domain = Domain::time;
     std::span<const Parameter> parameters;
     std::optional<Polar> polar = std::nullopt;
     bool bears_load = false;  ///< joint: its torque is part of the load that gear and bearings carry

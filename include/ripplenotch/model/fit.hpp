@@ -15,6 +15,8 @@ struct Interval {
     double low = 0.0, high = 0.0;
 };
 
+class Weighing;
+
 struct FittedValue {
     std::size_t term = 0, parameter = 0;  ///< places in the model
     double value = 0.0;
@@ -41,6 +43,10 @@ struct FitOptions {
     /// are left out as well.
     std::span<const unsigned char> use = {};
     int most_iterations = 50;
+    /// Improvement of the sum of squares at which the search ends, relative.
+    double settled = 1e-9;
+    /// In place of noise_color and use; it must be made for torques of the same length.
+    const Weighing* weighing = nullptr;
 };
 
 /// Estimates the values that `model` leaves out (LeftOut::fitted) so that the sum of squares of `torque_nm`

@@ -5,6 +5,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_widths[] = {0.2, 2.0};
+
 constexpr Parameter parameters[] = {
     {.name = "torque_nm",
      .unit = "Nm",
@@ -18,7 +21,8 @@ constexpr Parameter parameters[] = {
      .neutral = 0.2,
      .start = 0.2,
      .lower = 0.001,
-     .upper = 100.0},
+     .upper = 100.0,
+     .tried = tried_widths},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -44,6 +48,7 @@ const Effect effects::coulomb_friction{
     .look_alikes = look_alikes,
     .source = "Coulomb; Olsson et al., European Journal of Control 4, 1998, for the smoothed form",
     .side = Side::joint,
+    .domain = Domain::speed,
     .parameters = parameters,
     .apply = apply,
 };

@@ -5,13 +5,18 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_delays[] = {-0.012, -0.008, -0.005, -0.003, -0.0015, 0.0015, 0.003,
+                                   0.0045, 0.006,  0.008,  0.010,  0.013,   0.017};
+
 constexpr Parameter parameters[] = {
     {.name = "delay_s",
      .unit = "s",
      .help = "by which the torque is behind the motion; below 0: the motion is behind the torque",
      .start = 0.002,
      .lower = -0.5,
-     .upper = 0.5},
+     .upper = 0.5,
+     .tried = tried_delays},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -44,6 +49,7 @@ const Effect effects::delay{
         "sampling and transport; Lagrange for the interpolation (Laakso et al., IEEE Signal Processing "
         "Magazine 13, 1996)",
     .side = Side::sensor,
+    .domain = Domain::order,
     .parameters = parameters,
     .apply = apply,
 };

@@ -7,6 +7,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_time_constants[] = {1.0, 3.0, 10.0, 30.0, 100.0, 1e5};
+
 constexpr Parameter parameters[] = {
     {.name = "rate_nm_s",
      .unit = "Nm/s",
@@ -22,7 +25,8 @@ constexpr Parameter parameters[] = {
      .start = 100.0,
      .lower = 0.1,
      .upper = 1e6,
-     .logarithmic = true},
+     .logarithmic = true,
+     .tried = tried_time_constants},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -49,6 +53,7 @@ const Effect effects::drift{
     .look_alikes = look_alikes,
     .source = "the thermal response of a body of one time constant (Newton's law of cooling)",
     .side = Side::joint,
+    .domain = Domain::time,
     .parameters = parameters,
     .apply = apply,
 };

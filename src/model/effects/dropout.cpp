@@ -54,6 +54,7 @@ const Effect effects::dropout{
     .look_alikes = look_alikes,
     .source = "lost messages; found in public robot logs, where up to 37 % of the samples are held",
     .side = Side::converter,
+    .domain = Domain::time,
     .parameters = parameters,
     .chance = true,
     .apply = apply,

@@ -4,13 +4,18 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_errors[] = {-1.0, -0.5, -0.25, -0.12, -0.06, -0.03, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0};
+
 constexpr Parameter parameters[] = {
     {.name = "error_percent",
      .unit = "%",
      .help = "by which the gear ratio is larger than the model says",
      .start = 0.1,
      .lower = -99.0,
-     .upper = 900.0},
+     .upper = 900.0,
+     .tried = tried_errors,
+     .hint = Hint::gear_ratios},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -37,6 +42,7 @@ const Effect effects::gear_ratio{
     .look_alikes = look_alikes,
     .source = "the definition of the ratio",
     .side = Side::motion,
+    .domain = Domain::order,
     .parameters = parameters,
     .change_motion = change_motion,
 };

@@ -46,6 +46,7 @@ const Effect effects::gravity{
     .look_alikes = look_alikes,
     .source = "statics; Taghirad and Belanger, 1998, for the crosstalk",
     .side = Side::joint,
+    .domain = Domain::position,
     .parameters = parameters,
     .polar = Polar{0, 1},
     .bears_load = true,

@@ -8,6 +8,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_widths[] = {0.3, 0.7, 1.5, 3.0, 6.0, 12.0, 24.0};
+
 constexpr Parameter parameters[] = {
     {.name = "torque_nm",
      .unit = "Nm",
@@ -22,7 +25,8 @@ constexpr Parameter parameters[] = {
      .start = 1.0,
      .lower = 0.001,
      .upper = 1000.0,
-     .logarithmic = true},
+     .logarithmic = true,
+     .tried = tried_widths},
     {.name = "initial_state",
      .unit = "",
      .help = "part of the torque that is there when the log begins, -1 to 1",
@@ -73,6 +77,7 @@ const Effect effects::hysteresis{
     .look_alikes = look_alikes,
     .source = "Dahl, 1968; for harmonic drives Taghirad and Belanger, 1998; Tuttle, 1992",
     .side = Side::joint,
+    .domain = Domain::position,
     .parameters = parameters,
     .apply = apply,
 };

@@ -35,6 +35,7 @@ const Effect effects::inertia{
     .look_alikes = look_alikes,
     .source = "Newton; Kim, Kim, Song, Trans. KSME A, 2011, eq. 4",
     .side = Side::joint,
+    .domain = Domain::speed,
     .parameters = parameters,
     .bears_load = true,
     .apply = apply,

@@ -5,12 +5,16 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_time_constants[] = {0.0005, 0.0015, 0.003, 0.005, 0.008, 0.012, 0.02, 0.04};
+
 constexpr Parameter parameters[] = {
     {.name = "time_constant_s",
      .unit = "s",
      .help = "1 / (2 pi times the cut-off frequency in Hz): 0.00796 for 20 Hz",
      .start = 0.002,
-     .upper = 10.0},
+     .upper = 10.0,
+     .tried = tried_time_constants},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -38,6 +42,7 @@ const Effect effects::lag{
         "the low-pass of first order; Kim, Kim, Song, Trans. KSME A, 2011, section 4.2, for one that was "
         "mislabelled",
     .side = Side::sensor,
+    .domain = Domain::frequency,
     .parameters = parameters,
     .apply = apply,
 };

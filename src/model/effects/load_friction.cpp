@@ -7,6 +7,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_exponents[] = {1.0};
+
 constexpr Parameter parameters[] = {
     {.name = "torque_nm",
      .unit = "Nm",
@@ -20,7 +23,8 @@ constexpr Parameter parameters[] = {
      .neutral = 1.0,
      .start = 1.0,
      .lower = 0.2,
-     .upper = 4.0},
+     .upper = 4.0,
+     .tried = tried_exponents},
     width_parameter,
 };
 
@@ -51,6 +55,7 @@ const Effect effects::load_friction{
     .look_alikes = look_alikes,
     .source = "Bittencourt et al., 2010; Wolf and Iskandar, 2018",
     .side = Side::joint,
+    .domain = Domain::speed,
     .parameters = parameters,
     .uses_load = true,
     .apply = apply,

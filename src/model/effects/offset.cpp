@@ -33,6 +33,7 @@ const Effect effects::offset{
     .look_alikes = look_alikes,
     .source = "the definition of a strain gauge bridge's zero",
     .side = Side::joint,
+    .domain = Domain::time,
     .parameters = parameters,
     .apply = apply,
 };

@@ -5,6 +5,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_orders[] = {2.0, 3.0, 4.0, 5.0, 6.0};
+
 constexpr Parameter parameters[] = {
     {.name = "order",
      .unit = "",
@@ -13,7 +16,8 @@ constexpr Parameter parameters[] = {
      .start = 2.0,
      .lower = 0.01,
      .upper = 1e5,
-     .left_out = LeftOut::refused},
+     .left_out = LeftOut::refused,
+     .tried = tried_orders},
     {.name = "amplitude_nm",
      .unit = "Nm",
      .help = "zero to peak",
@@ -53,6 +57,7 @@ const Effect effects::output_ripple{
     .source =
         "Taghirad and Belanger, 1998, for misalignment; Godler et al., 1999, for the placing of the gauges",
     .side = Side::joint,
+    .domain = Domain::position,
     .parameters = parameters,
     .polar = Polar{1, 2},
     .apply = apply,

@@ -43,6 +43,7 @@ const Effect effects::quadratic_viscous_friction{
         "windage and churning of grease; Bittencourt et al., 2010, for friction that is not in proportion to "
         "the speed",
     .side = Side::joint,
+    .domain = Domain::speed,
     .parameters = parameters,
     .apply = apply,
 };

@@ -37,6 +37,7 @@ const Effect effects::quantization{
     .look_alikes = look_alikes,
     .source = "Widrow, 1956",
     .side = Side::converter,
+    .domain = Domain::time,
     .parameters = parameters,
     .linear_in_torque = false,
     .apply = apply,

@@ -4,6 +4,11 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_frequencies[] = {8.0,  11.0, 15.0, 19.0, 23.0, 27.0, 31.0,  36.0,  41.0,
+                                        47.0, 53.0, 60.0, 68.0, 77.0, 90.0, 110.0, 150.0, 220.0};
+constexpr double tried_dampings[] = {0.06, 0.2, 0.6};
+
 constexpr Parameter parameters[] = {
     {.name = "frequency_hz",
      .unit = "Hz",
@@ -12,7 +17,8 @@ constexpr Parameter parameters[] = {
      .start = 40.0,
      .lower = 0.5,
      .upper = 1e5,
-     .logarithmic = true},
+     .logarithmic = true,
+     .tried = tried_frequencies},
     {.name = "damping",
      .unit = "",
      .help = "damping ratio; from 0.5 on it is a low-pass of second order rather than a resonance",
@@ -20,7 +26,8 @@ constexpr Parameter parameters[] = {
      .start = 0.1,
      .lower = 0.001,
      .upper = 2.0,
-     .logarithmic = true},
+     .logarithmic = true,
+     .tried = tried_dampings},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -59,6 +66,7 @@ const Effect effects::resonance{
     .look_alikes = look_alikes,
     .source = "the steady response of a mass on a damped spring; Tuttle, 1992",
     .side = Side::ripple,
+    .domain = Domain::frequency,
     .parameters = parameters,
     .change_ripple = change_ripple,
 };

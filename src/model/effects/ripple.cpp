@@ -5,6 +5,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_orders[] = {0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0};
+
 constexpr Parameter parameters[] = {
     {.name = "order",
      .unit = "",
@@ -13,7 +16,8 @@ constexpr Parameter parameters[] = {
      .start = 1.0,
      .lower = 0.01,
      .upper = 1000.0,
-     .left_out = LeftOut::refused},
+     .left_out = LeftOut::refused,
+     .tried = tried_orders},
     {.name = "amplitude_nm",
      .unit = "Nm",
      .help = "zero to peak",
@@ -61,6 +65,7 @@ const Effect effects::ripple{
     .look_alikes = look_alikes,
     .source = "Kim, Kim, Song, Trans. KSME A, 2011, eq. 1 and 3; Taghirad and Belanger, 1998",
     .side = Side::joint,
+    .domain = Domain::order,
     .parameters = parameters,
     .polar = Polar{1, 2},
     .ripple_order = 0,

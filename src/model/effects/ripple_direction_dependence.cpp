@@ -55,6 +55,7 @@ const Effect effects::ripple_direction_dependence{
     .look_alikes = look_alikes,
     .source = "change of flank in gearing; measured harmonic drives",
     .side = Side::ripple,
+    .domain = Domain::order,
     .parameters = parameters,
     .change_ripple = change_ripple,
 };

@@ -42,6 +42,7 @@ const Effect effects::ripple_load_dependence{
     .look_alikes = look_alikes,
     .source = "Taghirad and Belanger, 1998; Kim, Kim, Song, Trans. KSME A, 2011, who leave it out",
     .side = Side::ripple,
+    .domain = Domain::order,
     .parameters = parameters,
     .uses_load = true,
     .change_ripple = change_ripple,

@@ -5,6 +5,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_orders[] = {1.0, 2.0, 3.0};
+
 constexpr Parameter parameters[] = {
     {.name = "output_order",
      .unit = "",
@@ -13,7 +16,8 @@ constexpr Parameter parameters[] = {
      .start = 1.0,
      .lower = 0.01,
      .upper = 1e4,
-     .left_out = LeftOut::refused},
+     .left_out = LeftOut::refused,
+     .tried = tried_orders},
     {.name = "depth_percent",
      .unit = "%",
      .help = "zero to peak, of the size of the ripple",
@@ -55,6 +59,7 @@ const Effect effects::ripple_modulation{
         "amplitude modulation; Tuttle, 1992, and Taghirad and Belanger, 1998, for dissipation and torque "
         "that change over the output turn",
     .side = Side::ripple,
+    .domain = Domain::order,
     .parameters = parameters,
     .polar = Polar{1, 2},
     .change_ripple = change_ripple,

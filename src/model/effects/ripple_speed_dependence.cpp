@@ -7,6 +7,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_exponents[] = {0.5, 1.0, 2.0};
+
 constexpr Parameter parameters[] = {
     {.name = "gain_percent",
      .unit = "%",
@@ -21,7 +24,8 @@ constexpr Parameter parameters[] = {
      .neutral = 1.0,
      .start = 1.0,
      .lower = 0.1,
-     .upper = 4.0},
+     .upper = 4.0,
+     .tried = tried_exponents},
     ripple_order_parameter,
 };
 
@@ -55,6 +59,7 @@ const Effect effects::ripple_speed_dependence{
         "measured harmonic drives, whose ripple changes up to eightfold over the speed range; Taghirad and "
         "Belanger, 1998",
     .side = Side::ripple,
+    .domain = Domain::order,
     .parameters = parameters,
     .change_ripple = change_ripple,
 };

@@ -36,6 +36,7 @@ const Effect effects::saturation{
     .look_alikes = look_alikes,
     .source = "the range of an amplifier",
     .side = Side::converter,
+    .domain = Domain::time,
     .parameters = parameters,
     .linear_in_torque = false,
     .apply = apply,

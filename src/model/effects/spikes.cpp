@@ -43,6 +43,7 @@ const Effect effects::spikes{
     .look_alikes = look_alikes,
     .source = "lost bits and electrical pulses",
     .side = Side::converter,
+    .domain = Domain::time,
     .parameters = parameters,
     .chance = true,
     .apply = apply,

@@ -8,6 +8,10 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_frequencies[] = {1.5, 2.0, 2.7, 3.6, 4.7, 6.2, 8.0, 10.5, 14.0, 18.0, 24.0};
+constexpr double tried_decays[] = {0.08, 0.25};
+
 constexpr Parameter parameters[] = {
     {.name = "amplitude_nm",
      .unit = "Nm",
@@ -27,7 +31,8 @@ constexpr Parameter parameters[] = {
      .start = 5.0,
      .lower = 0.05,
      .upper = 1e4,
-     .logarithmic = true},
+     .logarithmic = true,
+     .tried = tried_frequencies},
     {.name = "decay_s",
      .unit = "s",
      .help = "time in which it falls to 37 %",
@@ -35,7 +40,8 @@ constexpr Parameter parameters[] = {
      .start = 0.2,
      .lower = 0.001,
      .upper = 100.0,
-     .logarithmic = true},
+     .logarithmic = true,
+     .tried = tried_decays},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -78,6 +84,7 @@ const Effect effects::start_stop_ringing{
         "the answer of a lightly damped mass to a step; both ends of the move in Kim, Kim, Song, Trans. KSME "
         "A, 2011, fig. 11",
     .side = Side::joint,
+    .domain = Domain::time,
     .parameters = parameters,
     .polar = Polar{0, 1},
     .apply = apply,

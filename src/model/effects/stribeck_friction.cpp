@@ -8,6 +8,9 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_speeds[] = {3.0, 5.0, 8.0, 12.0, 18.0, 30.0, 60.0};
+
 constexpr Parameter parameters[] = {
     {.name = "torque_nm",
      .unit = "Nm",
@@ -22,7 +25,8 @@ constexpr Parameter parameters[] = {
      .start = 10.0,
      .lower = 0.05,
      .upper = 1000.0,
-     .logarithmic = true},
+     .logarithmic = true,
+     .tried = tried_speeds},
     width_parameter,
 };
 
@@ -53,6 +57,7 @@ const Effect effects::stribeck_friction{
         "Stribeck, 1902; Olsson et al., European Journal of Control 4, 1998; both ends of the move in Kim, "
         "Kim, Song, Trans. KSME A, 2011, fig. 11",
     .side = Side::joint,
+    .domain = Domain::speed,
     .parameters = parameters,
     .apply = apply,
 };

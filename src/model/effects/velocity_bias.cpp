@@ -4,13 +4,18 @@
 namespace ripplenotch {
 namespace {
 
+// Places at which a screening of a log begins.
+constexpr double tried_biases[] = {-0.5, -0.3, -0.2, -0.12, -0.06, -0.03, -0.01,
+                                   0.01, 0.03, 0.06, 0.12,  0.2,   0.3,   0.5};
+
 constexpr Parameter parameters[] = {
     {.name = "bias_deg_s",
      .unit = "deg/s",
      .help = "that the log shows too much",
      .start = 0.01,
      .lower = -100.0,
-     .upper = 100.0},
+     .upper = 100.0,
+     .tried = tried_biases},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -40,6 +45,7 @@ const Effect effects::velocity_bias{
     .look_alikes = look_alikes,
     .source = "integration of an offset",
     .side = Side::motion,
+    .domain = Domain::order,
     .parameters = parameters,
     .change_motion = change_motion,
 };

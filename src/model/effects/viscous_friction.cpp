@@ -36,6 +36,7 @@ const Effect effects::viscous_friction{
     .look_alikes = look_alikes,
     .source = "Olsson et al., European Journal of Control 4, 1998",
     .side = Side::joint,
+    .domain = Domain::speed,
     .parameters = parameters,
     .apply = apply,
 };

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Where a model of a joint and a measured log disagree, which effect of the catalogue is missing, and how far
+// the gap shrinks when it is added.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/model.hpp"
+
+namespace ripplenotch {
+
+/// How sure a finding is. Only confirmed ones are named.
+enum class FindingStatus {
+    confirmed,
+    ambiguous,         ///< another effect explains the log as well
+    tentative,         ///< something unexplained touches what it is a function of
+    immaterial,        ///< there, and too small to matter
+    shape_correction,  ///< mends the form of a larger finding
+    unidentifiable,    ///< two large torques that cancel: this log cannot tell them
+};
+[[nodiscard]] std::string_view status_name(FindingStatus status);
+
+enum class DiagnosisVerdict {
+    matches,           ///< the model explains the log: nothing is missing
+    explained,         ///< it does with what was named, or with either side of a tie
+    partly_explained,  ///< something was named, something is left
+    unexplained,       ///< something is left that no effect explains
+};
+[[nodiscard]] std::string_view verdict_name(DiagnosisVerdict verdict);
+
+struct Span {
+    double from = 0.0, to = 0.0;
+    bool operator==(const Span&) const = default;
+};
+
+/// Where in a log something acts. Empty lists: nowhere in particular.
+struct Place {
+    std::vector<Span> time_s, speed_deg_s, position_deg;
+    std::vector<double> hz, order;  ///< order: cycles per motor revolution
+    std::string direction;          ///< "positive", "negative", "both"; empty: at rest too
+};
+
+/// Why a finding is believed.
+struct Evidence {
+    double gain =
+        0.0;  ///< fall of the sum of squares in units of the noise's variance, without it less with it
+    double price = 0.0;        ///< gain that chance might bring, given all that was tried
+    double share_nm = 0.0;     ///< rms torque that only this finding explains
+    double share_sigma = 0.0;  ///< the same in units of the noise floor
+    double elsewhere = 0.0;    ///< part of the gain that is left without its best stretch of the log
+};
+
+struct RivalFinding {
+    std::string_view effect;
+    double margin = 0.0;  ///< gain by which the finding is ahead of it
+};
+
+/// One effect that was added, in the order of adoption.
+struct Finding {
+    Term term;  ///< with its values
+    FindingStatus status = FindingStatus::confirmed;
+    std::vector<FittedValue> values;  ///< of its parameters that were fitted
+    Place where;
+    Evidence evidence;
+    std::vector<RivalFinding> alternatives;
+    double gap_before_nm = 0.0, gap_after_nm = 0.0;
+    std::string reason;  ///< of a status other than confirmed, in words
+};
+
+/// Effects between which this log does not decide.
+struct Tie {
+    std::vector<std::string> effects;
+    std::string advice;  ///< the experiment that would
+};
+
+/// Something that no effect of the catalogue explains.
+struct Leftover {
+    std::string kind;  ///< "time", "tone", "order", "position", "speed", "noise"
+    Place where;
+    double rms_nm = 0.0;  ///< within the place
+};
+
+/// A fault of the converter that was seen in the log itself.
+struct Fault {
+    Term term;  ///< of a converter effect
+    std::size_t samples = 0;
+    std::vector<Span> time_s;
+    std::string words;
+};
+
+struct DiagnosisGap {
+    double before_nm = 0.0, after_nm = 0.0;  ///< rms of measured less predicted torque, samples in order
+    double noise_floor_nm = 0.0;
+    std::optional<double> closed_percent;  ///< of the squared gap above the floor; empty when there was none
+    std::optional<double> validation_before_nm, validation_after_nm, validation_closed_percent;
+};
+
+struct Diagnosis {
+    DiagnosisVerdict verdict = DiagnosisVerdict::matches;
+    Model baseline;  ///< the model as given, with the values that were fitted to it alone
+    Model model;     ///< the improved one: with what was found, but for what is tentative or unidentifiable
+    std::vector<FittedValue> values;  ///< of every fitted value of the improved model
+    std::vector<Finding> rounds;
+    std::vector<Fault> faults;
+    std::vector<std::string> named;
+    std::vector<Tie> ambiguous;
+    std::vector<Leftover> unexplained;
+    DiagnosisGap gap;
+    std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
+    std::size_t samples = 0, samples_used = 0;
+    bool has_position = false;
+    std::vector<double> noise_color;  ///< a1 ... ap of FitOptions::noise_color
+    double false_alarm = 0.01;        ///< chance that a log with nothing hidden gets a name, by design
+};
+
+struct DiagnosisOptions {
+    Seconds smoothing = default_smoothing;
+    std::span<const std::string> without = {};  ///< names of effects that are not tried
+};
+
+/// Diagnoses a log of at least 200 samples. `validation` is another log that nothing is fitted to; it may be
+/// absent. Throws UsageError: an unknown name in `without`, a model whose lines are not stated; DataError: a
+/// log too short, or without motion.
+[[nodiscard]] Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
+                                 const DiagnosisOptions& options = {});
+
+}  // namespace ripplenotch

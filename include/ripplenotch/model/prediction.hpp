@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A model along a motion, ready to answer how its torque changes with one of its terms: what a fit and a
+// screening ask for again and again.
+
+#include <memory>
+#include <vector>
+
+#include "ripplenotch/model/model.hpp"
+
+namespace ripplenotch {
+
+class Prediction {
+  public:
+    /// `motion` must outlive it. Throws UsageError where predict_nm does.
+    Prediction(Model model, const Motion& motion);
+    ~Prediction();
+    Prediction(Prediction&&) noexcept;
+    Prediction& operator=(Prediction&&) noexcept;
+
+    [[nodiscard]] const Model& model() const;
+    /// predict_nm of the model, to the last bit.
+    [[nodiscard]] const std::vector<double>& torque_nm() const;
+    /// predict_nm with the term appended, less torque_nm(). A joint effect is evaluated alone and taken
+    /// through the sensors; any other costs a whole prediction.
+    [[nodiscard]] std::vector<double> added(const Term& term) const;
+    /// predict_nm with term `place` replaced by `term`, of the same effect, less torque_nm().
+    [[nodiscard]] std::vector<double> changed(std::size_t place, const Term& term) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace ripplenotch

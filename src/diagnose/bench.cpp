@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace ripplenotch {
+
+double Candidate::criterion() const { return gain_left + std::accumulate(prices.begin(), prices.end(), 0.0); }
+
+Bench::Bench(const Case& looked_at, const NoiseFloor& noise)
+    : case_(looked_at), noise_(noise), weighing_(looked_at.size(), looked_at.use, noise.color) {}
+
+void Bench::settle_on(const Model& model) {
+    screened_.clear();
+    weighing_.set_nuisance(motion_errors(case_, model), noise_.white_nm);
+}
+
+Candidate Bench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
+                        int most_iterations) const {
+    const Fit found = fit(open, case_.motion, case_.torque_nm,
+                          {.first_guess = &first_guess,
+                           .most_iterations = most_iterations,
+                           .settled = 1e-7,
+                           .weighing = &weighing_});
+    const double squares = found.residual_rms_nm * found.residual_rms_nm * static_cast<double>(found.samples);
+    return {open,
+            found.model,
+            found.values,
+            std::move(prices),
+            squares / (noise_.white_nm * noise_.white_nm),
+            found.converged};
+}
+
+double Bench::share(const Candidate& with, const Candidate& without) const {
+    const auto squares = [&](const Model& stated) {
+        const auto left = raw_residual(stated);
+        double sum = 0.0;
+        for (const std::size_t k : rows()) sum += left[k] * left[k];
+        return sum / samples();
+    };
+    // Of coloured noise the whitened gain is the sharper measure, of a slow effect the torque itself.
+    const double white = (without.gain_left - with.gain_left) / samples() * noise_.white_nm * noise_.white_nm;
+    const double raw = squares(without.stated) - squares(with.stated);
+    return std::sqrt(std::max({white, raw, 0.0})) / noise_.rms_nm;
+}
+
+std::vector<double> Bench::cleared_residual(const Model& stated) const {
+    Weighing plain(case_.size(), case_.use, {});
+    plain.set_nuisance(motion_errors(case_, stated), noise_.rms_nm);
+    const auto cleared = plain(raw_residual(stated));
+    // Weighing leaves out what noise_.color makes unusable as well; here only rows() are told.
+    std::vector<double> all(case_.size(), 0.0), told;
+    for (std::size_t r = 0; r < plain.rows().size(); ++r) all[plain.rows()[r]] = cleared[r];
+    for (const std::size_t k : rows()) told.push_back(all[k]);
+    return told;
+}
+
+double Bench::floor_nm(const Model& stated) const {
+    const auto left = raw_residual(stated), cleared = cleared_residual(stated);
+    double all = 0.0, beside = 0.0;
+    for (std::size_t r = 0; r < rows().size(); ++r) {
+        all += left[rows()[r]] * left[rows()[r]];
+        beside += cleared[r] * cleared[r];
+    }
+    return std::sqrt(noise_.rms_nm * noise_.rms_nm + std::max(all - beside, 0.0) / samples());
+}
+
+std::vector<double> Bench::raw_residual(const Model& stated) const {
+    std::vector<double> left = predict_nm(stated, case_.motion);
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] = case_.torque_nm[k] - left[k];
+    return left;
+}
+
+std::vector<double> Bench::residual(const Model& stated) const {
+    std::vector<double> left = weighing_(raw_residual(stated));
+    left.resize(weighing_.rows().size());
+    for (double& value : left) value /= noise_.white_nm;
+    return left;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A case with its noise, on which models are fitted and compared.
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "diagnose/case.hpp"
+#include "diagnose/noise_floor.hpp"
+#include "ripplenotch/model/fit.hpp"
+
+namespace ripplenotch {
+
+/// A model in hand: the terms of the user's model first, then those that were added.
+struct Candidate {
+    Model open;    ///< values to be fitted are empty
+    Model stated;  ///< with them
+    std::vector<FittedValue> values;
+    std::vector<double> prices;  ///< one a term; 0 for the user's own
+    double gain_left = 0.0;      ///< sum of squares in units of the noise's variance
+    bool converged = true;
+
+    [[nodiscard]] double criterion() const;
+};
+
+struct Trial {
+    Term open;          ///< values to be fitted are empty
+    Term start;         ///< with the place to begin at
+    double gain = 0.0;  ///< of the whole log, foreseen, in units of the noise's variance
+    double price = 0.0;
+    [[nodiscard]] double score() const { return gain - price; }
+};
+
+class Bench {
+  public:
+    Bench(const Case& looked_at, const NoiseFloor& noise);
+
+    /// Takes up the motion errors of this model: what can be blamed on them is no gap.
+    void settle_on(const Model& model);
+
+    [[nodiscard]] Candidate fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
+                                   int most_iterations = 8) const;
+    /// Weighed measured less predicted torque, in units of the noise, a number per row().
+    [[nodiscard]] std::vector<double> residual(const Model& stated) const;
+    [[nodiscard]] std::vector<double> raw_residual(const Model& stated) const;
+    /// The same without what errors of the measured motion can explain; an entry per row().
+    [[nodiscard]] std::vector<double> cleared_residual(const Model& stated) const;
+
+    /// rms torque that `with` explains beyond `without`, in units of the noise's rms.
+    [[nodiscard]] double share(const Candidate& with, const Candidate& without) const;
+    /// rms of the residual that the noise and the errors of the measured motion leave.
+    [[nodiscard]] double floor_nm(const Model& stated) const;
+
+    [[nodiscard]] const Case& looked_at() const { return case_; }
+    [[nodiscard]] const NoiseFloor& noise() const { return noise_; }
+    [[nodiscard]] const std::vector<std::size_t>& rows() const { return weighing_.rows(); }
+    [[nodiscard]] double samples() const { return static_cast<double>(weighing_.rows().size()); }
+
+    /// What a screening found beside this model, where one took place since settle_on().
+    struct Screened {
+        Model beside;
+        std::vector<Trial> trials;
+    };
+    [[nodiscard]] std::vector<Screened>& screened() const { return screened_; }
+
+  private:
+    mutable std::vector<Screened> screened_;
+    const Case& case_;
+    NoiseFloor noise_;
+    Weighing weighing_;
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What of a log a diagnosis looks at: the motion, the torque, which samples count, and what is uncertain
+// about the motion itself.
+
+#include <vector>
+
+#include "model/weighing.hpp"
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/model/model.hpp"
+
+namespace ripplenotch {
+
+struct Case {
+    Motion motion;
+    std::vector<double> torque_nm;
+    std::vector<unsigned char> use;  ///< 0: this sample does not count
+    /// The acceleration less one of three times the smoothing, its noise; and one of half the smoothing less
+    /// it, what smoothing made of its kinks.
+    std::vector<double> rough_deg_s2, blunted_deg_s2;
+    std::vector<unsigned char> edge;  ///< 1: so near to a start or stop that noise decides what the speed is
+    double walk_deg =
+        0.0;               ///< rms error of the position after 1 s, where it is the integral of a noisy speed
+    double step_nm = 0.0;  ///< of a log that holds whole steps coarser than its noise
+    std::vector<std::size_t> from;  ///< samples at which a stretch begins; the first is 0
+
+    [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
+    [[nodiscard]] std::size_t used() const;
+};
+
+[[nodiscard]] Case whole_case(const TraceView& log, Seconds smoothing);
+
+/// The case itself up to this many samples; beyond, stretches spread over it that have about as many.
+inline constexpr std::size_t search_samples = 40'000;
+[[nodiscard]] Case excerpt(const Case& whole);
+
+/// Every n-th sample, so that about `count` are left. The sample rate falls with it.
+[[nodiscard]] Case sketch(const Case& whole, std::size_t count);
+/// The same number in short stretches at the full rate, for what looks at neighbouring samples.
+[[nodiscard]] Case blocks(const Case& whole, std::size_t count);
+
+/// Shapes that errors of the measured motion leave in the torque of a model: the walk of an integrated
+/// position, and what smoothing made of the acceleration.
+[[nodiscard]] std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model);
+
+}  // namespace ripplenotch

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/leftover.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "diagnose/lines.hpp"
+#include "diagnose/search.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// In units of the standard deviation; many windows, lines and bins are looked at, and noise is never quite
+// what a model of it says.
+constexpr double significant = 7.0;
+// Of a window or bin: mean torque in units of the noise floor that matters there.
+constexpr double matters_mean = 0.35;
+// Of a window: how much the power of what is left may exceed that of the rest.
+constexpr double matters_power = 1.6;
+constexpr double line_prominence = 40.0;
+
+struct Window {
+    std::size_t first = 0, end = 0;  ///< places in rows
+    double score = 0.0, rms_sigma = 0.0;
+};
+
+class Residual {
+  public:
+    Residual(const Bench& bench, const Model& stated)
+        : bench_(bench), raw_nm_(bench.raw_residual(stated)), white_(bench.residual(stated)) {
+        // Errors of the measured motion are no disagreement.
+        const auto cleared = bench.cleared_residual(stated);
+        for (std::size_t r = 0; r < cleared.size(); ++r) raw_nm_[bench.rows()[r]] = cleared[r];
+        double sum = 1.0;
+        for (const double a : bench.noise().color) sum -= a;
+        // Variance of a mean of coloured noise, against white noise of the same rms.
+        const double white_share = std::pow(bench.noise().white_nm / bench.noise().rms_nm, 2);
+        // Of whole steps a torque that stays on one is off by up to half of it.
+        const double step_nm = bench.looked_at().step_nm;
+        matters_mean_ = std::max(matters_mean, 0.55 * step_nm / bench.noise().rms_nm);
+        matters_power_ = step_nm > 0.0 ? 4.0 : matters_power;
+        inflation_ = std::max(1.0, white_share / std::max(sum * sum, 1e-3));
+    }
+
+    [[nodiscard]] const std::vector<double>& raw_nm() const { return raw_nm_; }
+    [[nodiscard]] double sigma_nm() const { return bench_.noise().rms_nm; }
+
+    [[nodiscard]] std::vector<Leftover> in_time() const {
+        std::vector<Window> windows;
+        const double rate = bench_.looked_at().motion.sample_rate.value();
+        for (const double length_s : {0.1, 0.25, 0.6, 1.5}) {
+            const auto length = std::max<std::size_t>(12, static_cast<std::size_t>(length_s * rate));
+            scan(length, windows);
+        }
+        std::sort(windows.begin(), windows.end(),
+                  [](const Window& a, const Window& b) { return a.score > b.score; });
+        std::vector<Window> kept;
+        for (const Window& window : windows) {
+            const bool apart = std::none_of(kept.begin(), kept.end(), [&](const Window& other) {
+                return window.first < other.end && other.first < window.end;
+            });
+            if (apart) kept.push_back(window);
+            if (kept.size() > 400) break;
+        }
+        std::sort(kept.begin(), kept.end(),
+                  [](const Window& a, const Window& b) { return a.first < b.first; });
+        return merged(kept);
+    }
+
+    // Mean in bins of a quantity, per direction.
+    [[nodiscard]] std::vector<Leftover> in_bins(const std::vector<double>& quantity, bool by_position,
+                                                int bins) const {
+        const auto& velocity = bench_.looked_at().motion.velocity_deg_s;
+        const auto [low, high] = std::minmax_element(quantity.begin(), quantity.end());
+        std::vector<Leftover> found;
+        if (!(*high - *low > 1.0)) return found;
+        for (const int direction : {-1, 1}) {
+            std::vector<double> sum(static_cast<std::size_t>(bins), 0.0), count(sum);
+            for (const std::size_t k : bench_.rows()) {
+                if (velocity[k] * direction < 1.0 || bench_.looked_at().edge[k] != 0) continue;
+                const auto b = std::min(
+                    static_cast<std::size_t>((quantity[k] - *low) / (*high - *low) * bins), sum.size() - 1);
+                sum[b] += raw_nm_[k];
+                count[b] += 1.0;
+            }
+            Leftover leftover{by_position ? "position" : "speed", {}, 0.0};
+            double squares = 0.0, total = 0.0;
+            for (std::size_t b = 0; b < sum.size(); ++b) {
+                if (count[b] < 30.0) continue;
+                const double mean = sum[b] / count[b] / sigma_nm();
+                if (std::abs(mean) * std::sqrt(count[b] / inflation_) < significant ||
+                    std::abs(mean) < matters_mean_)
+                    continue;
+                const double width = (*high - *low) / bins, from = *low + static_cast<double>(b) * width;
+                auto& spans = by_position ? leftover.where.position_deg : leftover.where.speed_deg_s;
+                if (!spans.empty() && std::abs(spans.back().to - from) < 1e-9 * (1.0 + std::abs(from))) {
+                    spans.back().to = from + width;
+                } else {
+                    spans.push_back({from, from + width});
+                }
+                squares += mean * mean * count[b];
+                total += count[b];
+            }
+            if (total == 0.0) continue;
+            leftover.where.direction = direction > 0 ? "positive" : "negative";
+            leftover.rms_nm = sigma_nm() * std::sqrt(squares / total);
+            found.push_back(leftover);
+        }
+        return found;
+    }
+
+    [[nodiscard]] std::vector<Leftover> in_lines(const GearRatio& ratio) const {
+        std::vector<Leftover> found;
+        for (const Line& line : standing_out(bench_.looked_at(), raw_nm_, line_prominence, 4)) {
+            const double rms_nm = line.amplitude_nm / std::sqrt(2.0);
+            if (rms_nm < material_sigma(bench_.looked_at()) * sigma_nm()) continue;
+            Leftover leftover{line.by_angle ? "order" : "tone", {}, rms_nm};
+            if (line.by_angle) {
+                leftover.where.order.push_back(line.frequency * 360.0 / ratio.value());
+            } else {
+                leftover.where.hz.push_back(line.frequency);
+            }
+            found.push_back(leftover);
+        }
+        return found;
+    }
+
+  private:
+    void scan(std::size_t length, std::vector<Window>& windows) const {
+        const auto& rows = bench_.rows();
+        const auto& edge = bench_.looked_at().edge;
+        if (rows.size() < 4 * length) return;
+        std::vector<double> means, powers;
+        std::vector<std::size_t> firsts;
+        for (std::size_t first = 0; first + length <= rows.size(); first += length / 2) {
+            double sum = 0.0, power = 0.0, count = 0.0;
+            for (std::size_t r = first; r < first + length; ++r) {
+                if (edge[rows[r]] != 0) continue;
+                sum += raw_nm_[rows[r]];
+                power += white_[r] * white_[r];
+                count += 1.0;
+            }
+            if (count < 0.5 * static_cast<double>(length)) continue;
+            means.push_back(sum / count / sigma_nm());
+            powers.push_back(power / count);
+            firsts.push_back(first);
+        }
+        if (powers.empty()) return;
+        std::vector<double> sorted = powers;
+        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                         sorted.end());
+        const double typical = std::max(sorted[sorted.size() / 2], 1e-12);
+        const double count = static_cast<double>(length);
+        for (std::size_t w = 0; w < firsts.size(); ++w) {
+            const double by_mean = std::abs(means[w]) * std::sqrt(count / inflation_);
+            const double by_power = (powers[w] / typical - 1.0) * std::sqrt(0.5 * count / 2.0);
+            const bool mean_out = by_mean > significant && std::abs(means[w]) > matters_mean_;
+            const bool power_out = by_power > significant && powers[w] > matters_power_ * typical;
+            if (!mean_out && !power_out) continue;
+            windows.push_back({firsts[w], firsts[w] + length,
+                               std::max(mean_out ? by_mean : 0.0, power_out ? by_power : 0.0),
+                               std::sqrt(powers[w])});
+        }
+    }
+
+    [[nodiscard]] std::vector<Leftover> merged(const std::vector<Window>& windows) const {
+        const auto& rows = bench_.rows();
+        const auto& motion = bench_.looked_at().motion;
+        std::vector<Leftover> found;
+        std::size_t last = 0;
+        std::vector<std::pair<std::size_t, std::size_t>> stretches;
+        for (const Window& window : windows) {
+            if (!stretches.empty() && window.first <= last + (window.end - window.first) / 2) {
+                stretches.back().second = window.end;
+            } else {
+                stretches.emplace_back(window.first, window.end);
+            }
+            last = window.end;
+        }
+        for (const auto& [first, end] : stretches) {
+            Leftover leftover{"time", {}, 0.0};
+            leftover.where.time_s.push_back({motion.time_s[rows[first]], motion.time_s[rows[end - 1]]});
+            double squares = 0.0, slow = 1e300, fast = -1e300;
+            for (std::size_t r = first; r < end; ++r) {
+                squares += raw_nm_[rows[r]] * raw_nm_[rows[r]];
+                slow = std::min(slow, motion.velocity_deg_s[rows[r]]);
+                fast = std::max(fast, motion.velocity_deg_s[rows[r]]);
+            }
+            leftover.where.speed_deg_s.push_back({slow, fast});
+            leftover.rms_nm = std::sqrt(squares / static_cast<double>(end - first));
+            found.push_back(leftover);
+        }
+        return found;
+    }
+
+    const Bench& bench_;
+    std::vector<double> raw_nm_, white_;
+    double inflation_ = 1.0, matters_mean_ = matters_mean, matters_power_ = matters_power;
+};
+
+}  // namespace
+
+std::vector<Leftover> leftovers(const Bench& bench, const Model& stated) {
+    const Residual residual(bench, stated);
+    std::vector<Leftover> found = residual.in_time();
+    const Motion& motion = bench.looked_at().motion;
+    const auto append = [&](std::vector<Leftover> more) {
+        found.insert(found.end(), more.begin(), more.end());
+    };
+    append(residual.in_lines(stated.gear_ratio));
+    append(residual.in_bins(motion.position_deg, true, 18));
+    append(residual.in_bins(motion.velocity_deg_s, false, 20));
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Leftover& a, const Leftover& b) { return a.rms_nm > b.rms_nm; });
+    return found;
+}
+
+bool is_confined(const Leftover& leftover, const Case& looked_at) {
+    if (leftover.kind != "time") return false;
+    const auto& time_s = looked_at.motion.time_s;
+    double total_s = 0.0;
+    for (const Span& span : leftover.where.time_s) total_s += span.to - span.from;
+    return total_s < 0.1 * (time_s.back() - time_s.front());
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "ripplenotch/analysis/fourier.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// Cells of a spectrum per width of a line.
+constexpr double oversampling = 4.0;
+// Slower swings are what drift and wandering zeros are made of.
+constexpr double slowest_tone_hz = 5.0;
+constexpr std::size_t most_cells = 1'000'000;
+
+struct Spectrum {
+    double spacing = 0.0;
+    std::vector<double> power;  ///< squared amplitude, Nm^2
+};
+
+struct Samples {
+    std::vector<double> where, value;
+};
+
+Samples counted(const Case& c, const std::vector<double>& where, const std::vector<double>& values) {
+    Samples samples;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+        if (c.use[k] == 0) continue;
+        samples.where.push_back(where[k]);
+        samples.value.push_back(values[k]);
+    }
+    return samples;
+}
+
+Spectrum spectrum_of(const Samples& samples, double highest) {
+    const auto [low, high] = std::minmax_element(samples.where.begin(), samples.where.end());
+    Spectrum spectrum;
+    spectrum.spacing = 1.0 / (oversampling * std::max(*high - *low, 1e-9));
+    const std::size_t count =
+        std::min(static_cast<std::size_t>(std::max(highest / spectrum.spacing, 1.0)) + 1, most_cells);
+    const auto sums = nonuniform_fourier(samples.where, samples.value, spectrum.spacing, count);
+    const double scale = 2.0 / static_cast<double>(samples.value.size());
+    for (const auto& sum : sums) spectrum.power.push_back(std::norm(scale * sum));
+    return spectrum;
+}
+
+// Median power of blocks, as a background that a line cannot raise.
+std::vector<double> background(const std::vector<double>& power) {
+    constexpr std::size_t block = 181;
+    std::vector<double> medians;
+    for (std::size_t first = 0; first < power.size(); first += block) {
+        const std::size_t begin = std::min(first, power.size() > block ? power.size() - block : 0);
+        std::vector<double> part(
+            power.begin() + static_cast<std::ptrdiff_t>(begin),
+            power.begin() + static_cast<std::ptrdiff_t>(std::min(begin + block, power.size())));
+        std::nth_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(part.size() / 2),
+                         part.end());
+        medians.push_back(part[part.size() / 2]);
+    }
+    std::vector<double> all(power.size());
+    for (std::size_t k = 0; k < power.size(); ++k) all[k] = medians[k / block] + 1e-300;
+    return all;
+}
+
+double highest_cycles_per_deg(const Case& c) {
+    // Order 8.6 of a hundredfold gear, or what the sampling resolves at moderate speed: beyond, noise alone.
+    double fastest = 0.0;
+    for (const double v : c.motion.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
+    return 0.5 * c.motion.sample_rate.value() / std::max(0.25 * fastest, 1.0);
+}
+
+struct Peak {
+    std::size_t cell;
+    double prominence;
+};
+
+std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t first, double least) {
+    const auto floor = background(spectrum.power);
+    std::vector<Peak> peaks;
+    for (std::size_t k = std::max<std::size_t>(first, 1); k + 1 < spectrum.power.size(); ++k) {
+        if (spectrum.power[k] < spectrum.power[k - 1] || spectrum.power[k] < spectrum.power[k + 1]) continue;
+        // ln 2 of the mean is the median of exponentially distributed power.
+        const double prominence = spectrum.power[k] / floor[k] * std::log(2.0);
+        if (prominence >= least) peaks.push_back({k, prominence});
+    }
+    std::sort(peaks.begin(), peaks.end(),
+              [](const Peak& a, const Peak& b) { return a.prominence > b.prominence; });
+    return peaks;
+}
+
+void gather(const Case& c, const std::vector<double>& residual_nm, bool by_angle, double least,
+            std::vector<Line>& lines) {
+    const auto samples = counted(c, by_angle ? c.motion.position_deg : c.motion.time_s, residual_nm);
+    if (samples.where.size() < 50) return;
+    const auto [low, high] = std::minmax_element(samples.where.begin(), samples.where.end());
+    if (!(*high - *low > 1.0)) return;
+    const Spectrum spectrum =
+        spectrum_of(samples, by_angle ? highest_cycles_per_deg(c) : 0.5 * c.motion.sample_rate.value());
+    // Slow tones and orders are matters of drift and friction.
+    const double slowest = by_angle ? 12.0 / 360.0 : 5.0;
+    const auto first = static_cast<std::size_t>(slowest / spectrum.spacing) + 1;
+    for (const Peak& peak : peaks_of(spectrum, first, least)) {
+        const double cell = static_cast<double>(peak.cell) * spectrum.spacing;
+        lines.push_back({by_angle, refine_peak(samples.where, samples.value, cell, spectrum.spacing),
+                         std::sqrt(spectrum.power[peak.cell]), peak.prominence});
+        if (lines.size() > 12) break;
+    }
+}
+
+}  // namespace
+
+std::vector<Line> standing_out(const Case& looked_at, const std::vector<double>& residual_nm, double least,
+                               std::size_t most) {
+    std::vector<Line> lines, by_angle;
+    gather(looked_at, residual_nm, false, least, lines);
+    gather(looked_at, residual_nm, true, least, by_angle);
+    lines.insert(lines.end(), by_angle.begin(), by_angle.end());
+    std::sort(lines.begin(), lines.end(),
+              [](const Line& a, const Line& b) { return a.prominence > b.prominence; });
+    if (lines.size() > most) lines.resize(most);
+    return lines;
+}
+
+std::vector<double> strongest_tones_hz(const Case& looked_at, const std::vector<double>& residual_nm,
+                                       std::size_t most) {
+    const auto samples = counted(looked_at, looked_at.motion.time_s, residual_nm);
+    if (samples.where.size() < 50) return {};
+    const Spectrum spectrum = spectrum_of(samples, 0.5 * looked_at.motion.sample_rate.value());
+    std::vector<double> tones;
+    for (const Peak& peak :
+         peaks_of(spectrum, static_cast<std::size_t>(slowest_tone_hz / spectrum.spacing) + 1, 12.0)) {
+        if (tones.size() >= most) break;
+        tones.push_back(refine_peak(samples.where, samples.value,
+                                    static_cast<double>(peak.cell) * spectrum.spacing, spectrum.spacing));
+    }
+    return tones;
+}
+
+RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
+                              const std::vector<double>& orders, double about, std::size_t most) {
+    const auto samples = counted(looked_at, looked_at.motion.position_deg, torque_nm);
+    if (orders.empty() || samples.where.size() < 50) return {};
+    const double highest_order = *std::max_element(orders.begin(), orders.end());
+    const Spectrum spectrum = spectrum_of(samples, 2.6 * about * highest_order / 360.0);
+    // The finest order decides how closely ratios are compared.
+    const double step = 0.5 * spectrum.spacing * 360.0 / highest_order;
+    const auto first = static_cast<std::size_t>(0.4 * about / step);
+    const auto last = static_cast<std::size_t>(2.5 * about / step);
+    std::vector<double> score(last + 1, 0.0);
+    for (std::size_t r = first; r <= last; ++r) {
+        for (const double order : orders) {
+            const double cell = static_cast<double>(r) * step * order / 360.0 / spectrum.spacing;
+            const auto k = static_cast<std::size_t>(cell);
+            if (k + 1 >= spectrum.power.size()) continue;
+            const double part = cell - static_cast<double>(k);
+            score[r] += (1.0 - part) * spectrum.power[k] + part * spectrum.power[k + 1];
+        }
+    }
+    std::vector<std::size_t> tops;
+    for (std::size_t r = first + 1; r < last; ++r) {
+        if (score[r] >= score[r - 1] && score[r] > score[r + 1]) tops.push_back(r);
+    }
+    std::sort(tops.begin(), tops.end(), [&](std::size_t a, std::size_t b) { return score[a] > score[b]; });
+    RatioCandidates found;
+    found.compared = static_cast<double>(last - first);
+    for (std::size_t i = 0; i < std::min(most, tops.size()); ++i)
+        found.ratios.push_back(static_cast<double>(tops[i]) * step);
+    return found;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Lines of a residual: in time, where they are tones, and over the output angle, where they are orders.
+
+#include <vector>
+
+#include "diagnose/case.hpp"
+
+namespace ripplenotch {
+
+struct Line {
+    bool by_angle = false;
+    double frequency = 0.0;     ///< Hz, or cycles per degree of output
+    double amplitude_nm = 0.0;  ///< zero to peak
+    double prominence = 0.0;    ///< power over the median power about it
+};
+
+/// The strongest lines whose prominence is at least `least`, the strongest first, at most `most`.
+[[nodiscard]] std::vector<Line> standing_out(const Case& looked_at, const std::vector<double>& residual_nm,
+                                             double least, std::size_t most);
+
+/// Frequencies of the strongest tones of the residual, refined.
+[[nodiscard]] std::vector<double> strongest_tones_hz(const Case& looked_at,
+                                                     const std::vector<double>& residual_nm,
+                                                     std::size_t most);
+
+/// Gear ratios that put `orders` on the strongest lines of a torque over the angle, the best first; how many
+/// were compared comes with them.
+struct RatioCandidates {
+    std::vector<double> ratios;
+    double compared = 1.0;
+};
+[[nodiscard]] RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
+                                            const std::vector<double>& orders, double about,
+                                            std::size_t most);
+
+}  // namespace ripplenotch

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/diagnose/diagnosis.hpp"
+
+namespace ripplenotch {
+
+std::string_view status_name(FindingStatus status) {
+    constexpr std::string_view names[] = {"confirmed",  "ambiguous",        "tentative",
+                                          "immaterial", "shape-correction", "unidentifiable"};
+    return names[static_cast<std::size_t>(status)];
+}
+
+std::string_view verdict_name(DiagnosisVerdict verdict) {
+    constexpr std::string_view names[] = {"matches", "explained", "partly-explained", "unexplained"};
+    return names[static_cast<std::size_t>(verdict)];
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/noise_floor.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "diagnose/lines.hpp"
+#include "model/fit_coordinates.hpp"
+#include "ripplenotch/model/prediction.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int most_lags = 16;
+constexpr int most_lines = 8;
+// A line stands out when its power is this many times the median about it.
+constexpr double stands_out = 60.0;
+// Noise whose quieter stretches have less than this part of its rms is none.
+constexpr double unsteady = 0.75;
+
+struct Columns {
+    explicit Columns(std::size_t rows) : rows_(rows) {}
+    template <class Function>
+    void add(const Function& value_at) {
+        std::vector<double> column(rows_);
+        double squares = 0.0;
+        for (std::size_t k = 0; k < rows_; ++k) squares += (column[k] = value_at(k)) * column[k];
+        if (!(squares > 0.0) || !std::isfinite(squares)) return;
+        const double scale = std::sqrt(static_cast<double>(rows_) / squares);
+        for (const double value : column) values.push_back(scale * value);
+    }
+    [[nodiscard]] Index count() const { return static_cast<Index>(values.size() / rows_); }
+    std::vector<double> values;
+
+  private:
+    std::size_t rows_;
+};
+
+// Cubic B-spline number i of n over [low, high].
+double spline(double x, double low, double high, int i, int n) {
+    const double u = std::clamp((x - low) / std::max(high - low, 1e-12), 0.0, 1.0) * (n - 3);
+    const double d = std::abs(u - (i - 1));
+    if (d >= 2.0) return 0.0;
+    return d < 1.0 ? (4.0 - 6.0 * d * d + 3.0 * d * d * d) / 6.0 : (2.0 - d) * (2.0 - d) * (2.0 - d) / 6.0;
+}
+
+template <class Function>
+void add_wave(Columns& columns, const Function& turns_at, const std::function<double(std::size_t)>& size) {
+    columns.add([&](std::size_t k) { return size(k) * std::cos(2.0 * std::numbers::pi * turns_at(k)); });
+    columns.add([&](std::size_t k) { return size(k) * std::sin(2.0 * std::numbers::pi * turns_at(k)); });
+}
+
+// Ripple of the model and of its neighbourhood, each swelling with whatever the motion shows.
+void add_ripple(Columns& columns, const Case& c, double ratio, const std::vector<double>& orders) {
+    const Motion& m = c.motion;
+    const auto one = [](std::size_t) { return 1.0; };
+    std::vector<double> all = orders;
+    for (double order = 1.0; order <= 6.0; ++order) {
+        if (std::find(all.begin(), all.end(), order) == all.end()) all.push_back(order);
+    }
+    for (const double order : all)
+        add_wave(
+            columns, [&](std::size_t k) { return order * ratio * m.position_deg[k] / 360.0; }, one);
+    const double middle_s = 0.5 * (m.time_s.front() + m.time_s.back()), half_s = m.time_s.back() - middle_s;
+    const std::function<double(std::size_t)> swells[] = {
+        [&](std::size_t k) { return std::abs(m.velocity_deg_s[k]); },
+        [&](std::size_t k) { return m.velocity_deg_s[k]; },
+        [&](std::size_t k) { return m.velocity_deg_s[k] * m.velocity_deg_s[k]; },
+        [&](std::size_t k) { return std::tanh(m.velocity_deg_s[k] / 0.2); },
+        [&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); },
+        [&](std::size_t k) { return (m.time_s[k] - middle_s) / half_s; },
+        [&](std::size_t k) { return std::pow((m.time_s[k] - middle_s) / half_s, 2); },
+        [&](std::size_t k) { return m.position_deg[k]; }};
+    for (const double order : orders) {
+        const auto turns = [&](std::size_t k) { return order * ratio * m.position_deg[k] / 360.0; };
+        for (const auto& swell : swells) add_wave(columns, turns, swell);
+        for (const double side : {-2.0, -1.0, 1.0, 2.0}) {
+            add_wave(
+                columns, [&](std::size_t k) { return (order * ratio + side) * m.position_deg[k] / 360.0; },
+                one);
+        }
+    }
+}
+
+void add_smooth(Columns& columns, const Case& c) {
+    const Motion& m = c.motion;
+    const auto [low_q, high_q] = std::minmax_element(m.position_deg.begin(), m.position_deg.end());
+    double fastest = 0.0;
+    for (const double v : m.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
+    for (const double direction : {-1.0, 1.0}) {
+        const auto moves = [&](std::size_t k) { return m.velocity_deg_s[k] * direction > 0.2 ? 1.0 : 0.0; };
+        for (int i = 0; i < 13; ++i) {
+            columns.add(
+                [&](std::size_t k) { return moves(k) * spline(m.position_deg[k], *low_q, *high_q, i, 13); });
+        }
+        for (int i = 0; i < 14; ++i) {  // closer where it is slow: friction changes most there
+            columns.add([&](std::size_t k) {
+                return moves(k) *
+                       spline(std::sqrt(std::abs(m.velocity_deg_s[k])), 0.0, std::sqrt(fastest), i, 14);
+            });
+        }
+    }
+    for (int i = 0; i < 22; ++i)
+        columns.add(
+            [&](std::size_t k) { return spline(m.time_s[k], m.time_s.front(), m.time_s.back(), i, 22); });
+    columns.add([&](std::size_t k) { return m.acceleration_deg_s2[k]; });
+    columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); });
+    columns.add([&](std::size_t k) { return std::tanh(m.velocity_deg_s[k] / 0.2); });
+    columns.add([&](std::size_t k) {
+        return std::abs(m.acceleration_deg_s2[k]) * std::tanh(m.velocity_deg_s[k] / 0.2);
+    });
+}
+
+void add_slopes(Columns& columns, const Case& c, const Model& model, const Model& open) {
+    const Coordinates coordinates(open, &model);
+    std::vector<double> point;
+    for (const Coordinate& coordinate : coordinates.list()) point.push_back(coordinate.start);
+    const Prediction prediction(coordinates.at(point), c.motion);
+    for (std::size_t i = 0; i < point.size(); ++i) {
+        const auto slope = slope_nm(prediction, coordinates, point, i);
+        columns.add([&](std::size_t k) { return slope[k]; });
+    }
+}
+
+VectorXd left_by(const Columns& columns, const Case& c, const std::vector<double>& torque_nm) {
+    const auto n = static_cast<Index>(c.size());
+    Eigen::Map<const MatrixXd> all(columns.values.data(), n, columns.count());
+    VectorXd used(n), y(n);
+    for (Index k = 0; k < n; ++k) {
+        used[k] = c.use[static_cast<std::size_t>(k)] != 0 ? 1.0 : 0.0;
+        y[k] = used[k] * torque_nm[static_cast<std::size_t>(k)];
+    }
+    const MatrixXd masked = used.asDiagonal() * all;
+    MatrixXd gram = MatrixXd::Zero(all.cols(), all.cols());
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(masked.transpose());
+    gram.diagonal().array() += 1e-7 * static_cast<double>(n);
+    const VectorXd theta = gram.selfadjointView<Eigen::Lower>().ldlt().solve(masked.transpose() * y);
+    return y - masked * theta;
+}
+
+// Levinson's recursion; the order that the length of the log supports.
+void color_of(const std::vector<double>& covariance, double samples, NoiseFloor& floor) {
+    std::vector<double> a;  // e(k) = sum a[i] e(k-1-i) + white
+    double variance = covariance[0];
+    double best = samples * std::log(variance);
+    floor.color.clear();
+    floor.white_nm = std::sqrt(variance);
+    for (std::size_t p = 1; p < covariance.size(); ++p) {
+        double reflection = covariance[p];
+        for (std::size_t i = 0; i < a.size(); ++i) reflection -= a[i] * covariance[p - 1 - i];
+        reflection /= variance;
+        if (std::abs(reflection) >= 0.9999) break;
+        std::vector<double> next = a;
+        for (std::size_t i = 0; i < a.size(); ++i) next[i] -= reflection * a[a.size() - 1 - i];
+        next.push_back(reflection);
+        a = next;
+        variance *= 1.0 - reflection * reflection;
+        const double score = samples * std::log(variance) + 6.0 * static_cast<double>(p);
+        if (score < best) {
+            best = score;
+            floor.color = a;
+            floor.white_nm = std::sqrt(variance);
+        }
+    }
+}
+
+// rms of a stretch of the log that is quieter than three in four.
+double quiet_rms(const VectorXd& left, const Case& c) {
+    const Index length = std::max<Index>(left.size() / 160, 50);
+    std::vector<double> powers;
+    for (Index first = 0; first + length <= left.size(); first += length) {
+        double sum = 0.0, count = 0.0;
+        for (Index k = first; k < first + length; ++k) {
+            if (c.use[static_cast<std::size_t>(k)] == 0) continue;
+            sum += left[k] * left[k];
+            count += 1.0;
+        }
+        if (count > 0.5 * static_cast<double>(length)) powers.push_back(sum / count);
+    }
+    if (powers.empty()) return 0.0;
+    const auto middle = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 4);
+    std::nth_element(powers.begin(), middle, powers.end());
+    return std::sqrt(*middle);
+}
+
+}  // namespace
+
+NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open) {
+    const Case& c = looked_at;
+    std::vector<double> torque_nm = c.torque_nm;
+    const auto predicted = predict_nm(model, c.motion);
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];
+    std::vector<double> orders;
+    GearRatio ratio = model.gear_ratio;
+    Motion scratch;
+    for (const Term& term : model.terms) {
+        if (term.effect->ripple_order) orders.push_back(values_of(term)[*term.effect->ripple_order]);
+        if (term.effect->change_motion != nullptr)
+            term.effect->change_motion(values_of(term), scratch, ratio);
+    }
+    Columns columns(c.size());
+    add_slopes(columns, c, model, open);
+    add_ripple(columns, c, ratio.value(), orders);
+    add_smooth(columns, c);
+    for (const Nuisance& nuisance : motion_errors(c, model))
+        columns.add([&](std::size_t k) { return nuisance.torque_nm[k]; });
+    VectorXd left = left_by(columns, c, torque_nm);
+    // Lines that stand out of what is about them are no noise.
+    for (int line = 0; line < most_lines; line += 2) {
+        const std::vector<double> values(left.data(), left.data() + left.size());
+        const auto found = standing_out(c, values, stands_out, 2);
+        if (found.empty()) break;
+        for (const Line& strong : found) {
+            const auto& where = strong.by_angle ? c.motion.position_deg : c.motion.time_s;
+            add_wave(
+                columns, [&](std::size_t k) { return strong.frequency * where[k]; },
+                [](std::size_t) { return 1.0; });
+        }
+        left = left_by(columns, c, torque_nm);
+    }
+    std::vector<double> covariance;
+    for (Index lag = 0; lag <= most_lags; ++lag) {
+        double sum = 0.0, count = 0.0;
+        for (Index k = lag; k < left.size(); ++k) {
+            if (c.use[static_cast<std::size_t>(k)] == 0 || c.use[static_cast<std::size_t>(k - lag)] == 0)
+                continue;
+            sum += left[k] * left[k - lag];
+            count += 1.0;
+        }
+        covariance.push_back(sum / std::max(count, 1.0));
+    }
+    const double samples = static_cast<double>(c.used());
+    const double spent = samples / std::max(samples - static_cast<double>(columns.count()), 0.2 * samples);
+    covariance[0] = std::max(covariance[0], 1e-24);
+    NoiseFloor floor;
+    color_of(covariance, samples, floor);
+    floor.rms_nm = std::sqrt(covariance[0] * spent);
+    floor.white_nm *= std::sqrt(spent);
+    // What is loud in some stretches only is not noise but something that none of these columns can follow,
+    // such as a resonance. Its colour would hide it.
+    const double quiet_nm = quiet_rms(left, c);
+    if (quiet_nm > 0.0 && quiet_nm < unsteady * floor.rms_nm) floor = {quiet_nm, quiet_nm, {}};
+    return floor;
+}
+
+}  // namespace ripplenotch

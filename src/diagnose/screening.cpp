@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/screening.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "diagnose/lines.hpp"
+#include "model/fit_coordinates.hpp"
+#include "ripplenotch/model/prediction.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t sketch_samples = 6'000;
+// A column of which less than this part lies outside the model's own is not told by the log.
+constexpr double least_outside = 0.03;
+constexpr double false_alarm = 0.01;
+
+VectorXd to_vector(const std::vector<double>& values) {
+    return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+}
+
+MatrixXd orthonormal(const std::vector<VectorXd>& columns, Index rows) {
+    MatrixXd basis(rows, static_cast<Index>(columns.size()));
+    Index kept = 0;
+    for (const VectorXd& given : columns) {
+        VectorXd column = given;
+        const double length = column.norm();
+        if (!(length > 0.0)) continue;
+        for (int pass = 0; pass < 2; ++pass)
+            column -= basis.leftCols(kept) * (basis.leftCols(kept).transpose() * column);
+        if (column.norm() > 1e-7 * length) basis.col(kept++) = column.normalized();
+    }
+    return basis.leftCols(kept);
+}
+
+// What the whole residual shows: lines finer than a thinned log resolves.
+struct Hints {
+    std::vector<double> tones_hz, orders;
+    GearRatio ratio;
+    RatioCandidates ratios;
+};
+
+Hints hints_of(const Bench& bench, const Model& stated) {
+    Hints hints;
+    hints.tones_hz = strongest_tones_hz(bench.looked_at(), bench.raw_residual(stated), 3);
+    hints.ratio = stated.gear_ratio;
+    Motion scratch;
+    Model without_ripple = stated;
+    for (const Term& term : stated.terms) {
+        if (term.effect->ripple_order) hints.orders.push_back(values_of(term)[*term.effect->ripple_order]);
+        if (term.effect->change_motion != nullptr)
+            term.effect->change_motion(values_of(term), scratch, hints.ratio);
+    }
+    std::erase_if(without_ripple.terms,
+                  [](const Term& term) { return term.effect->ripple_order.has_value(); });
+    hints.ratios = likely_ratios(bench.looked_at(), bench.raw_residual(without_ripple), hints.orders,
+                                 hints.ratio.value(), 3);
+    return hints;
+}
+
+class Screening {
+  public:
+    Screening(const Bench& bench, const Candidate& model, Case some, const Hints& hints)
+        : model_(model),
+          case_(std::move(some)),
+          prediction_(model.stated, case_.motion),
+          samples_(bench.samples()),
+          hints_(hints) {
+        counts_.resize(static_cast<Index>(case_.size()));
+        for (std::size_t k = 0; k < case_.size(); ++k)
+            counts_[static_cast<Index>(k)] = case_.use[k] != 0 ? 1.0 : 0.0;
+        torque_ = to_vector(case_.torque_nm);
+        residual_ = counted(torque_ - to_vector(prediction_.torque_nm()));
+        basis_ = orthonormal(columns_of(model.open, prediction_, false), torque_.size());
+        left_ = outside(residual_);
+        // Gains of the thinned log in those of the whole one.
+        unit_ = samples_ / std::max(counts_.sum(), 1.0) / (bench.noise().rms_nm * bench.noise().rms_nm);
+    }
+
+    [[nodiscard]] std::optional<Trial> best(const Effect& effect, std::size_t effects) const {
+        double cells = 1.0;
+        const auto starts = starts_of(effect, cells);
+        std::optional<Trial> best;
+        for (const Term& start : starts) {
+            Trial trial = opened(start);
+            const double values = static_cast<double>(free_values(trial.open));
+            trial.price = values * std::log(samples_) + 2.0 * std::log(cells) +
+                          2.0 * std::log(static_cast<double>(effects) / false_alarm);
+            trial.gain = gain_of(start) * unit_;
+            if (trial.gain > 0.0 && (!best || trial.score() > best->score())) best = trial;
+        }
+        return best;
+    }
+
+  private:
+    // Slopes of the model's coordinates, and the errors of the motion.
+    [[nodiscard]] std::vector<VectorXd> columns_of(const Model& open, const Prediction& prediction,
+                                                   bool only_linear) const {
+        const Coordinates coordinates(open, &prediction.model());
+        std::vector<double> point;
+        for (const Coordinate& coordinate : coordinates.list()) point.push_back(coordinate.start);
+        std::vector<VectorXd> columns;
+        for (std::size_t c = 0; c < point.size(); ++c) {
+            const Coordinate& coordinate = coordinates.list()[c];
+            if (only_linear && !coordinate.linear && coordinate.kind == CoordinateKind::logarithm) continue;
+            columns.push_back(counted(to_vector(slope_nm(prediction, coordinates, point, c))));
+        }
+        for (const Nuisance& error : motion_errors(case_, prediction.model()))
+            columns.push_back(counted(to_vector(error.torque_nm)));
+        return columns;
+    }
+
+    [[nodiscard]] VectorXd outside(const VectorXd& column) const {
+        return column - basis_ * (basis_.transpose() * column);
+    }
+
+    static std::size_t free_values(const Term& term) {
+        std::size_t count = 0;
+        for (std::size_t p = 0; p < term.values.size(); ++p) {
+            // Lines that were picked from a list are chosen as much as fitted.
+            const bool picked = term.effect->parameters[p].left_out == LeftOut::refused;
+            if (!term.values[p] || picked) ++count;
+        }
+        return count;
+    }
+
+    static Trial opened(const Term& start) {
+        Trial trial{start, start};
+        for (std::size_t p = 0; p < start.values.size(); ++p) {
+            if (start.effect->parameters[p].left_out == LeftOut::fitted) trial.open.values[p].reset();
+        }
+        return trial;
+    }
+
+    [[nodiscard]] VectorXd counted(const VectorXd& column) const { return column.cwiseProduct(counts_); }
+
+    [[nodiscard]] std::vector<double> tried(const Effect& effect, std::size_t p, double& cells) const {
+        const Parameter& parameter = effect.parameters[p];
+        std::vector<double> values(parameter.tried.begin(), parameter.tried.end());
+        if (values.empty() && parameter.hint != Hint::tones) values.push_back(parameter.start);
+        cells *= static_cast<double>(std::max<std::size_t>(values.size(), 1));
+        if (parameter.hint == Hint::ripple_orders && hints_.orders.size() > 1) {
+            values.insert(values.end(), hints_.orders.begin(), hints_.orders.end());
+            cells *= static_cast<double>(values.size());
+        }
+        if (parameter.hint == Hint::tones) {
+            values = hints_.tones_hz;
+            cells *= samples_ / 2.0;
+        }
+        if (parameter.hint == Hint::gear_ratios && !hints_.ratios.ratios.empty()) {
+            cells += hints_.ratios.compared;
+            for (const double ratio : hints_.ratios.ratios)
+                values.push_back(value_for_ratio(effect, p, ratio));
+        }
+        std::erase_if(values, [&](double value) { return !allows(parameter, value); });
+        return values;
+    }
+
+    // The value of the parameter that makes the ratio: the ratio is affine in it.
+    [[nodiscard]] double value_for_ratio(const Effect& effect, std::size_t p, double wanted) const {
+        std::vector<double> values;
+        for (const Parameter& parameter : effect.parameters) values.push_back(parameter.neutral);
+        Motion scratch;
+        GearRatio at_neutral = hints_.ratio, at_next = hints_.ratio;
+        effect.change_motion(values, scratch, at_neutral);
+        values[p] += 1.0;
+        effect.change_motion(values, scratch, at_next);
+        const double slope = at_next.value() - at_neutral.value();
+        return effect.parameters[p].neutral + (wanted - at_neutral.value()) / slope;
+    }
+
+    [[nodiscard]] std::vector<Term> starts_of(const Effect& effect, double& cells) const {
+        std::vector<Term> starts{{&effect, {}}};
+        for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+            const Parameter& parameter = effect.parameters[p];
+            const bool phase = effect.polar && p == effect.polar->phase;
+            std::vector<double> values{parameter.linear || phase ? parameter.start : parameter.neutral};
+            if (!parameter.linear && !phase) values = tried(effect, p, cells);
+            std::vector<Term> more;
+            for (const Term& start : starts) {
+                for (const double value : values) {
+                    more.push_back(start);
+                    more.back().values.emplace_back(value);
+                }
+            }
+            starts = std::move(more);
+        }
+        // A ripple effect of the very order that the model has already tells nothing new, but a screening
+        // finds that out by itself.
+        return starts;
+    }
+
+    // Fall of the sum of squares, in Nm^2, of the thinned log.
+    [[nodiscard]] double gain_of(const Term& start) const {
+        const Effect& effect = *start.effect;
+        const bool sized = std::any_of(effect.parameters.begin(), effect.parameters.end(),
+                                       [](const Parameter& parameter) { return parameter.linear; });
+        return sized ? gain_beside(start) : gain_within(start);
+    }
+
+    // Of an effect with a size: its torque is added to the model's.
+    [[nodiscard]] double gain_beside(const Term& start) const {
+        const Effect& effect = *start.effect;
+        std::vector<VectorXd> columns;
+        double least = -1e300;
+        const auto add = [&](Term term) { columns.push_back(counted(to_vector(prediction_.added(term)))); };
+        for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+            const Parameter& parameter = effect.parameters[p];
+            Term term = start;
+            for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+                if (effect.parameters[i].linear) term.values[i] = 0.0;
+            }
+            if (parameter.linear) {
+                // Small enough that a change of the ripple stays in proportion.
+                term.values[p] = effect.side == Side::joint ? 1.0 : 1e-2 * parameter.start;
+                add(term);
+                if (effect.polar && effect.polar->size == p) {
+                    term.values[effect.polar->phase] = *term.values[effect.polar->phase] + 90.0;
+                    add(term);
+                } else {
+                    least = parameter.lower >= 0.0 ? 0.0 : least;
+                }
+            } else if (effect.side != Side::joint && parameter.left_out == LeftOut::fitted &&
+                       parameter.tried.empty() && !(effect.polar && effect.polar->phase == p)) {
+                // A second number that acts without the size, such as a phase that differs by direction.
+                term.values[p] = parameter.neutral + 1e-3 * (parameter.upper - parameter.lower);
+                add(term);
+            }
+        }
+        std::vector<VectorXd> beside;
+        for (const VectorXd& column : columns) {
+            const VectorXd part = outside(column);
+            if (!(part.norm() > least_outside * column.norm())) continue;
+            beside.push_back(part);
+        }
+        if (beside.empty()) return 0.0;
+        if (columns.size() == 1 && least == 0.0 && beside[0].dot(left_) < 0.0) return 0.0;
+        const MatrixXd basis = orthonormal(beside, left_.size());
+        return (basis.transpose() * left_).squaredNorm();
+    }
+
+    // Of an effect that changes the model's own torque: everything linear is solved anew.
+    [[nodiscard]] double gain_within(const Term& start) const {
+        Model with = model_.stated, open = model_.open;
+        with.terms.push_back(start);
+        open.terms.push_back(start);
+        const Prediction changed(with, case_.motion);
+        const MatrixXd basis = orthonormal(columns_of(open, changed, true), torque_.size());
+        const VectorXd left = counted(torque_ - to_vector(changed.torque_nm()));
+        return left_.squaredNorm() - (left - basis * (basis.transpose() * left)).squaredNorm();
+    }
+
+    const Candidate& model_;
+    Case case_;
+    Prediction prediction_;
+    double samples_, unit_ = 1.0;
+    VectorXd counts_, torque_, residual_, left_;
+    MatrixXd basis_;
+    const Hints& hints_;
+};
+
+}  // namespace
+
+std::vector<Trial> screen(const Bench& bench, const Candidate& model,
+                          std::span<const Effect* const> effects) {
+    for (const Bench::Screened& before : bench.screened()) {
+        if (before.beside == model.stated) return before.trials;
+    }
+    const Hints hints = hints_of(bench, model.stated);
+    const Screening thinned(bench, model, sketch(bench.looked_at(), sketch_samples), hints);
+    // Delays and lags look at neighbouring samples, which a thinned log does not have.
+    const Screening stretches(bench, model, blocks(bench.looked_at(), sketch_samples), hints);
+    std::vector<Trial> trials;
+    for (const Effect* effect : effects) {
+        const Screening& screening = effect->side == Side::sensor ? stretches : thinned;
+        if (auto trial = screening.best(*effect, effects.size())) trials.push_back(*trial);
+    }
+    std::stable_sort(trials.begin(), trials.end(),
+                     [](const Trial& a, const Trial& b) { return a.score() > b.score(); });
+    bench.screened().push_back({model.stated, trials});
+    return trials;
+}
+
+}  // namespace ripplenotch

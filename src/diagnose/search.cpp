@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_names = 7;
+constexpr std::size_t finalists = 4;
+// A finalist's foreseen gain, against that of the best.
+constexpr double within_reach = 0.4;
+// As long as more than this part of the sum of squares is unexplained, a step has to close a fair part of it:
+// what closes less only feeds on something else.
+constexpr double open_gap = 0.02, fair_part = 0.12;
+constexpr int swap_rounds = 2;
+
+// The lines of a trial are names of their own: ripple of order 3 and of order 4 may both be there.
+bool same_place(const Term& a, const Term& b) {
+    if (a.effect != b.effect) return false;
+    for (std::size_t p = 0; p < a.values.size(); ++p) {
+        if (a.effect->parameters[p].left_out == LeftOut::refused && a.values[p] != b.values[p]) return false;
+    }
+    return true;
+}
+
+std::optional<Candidate> best_addition(const Bench& bench, const Candidate& now,
+                                       const std::vector<Trial>& trials) {
+    std::optional<Candidate> best;
+    std::size_t looked_at = 0;
+    const double worth = trials.empty() ? 0.0 : std::max(within_reach * trials[0].score(), 0.0);
+    if (std::getenv("DBG"))
+        for (const Trial& trial : trials)
+            std::fprintf(stderr, "  trial %s gain %.1f price %.1f of %.1f\n",
+                         std::string(trial.start.effect->name).c_str(), trial.gain, trial.price,
+                         now.gain_left);
+    for (const Trial& trial : trials) {
+        if (looked_at++ >= finalists || trial.score() <= worth) break;
+        Candidate next = with_trial(bench, now, trial);
+        if (std::getenv("DBG"))
+            std::fprintf(stderr, "  fitted %s left %.1f crit %.1f now %.1f\n",
+                         std::string(trial.start.effect->name).c_str(), next.gain_left, next.criterion(),
+                         now.criterion());
+        if (!best || next.criterion() < best->criterion()) best = std::move(next);
+    }
+    return best;
+}
+
+bool worth_it(const Bench& bench, const Candidate& now, const Candidate& next) {
+    if (next.criterion() >= now.criterion()) return false;
+    const double gain = now.gain_left - next.gain_left, samples = bench.samples();
+    if (bench.share(next, now) < material_sigma(bench.looked_at())) return false;
+    const double gap = now.gain_left - samples;
+    return gap <= open_gap * samples || gain >= fair_part * gap;
+}
+
+// `spared`: how many of the newest were judged a moment ago.
+void drop_needless(const Bench& bench, Candidate& now, std::size_t own_terms, std::size_t spared = 1) {
+    while (now.stated.terms.size() > own_terms + spared) {
+        std::optional<Candidate> best;
+        for (std::size_t term = own_terms; term + spared < now.stated.terms.size(); ++term) {
+            Candidate fewer = without_term(bench, now, term);
+            if (!best || fewer.criterion() < best->criterion()) best = std::move(fewer);
+        }
+        if (!best || best->criterion() >= now.criterion()) return;
+        now = std::move(*best);
+    }
+}
+
+bool swap_once(const Bench& bench, Candidate& now, std::size_t own_terms,
+               std::span<const Effect* const> effects) {
+    for (std::size_t term = own_terms; term < now.stated.terms.size(); ++term) {
+        const Candidate fewer = without_term(bench, now, term);
+        const double gain = fewer.gain_left - now.gain_left;
+        std::size_t tried = 0;
+        for (const Trial& trial : screen(bench, fewer, effects)) {
+            if (same_place(trial.start, now.stated.terms[term])) continue;
+            if (trial.gain < 0.8 * gain || tried++ >= 2) break;
+            const Candidate other = with_trial(bench, fewer, trial);
+            if (other.criterion() < now.criterion() - 1.0) {
+                now = other;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+Candidate baseline(const Bench& bench, const Model& model) {
+    return bench.fitted(model, model, std::vector<double>(model.terms.size(), 0.0), 30);
+}
+
+Candidate with_trial(const Bench& bench, const Candidate& model, const Trial& trial) {
+    Model open = model.open, guess = model.stated;
+    open.terms.push_back(trial.open);
+    guess.terms.push_back(trial.start);
+    std::vector<double> prices = model.prices;
+    prices.push_back(trial.price);
+    return bench.fitted(open, guess, std::move(prices), 12);
+}
+
+Candidate without_term(const Bench& bench, const Candidate& model, std::size_t term) {
+    Model open = model.open, guess = model.stated;
+    std::vector<double> prices = model.prices;
+    const auto at = static_cast<std::ptrdiff_t>(term);
+    open.terms.erase(open.terms.begin() + at);
+    guess.terms.erase(guess.terms.begin() + at);
+    prices.erase(prices.begin() + at);
+    return bench.fitted(open, guess, std::move(prices));
+}
+
+Candidate search(Bench& bench, const Candidate& start, std::size_t own_terms,
+                 std::span<const Effect* const> effects) {
+    Candidate now = start;
+    const auto add_all = [&] {
+        while (now.stated.terms.size() < own_terms + most_names) {
+            const auto next = best_addition(bench, now, screen(bench, now, effects));
+            if (!next || !worth_it(bench, now, *next)) return;
+            now = *next;
+            // The motion's errors act through the model's own torque, which has changed.
+            bench.settle_on(now.stated);
+            now = bench.fitted(now.open, now.stated, now.prices);
+            drop_needless(bench, now, own_terms);
+        }
+    };
+    drop_needless(bench, now, own_terms, 0);
+    add_all();
+    for (int round = 0; round < swap_rounds; ++round) {
+        if (!swap_once(bench, now, own_terms, effects)) break;
+        drop_needless(bench, now, own_terms);
+        add_all();
+    }
+    return now;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// How a torque along a motion becomes the numbers whose sum of squares is least in a fit: samples that do not
+// count are left out, coloured noise is made white, and what is fitted beside the model is taken away.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ripplenotch {
+
+/// A shape that may be in the torque besides the model, of a size that is of no interest.
+struct Nuisance {
+    std::vector<double> torque_nm;
+    double usual_size = 0.0;  ///< rms of the factor to be expected; 0 is any
+};
+
+class Weighing {
+  public:
+    /// `use`: 0 for samples that do not count; empty is all. `color`: coefficients a1 ... ap of the noise
+    /// e(k) = a1 e(k-1) + ... + ap e(k-p) + white. The p samples after one that does not count do not either.
+    Weighing(std::size_t samples, std::span<const unsigned char> use, std::span<const double> color);
+
+    /// `noise_nm`: rms of the white part, against which usual sizes are weighed.
+    void set_nuisance(const std::vector<Nuisance>& nuisance, double noise_nm);
+
+    [[nodiscard]] const std::vector<std::size_t>& rows() const { return rows_; }  ///< samples that count
+    /// Numbers per torque: one a row, and one a nuisance whose size is bounded.
+    [[nodiscard]] std::size_t size() const { return rows_.size() + bounded_; }
+    /// Directions that nuisances take away.
+    [[nodiscard]] std::size_t taken() const { return basis_.size() / (size() > 0 ? size() : 1); }
+    [[nodiscard]] std::vector<double> operator()(std::span<const double> torque_nm) const;
+    /// Whitened only.
+    [[nodiscard]] std::vector<double> whitened(std::span<const double> torque_nm) const;
+
+  private:
+    std::vector<std::size_t> rows_;
+    std::vector<double> color_;
+    std::size_t bounded_ = 0;
+    std::vector<double> basis_;  ///< orthonormal columns of size() each
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch diagnose as users meet it: the story, diagnosis.json, the improved model, refusals."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": 100,
+         "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]}
+JOINT = ["--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple", "2:0.4Nm:-60deg"]
+
+
+def move(first, *targets):
+    words = ["--motion", f"rest,duration=0.4s,from={first}deg"]
+    for k, target in enumerate(targets):
+        words += ["--motion", f"poly6,to={target}deg,duration={1.4 + 0.5 * (k % 3)}s", "--motion", "rest,duration=0.4s"]
+    return words
+
+
+class Diagnose(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        (pathlib.Path(self.folder.name) / "model.json").write_text(json.dumps(MODEL))
+
+    def run_tool(self, *words):
+        return subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, text=True, timeout=300,
+                              stdin=subprocess.DEVNULL)
+
+    def log(self, name, motion, *hidden, seed=1):
+        words = [word for effect in hidden for word in ("--effect", effect)]
+        done = self.run_tool("simulate", *JOINT, *words, *motion, "--sample-rate", "500Hz", "--noise", "0.05Nm",
+                             "--velocity-noise", "0.05deg/s", "--seed", str(seed), "-o", name)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_what_is_hidden_is_named_added_and_the_improved_model_does_on_another_log_what_was_said(self):
+        self.log("log.csv", move(0, 120, -60, 30, -40), "viscous-friction,coefficient_nm_per_deg_s=0.006")
+        self.log("other.csv", move(40, -90, 60), "viscous-friction,coefficient_nm_per_deg_s=0.006", seed=2)
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--validate", "other.csv", "-o", "improved.json",
+                             "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        found = json.loads(done.stdout)
+        self.assertEqual(found["schema"], "ripplenotch/diagnosis/1")
+        self.assertEqual((found["verdict"], found["named"]), ("explained", ["viscous-friction"]))
+        coefficient = found["rounds"][0]["parameters"]["coefficient_nm_per_deg_s"]
+        self.assertAlmostEqual(coefficient["value"], 0.006, delta=1e-4)
+        self.assertLess(coefficient["ci95"][0], 0.006)
+        self.assertGreater(coefficient["ci95"][1], coefficient["value"])
+        gap = found["gap"]
+        self.assertGreater(gap["before_nm"], 3 * gap["after_nm"])
+        self.assertGreater(gap["closed_percent"], 99.0)
+        summary = json.loads(self.run_tool("simulate", "--model", "improved.json", "other.csv", "-o", "expected.csv",
+                                           "--json").stdout)
+        self.assertAlmostEqual(summary["along_log"]["residual_rms_nm"], gap["validation_after_nm"], delta=1e-6)
+        self.assertEqual(json.loads((pathlib.Path(self.folder.name) / "improved.json").read_text())["effects"],
+                         found["model"]["effects"])
+
+    def test_the_same_log_gives_the_same_bytes_and_a_conclusive_verdict_can_be_asked_for(self):
+        self.log("log.csv", move(0, 120, -60), "offset,torque_nm=0.4")
+        first = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive")
+        self.assertEqual(first.returncode, 0, first.stderr)
+        self.assertEqual(first.stdout, self.run_tool("diagnose", "log.csv", "--model", "model.json").stdout)
+        self.assertIn("named: offset\nverdict: explained\n", first.stdout)
+        others = [name for effect in ("offset", "drift", "gravity", "output-ripple", "coulomb-friction", "hysteresis")
+                  for name in ("--without", effect)]
+        second = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive", *others)
+        self.assertEqual(second.returncode, 5)
+        self.assertIn("named: nothing\n", second.stdout)
+        self.assertIn("unexplained: ", second.stdout)
+
+    def test_wrong_requests_get_one_message(self):
+        self.log("log.csv", move(0, 120))
+        (pathlib.Path(self.folder.name) / "open.json").write_text(
+            json.dumps({**MODEL, "effects": [{"effect": "ripple"}]}))
+        for words, code, message in (
+                ((), 2, "--model is missing"),
+                (("--model", "model.json", "--without", "dely"), 2, "did you mean delay?"),
+                (("--model", "open.json"), 2, "effects[0].order"),
+                (("--model", "model.json", "--smoothing", "-1s"), 2, "below 0"),
+                (("--model", "none.json"), 4, "none.json")):
+            done = self.run_tool("diagnose", "log.csv", *words)
+            self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
+            self.assertIn(message, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

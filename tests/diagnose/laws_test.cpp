@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// Laws of a diagnosis over the whole catalogue: an effect is under test on the day it is listed.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "diagnose_fixture.hpp"
+#include "ripplenotch/core/error.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::fixture;
+
+namespace {
+
+double rms(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+std::vector<double> difference(const Model& a, const Model& b) {
+    auto left = predict_nm(a, tour());
+    const auto right = predict_nm(b, tour());
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] -= right[k];
+    return left;
+}
+
+// First guesses, with the size doubled until the effect stands well above the noise.
+Term planted(const Effect& effect) {
+    Term term{&effect, {}};
+    for (const Parameter& parameter : effect.parameters) {
+        const bool nothing_yet = parameter.linear && parameter.start == parameter.neutral;
+        term.values.emplace_back(nothing_yet ? parameter.neutral + noise_nm : parameter.start);
+    }
+    Model with = joint();
+    with.terms.push_back(term);
+    for (int doubling = 0; doubling < 12; ++doubling) {
+        if (effect.chance || rms(difference(with, joint())) > 4.0 * noise_nm) break;
+        for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+            const Parameter& parameter = effect.parameters[p];
+            auto& value = with.terms.back().values[p];
+            const bool size =
+                parameter.linear || (!effect.polar && parameter.start != parameter.neutral &&
+                                     parameter.left_out == LeftOut::fitted && !parameter.logarithmic &&
+                                     effect.side != Side::joint && effect.side != Side::converter);
+            if (size) value = std::clamp(2.0 * *value, parameter.lower, parameter.upper);
+        }
+    }
+    return with.terms.back();
+}
+
+struct Hidden {
+    Model truth, model;
+};
+
+// The joint knows of inertia and ripple: of these, what is hidden is what the model is not told.
+Hidden hide(const Effect& effect) {
+    Hidden hidden{joint(), opened(joint())};
+    const auto own = std::find_if(hidden.truth.terms.begin(), hidden.truth.terms.end(),
+                                  [&](const Term& term) { return term.effect == &effect; });
+    if (own != hidden.truth.terms.end()) {
+        hidden.model.terms.erase(hidden.model.terms.begin() + (own - hidden.truth.terms.begin()));
+    } else {
+        hidden.truth.terms.push_back(planted(effect));
+    }
+    return hidden;
+}
+
+}  // namespace
+
+TEST_CASE("each effect of the catalogue, hidden in a log, is named, and no other is") {
+    for (const Effect* effect : catalogue()) {
+        const Hidden hidden = hide(*effect);
+        const Trace log = logged(hidden.truth, tour(), 11);
+        const Diagnosis found = diagnose(hidden.model, log.view(), nullptr);
+        CAPTURE(effect->name, found.rounds.size());
+        for (const Finding& finding : found.rounds) {
+            UNSCOPED_INFO(finding.term.effect->name << " " << status_name(finding.status) << " "
+                                                    << finding.reason);
+        }
+        CHECK(found.named == std::vector<std::string>{std::string(effect->name)});
+    }
+}
+
+TEST_CASE("nothing hidden, nothing named: the model explains the log") {
+    for (std::uint64_t seed = 21; seed < 25; ++seed) {
+        const Diagnosis found = diagnose(opened(joint()), logged(joint(), tour(), seed).view(), nullptr);
+        CAPTURE(seed);
+        CHECK(found.named.empty());
+        CHECK(found.verdict == DiagnosisVerdict::matches);
+        CHECK(found.gap.noise_floor_nm == Approx(noise_nm).epsilon(0.1));
+    }
+}
+
+TEST_CASE("the unit of the torque, the order of the model and the half of the log change no name") {
+    Model truth = joint();
+    truth.terms.push_back(parse_term("coulomb-friction,torque_nm=0.4,width_deg_s=0.2"));
+    truth.terms.push_back(parse_term("ripple-modulation,output_order=1,depth_percent=45,phase_deg=70"));
+    Trace log = logged(truth, tour(), 6);
+    const auto named = [&](const Model& model, const TraceView& view) {
+        auto names = diagnose(model, view, nullptr).named;
+        std::sort(names.begin(), names.end());
+        return names;
+    };
+    const std::vector<std::string> both = {"coulomb-friction", "ripple-modulation"};
+    CHECK(named(opened(joint()), log.view()) == both);
+    Model reversed = opened(joint());
+    std::reverse(reversed.terms.begin(), reversed.terms.end());
+    CHECK(named(reversed, log.view()) == both);
+    CHECK(named(opened(joint()), log.view().part(0, log.size() / 2)) == both);
+    CHECK(named(opened(joint()), log.view().part(log.size() / 2, log.size() / 2)) == both);
+    for (double& torque : log.torque_nm) torque *= 1000.0;
+    CHECK(named(opened(joint()), log.view()) == both);
+}
+
+TEST_CASE("each name closes part of the gap, and taken out again it opens its share") {
+    Model truth = joint();
+    truth.terms.push_back(parse_term("offset,torque_nm=0.3"));
+    truth.terms.push_back(parse_term("viscous-friction,coefficient_nm_per_deg_s=0.006"));
+    const Trace log = logged(truth, tour(), 7);
+    const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr);
+    REQUIRE(found.named.size() == 2);
+    double gap_nm = found.gap.before_nm;
+    for (const Finding& finding : found.rounds) {
+        CHECK(finding.gap_after_nm < finding.gap_before_nm);
+        CHECK(finding.gap_before_nm == Approx(gap_nm).epsilon(0.02));
+        gap_nm = finding.gap_after_nm;
+        Model without = found.model;
+        std::erase(without.terms, finding.term);
+        auto left = predict_nm(without, tour());
+        for (std::size_t k = 0; k < left.size(); ++k) left[k] = log.torque_nm[k] - left[k];
+        const double opens_nm =
+            std::sqrt(std::pow(found.gap.after_nm, 2) + std::pow(finding.evidence.share_nm, 2));
+        CHECK(rms(left) > 0.9 * opens_nm);
+    }
+    // The corners of the ramps, where the acceleration is not known, are in it.
+    CHECK(found.gap.after_nm < 1.25 * found.gap.noise_floor_nm);
+    CHECK(*found.gap.closed_percent > 99.0);
+}
+
+TEST_CASE("a log of one direction without rests cannot tell an offset from Coulomb friction, and says so") {
+    const std::vector<std::string> specs = {"constant,speed=40deg/s,duration=4s",
+                                            "ramp,to-speed=120deg/s,duration=0.6s",
+                                            "constant,speed=120deg/s,duration=4s"};
+    const Motion motion = make_motion(specs, Hertz(500.0));
+    Model truth = joint();
+    truth.terms.push_back(parse_term("coulomb-friction,torque_nm=0.5,width_deg_s=0.2"));
+    const Diagnosis found = diagnose(opened(joint()), logged(truth, motion, 8).view(), nullptr);
+    CHECK(found.named.empty());
+    REQUIRE(found.ambiguous.size() == 1);
+    const auto& tied = found.ambiguous[0].effects;
+    CHECK(std::find(tied.begin(), tied.end(), "offset") != tied.end());
+    CHECK(std::find(tied.begin(), tied.end(), "coulomb-friction") != tied.end());
+    CHECK(!found.ambiguous[0].advice.empty());
+}
+
+TEST_CASE("a name that is not in the catalogue, and a log that is too short, are refused") {
+    const Trace log = logged(joint(), tour(), 9);
+    const std::vector<std::string> wrong = {"frictoin"};
+    CHECK_THROWS_AS(diagnose(opened(joint()), log.view(), nullptr, {.without = wrong}), UsageError);
+    CHECK_THROWS_AS(diagnose(opened(joint()), log.view().part(0, 100), nullptr), DataError);
+}
