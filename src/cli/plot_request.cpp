@@ -47,6 +47,10 @@ constexpr const char* how_to_install = "install gnuplot (on Debian: apt-get inst
 
 }  // namespace
 
+std::string joint_in_words(const std::string& path, const std::string& joint) {
+    return joint.empty() ? path : path + ", joint " + joint;
+}
+
 void attach_plot(Options& options, PlotRequest& request) {
     options.text("--plot", request.path, "FILE",
                  "the result as a picture: FILE.svg, .png or .pdf by gnuplot, FILE.json for the data of the "

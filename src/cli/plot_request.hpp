@@ -23,6 +23,9 @@ struct PlotRequest {
     [[nodiscard]] bool instead_of(const std::string& output) const { return path == "-" && output == "-"; }
 };
 
+/// "wide.csv, joint j4": for the title of a figure.
+[[nodiscard]] std::string joint_in_words(const std::string& path, const std::string& joint);
+
 void attach_plot(Options& options, PlotRequest& request);
 
 /// Before any work is done: throws UsageError for a name that is no picture's or --json and the figure both

@@ -66,6 +66,8 @@ class PanelScript {
                  "center rotate by 90 font ',12'");
         }
         if (axis.scale == PlotScale::logarithmic) script_.line("set logscale {}", name);
+        if (const std::string ticks = gnuplot_ticks(range, axis.scale); !ticks.empty())
+            script_.line("set {}tics {}", name, ticks);
         script_.line("set format {} '%.10g'", name);
     }
 
@@ -137,6 +139,9 @@ class PanelScript {
         script_.line("set palette defined ({})\nset cbrange [{:.10g}:{:.10g}]", palette, whole.lowest,
                      whole.highest);
         if (whole.scale == PlotScale::logarithmic) script_.line("set logscale cb");
+        if (const std::string ticks = gnuplot_ticks({whole.lowest, whole.highest}, whole.scale);
+            !ticks.empty())
+            script_.line("set cbtics {}", ticks);
         script_.line("set format cb '%.10g'\nset cbtics out nomirror font ',11'");
         script_.line("set colorbox user origin screen {:.6f},{:.6f} size screen {:.6f},{:.6f} noborder",
                      x(colours_left()), y(box_.bottom), x(13.0), y(box_.top) - y(box_.bottom));

@@ -77,6 +77,21 @@ std::string GnuplotScript::matrix(const HeatMap& map) {
     return name;
 }
 
+std::string gnuplot_ticks(const PlotRange& range, PlotScale scale) {
+    constexpr double few_decades = 2.3;
+    if (scale == PlotScale::linear || std::log10(range.to / range.from) > few_decades) return "";
+    std::string ticks;
+    for (int decade = static_cast<int>(std::floor(std::log10(range.from))); decade <= std::log10(range.to);
+         ++decade) {
+        for (const double step : {1.0, 2.0, 5.0}) {
+            const double value = step * std::pow(10.0, decade);
+            if (value < range.from || value > range.to) continue;
+            ticks += fmt::format("{}{:.6g}", ticks.empty() ? "" : ", ", value);
+        }
+    }
+    return ticks.empty() ? "" : "(" + ticks + ")";
+}
+
 double within_colours(const HeatMap& map, double value) {
     return std::isnan(value) ? value : std::clamp(value, map.lowest, map.highest);
 }

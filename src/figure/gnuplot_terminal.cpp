@@ -6,6 +6,7 @@
 
 #include "figure/gnuplot_process.hpp"
 #include "figure/gnuplot_script.hpp"
+#include "figure/page_layout.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
@@ -14,6 +15,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr int rows_of_panel = 20;
+constexpr double plot_rows = rows_of_panel - 4.0;
 constexpr std::string_view curve_characters = "*#$%@&=";  // of gnuplot's line types 1, 2, ...
 constexpr std::string_view level_characters = " .:-=+*%@";
 constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
@@ -73,6 +75,8 @@ class TextPanel {
     void axis(const char* name, const PlotAxis& axis, const PlotRange& range) {
         script_.line("set {0}range [{1:.10g}:{2:.10g}]\nset format {0} '%.5g'", name, range.from, range.to);
         if (axis.scale == PlotScale::logarithmic) script_.line("set logscale {}", name);
+        if (const std::string ticks = gnuplot_ticks(range, axis.scale); !ticks.empty())
+            script_.line("set {}tics {}", name, ticks);
     }
 
     void draw(const Curve& whole, std::size_t i, std::vector<std::string>& parts) {
@@ -91,19 +95,36 @@ class TextPanel {
         parts.push_back(fmt::format("{} using 1:2 with {} lt {}", data, how, type));
     }
 
-    // A letter where each line leaves the panel; rays and levels are dotted on the way.
+    // A letter where each line leaves the panel, none on top of another; rays and levels are dotted on the
+    // way.
     void mark_lines() {
+        std::vector<std::size_t> above, beside;
+        std::vector<double> columns, rows;
         for (const NamedLine& line : panel_.lines) {
             Segment s{};
             if (named_.size() == letters.size() || !segment_of(line, x_, y_, s)) continue;
-            const char letter = letters[named_.size()];
             const bool on_top = line.run == NamedLine::Run::at_x;
-            // Dots only where nothing else is drawn that they would hide.
-            if (!on_top && !panel_.map) dots(s);
-            script_.line("set label \"{}\" at {:.10g},{:.10g} center front", letter, s.x1, s.y1);
+            (on_top ? above : beside).push_back(named_.size());
+            if (on_top) {
+                columns.push_back(plot_columns() * share_along(x_, panel_.x.scale, s.x1));
+            } else {
+                rows.push_back(plot_rows * share_along(y_, panel_.y.scale, s.y1));
+                // Dots only where nothing else is drawn that they would hide.
+                if (!panel_.map) dots(s);
+            }
             named_.push_back(&line);
         }
+        columns = pushed_apart(columns, 2.0, 0.0, plot_columns());
+        rows = pushed_apart(rows, 1.0, 0.0, plot_rows);
+        for (std::size_t i = 0; i < above.size(); ++i)
+            script_.line("set label \"{}\" at graph {:.6g},1 center front", letters[above[i]],
+                         columns[i] / plot_columns());
+        for (std::size_t i = 0; i < beside.size(); ++i)
+            script_.line("set label \"{}\" at graph 1,{:.6g} offset 1,0 center front", letters[beside[i]],
+                         rows[i] / plot_rows);
     }
+
+    [[nodiscard]] double plot_columns() const { return static_cast<double>(columns_) - left_columns - 4.0; }
 
     void dots(const Segment& s) {
         const int count = columns_ / 3;

@@ -4,7 +4,8 @@
 
 namespace ripplenotch {
 
-/// Without gnuplot's version and its empty groups; and "]]>" in a text, which gnuplot leaves as it is, made lawful XML.
+/// Without gnuplot's version and its empty groups; and "]]>" in a text, which gnuplot leaves as it is, made
+/// lawful XML.
 [[nodiscard]] std::string same_svg(std::string svg);
 
 /// With the clock and the library's version, which cairo writes into every document, replaced by as many

@@ -70,6 +70,14 @@ TEST_CASE("every string of bytes survives into a gnuplot string as visible text,
     }
 }
 
+TEST_CASE("a logarithmic axis of a decade or two has more numbers than its powers of ten") {
+    CHECK(gnuplot_ticks({0.004, 0.09}, PlotScale::logarithmic) == "(0.005, 0.01, 0.02, 0.05)");
+    CHECK(gnuplot_ticks({1.0, 10.0}, PlotScale::logarithmic) == "(1, 2, 5, 10)");
+    CHECK(gnuplot_ticks({1e-5, 1.0}, PlotScale::logarithmic).empty());
+    CHECK(gnuplot_ticks({0.0, 10.0}, PlotScale::linear).empty());
+    CHECK(gnuplot_ticks({3.0, 4.0}, PlotScale::logarithmic).empty());
+}
+
 TEST_CASE("hostile names are drawn as text and run nothing") {
     const std::string svg = picture(hostile_figure(), PictureKind::svg);
     if (svg.empty()) return;

@@ -166,7 +166,7 @@ Result order_result(const Request& request, const TraceView& trace, const std::s
                            ? order_spectrum_text(joint, result, request.false_alarm, provenance)
                        : request.peaks ? order_peaks(result)
                                        : order_csv(result.stack);
-    return {std::move(text), [result, source = request.path] {
+    return {std::move(text), [result, source = joint_in_words(request.path, joint)] {
                 return order_spectrum_figure(source, result.stack, result.lines);
             }};
 }
@@ -194,7 +194,7 @@ Result frequency_result(const Request& request, const TraceView& trace, const st
     std::string text = request.common.json ? spectra_text(joint, spectra, request.false_alarm, provenance)
                        : request.peaks     ? frequency_peaks(spectra)
                                            : frequency_csv(spectra);
-    return {std::move(text), [spectra = std::move(spectra), source = request.path] {
+    return {std::move(text), [spectra = std::move(spectra), source = joint_in_words(request.path, joint)] {
                 return frequency_figure(source, spectra);
             }};
 }
@@ -205,7 +205,8 @@ Result map_result(const Request& request, const Trace& trace, const Provenance& 
     if (request.map.gear_ratio) {
         lines = {GearRatio(*request.map.gear_ratio), {1.0, 2.0, 3.0, 4.0}, *request.map.map == "order"};
     }
-    return {std::move(result.text), [map = std::move(result.map), lines, source = request.path] {
+    return {std::move(result.text),
+            [map = std::move(result.map), lines, source = joint_in_words(request.path, trace.joint)] {
                 return speed_map_figure(source, map, lines);
             }};
 }

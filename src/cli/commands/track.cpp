@@ -207,8 +207,9 @@ Figure figure_of(const Request& request, const TrackReport& report) {
                                                           : request.amplitude == "peak-to-peak"
                                                               ? "peak to peak"
                                                               : "amplitude, zero to peak"};
-    Figure figure = report.by_speed ? track_figure(request.path, *report.by_speed, names, scale)
-                                    : track_figure(request.path, report.tracks, names, scale);
+    const std::string source = joint_in_words(request.path, report.joint);
+    Figure figure = report.by_speed ? track_figure(source, *report.by_speed, names, scale)
+                                    : track_figure(source, report.tracks, names, scale);
     figure.sentence = track_verdict(report);
     return figure;
 }
