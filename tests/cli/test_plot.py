@@ -63,6 +63,25 @@ class Plots(unittest.TestCase):
                 for curve in panel["curves"]:
                     self.assertEqual(len(curve["x"]), len(curve["y"]))
 
+    def test_a_diagnosis_shows_the_gap_fall_and_the_residual_before_and_after(self):
+        (self.path / "model.json").write_text(json.dumps(
+            {"schema": "ripplenotch/model/1", "gear_ratio": 100,
+             "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}]}))
+        done = run("diagnose", MOVE, "--model", "model.json", "--plot", "d.json", "--json", folder=self.path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        diagnosis, figure = json.loads(done.stdout), json.loads((self.path / "d.json").read_text())
+        self.assertEqual(figure["name"], "diagnosis")
+        gap, residual, before, after = figure["panels"]
+        self.assertEqual(len(gap["curves"][0]["y"]), 1 + len(diagnosis["rounds"]))
+        self.assertAlmostEqual(gap["curves"][0]["y"][0], diagnosis["gap"]["before_nm"], places=6)
+        self.assertIn(diagnosis["rounds"][0]["effect"], gap["lines"][0]["name"])
+        highest = [max(filter(None, panel["map"]["cells"])) for panel in (before, after)]
+        self.assertGreater(highest[0], 2.0 * highest[1])
+        self.assertEqual(before["map"]["highest"], after["map"]["highest"])
+        self.assertEqual([curve["name"] for curve in residual["curves"]], ["before", "after"])
+        refused = run("diagnose", MOVE, "--model", "model.json", "--plot", "-", "--json", folder=self.path)
+        self.assertEqual((refused.returncode, refused.stdout), (2, b""))
+
     @needs_gnuplot
     def test_every_figure_is_drawn_in_every_form(self):
         for name, words in COMMANDS.items():

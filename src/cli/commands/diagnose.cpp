@@ -8,16 +8,20 @@
 #include "cli/command.hpp"
 #include "cli/diagnosis_text.hpp"
 #include "cli/joint_facts.hpp"
+#include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/diagnosis.hpp"
 #include "ripplenotch/artifact/model.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "ripplenotch/report/diagnosis_plot.hpp"
 
 namespace ripplenotch {
 namespace {
 
 struct Request {
     CommonOptions common;
+    PlotRequest plot;
     LogOptions log;
     std::string path, model;
     std::optional<std::string> validate;
@@ -35,6 +39,9 @@ void check(const Request& request) {
     if (request.smoothing.value() < 0.0)
         raise<UsageError>("--smoothing: {} s is below 0", shortest(request.smoothing.value()));
     for (const std::string& name : request.without) (void)find_effect(name);
+    check_plot(request.plot, request.common);
+    if (request.plot.path == "-" && request.common.json)
+        raise<UsageError>("--plot - and --json would both go to standard output; name a file with --plot");
 }
 
 Log read(const Request& request, const std::string& path, Provenance& provenance) {
@@ -47,10 +54,10 @@ Log read(const Request& request, const std::string& path, Provenance& provenance
     return log;
 }
 
-Diagnosis diagnosed(const Request& request, const Model& model, Provenance& provenance) {
-    const Log log = read(request, request.path, provenance);
+Diagnosis diagnosed(const Request& request, const Model& model, const Log& log, Provenance& provenance) {
     std::optional<Log> other;
     if (request.validate) other = read(request, *request.validate, provenance);
+    Progress::current().begin("looking for what is missing", "", 0);
     try {
         const TraceView view = log.trace.view();
         const TraceView validation = other ? other->trace.view() : view;
@@ -68,7 +75,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
     const Model model = read_model(read_all(request.model), source);
     if (request.model != "-") provenance.inputs.push_back(input_record(request.model));
     const bool keep = request.common.output != "-";
-    const Diagnosis diagnosis = diagnosed(request, model, provenance);
+    const Log log = read(request, request.path, provenance);
+    const Diagnosis diagnosis = diagnosed(request, model, log, provenance);
     if (keep) {
         write_all(request.common.output, write_model(diagnosis.model, provenance),
                   request.common.overwrite());
@@ -76,6 +84,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
     }
     write_all("-", request.common.json ? write_diagnosis(diagnosis, provenance) : diagnosis_story(diagnosis),
               ByteSink::Overwrite::no);
+    draw_plot(request.plot, request.common, provenance,
+              [&] { return diagnosis_figure(request.path, diagnosis, log.trace.view(), request.smoothing); });
     const bool conclusive =
         diagnosis.verdict == DiagnosisVerdict::matches || diagnosis.verdict == DiagnosisVerdict::explained;
     return request.require_conclusive && !conclusive ? ExitCode::inconclusive : ExitCode::done;
@@ -93,6 +103,7 @@ std::function<ExitCode()> attach(Options& options) {
                      "window in which the log's velocity is fitted to give speed and acceleration");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with 5 unless the log is explained in the end");
+    attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };
