@@ -115,7 +115,7 @@ ExitCode print_frontier(const DesignRequest& request, const std::string& form, c
             points.push_back(
                 {1e3 * point.delay.value(), point.attenuation_db, i == frontier.recommended, ""});
         }
-        return frontier_figure("Attenuation against delay", frontier.reason, points);
+        return frontier_figure("Attenuation against delay", "Recommended: " + frontier.reason + ".", points);
     });
     return ExitCode::done;
 }
