@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
-#include <string>
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_names = 7;
+constexpr int most_additions = 9;
 constexpr std::size_t finalists = 4;
 // A finalist's foreseen gain, against that of the best.
 constexpr double within_reach = 0.4;
@@ -34,18 +32,9 @@ std::optional<Candidate> best_addition(const Bench& bench, const Candidate& now,
     std::optional<Candidate> best;
     std::size_t looked_at = 0;
     const double worth = trials.empty() ? 0.0 : std::max(within_reach * trials[0].score(), 0.0);
-    if (std::getenv("DBG"))
-        for (const Trial& trial : trials)
-            std::fprintf(stderr, "  trial %s gain %.1f price %.1f of %.1f\n",
-                         std::string(trial.start.effect->name).c_str(), trial.gain, trial.price,
-                         now.gain_left);
     for (const Trial& trial : trials) {
         if (looked_at++ >= finalists || trial.score() <= worth) break;
         Candidate next = with_trial(bench, now, trial);
-        if (std::getenv("DBG"))
-            std::fprintf(stderr, "  fitted %s left %.1f crit %.1f now %.1f\n",
-                         std::string(trial.start.effect->name).c_str(), next.gain_left, next.criterion(),
-                         now.criterion());
         if (!best || next.criterion() < best->criterion()) best = std::move(next);
     }
     return best;
@@ -120,7 +109,9 @@ Candidate search(Bench& bench, const Candidate& start, std::size_t own_terms,
                  std::span<const Effect* const> effects) {
     Candidate now = start;
     const auto add_all = [&] {
-        while (now.stated.terms.size() < own_terms + most_names) {
+        // An addition may make an earlier one needless, and that one come back.
+        for (int added = 0; added < most_additions && now.stated.terms.size() < own_terms + most_names;
+             ++added) {
             const auto next = best_addition(bench, now, screen(bench, now, effects));
             if (!next || !worth_it(bench, now, *next)) return;
             now = *next;

@@ -5,9 +5,10 @@
 namespace ripplenotch {
 namespace {
 
-// Places at which a screening of a log begins.
-constexpr double tried_delays[] = {-0.012, -0.008, -0.005, -0.003, -0.0015, 0.0015, 0.003,
-                                   0.0045, 0.006,  0.008,  0.010,  0.013,   0.017};
+// Places at which a screening of a log begins: closer than an eighth of a cycle of 100 Hz.
+constexpr double tried_delays[] = {-0.012,  -0.0108, -0.0096, -0.0084, -0.0072, -0.006, -0.0048, -0.0036,
+                                   -0.0024, -0.0012, 0.0012,  0.0024,  0.0036,  0.0048, 0.006,   0.0072,
+                                   0.0084,  0.0096,  0.0108,  0.012,   0.0132,  0.0144, 0.0156,  0.018};
 
 constexpr Parameter parameters[] = {
     {.name = "delay_s",
