@@ -36,7 +36,6 @@ def run(tool, *words):
 def diagnose(tool, folder, options=()):
     """The diagnosis of train.npy against base.json, checked on validate.npy, and the seconds of processor time."""
     folder = pathlib.Path(folder)
-    (folder / "base.json").write_text(json.dumps(BASE))
     before = cpu_seconds()
     found = run(tool, "diagnose", folder / "train.npy", "--model", folder / "base.json", "--validate",
                 folder / "validate.npy", "--json", "--force", "-o", folder / "improved.json", *options)

@@ -9,6 +9,18 @@ import tempfile
 from . import cases, measured, other_formulas, score, strengths, tool, yardsticks
 
 
+def write_files(case, folder):
+    """train.npy, validate.npy, base.json and truth.json; the logs too."""
+    folder.mkdir(parents=True, exist_ok=True)
+    base, hidden = case.truth()
+    (folder / "base.json").write_text(json.dumps(tool.BASE))
+    (folder / "truth.json").write_text(json.dumps({**tool.MODEL, "effects": base + hidden}, indent=2))
+    logs = {purpose: case.log(purpose) for purpose in ("train", "validate")}
+    for purpose, log in logs.items():
+        log.save(folder / f"{purpose}.npy")
+    return logs
+
+
 def floor_nm(program, case, base, hidden, folder):
     """The smallest residual that the validation log allows: that of the whole truth along its measured motion.
 
@@ -18,7 +30,7 @@ def floor_nm(program, case, base, hidden, folder):
     if case.other:
         hidden, log = [], folder / "plain.npy"
         cases.without_hidden(case).log("validate").save(log)
-    model = folder / "truth.json"
+    model = folder / "floor.json"
     model.write_text(json.dumps(tool.as_model(base + hidden)))
     return tool.residual_nm(program, model, log)
 
@@ -48,9 +60,7 @@ def judged_yardsticks(case, acceptable, hidden, train, validate, floor):
 def scores(program, case, folder, options, with_yardsticks):
     base, hidden = case.truth()
     acceptable = other_formulas.OTHERS[case.other](case.rng("other")).acceptable if case.other else ()
-    logs = {purpose: case.log(purpose) for purpose in ("train", "validate")}
-    for purpose, log in logs.items():
-        log.save(folder / f"{purpose}.npy")
+    logs = write_files(case, folder)
     train, validate = (measured.Measured(log, strengths.GEAR_RATIO) for log in logs.values())
     floor = floor_nm(program, case, base, hidden, folder)
     found, seconds = tool.diagnose(program, folder, options)
