@@ -30,9 +30,9 @@ def truth_keys(hidden):
 
 
 def named_keys(found):
-    """The confirmed findings, each with its order. `named` says which; the rounds say of what order."""
-    keys = {key(entry["effect"], entry["parameters"]): entry
-            for entry in found["rounds"] if entry["status"] == "confirmed"}
+    """The confirmed findings, each with its order. `named` says which; rounds and faults say of what order."""
+    entries = [entry for entry in found["rounds"] if entry["status"] == "confirmed"] + found.get("faults", [])
+    keys = {key(entry["effect"], entry["parameters"]): entry for entry in entries}
     if {effect for effect, _ in keys} != set(found["named"]):
         raise ValueError(f"named {found['named']} and the confirmed rounds {words(keys)} disagree")
     return keys

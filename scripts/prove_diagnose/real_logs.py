@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""diagnose on logs of real robots, whose truth nobody knows: what it names, and what that is worth on other rows.
+
+The logs are not part of this repository. Where a robot has one log, the first 60 % of its rows are for the fit and the
+rest for validation; the KUKA has two recordings, of which the second validates.
+"""
+
+import json
+import pathlib
+import tempfile
+
+from . import table, tool
+
+# robot, training log, validation log (None: the end of the same), gear ratio, words that pick the joint
+LOGS = (("Franka Panda J1", "gpl3/panda_gaz_j1.csv", None, 120, ()),
+        ("Franka Panda J4", "gpl3/panda_gaz_j4.csv", None, 120, ()),
+        ("Neura LARA 8 J3", "neura_lara8_j3.csv", None, 101, ()),
+        ("KUKA KR300 J4", "kuka_kr300_trajA_all.csv", "kuka_kr300_trajB_all.csv", 221, ("--joint", "j4")),
+        ("UR10 shoulder pan", "ur10_unisa_exciting_all.csv", None, 101, ("--joint", "shoulder_pan_joint")))
+MODELS = (("paper's model", tool.BASE["effects"]), ("inertia alone", tool.BASE["effects"][:1]))
+
+
+def halves(path, folder):
+    """The log cut in two files after 60 % of its rows."""
+    header, *rows = path.read_text().splitlines(keepends=True)
+    cut = round(0.6 * len(rows))
+    files = [folder / "train.csv", folder / "validate.csv"]
+    for file, part in zip(files, (rows[:cut], rows[cut:])):
+        file.write_text(header + "".join(part))
+    return files
+
+
+def diagnosed(program, robot, logs, ratio, effects, words, folder):
+    model = folder / "base.json"
+    model.write_text(json.dumps({**tool.MODEL, "gear_ratio": ratio, "effects": effects}))
+    before = tool.cpu_seconds()
+    found = tool.run(program, "diagnose", logs[0], "--model", model, "--validate", logs[1], "--json", "--force", "-o",
+                     folder / "improved.json", *words)
+    return found, tool.cpu_seconds() - before
+
+
+def listed(found):
+    """Confirmed names, then the others with their status."""
+    names = [entry["effect"] for entry in found["rounds"] if entry["status"] == "confirmed"]
+    others = [f"{entry['effect']} ({entry['status']})" for entry in found["rounds"] if entry["status"] != "confirmed"]
+    return ", ".join(names) or "none", ", ".join(others) or "none"
+
+
+def line(robot, model, found, seconds):
+    gap = found["gap"]
+    return [robot, model, f"{gap['before_nm']:.3g} → {gap['after_nm']:.3g}", f"{gap['noise_floor_nm']:.3g}",
+            f"{gap['validation_before_nm']:.3g} → {gap['validation_after_nm']:.3g}", *listed(found),
+            str(len(found["unexplained"])), found["verdict"], f"{seconds:.1f} s"]
+
+
+def tables(program, folder):
+    """One line for each log and model; logs that are not there are said to be."""
+    head = ["robot", "model", "gap, Nm", "floor", "on the other rows", "confirmed", "not confirmed", "unexplained",
+            "verdict", "time"]
+    lines = []
+    for robot, train, validate, ratio, words in LOGS:
+        if not (folder / train).exists():
+            lines.append([robot, "no such log here"] + [""] * (len(head) - 2))
+            continue
+        for model, effects in MODELS:
+            with tempfile.TemporaryDirectory(prefix="prove-diagnose-") as name:
+                place = pathlib.Path(name)
+                logs = (folder / train, folder / validate) if validate else halves(folder / train, place)
+                try:
+                    lines.append(line(robot, model, *diagnosed(program, robot, logs, ratio, effects, words, place)))
+                except (tool.ToolFailed, KeyError, TypeError) as failure:
+                    lines.append([robot, model, f"{type(failure).__name__}: {failure}"] + [""] * (len(head) - 3))
+    return table.markdown(head, lines) + "\n"
