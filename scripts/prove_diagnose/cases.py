@@ -6,6 +6,7 @@ can be made again by itself.
 """
 
 import dataclasses
+import math
 import zlib
 
 import numpy as np
@@ -24,12 +25,29 @@ class Log:
     noise_rms_nm: float
     place_s: tuple | None  # of a disturbance
 
-    def save(self, path):
-        columns = ["time_s", "velocity_deg_s", "torque_nm"] + (["position_deg"] if self.position_deg is not None else [])
-        rows = np.empty(len(self.time_s), [(name, "<f8") for name in columns])
-        for name in columns:
-            rows[name] = getattr(self, name)
+    def save(self, path, units=None):
+        """units: {column: (its name in the file, factor)}, where they are not s, deg and Nm."""
+        columns = {"time_s": self.time_s, "velocity_deg_s": self.velocity_deg_s, "torque_nm": self.torque_nm}
+        if self.position_deg is not None:
+            columns["position_deg"] = self.position_deg
+        named = {name: (units or {}).get(name, (name, 1.0)) for name in columns}
+        rows = np.empty(len(self.time_s), [(name, "<f8") for name, _ in named.values()])
+        for name, values in columns.items():
+            rows[named[name][0]] = named[name][1] * values
         np.save(path, rows)
+
+    def part(self, first, last):
+        """Rows from the share `first` to the share `last`; its clock goes on."""
+        cut = slice(round(first * len(self.time_s)), round(last * len(self.time_s)))
+        return dataclasses.replace(self, time_s=self.time_s[cut], velocity_deg_s=self.velocity_deg_s[cut],
+                                   torque_nm=self.torque_nm[cut],
+                                   position_deg=None if self.position_deg is None else self.position_deg[cut])
+
+
+# The same log in other words: what is named must not change.
+VARIANTS = ("other units", "list reversed", "first half", "second half")
+OTHER_UNITS = {"velocity_deg_s": ("velocity [rad/s]", math.pi / 180), "torque_nm": ("torque [mNm]", 1000.0),
+               "position_deg": ("position [rad]", math.pi / 180)}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,14 +62,17 @@ class Case:
     other: str | None = None
     position: bool = True
     seconds: float = 40.0
+    variant: str = ""
+    without: str = ""  # an effect that the tool may not try
 
     @property
     def name(self):
-        words = (self.study, self.label, self.motion, self.noise, "" if self.position else "no-position", str(self.number))
+        words = (self.study, self.label, self.variant, self.motion, self.noise, "" if self.position else "no-position", str(self.number))
         return "-".join(word.replace(" ", "_").replace(",", "") for word in words if word)
 
     def rng(self, purpose):
-        return np.random.default_rng([zlib.crc32(f"{self.name} {purpose}".encode())])
+        name = dataclasses.replace(self, variant="").name  # the same log in each variant
+        return np.random.default_rng([zlib.crc32(f"{name} {purpose}".encode())])
 
     def truth(self):
         """The complete joint: what the model knows and what is hidden from it."""
@@ -116,8 +137,13 @@ def studies(name, seeds, seed0=0):
                 for kind in ("one way", "one stroke", "short travel")
                 for label in ("nothing", "offset", "coulomb-friction", "viscous-friction", "gravity", "hysteresis", "delay",
                               "ripple", "gear-ratio") for n in numbers]
+    if name == "variant":
+        return [Case(name, label, n, hidden=(label,), variant=variant)
+                for variant in VARIANTS for label in strengths.HIDDEN for n in numbers]
+    if name == "without":
+        return [Case(name, label, n, hidden=(label,), without=label) for label in strengths.HIDDEN for n in numbers]
     raise SystemExit(f"there is no study '{name}'; there are: {', '.join(STUDIES)}")
 
 
 STUDIES = ("single", "rarer", "pair", "triple", "null", "null ar0.5", "null t4", "outside", "outside+single", "formula",
-           "noise", "poor")
+           "noise", "poor", "variant", "without")

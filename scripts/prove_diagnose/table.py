@@ -81,11 +81,25 @@ def noise(rows):
                                        for kind, group in groups(rows, lambda r: r["noise"])])
 
 
+def variant(rows):
+    head = ["the same log", "logs", "exactly right", "in the set", "false name"]
+    return markdown(head, [[kind, str(len(group)), share(group, lambda r: r["exact"]), share(group, lambda r: r["in_set"]),
+                            share(group, lambda r: r["false"])] for kind, group in groups(rows, lambda r: r["variant"])])
+
+
+def without(rows):
+    head = ["taken out", "logs", "no name", "says unexplained", "named in its place"]
+    return markdown(head, [[label, str(len(group)), share(group, lambda r: not r["named"]),
+                            share(group, lambda r: r["unexplained"]),
+                            "; ".join(sorted({", ".join(r["named"]) for r in group if r["named"]})) or "none"]
+                           for label, group in groups(rows, lambda r: r["label"])])
+
+
 def yardsticks(rows):
-    """One line a study: the tool and the two yardsticks on the same logs."""
+    """For each study the tool and the yardsticks on the same logs."""
     head = ["study", "logs", "method", "exactly right", "false name in", "false names a log", "gap closed"]
     lines = []
-    for study, group in groups([r for r in rows if "yardsticks" in r], lambda r: r["study"]):
+    for study, group in groups([r for r in rows if "yardsticks" in r and "named" in r], lambda r: r["study"]):
         lines.append([study, str(len(group)), "diagnose", percent(group, lambda r: r["exact"]),
                       percent(group, lambda r: r["false"]), f"{sum(len(r['false']) for r in group) / len(group):.2f}",
                       median([r["gap"]["closed"] and 100 * r["gap"]["closed"] for r in group], "{:.1f} %")])
@@ -98,31 +112,29 @@ def yardsticks(rows):
 
 
 FORMS = {"single": by_label, "rarer": by_label, "pair": several, "triple": several, "null": null, "outside": outside,
-         "outside+single": outside, "formula": by_label, "noise": noise, "poor": poor}
+         "outside+single": outside, "formula": by_label, "noise": noise, "poor": poor,
+         "variant": variant, "without": without}
 
 
-def failures(rows):
-    lines = []
-    for row in rows:
-        if "error" in row:
-            lines.append(f"{row['case']}: {row['error']}")
-        elif row["study"].startswith("outside") and (row["false"] or not row["place"]):
-            lines.append(f"{row['case']}: named {', '.join(row['named']) or 'nothing'}, "
-                         f"place {'right' if row['place'] else 'wrong'}, {row['verdict']}")
-        elif not row["study"].startswith("outside") and not (row["exact"] and row["gap"]["as_said"]):
-            lines.append(f"{row['case']}: named {', '.join(row['named']) or 'nothing'}"
-                         f"{', but in the set' if row['in_set'] else ''}, {row['verdict']}")
-    return lines
+def failure(row):
+    if "error" in row:
+        return f"{row['case']}: {row['error']}"
+    more = ", but in the set" if row["in_set"] else ""
+    if row["study"].startswith("outside"):
+        more += f", place {'right' if row['place'] else 'wrong'}"
+    elif not row["gap"]["as_said"]:
+        more += f", residual said {row['gap']['said_after_nm']:.4f} Nm and is {row['gap']['after_nm']:.4f} Nm"
+    return f"{row['case']}: named {', '.join(row['named']) or 'nothing'}{more}; {row['verdict']}"
 
 
-def whole(rows):
-    """All tables, one a study, then the yardsticks, then the cases that went wrong."""
+def whole(rows, failed):
+    """All tables, one a study, then the yardsticks, then the cases for which failed(row)."""
     answered = [row for row in rows if "error" not in row]
     parts = []
-    for study, group in groups(answered, lambda r: r["study"].split(" ")[0]):
+    for study, group in groups([r for r in answered if "named" in r], lambda r: r["study"].split(" ")[0]):
         parts += [f"### {study}", FORMS[study](group)]
     if any("yardsticks" in row for row in answered):
         parts += ["### yardsticks", yardsticks(answered)]
-    wrong = failures(rows)
+    wrong = [failure(row) for row in rows if failed(row)]
     parts += ["### what went wrong", "\n".join(f"* {line}" for line in wrong) or "Nothing."]
     return "\n\n".join(parts) + "\n"

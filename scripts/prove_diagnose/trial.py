@@ -13,11 +13,15 @@ def write_files(case, folder):
     """train.npy, validate.npy, base.json and truth.json; the logs too."""
     folder.mkdir(parents=True, exist_ok=True)
     base, hidden = case.truth()
-    (folder / "base.json").write_text(json.dumps(tool.BASE))
+    effects = tool.BASE["effects"][::-1] if case.variant == "list reversed" else tool.BASE["effects"]
+    (folder / "base.json").write_text(json.dumps({**tool.MODEL, "effects": effects}))
     (folder / "truth.json").write_text(json.dumps({**tool.MODEL, "effects": base + hidden}, indent=2))
     logs = {purpose: case.log(purpose) for purpose in ("train", "validate")}
+    halves = {"first half": (0.0, 0.5), "second half": (0.5, 1.0)}
+    if case.variant in halves:
+        logs["train"] = logs["train"].part(*halves[case.variant])
     for purpose, log in logs.items():
-        log.save(folder / f"{purpose}.npy")
+        log.save(folder / f"{purpose}.npy", cases.OTHER_UNITS if case.variant == "other units" else None)
     return logs
 
 
@@ -57,38 +61,44 @@ def judged_yardsticks(case, acceptable, hidden, train, validate, floor):
     return rows
 
 
-def scores(program, case, folder, options, with_yardsticks):
+def scores(program, case, folder, options, methods):
     base, hidden = case.truth()
     acceptable = other_formulas.OTHERS[case.other](case.rng("other")).acceptable if case.other else ()
     logs = write_files(case, folder)
     train, validate = (measured.Measured(log, strengths.GEAR_RATIO) for log in logs.values())
     floor = floor_nm(program, case, base, hidden, folder)
-    found, seconds = tool.diagnose(program, folder, options)
-    row = {"verdict": found["verdict"], "seconds": seconds, **score.names(case, acceptable, hidden, found),
-           "parameters": score.parameters(hidden, found, case.seconds),
-           "gap": gaps(program, case, found, train, validate, floor, folder), "unexplained": len(found["unexplained"])}
-    if case.disturbance:
-        row["place"] = score.place(case, logs["train"].place_s, found)
-        row["disturbance_s"] = logs["train"].place_s
-    if with_yardsticks:
+    row = {}
+    if "diagnose" in methods:
+        without = ["--without", case.without] if case.without else []
+        found, seconds = tool.diagnose(program, folder, [*options, *without])
+        row = {"verdict": found["verdict"], "seconds": seconds, **score.names(case, acceptable, hidden, found),
+               "parameters": score.parameters(hidden, found, case.seconds), "unexplained": len(found["unexplained"]),
+               "gap": gaps(program, case, found, train, validate, floor, folder)}
+        if case.disturbance:
+            row["disturbance_s"] = logs["train"].place_s
+            row["place"] = score.place(case, logs["train"].place_s, found)
+    if "yardsticks" in methods:
         row["yardsticks"] = judged_yardsticks(case, acceptable, hidden, train, validate, floor)
     return row
 
 
 def failed(row):
-    if "error" in row:
-        return True
+    if "error" in row or "named" not in row:
+        return "error" in row
     if row["study"].startswith("outside"):
         return bool(row["false"]) or not row["place"]
+    if row["study"] == "without":
+        return bool(row["named"]) or not row["unexplained"]
     return not row["exact"] or not row["gap"]["as_said"]
 
 
-def trial(program, case, options=(), with_yardsticks=False, keep=None):
+def trial(program, case, options=(), methods=("diagnose",), keep=None):
     """The scores of a case; keep: a folder in which the files of those that fail are left."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="prove-diagnose-"))
-    about = {"study": case.study, "label": case.label, "case": case.name, "motion": case.motion, "noise": case.noise}
+    about = {"study": case.study, "label": case.label, "case": case.name, "motion": case.motion, "noise": case.noise,
+             "variant": case.variant}
     try:
-        row = {**about, **scores(program, case, folder, options, with_yardsticks)}
+        row = {**about, **scores(program, case, folder, options, methods)}
     except (tool.ToolFailed, KeyError, TypeError, ValueError) as failure:
         row = {**about, "error": f"{type(failure).__name__}: {failure}"}
     if keep and failed(row):
