@@ -67,7 +67,8 @@ class Case:
 
     @property
     def name(self):
-        words = (self.study, self.label, self.variant, self.motion, self.noise, "" if self.position else "no-position", str(self.number))
+        words = (self.study, self.label, self.variant, self.motion, self.noise,
+                 "" if self.position else "no-position", str(self.number))
         return "-".join(word.replace(" ", "_").replace(",", "") for word in words if word)
 
     def rng(self, purpose):

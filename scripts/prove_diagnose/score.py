@@ -78,7 +78,8 @@ def parameters(hidden, found, seconds):
     rows, named = [], named_keys(found)
     for effect in hidden:
         entry = named.get(key(effect["effect"], effect))
-        given = {name: v if isinstance(v, dict) else {"value": v} for name, v in entry["parameters"].items()} if entry else {}
+        given = entry["parameters"] if entry else {}
+        given = {name: v if isinstance(v, dict) else {"value": v} for name, v in given.items()}
         for name, true in true_parameters(effect, seconds).items():
             if name not in given:
                 continue

@@ -19,6 +19,10 @@ def median(values, text):
     return text.format(statistics.median(values)) if values else "-"
 
 
+def median_percent(values):
+    return median([None if value is None else 100 * value for value in values], "{:.1f} %")
+
+
 def groups(rows, by):
     found = {}
     for row in rows:
@@ -29,9 +33,9 @@ def groups(rows, by):
 def cells(rows, single):
     of = [p for row in rows for p in row["parameters"]]
     return [single, str(len(rows)), share(rows, lambda r: r["exact"]), share(rows, lambda r: r["in_set"]),
-            share(rows, lambda r: r["false"]), median([r["gap"]["closed"] and 100 * r["gap"]["closed"] for r in rows], "{:.1f} %"),
-            share(rows, lambda r: r["gap"]["as_said"]),
-            median([p["relative"] and 100 * p["relative"] for p in of], "{:.1f} %"), share(of, lambda p: p["holds"]),
+            share(rows, lambda r: r["false"]), median_percent(r["gap"]["closed"] for r in rows),
+            share(rows, lambda r: r["gap"]["as_said"]), median_percent(p["relative"] for p in of),
+            share(of, lambda p: p["holds"]),
             median([r["seconds"] for r in rows], "{:.1f} s")]
 
 
@@ -102,12 +106,12 @@ def yardsticks(rows):
     for study, group in groups([r for r in rows if "yardsticks" in r and "named" in r], lambda r: r["study"]):
         lines.append([study, str(len(group)), "diagnose", percent(group, lambda r: r["exact"]),
                       percent(group, lambda r: r["false"]), f"{sum(len(r['false']) for r in group) / len(group):.2f}",
-                      median([r["gap"]["closed"] and 100 * r["gap"]["closed"] for r in group], "{:.1f} %")])
+                      median_percent(r["gap"]["closed"] for r in group)])
         for method in group[0]["yardsticks"]:
             own = [r["yardsticks"][method] for r in group]
             lines.append([study, str(len(group)), method, percent(own, lambda r: r["exact"]),
                           percent(own, lambda r: r["false"]), f"{sum(r['false'] for r in own) / len(own):.2f}",
-                          median([r["closed"] and 100 * r["closed"] for r in own], "{:.1f} %")])
+                          median_percent(r["closed"] for r in own)])
     return markdown(head, lines)
 
 
