@@ -126,7 +126,7 @@ def failure(row):
     more = ", but in the set" if row["in_set"] else ""
     if row["study"].startswith("outside"):
         more += f", place {'right' if row['place'] else 'wrong'}"
-    elif not row["gap"]["as_said"]:
+    elif row["gap"]["as_said"] is False:
         more += f", residual said {row['gap']['said_after_nm']:.4f} Nm and is {row['gap']['after_nm']:.4f} Nm"
     return f"{row['case']}: named {', '.join(row['named']) or 'nothing'}{more}; {row['verdict']}"
 

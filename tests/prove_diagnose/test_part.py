@@ -26,7 +26,7 @@ class Part(unittest.TestCase):
         wrong = [(row["case"], row["named"]) for row in rows if not row["exact"]]
         self.assertLessEqual(len(wrong), 1, wrong)
         self.assertEqual([row["case"] for row in rows if row["false"]], [])
-        self.assertEqual([row["case"] for row in rows if not row["gap"]["as_said"]], [])
+        self.assertEqual([row["case"] for row in rows if row["gap"]["as_said"] is False], [])
 
     def test_nothing_hidden_nothing_named(self):
         self.assertEqual([(row["case"], row["named"]) for row in self.rows("null", 3) if row["named"]], [])
