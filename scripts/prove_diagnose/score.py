@@ -4,6 +4,8 @@
 A finding is a name and, where the name is that of a line, its order: ripple of order 3 is not ripple of order 4.
 """
 
+import math
+
 from . import strengths
 
 ORDER = {"ripple": "order", "output-ripple": "order", "ripple-modulation": "output_order"}
@@ -66,11 +68,12 @@ def true_parameters(effect, seconds):
     return found
 
 
-def holds(interval, value, error):
-    """Does the interval about the value hold the truth, which is the value less its error? None without interval."""
+def beyond(interval, value, error):
+    """The error in units of the interval's half on its side: up to 1 it holds the truth. None without interval."""
     if not interval or None in interval:
         return None
-    return bool(value - interval[1] <= error <= value - interval[0])
+    half = value - interval[0] if error > 0 else interval[1] - value
+    return abs(error) / half if half > 0 else math.inf
 
 
 def parameters(hidden, found, seconds):
@@ -87,7 +90,7 @@ def parameters(hidden, found, seconds):
             if name == "phase_deg":
                 error = (error + 180.0) % 360.0 - 180.0
             rows.append({"parameter": f"{effect['effect']}.{name}",
-                         "holds": holds(given[name].get("ci95"), given[name]["value"], error),
+                         "beyond": beyond(given[name].get("ci95"), given[name]["value"], error),
                          "relative": None if name == "phase_deg" else abs(error / true)})
     return rows
 

@@ -35,7 +35,7 @@ def cells(rows, single):
     return [single, str(len(rows)), share(rows, lambda r: r["exact"]), share(rows, lambda r: r["in_set"]),
             share(rows, lambda r: r["false"]), median_percent(r["gap"]["closed"] for r in rows),
             share(rows, lambda r: r["gap"]["as_said"]), median_percent(p["relative"] for p in of),
-            share(of, lambda p: p["holds"]),
+            share(of, lambda p: None if p["beyond"] is None else p["beyond"] <= 1.0),
             median([r["seconds"] for r in rows], "{:.1f} s")]
 
 

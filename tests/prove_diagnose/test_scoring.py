@@ -62,13 +62,13 @@ class Parameters(unittest.TestCase):
     def test_an_interval_holds_a_phase_across_the_half_turn(self):
         phase = (-178.0, -188.0, -168.0)
         rows = score.parameters([RIPPLE], diagnosis([ripple(3, (0.21, 0.205, 0.215), phase)]), 40.0)
-        self.assertEqual({row["parameter"]: row["holds"] for row in rows},
-                         {"ripple.amplitude_nm": False, "ripple.phase_deg": True})
+        self.assertEqual({row["parameter"]: round(row["beyond"], 6) for row in rows},
+                         {"ripple.amplitude_nm": 2.0, "ripple.phase_deg": 0.7})
         self.assertAlmostEqual(rows[0]["relative"], 0.05)
 
     def test_no_interval_counts_neither_way_and_a_wrong_name_has_no_parameters(self):
         found = diagnosis([ripple(3, (0.2, None, None))])
-        self.assertIsNone(score.parameters([RIPPLE], found, 40.0)[0]["holds"])
+        self.assertIsNone(score.parameters([RIPPLE], found, 40.0)[0]["beyond"])
         self.assertEqual(score.parameters([OFFSET], found, 40.0), [])
 
 
