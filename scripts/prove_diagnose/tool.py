@@ -4,16 +4,22 @@
 import json
 import pathlib
 import resource
+import signal
 import subprocess
 
 from . import strengths
 
 MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": strengths.GEAR_RATIO}
 BASE = {**MODEL, "effects": [{"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]}
+LONGEST_S = 60
 
 
 class ToolFailed(Exception):
     pass
+
+
+def limit_processor_time():
+    resource.setrlimit(resource.RLIMIT_CPU, (LONGEST_S, LONGEST_S + 5))
 
 
 def cpu_seconds():
@@ -27,7 +33,9 @@ def as_model(truth):
 
 
 def run(tool, *words):
-    done = subprocess.run([tool, *map(str, words)], capture_output=True, text=True, timeout=900)
+    done = subprocess.run([tool, *map(str, words)], capture_output=True, text=True, preexec_fn=limit_processor_time)
+    if done.returncode == -signal.SIGXCPU:
+        raise ToolFailed(f"{words[0]}: no answer within {LONGEST_S} s of processor time")
     if done.returncode != 0:
         raise ToolFailed(f"{words[0]}: exit {done.returncode}: {done.stderr.strip()[-300:]}")
     return json.loads(done.stdout)
