@@ -163,6 +163,7 @@ class Detector {
         const std::size_t n = torque_nm_.size();
         std::vector<std::size_t> hit;
         std::vector<double> sizes;
+        std::size_t far = 0;
         for (std::size_t k = 2; k + 2 < n; ++k) {
             // Beside what is held or clipped the torque jumps by nature.
             const auto spoiled = [&](std::size_t i) { return case_.use[i] == 0; };
@@ -176,8 +177,10 @@ class Detector {
             if (!returns(off, k)) continue;
             hit.push_back(k);
             sizes.push_back(std::abs(off[k]));
+            far += std::abs(off[k]) > 2.0 * threshold(typical, k) ? 1U : 0U;
         }
-        if (hit.size() < fewest_spikes) return;
+        // Spikes stand apart from the noise; heavy tails go on from it.
+        if (hit.size() < fewest_spikes || 2 * far < hit.size()) return;
         Fault fault{term_of("spikes", {{"rate_percent",
                                         100.0 * static_cast<double>(hit.size()) / static_cast<double>(n)},
                                        {"size_nm", median(sizes)}}),
@@ -218,9 +221,12 @@ class Detector {
 
     static std::string rounded(double value) { return fmt::format("{:.3g}", value); }
 
+    [[nodiscard]] double threshold(const std::vector<double>& typical, std::size_t k) const {
+        return spike_deviations * std::max({typical[k], usual_nm_, 0.3 * step_nm_});
+    }
     [[nodiscard]] bool stands_out(const std::vector<double>& off, const std::vector<double>& typical,
                                   std::size_t k) const {
-        return std::abs(off[k]) > spike_deviations * std::max({typical[k], usual_nm_, 0.3 * step_nm_});
+        return std::abs(off[k]) > threshold(typical, k);
     }
 
     // After a spike the torque is where it was; after a step it is not. Of two samples to either side one may
