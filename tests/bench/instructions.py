@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""The gate on speed: instructions a row, as callgrind counts them, against the recorded figures.
+
+usage: tests/bench/instructions.py [--update]      (environment: RIPPLENOTCH, the tool; RIPPLENOTCH_BUILD, compiler and flags)
+
+Times are noise on a shared machine; the number of instructions of one build is not. Every case runs the tool on a short
+and on a long log and divides the difference by the rows between, so that the start of the process does not count. More than
+`limit_percent` above the figure in instructions.json is exit code 1. Exit code 77, for ctest "skipped": without
+valgrind, or on a build that the figures were not recorded with. --update records what is measured.
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+RECORDED = pathlib.Path(__file__).with_name("instructions.json")
+SKIPPED = 77
+SHORT, LONG = 20_000, 60_000  # both beyond the first 16384 rows, which filter looks at before it begins
+COLUMNS = ("time_s", "velocity_deg_s", "torque_nm")
+
+CASES = {
+    "filter, CSV with 6 decimals": ["filter", "{log}.csv", "--table", "{table}", "--decimals", "6", "-o", "{out}.csv"],
+    "filter, CSV, shortest digits": ["filter", "{log}.csv", "--table", "{table}", "--decimals", "shortest", "-o", "{out}.csv"],
+    "filter, npy": ["filter", "{log}.npy", "--table", "{table}", "-o", "{out}.npy"],
+    "spectrum, npy, segments of 4096": ["spectrum", "{log}.npy", "--segment", "2.048s", "-o", "{out}.csv"],
+}
+
+
+def rows(count):
+    """Speed goes through all bands; ripple at orders 1 and 2 of a gear of 40; noise from a linear congruential generator."""
+    motor, seed = 0.0, 1
+    for k in range(count):
+        t = k / 2000
+        speed = 166 * math.sin(0.314 * t) * math.sin(0.17 * t + 1)
+        motor += 40 * math.radians(speed) / 2000
+        seed = seed * 16807 % 2147483647
+        yield t, speed, speed / 52 + 0.8 * math.sin(motor) + 0.35 * math.sin(2 * motor + 1) + 0.2 * (seed / 2147483647 - 0.5)
+
+
+def make_logs(folder, count):
+    log = list(rows(count))
+    text = ",".join(COLUMNS) + "\n" + "".join(f"{t:.4f},{v:.6f},{x:.6f}\n" for t, v, x in log)
+    (folder / f"{count}.csv").write_text(text)
+    header = str({"descr": [(name, "<f8") for name in COLUMNS], "fortran_order": False, "shape": (count,)})
+    header += " " * (-(len(header) + 11) % 64) + "\n"
+    (folder / f"{count}.npy").write_bytes(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() +
+                                          b"".join(struct.pack("<3d", *row) for row in log))
+
+
+def instructions(words):
+    done = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *words],
+                          capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    found = re.search(r"Collected : (\d+)", done.stderr)
+    if done.returncode != 0 or not found:
+        raise RuntimeError(f"{' '.join(words)}:\n{done.stderr}")
+    return int(found[1])
+
+
+def per_row(tool, folder, words):
+    """With one thread: how two wait for each other is not the same twice."""
+    def count(length):
+        filled = [word.format(log=folder / str(length), table=folder / "table.json", out=folder / "out") for word in words]
+        return instructions([tool, *filled, "--force", *(["--threads", "1"] if words[0] == "filter" else [])])
+    return (count(LONG) - count(SHORT)) / (LONG - SHORT)
+
+
+def measure(tool):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for count in (SHORT, LONG):
+            make_logs(folder, count)
+        subprocess.run([tool, "design", "--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20",
+                        "--q", "5", "--width", "digital", "--above", "pass", "-o", folder / "table.json"], check=True)
+        return {case: per_row(tool, folder, words) for case, words in CASES.items()}
+
+
+def reason_to_skip(build, recorded_with):
+    if not shutil.which("valgrind"):
+        return "there is no valgrind here"
+    if build != recorded_with:
+        return f"the figures are those of '{recorded_with}', this is '{build}'"
+    if "avx2" not in pathlib.Path("/proc/cpuinfo").read_text().split():
+        return "this processor has no AVX2, so other code runs"
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--update", action="store_true")
+    options = parser.parse_args()
+    recorded, build = json.loads(RECORDED.read_text()), os.environ["RIPPLENOTCH_BUILD"]
+    reason = reason_to_skip(build, build if options.update else recorded["build"])
+    if reason:
+        print(f"SKIPPED: {reason}")
+        return SKIPPED
+    measured = measure(os.environ["RIPPLENOTCH"])
+    slower = []
+    for case, figure in measured.items():
+        before = recorded["instructions_per_row"].get(case, math.nan)
+        change = 100 * (figure / before - 1)
+        print(f"{case:34} {figure:9.1f} instructions a row, recorded {before:9.1f}, {change:+6.1f} %")
+        if not change <= recorded["limit_percent"]:
+            slower.append(case)
+    if options.update:
+        recorded |= {"build": build, "instructions_per_row": {case: round(figure, 1) for case, figure in measured.items()}}
+        RECORDED.write_text(json.dumps(recorded, indent=2) + "\n")
+    elif slower:
+        print(f"More than {recorded['limit_percent']} % above the record: {'; '.join(slower)}. Find out why with callgrind; "
+              "if it is worth it, record it (docs/performance.md).")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
