@@ -71,9 +71,13 @@ class Case:
                  "" if self.position else "no-position", str(self.number))
         return "-".join(word.replace(" ", "_").replace(",", "") for word in words if word)
 
+    @property
+    def log_of(self):
+        """Name of the case whose log it is: variants and logs with an effect taken out are those of the singles."""
+        return dataclasses.replace(self, study="single" if self.variant or self.without else self.study, variant="").name
+
     def rng(self, purpose):
-        name = dataclasses.replace(self, variant="").name  # the same log in each variant
-        return np.random.default_rng([zlib.crc32(f"{name} {purpose}".encode())])
+        return np.random.default_rng([zlib.crc32(f"{self.log_of} {purpose}".encode())])
 
     def truth(self):
         """The complete joint: what the model knows and what is hidden from it."""
@@ -143,8 +147,4 @@ def studies(name, seeds, seed0=0):
                 for variant in VARIANTS for label in strengths.HIDDEN for n in numbers]
     if name == "without":
         return [Case(name, label, n, hidden=(label,), without=label) for label in strengths.HIDDEN for n in numbers]
-    raise SystemExit(f"there is no study '{name}'; there are: {', '.join(STUDIES)}")
-
-
-STUDIES = ("single", "rarer", "pair", "triple", "null", "null ar0.5", "null t4", "outside", "outside+single", "formula",
-           "noise", "poor", "variant", "without")
+    raise SystemExit(f"there is no study '{name}'")

@@ -3,6 +3,7 @@
 
 import statistics
 
+from . import bars, reach
 
 def share(rows, test):
     counted = [bool(test(row)) for row in rows if test(row) is not None]
@@ -92,9 +93,9 @@ def variant(rows):
 
 
 def without(rows):
-    head = ["taken out", "logs", "no name", "says unexplained", "named in its place"]
-    return markdown(head, [[label, str(len(group)), share(group, lambda r: not r["named"]),
-                            share(group, lambda r: r["unexplained"]),
+    head = ["taken out", "logs", "verdict", "told of its energy", "named in its place"]
+    return markdown(head, [[label, str(len(group)), ", ".join(sorted({r["verdict"] for r in group})),
+                            ", ".join(f"{100 * r['told']:.0f} %" for r in group),
                             "; ".join(sorted({", ".join(r["named"]) for r in group if r["named"]})) or "none"]
                            for label, group in groups(rows, lambda r: r["label"])])
 
@@ -126,19 +127,40 @@ def failure(row):
     more = ", but in the set" if row["in_set"] else ""
     if row["study"].startswith("outside"):
         more += f", place {'right' if row['place'] else 'wrong'}"
+    elif row["study"] == "without":
+        return f"{row['case']}: {100 * row['told']:.0f} % told, named {', '.join(row['named']) or 'nothing'}; {row['verdict']}"
     elif row["gap"]["as_said"] is False:
         more += f", residual said {row['gap']['said_after_nm']:.4f} Nm and is {row['gap']['after_nm']:.4f} Nm"
     return f"{row['case']}: named {', '.join(row['named']) or 'nothing'}{more}; {row['verdict']}"
 
 
-def whole(rows, failed):
-    """All tables, one a study, then the yardsticks, then the cases for which failed(row)."""
-    answered = [row for row in rows if "error" not in row]
+def about(abouts, rows):
+    """One sentence: when, on what and with what the scores were measured."""
+    if not abouts:
+        return "Measured with an unknown program."
+    first, last = abouts[0], max(row.get("finished", abouts[0]["begun"]) for row in rows)
+    options = f", options {' '.join(first['options'])}" if first["options"] else ""
+    numbers = sorted({int(row["case"].rpartition("-")[2]) for row in rows if row["study"] == "single"}) or [0]
+    day, _, begun = first["begun"].partition("T")
+    return (f"Measured on {day} from {begun} to {last.partition('T')[2]} with `diagnose` of commit `{first['commit']}`{options}, "
+            f"one process on one core of a machine with other work on it ({first['machine']}): {len(rows)} logs, "
+            f"numbers from {numbers[0]} on.")
+
+
+def studies(rows):
+    """The table of each study, then that of the yardsticks."""
     parts = []
-    for study, group in groups([r for r in answered if "named" in r], lambda r: r["study"].split(" ")[0]):
+    for study, group in groups([r for r in rows if "named" in r], lambda r: r["study"].split(" ")[0]):
         parts += [f"### {study}", FORMS[study](group)]
-    if any("yardsticks" in row for row in answered):
-        parts += ["### yardsticks", yardsticks(answered)]
+    if any("yardsticks" in row for row in rows):
+        parts += ["### yardsticks", yardsticks(rows)]
+    return "\n\n".join(parts)
+
+
+def blocks(abouts, rows, failed):
+    """Every table by the name of its mark in docs/diagnose.md; failed(row) says which cases are listed as wrong."""
     wrong = [failure(row) for row in rows if failed(row)]
-    parts += ["### what went wrong", "\n".join(f"* {line}" for line in wrong) or "Nothing."]
-    return "\n\n".join(parts) + "\n"
+    return {"about": about(abouts, rows),
+            "bars": markdown(bars.HEAD, bars.lines([r for r in rows if "named" in r], reach.ENOUGH)),
+            "studies": studies(rows),
+            "wrong": "\n".join(f"* {line}" for line in wrong) or "Nothing."}

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+"""Which cases the whole proof has, and in what order they run.
+
+A run may be cut off at any time. So the studies advance together: after a tenth of the run each has a tenth of its
+cases, and within a study every effect has had its first log before any has its second.
+"""
+
+from . import cases
+
+# How many of each kind: 5 of each single effect, 40 pairs, 200 logs with nothing hidden, ...
+SEEDS = {"single": 5, "rarer": 2, "pair": 40, "triple": 30, "null": 200, "null ar0.5": 20, "null t4": 20, "outside": 15,
+         "outside+single": 5, "formula": 2, "noise": 1, "poor": 1, "variant": 1, "without": 1}
+
+
+def study(name, seeds, first):
+    """The cases of one study, the first of every kind before the second of any."""
+    return sorted(cases.studies(name, seeds, first), key=lambda case: case.number)
+
+
+def planned(names, seeds=None, first=0):
+    """The cases of several studies, taken in turns so that each study advances in proportion to its size."""
+    unknown = [name for name in names if name not in SEEDS]
+    if unknown:
+        raise SystemExit(f"prove-diagnose: there is no study '{unknown[0]}'; there are: {', '.join(SEEDS)}")
+    found = [(k / len(all_of), case) for name in names for all_of in [study(name, seeds or SEEDS[name], first)]
+             for k, case in enumerate(all_of, 1)]
+    return [case for _, case in sorted(found, key=lambda pair: pair[0])]
+
+
+def by_name(name):
+    """The case of that name."""
+    number = name.rpartition("-")[2]
+    for known in SEEDS if number.isdigit() else ():
+        for case in cases.studies(known, 1, int(number)):
+            if case.name == name:
+                return case
+    raise SystemExit(f"prove-diagnose: there is no case '{name}'")
+
+
+def in_table_order(rows):
+    """Scores sorted as tables list them: by study, then as the catalogue lists effects, then by number."""
+    kinds = [(c.study, c.label, c.variant, c.motion, c.noise) for name in SEEDS for c in cases.studies(name, 1)]
+    places = {kind: k for k, kind in enumerate(kinds)}
+    studies = {name: min(k for k, kind in enumerate(kinds) if kind[0] == name) for name in SEEDS}
+
+    def place(row):
+        kind = (row["study"], row["label"], row["variant"], row["motion"], row["noise"])
+        return places.get(kind, studies[row["study"]]), int(row["case"].rpartition("-")[2])
+
+    return sorted(rows, key=place)
