@@ -20,7 +20,7 @@ def wilson(right, count, z=1.959964):
 
 @dataclasses.dataclass(frozen=True)
 class Bar:
-    """A share that should lie between `low` and `high`; test(row) is True, False or None (not counted), or a list."""
+    """A share that should lie between `low` and `high`; test(row) is True, False or None (not counted), or a list of such."""
 
     text: str
     asked: str
@@ -83,7 +83,8 @@ def bars(rows, told):
         Bar("two hidden effects: names exactly right", "at least 90 %", ("pair",), lambda r: r["exact"], 0.9),
         Bar("three hidden effects: names exactly right", "at least 90 %", ("triple",), lambda r: r["exact"], 0.9),
         Bar("nothing hidden, white noise: no name", "199 of 200", ("null",), lambda r: not r["named"], 0.995),
-        Bar("a disturbance outside the catalogue: a false name", "at most 5 %", OUTSIDE, lambda r: r["false"], 0.0, 0.05),
+        Bar("a disturbance outside the catalogue: a false name", "at most 5 %", OUTSIDE, lambda r: bool(r["false"]),
+            0.0, 0.05),
         Bar("the same: its place in time is told", "each", OUTSIDE, lambda r: r["place"], 1.0),
         Bar("95 % interval holds the truth", "90 to 98 %", HIDDEN, held, 0.9, 0.98),
         Bar("`simulate` leaves on the other log what was said, within 10 %", "each", HIDDEN,
