@@ -34,16 +34,16 @@ Candidate Bench::fitted(const Model& open, const Model& first_guess, std::vector
 }
 
 double Bench::share(const Candidate& with, const Candidate& without) const {
-    const auto squares = [&](const Model& stated) {
-        const auto left = raw_residual(stated);
-        double sum = 0.0;
-        for (const std::size_t k : rows()) sum += left[k] * left[k];
-        return sum / samples();
-    };
-    // Of coloured noise the whitened gain is the sharper measure, of a slow effect the torque itself.
+    const auto left_with = raw_residual(with.stated), left_without = raw_residual(without.stated);
+    double raw = 0.0, moved = 0.0;
+    for (const std::size_t k : rows()) {
+        raw += (left_without[k] * left_without[k] - left_with[k] * left_with[k]) / samples();
+        moved += (left_without[k] - left_with[k]) * (left_without[k] - left_with[k]) / samples();
+    }
+    // Of coloured noise the whitened gain is the sharper measure, of a slow effect the torque itself; nothing
+    // explains more than the torque that it brings.
     const double white = (without.gain_left - with.gain_left) / samples() * noise_.white_nm * noise_.white_nm;
-    const double raw = squares(without.stated) - squares(with.stated);
-    return std::sqrt(std::max({white, raw, 0.0})) / noise_.rms_nm;
+    return std::sqrt(std::max({std::min(white, moved), raw, 0.0})) / noise_.rms_nm;
 }
 
 std::vector<double> Bench::cleared_residual(const Model& stated) const {

@@ -124,7 +124,8 @@ std::optional<double> closed_percent(const Case& c, const Diagnosis& diagnosis) 
     const double before = std::pow(residual_rms(c, diagnosis.baseline, c.use), 2) - floor;
     const double after = std::pow(residual_rms(c, diagnosis.model, c.use), 2) - floor;
     if (before < 0.02 * floor) return std::nullopt;
-    return 100.0 * (1.0 - std::max(after, 0.0) / before);
+    const double closed = 100.0 * (1.0 - std::max(after, 0.0) / before);
+    return std::abs(closed) < 1e-3 ? 0.0 : closed;  // the same model, fitted anew
 }
 
 // Gaps are over every sample, so that they are what `simulate` says of the same model and log.

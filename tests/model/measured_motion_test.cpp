@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "model/local_motion.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
@@ -32,6 +33,32 @@ double largest_error(const std::vector<double>& a, const std::vector<double>& b,
     double most = 0.0;
     for (std::size_t k = margin; k + margin < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
     return most;
+}
+
+const std::vector<std::string> two_moves = {"rest,duration=0.5s", "poly6,to=120deg,duration=2s",
+                                            "rest,duration=0.5s", "poly6,to=-40deg,duration=2.5s",
+                                            "rest,duration=0.5s"};
+
+// A log of it, its speed noisy, its position that of an encoder.
+Trace with_encoder(const Motion& motion, int bits, std::uint64_t seed) {
+    Trace log = logged(motion, true);
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> noise(0.0, 0.15);
+    for (double& v : log.velocity_deg_s) v += noise(engine);
+    const double step_deg = 360.0 / std::ldexp(1.0, bits);
+    for (double& q : log.position_deg) q = step_deg * std::round(q / step_deg);
+    return log;
+}
+
+double rms_error(const std::vector<double>& a, const std::vector<double>& b) {
+    double squares = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) squares += (a[k] - b[k]) * (a[k] - b[k]);
+    return std::sqrt(squares / static_cast<double>(a.size()));
+}
+
+Trace without_position(Trace log) {
+    log.position_deg.clear();
+    return log;
 }
 
 }  // namespace
@@ -155,6 +182,52 @@ TEST_CASE("a model along a log of its own motion predicts its own torque") {
         for (std::size_t k = 0; k < truth.size(); ++k) square += std::pow(smooth[k] - truth[k], 2);
         CHECK(std::sqrt(square / static_cast<double>(truth.size())) < 0.02);
     }
+}
+
+TEST_CASE("noise from sample to sample is told from any motion, and is that of an encoder's steps") {
+    const Trace log = with_encoder(make_motion(two_moves, 1000_Hz), 19, 3);
+    CHECK(sample_noise(log.velocity_deg_s) == Approx(0.15).epsilon(0.05));
+    // A sawtooth of one step while it moves, 4.5 of 6 s, and nothing at rest.
+    const double step_deg = 360.0 / std::ldexp(1.0, 19);
+    CHECK(sample_noise(log.position_deg) ==
+          Approx(step_deg / std::sqrt(12.0) * std::sqrt(0.75)).epsilon(0.1));
+    std::vector<double> cubic;
+    for (int k = 0; k < 1000; ++k) cubic.push_back(1e-6 * k * k * k);
+    CHECK(sample_noise(cubic) < 1e-9);
+}
+
+TEST_CASE("the position of a good encoder makes speed and acceleration several times surer") {
+    const Motion truth = make_motion("sine,amplitude=30deg,frequency=0.5Hz,duration=8s", 1000_Hz);
+    Trace log = with_encoder(truth, 19, 3);
+    const Motion with = motion_along(log.view()), without = motion_along(without_position(log).view());
+    CHECK(rms_error(with.velocity_deg_s, truth.velocity_deg_s) <
+          0.2 * rms_error(without.velocity_deg_s, truth.velocity_deg_s));
+    CHECK(rms_error(with.acceleration_deg_s2, truth.acceleration_deg_s2) <
+          0.35 * rms_error(without.acceleration_deg_s2, truth.acceleration_deg_s2));
+}
+
+TEST_CASE("with the position of a good encoder a rest ends where the move begins") {
+    const Motion truth = make_motion(two_moves, 1000_Hz);
+    const Motion measured = motion_along(with_encoder(truth, 19, 3).view());
+    std::size_t first = 0;
+    while (measured.velocity_deg_s[first] == 0.0) ++first;
+    CHECK(static_cast<double>(first) == Approx(505.0).margin(15.0));
+}
+
+TEST_CASE("a position that is not the speed's integral is not mixed into the speed") {
+    const Trace log = with_encoder(make_motion(two_moves, 1000_Hz), 19, 6);
+    const Motion alone = motion_along(without_position(log).view());
+    Trace late = log, scaled = log, coarse = log;
+    for (std::size_t k = 2; k < late.size(); ++k) late.position_deg[k] = log.position_deg[k - 2];
+    for (double& q : scaled.position_deg) q *= 1.01;
+    for (double& q : coarse.position_deg) q = 5.0 * std::round(q / 5.0);
+    for (const Trace& other : {late, scaled}) {
+        const Motion measured = motion_along(other.view());
+        CHECK(measured.velocity_deg_s == alone.velocity_deg_s);
+        CHECK(measured.acceleration_deg_s2 == alone.acceleration_deg_s2);
+        CHECK(measured.position_deg == other.position_deg);
+    }
+    CHECK(rms_error(motion_along(coarse.view()).velocity_deg_s, alone.velocity_deg_s) < 0.005);
 }
 
 TEST_CASE("a log that no motion can be measured from is refused with the reason") {

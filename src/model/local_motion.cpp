@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "model/local_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ripplenotch {
+namespace {
+
+// Coefficients of the cubic in time over the window's reach, then the position in the middle.
+constexpr std::size_t cubic = 4, unknowns = 5;
+using Row = std::array<double, unknowns>;
+
+Row velocity_row(double u) { return {1.0, u, u * u, u * u * u, 0.0}; }
+
+Row position_row(double u, double reach_s) {
+    const double s = u * reach_s;
+    return {s, s * u / 2.0, s * u * u / 3.0, s * u * u * u / 4.0, reach_s};
+}
+
+void add(std::array<Row, unknowns>& moments, const Row& row, double weight) {
+    for (std::size_t i = 0; i < unknowns; ++i) {
+        for (std::size_t j = 0; j < unknowns; ++j) moments[i][j] += weight * row[i] * row[j];
+    }
+}
+
+// Column `wanted` of the inverse, by elimination; the matrix is symmetric and positive definite, so that no
+// pivoting is needed.
+Row column_of_inverse(std::array<Row, unknowns> m, std::size_t n, std::size_t wanted) {
+    Row x{};
+    x[wanted] = 1.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t row = i + 1; row < n; ++row) {
+            const double factor = m[row][i] / m[i][i];
+            for (std::size_t c = i; c < n; ++c) m[row][c] -= factor * m[i][c];
+            x[row] -= factor * x[i];
+        }
+    }
+    for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t c = i + 1; c < n; ++c) x[i] -= m[i][c] * x[c];
+        x[i] /= m[i][i];
+    }
+    return x;
+}
+
+double dot(const Row& a, const Row& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < unknowns; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+// Times that are a sample apart within a millionth.
+bool is_uniform(const TraceView& log) {
+    const double step_s = (log.time_s.back() - log.time_s.front()) / static_cast<double>(log.size() - 1);
+    for (std::size_t k = 1; k < log.size(); ++k) {
+        if (std::abs(log.time_s[k] - log.time_s[k - 1] - step_s) > 1e-6 * step_s) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+LocalFit::LocalFit(const TraceView& log, MotionNoise noise)
+    : log_(log), noise_(noise), uniform_(is_uniform(log)) {}
+
+void LocalFit::weigh(std::size_t k, SampleWindow window) {
+    if (uniform_ && before_ == k - window.first && after_ == window.end - k) return;
+    before_ = k - window.first;
+    after_ = window.end - k;
+    const double now_s = log_.time_s[k];
+    const double reach_s = std::max(log_.time_s[window.end - 1] - now_s, now_s - log_.time_s[window.first]);
+    const bool both = noise_.position_deg > 0.0;
+    const double by_velocity = 1.0 / (noise_.velocity_deg_s * noise_.velocity_deg_s);
+    const double by_position = both ? 1.0 / (noise_.position_deg * noise_.position_deg) : 0.0;
+    std::array<Row, unknowns> moments{};
+    for (std::size_t j = window.first; j < window.end; ++j) {
+        const double u = (log_.time_s[j] - now_s) / reach_s;
+        add(moments, velocity_row(u), by_velocity);
+        if (both) add(moments, position_row(u, reach_s), by_position);
+    }
+    const std::size_t n = both ? unknowns : cubic;
+    const Row value = column_of_inverse(moments, n, 0), slope = column_of_inverse(moments, n, 1);
+    variance_ = value[0];
+    for (auto* weights : {&velocity_by_velocity_, &velocity_by_position_, &acceleration_by_velocity_,
+                          &acceleration_by_position_})
+        weights->clear();
+    for (std::size_t j = window.first; j < window.end; ++j) {
+        const double u = (log_.time_s[j] - now_s) / reach_s;
+        velocity_by_velocity_.push_back(by_velocity * dot(value, velocity_row(u)));
+        acceleration_by_velocity_.push_back(by_velocity * dot(slope, velocity_row(u)) / reach_s);
+        if (!both) continue;
+        velocity_by_position_.push_back(by_position * dot(value, position_row(u, reach_s)));
+        acceleration_by_position_.push_back(by_position * dot(slope, position_row(u, reach_s)) / reach_s);
+    }
+}
+
+LocalMotion LocalFit::at(std::size_t k, SampleWindow window) {
+    weigh(k, window);
+    LocalMotion found{0.0, 0.0};
+    const double* const velocity = log_.velocity_deg_s.data() + window.first;
+    for (std::size_t j = 0; j < velocity_by_velocity_.size(); ++j) {
+        found.velocity_deg_s += velocity_by_velocity_[j] * velocity[j];
+        found.acceleration_deg_s2 += acceleration_by_velocity_[j] * velocity[j];
+    }
+    if (noise_.position_deg == 0.0) return found;
+    const double* const position = log_.position_deg.data() + window.first;
+    const double here_deg = log_.position_deg[k];
+    for (std::size_t j = 0; j < velocity_by_position_.size(); ++j) {
+        found.velocity_deg_s += velocity_by_position_[j] * (position[j] - here_deg);
+        found.acceleration_deg_s2 += acceleration_by_position_[j] * (position[j] - here_deg);
+    }
+    return found;
+}
+
+double LocalFit::velocity_error(std::size_t k, SampleWindow window) {
+    weigh(k, window);
+    return std::sqrt(variance_);
+}
+
+double sample_noise(std::span<const double> values) {
+    if (values.size() < 5) return 0.0;
+    double sum = 0.0;
+    for (std::size_t k = 4; k < values.size(); ++k) {
+        const double difference =
+            values[k] - 4.0 * values[k - 1] + 6.0 * values[k - 2] - 4.0 * values[k - 3] + values[k - 4];
+        sum += difference * difference;
+    }
+    // 70 is the sum of the squares of 1, -4, 6, -4, 1.
+    return std::sqrt(sum / (70.0 * static_cast<double>(values.size() - 4)));
+}
+
+}  // namespace ripplenotch

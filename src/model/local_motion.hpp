@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Speed and acceleration at a sample from what is logged about it: the polynomial that fits the velocities of
+// a window, and, where they are trusted, its positions too.
+
+#include <vector>
+
+#include "ripplenotch/core/trace.hpp"
+
+namespace ripplenotch {
+
+/// rms of the noise on one sample.
+struct MotionNoise {
+    double velocity_deg_s = 1.0;
+    double position_deg = 0.0;  ///< 0: the position is not looked at
+};
+
+struct SampleWindow {
+    std::size_t first, end;  ///< samples [first, end)
+};
+
+struct LocalMotion {
+    double velocity_deg_s, acceleration_deg_s2;
+};
+
+/// Least squares by a cubic velocity, whose integral is a quartic in position; each sample weighs by its
+/// noise.
+class LocalFit {
+  public:
+    LocalFit(const TraceView& log, MotionNoise noise);
+
+    [[nodiscard]] LocalMotion at(std::size_t k, SampleWindow window);
+    /// rms error that the noise leaves in the velocity at sample k, deg/s.
+    [[nodiscard]] double velocity_error(std::size_t k, SampleWindow window);
+
+    static constexpr std::size_t fewest_samples = 5;
+
+  private:
+    void weigh(std::size_t k, SampleWindow window);
+
+    TraceView log_;
+    MotionNoise noise_;
+    bool uniform_;
+    // Factors of the samples of the window weighed last, of velocities and of positions, for the velocity and
+    // for the acceleration.
+    std::size_t before_ = 0, after_ = 0;
+    std::vector<double> velocity_by_velocity_, velocity_by_position_, acceleration_by_velocity_,
+        acceleration_by_position_;
+    double variance_ = 0.0;
+};
+
+/// rms of what is new from sample to sample, whatever moves slowly: from fourth differences.
+[[nodiscard]] double sample_noise(std::span<const double> values);
+
+}  // namespace ripplenotch
