@@ -2,8 +2,11 @@
 #pragma once
 // One cascade of unity DC gain that runs for the whole log; shared by the methods that have just one.
 
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "filter/kernels/block_cascade.hpp"
 #include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
@@ -16,10 +19,14 @@ class CascadeFilter final : public CausalFilter {
     explicit CascadeFilter(Cascade cascade);
     void process(const Samples& in, std::span<double> out) override;
     void restart() override { started_ = false; }
+    std::string hurry() override;
 
   private:
+    void run_recursion(std::span<const double> torque_nm, std::span<double> out);
+
     Cascade cascade_;
     std::vector<BiquadState> states_;
+    std::optional<BlockCascade> blocks_;
     double origin_nm_ = 0.0;
     bool started_ = false;
 };

@@ -311,6 +311,21 @@ class Threads(Case):
         self.text = "\n".join(rows) + "\n"
         self.log = self.write("long.csv", self.text)
 
+    def test_exact_changes_the_last_digits_of_fixed_and_lowpass_alone_and_v_says_the_way(self):
+        log, table = self.write("log.csv", log_text(60000)), self.table()
+        torque = lambda done: [float(row.split(",")[2]) for row in done.stdout.decode().splitlines()[1:]]
+        for method in (LOWPASS, "fixed,centers=25Hz:50Hz"):
+            quick = self.good("filter", log, "--method", method, "-v")
+            exact = self.good("filter", log, "--method", method, "-v", "--exact")
+            self.assertIn(b"in blocks of eight samples", quick.stderr)
+            self.assertNotIn(b"blocks of eight", exact.stderr)
+            self.assertNotEqual(quick.stdout, exact.stdout)
+            self.assertLess(max(abs(a - b) for a, b in zip(torque(quick), torque(exact), strict=True)), 4e-12)
+        slow = self.good("filter", log, "--method", "lowpass,cutoff=0.1Hz,order=2", "-v")
+        self.assertIn(b"sample by sample", slow.stderr)
+        self.assertEqual(self.good("filter", log, "--table", table, "--exact").stdout,
+                         self.good("filter", log, "--table", table).stdout)
+
     def test_any_number_of_threads_gives_the_same_bytes_from_file_and_pipe(self):
         rows = self.text.splitlines()
         rows.append(rows.pop(rows.index("EOF")))  # an end mark stands at the end

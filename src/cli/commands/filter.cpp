@@ -40,7 +40,7 @@ struct Request {
     Gates gates;
     double gap_steps = default_gap_steps;
     int threads = 0;
-    bool append = false;
+    bool append = false, exact = false;
 };
 
 /// Where one log comes from and what is made of it.
@@ -163,6 +163,11 @@ std::unique_ptr<CausalFilter> learn(const Request& request, const ChosenMethod& 
     return filter;
 }
 
+void say_way(const Request& request, CausalFilter& filter, const std::string& source) {
+    if (const std::string way = filter.hurry(); !way.empty())
+        say(request.common, fmt::format("{}: {}", source, way));
+}
+
 /// True when everything is within the limits.
 bool run_job(const Request& request, const Job& job, const ChosenMethod& method, const Gear& gear,
              const std::string& command_line) {
@@ -197,6 +202,7 @@ bool run_job(const Request& request, const Job& job, const ChosenMethod& method,
         metrics.delays = delay_ledger(method.contender(), stream.design_rate(), {request.crossover, true});
     }
     const auto filter = spool ? learn(request, method, *spool) : method.start(stream.design_rate());
+    if (!request.exact) say_way(request, *filter, layout.source);
     // Both outputs are opened before the work, so that a name that is taken costs nobody an hour.
     std::optional<ByteSink> metrics_sink;
     const std::optional<std::string> metrics_path = request.common.json ? "-" : job.metrics;
@@ -268,6 +274,10 @@ std::function<ExitCode()> attach(Options& options) {
                  "format of the output: csv, npy (default: by the name of -o, else csv)");
     options.flag("--append", request->append,
                  "add the filtered torque as a column instead of replacing the torque");
+    options.flag("--exact", request->exact,
+                 "filter sample by sample where fixed and lowpass would go in blocks of eight, whose output "
+                 "may differ "
+                 "by 1e-12 of the largest torque");
     options.text("--decimals", request->decimals, "HOW",
                  "digits of the filtered torque: shortest (reads back exactly), input (as many as the "
                  "log's), or a number");

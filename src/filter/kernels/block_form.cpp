@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "filter/kernels/block_form.hpp"
+
+#include <algorithm>
+
+namespace ripplenotch {
+namespace {
+
+using Wide = long double;
+
+// What eight steps make of a memory and an input at one of the samples (or none: `at` beyond them).
+struct Course {
+    std::array<Wide, BlockForm::memory> memory{};
+    std::array<double, BlockForm::samples> outputs{};
+
+    void run(std::span<const Biquad> sections, std::size_t at) {
+        for (std::size_t k = 0; k < BlockForm::samples; ++k) {
+            Wide signal = k == at ? 1.0L : 0.0L;
+            for (std::size_t i = 0; i < sections.size(); ++i) {
+                const Biquad& f = sections[i];
+                Wide& s1 = memory[2 * i];
+                Wide& s2 = memory[2 * i + 1];
+                const Wide y = f.b0 * signal + s1;
+                s1 = f.b1 * signal - f.a1 * y + s2;
+                s2 = f.b2 * signal - f.a2 * y;
+                signal = y;
+            }
+            outputs[k] = static_cast<double>(signal);
+        }
+    }
+
+    [[nodiscard]] BlockForm::Memory rounded() const {
+        BlockForm::Memory values;
+        std::transform(memory.begin(), memory.end(), values.begin(),
+                       [](Wide value) { return static_cast<double>(value); });
+        return values;
+    }
+};
+
+}  // namespace
+
+BlockForm::BlockForm(std::span<const Biquad> sections) {
+    for (std::size_t j = 0; j < samples; ++j) {
+        Course course;
+        course.run(sections, j);
+        feed[j] = course.outputs;
+        drive[j] = course.rounded();
+    }
+    for (std::size_t k = 0; k < 2 * sections.size(); ++k) {
+        Course course;
+        course.memory[k] = 1.0L;
+        course.run(sections, samples);
+        recall[k] = course.outputs;
+        turn[k] = course.rounded();
+    }
+}
+
+}  // namespace ripplenotch

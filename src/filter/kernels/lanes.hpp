@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Four doubles side by side. Kernels are written once over a type of four lanes and built for two: one
+// register of AVX2, or two of what every x86-64 and ARM64 has. Each lane is an ordinary double with ordinary
+// rounding, and contraction is off for the whole build, so the bits do not depend on the type.
+//
+// Everything is inlined and goes by reference: a value may not be handed to a function that has no register
+// for it.
+
+#include <cstddef>
+
+namespace ripplenotch {
+
+#define RIPPLENOTCH_INLINED inline __attribute__((always_inline))
+#if defined(__x86_64__)
+#define RIPPLENOTCH_TARGET_AVX2 __attribute__((target("avx2")))
+#else
+#define RIPPLENOTCH_TARGET_AVX2  // compiled, never called: has_avx2() is false
+#endif
+
+/// One register of AVX2, for functions of that target only.
+using Four = double __attribute__((vector_size(32)));
+using Two = double __attribute__((vector_size(16)));
+
+/// Two registers of two.
+struct TwoAndTwo {
+    Two low, high;
+};
+
+/// In memory, at any address of a double.
+using FourInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
+using TwoInMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
+
+RIPPLENOTCH_INLINED TwoAndTwo operator+(const TwoAndTwo& a, const TwoAndTwo& b) {
+    return {a.low + b.low, a.high + b.high};
+}
+RIPPLENOTCH_INLINED TwoAndTwo operator-(const TwoAndTwo& a, const TwoAndTwo& b) {
+    return {a.low - b.low, a.high - b.high};
+}
+RIPPLENOTCH_INLINED TwoAndTwo operator*(const TwoAndTwo& a, const TwoAndTwo& b) {
+    return {a.low * b.low, a.high * b.high};
+}
+
+RIPPLENOTCH_INLINED void load(Four& lanes, const double* from) {
+    lanes = *reinterpret_cast<const FourInMemory*>(from);
+}
+RIPPLENOTCH_INLINED void load(TwoAndTwo& lanes, const double* from) {
+    lanes.low = *reinterpret_cast<const TwoInMemory*>(from);
+    lanes.high = *reinterpret_cast<const TwoInMemory*>(from + 2);
+}
+
+RIPPLENOTCH_INLINED void store(double* to, const Four& lanes) {
+    *reinterpret_cast<FourInMemory*>(to) = lanes;
+}
+RIPPLENOTCH_INLINED void store(double* to, const TwoAndTwo& lanes) {
+    *reinterpret_cast<TwoInMemory*>(to) = lanes.low;
+    *reinterpret_cast<TwoInMemory*>(to + 2) = lanes.high;
+}
+
+RIPPLENOTCH_INLINED void fill(Four& lanes, double value) { lanes = Four{value, value, value, value}; }
+RIPPLENOTCH_INLINED void fill(TwoAndTwo& lanes, double value) {
+    lanes = {Two{value, value}, Two{value, value}};
+}
+
+/// The four lanes of `from`, each spread over one of `to`.
+RIPPLENOTCH_INLINED void spread(Four (&to)[4], const Four& from) {
+    to[0] = __builtin_shufflevector(from, from, 0, 0, 0, 0);
+    to[1] = __builtin_shufflevector(from, from, 1, 1, 1, 1);
+    to[2] = __builtin_shufflevector(from, from, 2, 2, 2, 2);
+    to[3] = __builtin_shufflevector(from, from, 3, 3, 3, 3);
+}
+RIPPLENOTCH_INLINED void spread(TwoAndTwo (&to)[4], const TwoAndTwo& from) {
+    const Two a = __builtin_shufflevector(from.low, from.low, 0, 0);
+    const Two b = __builtin_shufflevector(from.low, from.low, 1, 1);
+    const Two c = __builtin_shufflevector(from.high, from.high, 0, 0);
+    const Two d = __builtin_shufflevector(from.high, from.high, 1, 1);
+    to[0] = {a, a};
+    to[1] = {b, b};
+    to[2] = {c, c};
+    to[3] = {d, d};
+}
+
+}  // namespace ripplenotch
