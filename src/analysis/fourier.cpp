@@ -16,13 +16,18 @@ namespace {
 
 constexpr double tau = 2.0 * std::numbers::pi;
 
+template <class T>
+using FftwArray = std::unique_ptr<T, decltype(&fftw_free)>;
+
+FftwArray<double> real_array(std::size_t n) { return {fftw_alloc_real(n), fftw_free}; }
+FftwArray<fftw_complex> complex_array(std::size_t n) { return {fftw_alloc_complex(n), fftw_free}; }
+
 struct Plan {
     fftw_plan plan = nullptr;
     explicit Plan(std::size_t n) {
         // The arrays only shape the plan: it is always executed on others, of the same alignment.
-        const auto in = std::unique_ptr<double, decltype(&fftw_free)>(fftw_alloc_real(n), fftw_free);
-        const auto out =
-            std::unique_ptr<fftw_complex, decltype(&fftw_free)>(fftw_alloc_complex(n / 2 + 1), fftw_free);
+        const auto in = real_array(n);
+        const auto out = complex_array(n / 2 + 1);
         plan = fftw_plan_dft_r2c_1d(static_cast<int>(n), in.get(), out.get(), FFTW_ESTIMATE);
     }
     ~Plan() { fftw_destroy_plan(plan); }
@@ -117,16 +122,31 @@ bool evenly_placed(std::span<const double> where, double step, double frequency)
 
 }  // namespace
 
+struct RealTransform::Arrays {
+    std::size_t length;
+    FftwArray<double> in = real_array(length);
+    FftwArray<fftw_complex> out = complex_array(length / 2 + 1);
+    fftw_plan plan = plan_for(length);
+};
+
+RealTransform::RealTransform(std::size_t length) : arrays_(new Arrays{length}) {}
+RealTransform::~RealTransform() = default;
+RealTransform::RealTransform(RealTransform&&) noexcept = default;
+
+std::span<double> RealTransform::in() { return {arrays_->in.get(), arrays_->length}; }
+
+std::span<const std::complex<double>> RealTransform::run() {
+    fftw_execute_dft_r2c(arrays_->plan, arrays_->in.get(), arrays_->out.get());
+    // A std::complex<double> is laid out as two doubles, the real part first; so says the standard.
+    return {reinterpret_cast<const std::complex<double>*>(arrays_->out.get()), arrays_->length / 2 + 1};
+}
+
 std::vector<std::complex<double>> real_fourier(std::span<const double> x) {
-    std::vector<std::complex<double>> result(x.size() / 2 + 1);
     if (x.empty()) return {};
-    const auto in = std::unique_ptr<double, decltype(&fftw_free)>(fftw_alloc_real(x.size()), fftw_free);
-    const auto out =
-        std::unique_ptr<fftw_complex, decltype(&fftw_free)>(fftw_alloc_complex(result.size()), fftw_free);
-    std::copy(x.begin(), x.end(), in.get());
-    fftw_execute_dft_r2c(plan_for(x.size()), in.get(), out.get());
-    for (std::size_t k = 0; k < result.size(); ++k) result[k] = {out.get()[k][0], out.get()[k][1]};
-    return result;
+    RealTransform transform(x.size());
+    std::copy(x.begin(), x.end(), transform.in().begin());
+    const auto sums = transform.run();
+    return {sums.begin(), sums.end()};
 }
 
 std::size_t fast_length(std::size_t at_least) {

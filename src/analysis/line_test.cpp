@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/running_median.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -48,13 +50,17 @@ double incomplete_beta(double x, double a, double b) {
     return 1.0 - front * beta_fraction(1.0 - x, b, a) / b;
 }
 
-/// Bins of the ring between `guard` and `reach` to both sides of `bin`. Near an end of the spectrum both
-/// sides shrink alike: one flank of a steep floor would stand for too little or too much.
+/// Near an end of the spectrum both sides of a window shrink alike: one flank of a steep floor would stand
+/// for too little or too much.
+std::size_t room_around(const PowerSpectrum& s, std::size_t bin) {
+    return std::min(bin - s.first, s.power.size() - 1 - bin);
+}
+
+/// Bins of the ring between `guard` and `reach` to both sides of `bin`, as far as there is room.
 void gather(const PowerSpectrum& s, std::size_t bin, double guard, double reach, std::vector<double>& into) {
     into.clear();
-    const std::size_t room = std::min(bin - s.first, s.power.size() - 1 - bin);
     const auto inner = static_cast<std::size_t>(std::ceil(guard));
-    const std::size_t outer = std::min(static_cast<std::size_t>(std::ceil(reach)), room);
+    const std::size_t outer = std::min(static_cast<std::size_t>(std::ceil(reach)), room_around(s, bin));
     for (std::size_t d = inner; d <= outer; ++d) {
         into.push_back(s.power[bin - d]);
         if (d > 0) into.push_back(s.power[bin + d]);
@@ -106,14 +112,20 @@ double exceedance(double ratio, double averages, double cells) {
 
 std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
     const std::size_t n = spectrum.power.size();
-    std::vector<double> floor(n, 0.0), scratch;
+    std::vector<double> floor(n, 0.0);
     if (n <= spectrum.first) return floor;
-    const auto stride = static_cast<std::size_t>(std::max(1.0, far_cells * spectrum.bins_per_cell / 8.0));
+    const double reach_bins = far_cells * spectrum.bins_per_cell;
+    const auto stride = static_cast<std::size_t>(std::max(1.0, reach_bins / 8.0));
+    const auto reach = static_cast<std::size_t>(std::ceil(reach_bins));
+    RunningMedian median_around(spectrum.power);
     const auto at = [&](std::size_t bin) {
         const std::size_t inside =
             std::clamp(bin, std::min(spectrum.first + stride, n - 1), n - 1 - std::min(stride, n - 1));
-        gather(spectrum, std::max(inside, spectrum.first), 0.0, far_cells * spectrum.bins_per_cell, scratch);
-        return std::max(median(scratch) / median_over_mean(spectrum.averages_at(bin)), 1e-300);
+        const std::size_t middle = std::max(inside, spectrum.first);
+        const std::size_t half = std::min(reach, room_around(spectrum, middle));
+        return std::max(
+            median_around.at(middle - half, 2 * half + 1) / median_over_mean(spectrum.averages_at(bin)),
+            1e-300);
     };
     // Between places a stride apart the floor runs on a straight line in log power.
     double here = at(spectrum.first);
@@ -130,12 +142,16 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
 }
 
 std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, double false_alarm) {
+    return significant_peaks(spectrum, noise_floor(spectrum), false_alarm);
+}
+
+std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, std::span<const double> floor,
+                                               double false_alarm) {
     std::vector<SignificantPeak> peaks;
     const auto& power = spectrum.power;
     if (power.size() < spectrum.first + 8) return peaks;
     const double tries =
         tries_per_cell * static_cast<double>(power.size() - spectrum.first) / spectrum.bins_per_cell;
-    const std::vector<double> floor = noise_floor(spectrum);
     std::vector<double> scratch;
     for (std::size_t k = spectrum.first + 1; k + 1 < power.size(); ++k) {
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;

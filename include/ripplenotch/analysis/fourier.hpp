@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,23 @@ namespace ripplenotch {
 
 /// X[k] = sum over n of x[n] exp(-2 pi i k n / N) for k = 0 .. N/2; N = x.size() > 0, any length.
 [[nodiscard]] std::vector<std::complex<double>> real_fourier(std::span<const double> x);
+
+/// The same for many signals of one length, without copies: fill in(), then run().
+class RealTransform {
+  public:
+    /// length > 0.
+    explicit RealTransform(std::size_t length);
+    ~RealTransform();
+    RealTransform(RealTransform&&) noexcept;
+
+    [[nodiscard]] std::span<double> in();
+    /// length / 2 + 1 sums, valid until the next run; in() stays as it is.
+    std::span<const std::complex<double>> run();
+
+  private:
+    struct Arrays;
+    std::unique_ptr<Arrays> arrays_;
+};
 
 /// The smallest length >= at_least without prime factors above 7, for transforms whose length is free.
 [[nodiscard]] std::size_t fast_length(std::size_t at_least);

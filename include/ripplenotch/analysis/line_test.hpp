@@ -42,6 +42,10 @@ struct SignificantPeak {
 /// either end are not judged.
 [[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
                                                              double false_alarm);
+/// The same where noise_floor(spectrum) is at hand.
+[[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
+                                                             std::span<const double> floor,
+                                                             double false_alarm);
 
 /// The same for spectra of some ten cells: floor from all that is beyond a line's main lobe, or from its
 /// louder side; maxima within 3.5 cells of either end are not judged.

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/piece.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "analysis/piece_kernel.hpp"
+
+namespace ripplenotch {
+namespace {
+
+/// A clock counts as even when no sample is off it by more than this share of a step: then the plain
+/// transform is the same sum.
+constexpr double even_share = 1e-3;
+
+double hann(double time_s, double length_s) {
+    return 0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * time_s / length_s);
+}
+
+void remove_line(std::span<const double> t, std::vector<double>& x) {
+    const auto n = static_cast<double>(x.size());
+    const double mean = std::accumulate(x.begin(), x.end(), 0.0) / n;
+    const double t_mean = std::accumulate(t.begin(), t.end(), 0.0) / n;
+    double tt = 0.0, tx = 0.0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        tt += (t[k] - t_mean) * (t[k] - t_mean);
+        tx += (t[k] - t_mean) * (x[k] - mean);
+    }
+    const double slope = tt > 0.0 ? tx / tt : 0.0;
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] -= mean + slope * (t[k] - t_mean);
+}
+
+}  // namespace
+
+PieceMaker::PieceMaker(std::size_t length, Hertz rate)
+    : rate_(rate.value()), step_s_(1.0 / rate.value()), transform_(length) {
+    const double middle = 0.5 * (static_cast<double>(length) - 1.0);
+    for (std::size_t k = 0; k < length; ++k) {
+        even_time_s_.push_back((static_cast<double>(k) - middle) * step_s_);
+        even_window_.push_back(hann(even_time_s_.back(), static_cast<double>(length) * step_s_));
+        even_sum_ += even_window_.back();
+        even_square_sum_ += even_window_.back() * even_window_.back();
+    }
+}
+
+const Piece& PieceMaker::make(std::span<const double> time_s, std::span<const double> torque_nm) {
+    piece_.middle_s = 0.5 * (time_s.front() + time_s.back());
+    piece_.even = off_even_grid(time_s, step_s_) <= even_share * step_s_;
+    if (piece_.even)
+        make_even(torque_nm);
+    else
+        make_uneven(time_s, torque_nm);
+    return piece_;
+}
+
+void PieceMaker::make_even(std::span<const double> torque_nm) {
+    take_line_and_window(torque_nm, even_line(torque_nm), even_window_, transform_.in());
+    piece_.time_s = even_time_s_;
+    piece_.value = transform_.in();
+    piece_.window_sum = even_sum_;
+    piece_.window_square_sum = even_square_sum_;
+}
+
+void PieceMaker::make_uneven(std::span<const double> time_s, std::span<const double> torque_nm) {
+    const std::size_t n = torque_nm.size();
+    const double length_s = static_cast<double>(n) * step_s_;
+    time_s_.resize(n);
+    value_.assign(torque_nm.begin(), torque_nm.end());
+    for (std::size_t k = 0; k < n; ++k) time_s_[k] = time_s[k] - piece_.middle_s;
+    remove_line(time_s_, value_);
+    piece_.window_sum = piece_.window_square_sum = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+        const double window = hann(time_s_[k], length_s);
+        value_[k] *= window;
+        piece_.window_sum += window;
+        piece_.window_square_sum += window * window;
+    }
+    piece_.time_s = time_s_;
+    piece_.value = value_;
+}
+
+std::span<const std::complex<double>> PieceMaker::transform() {
+    if (piece_.even) return transform_.run();
+    const std::size_t length = piece_.value.size();
+    uneven_sums_ =
+        nonuniform_fourier(piece_.time_s, piece_.value, rate_ / static_cast<double>(length), length / 2 + 1);
+    return uneven_sums_;
+}
+
+}  // namespace ripplenotch

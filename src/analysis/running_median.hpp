@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Median of a window that moves along a signal in steps much shorter than itself.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ripplenotch {
+
+class RunningMedian {
+  public:
+    explicit RunningMedian(std::span<const double> signal) : signal_(signal) {}
+
+    /// The element of rank count / 2 of signal[first .. first + count). O(steps * count) from the window
+    /// before, as one pass over memory a step; count > 0.
+    double at(std::size_t first, std::size_t count);
+
+  private:
+    void start(std::size_t first, std::size_t end);
+    void insert(double value);
+    void replace(double old, double value);
+
+    std::span<const double> signal_;
+    std::size_t first_ = 0, end_ = 0;
+    std::vector<double> sorted_;
+};
+
+}  // namespace ripplenotch
