@@ -6,6 +6,12 @@
 #include <numeric>
 
 namespace ripplenotch {
+namespace {
+
+// Longer than what smoothing ties together, several to a move.
+constexpr double stretch_s = 0.25;
+
+}  // namespace
 
 double Candidate::criterion() const { return gain_left + std::accumulate(prices.begin(), prices.end(), 0.0); }
 
@@ -19,11 +25,24 @@ void Bench::settle_on(const Model& model) {
 
 Candidate Bench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
                         int most_iterations) const {
-    const Fit found = fit(open, case_.motion, case_.torque_nm,
-                          {.first_guess = &first_guess,
-                           .most_iterations = most_iterations,
-                           .settled = 1e-7,
-                           .weighing = &weighing_});
+    return fitted(open, std::move(prices),
+                  {.first_guess = &first_guess,
+                   .most_iterations = most_iterations,
+                   .settled = 1e-7,
+                   .weighing = &weighing_});
+}
+
+Candidate Bench::settled(const Candidate& model) const {
+    return fitted(
+        model.open, model.prices,
+        {.first_guess = &model.stated,
+         .most_iterations = 30,
+         .error_stretch = static_cast<std::size_t>(std::ceil(stretch_s * case_.motion.sample_rate.value())),
+         .weighing = &weighing_});
+}
+
+Candidate Bench::fitted(const Model& open, std::vector<double> prices, const FitOptions& options) const {
+    const Fit found = fit(open, case_.motion, case_.torque_nm, options);
     const double squares = found.residual_rms_nm * found.residual_rms_nm * static_cast<double>(found.samples);
     return {open,
             found.model,

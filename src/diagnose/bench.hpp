@@ -41,6 +41,8 @@ class Bench {
 
     [[nodiscard]] Candidate fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
                                    int most_iterations = 8) const;
+    /// The same model at its very best, with errors that do not take the noise for white.
+    [[nodiscard]] Candidate settled(const Candidate& model) const;
     /// Weighed measured less predicted torque, in units of the noise, a number per row().
     [[nodiscard]] std::vector<double> residual(const Model& stated) const;
     [[nodiscard]] std::vector<double> raw_residual(const Model& stated) const;
@@ -65,6 +67,8 @@ class Bench {
     [[nodiscard]] std::vector<Screened>& screened() const { return screened_; }
 
   private:
+    [[nodiscard]] Candidate fitted(const Model& open, std::vector<double> prices,
+                                   const FitOptions& options) const;
     mutable std::vector<Screened> screened_;
     const Case& case_;
     NoiseFloor noise_;

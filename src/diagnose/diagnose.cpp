@@ -10,6 +10,7 @@
 #include "diagnose/judge.hpp"
 #include "diagnose/leftover.hpp"
 #include "diagnose/search.hpp"
+#include "diagnose/values.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
@@ -239,11 +240,13 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     diagnosis.unexplained.insert(diagnosis.unexplained.begin(), aside.begin(), aside.end());
     // The excerpt chose; the whole log gives the values.
     if (part.size() < whole.size()) {
+        (void)set_aside(whole, aside);
         Bench all(whole, found.noise);
         all.settle_on(last.stated);
         last = all.fitted(last.open, last.stated, last.prices, 4);
         diagnosis.baseline = all.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;
     }
+    last = told_values(part.size() < whole.size() ? whole : part, found.noise, last, diagnosis.faults);
     diagnosis.model = last.stated;
     diagnosis.values = last.values;
     std::size_t place = own;

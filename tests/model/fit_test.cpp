@@ -144,7 +144,7 @@ TEST_CASE("coloured noise makes wider intervals, and they hold the truth as ofte
     const Motion motion = first_part(strokes(), 3000);
     const auto clean = predict_nm(truth, motion);
     const double color[] = {0.9};
-    int held = 0, held_as_white = 0;
+    int held = 0, held_as_white = 0, held_by_stretch = 0;
     for (unsigned seed = 0; seed < 100; ++seed) {
         auto torque_nm =
             noisy(std::vector<double>(motion.size(), 0.0), 0.06 * std::sqrt(1.0 - 0.81), 300 + seed);
@@ -157,9 +157,37 @@ TEST_CASE("coloured noise makes wider intervals, and they hold the truth as ofte
         };
         held += holds(fit(opened(truth), motion, torque_nm, {.noise_color = color, .use = use}));
         held_as_white += holds(fit(opened(truth), motion, torque_nm));
+        held_by_stretch += holds(fit(opened(truth), motion, torque_nm, {.error_stretch = 100}));
     }
     CHECK(held >= 88);
     CHECK(held_as_white < 60);
+    CHECK(held_by_stretch >= 88);
+}
+
+TEST_CASE(
+    "errors that look at each stretch widen an interval where the model lacks something, and never narrow "
+    "it") {
+    Model truth{GearRatio(100.0),
+                {parse_term("offset,torque_nm=0.3"), parse_term("inertia,inertia_kgm2=0.5")}};
+    const Motion motion = first_part(strokes(), 3000);
+    const auto clean = predict_nm(truth, motion);
+    const auto errors_of = [&](const std::vector<double>& torque_nm, std::size_t stretch) {
+        const Fit found = fit(opened(truth), motion, torque_nm, {.error_stretch = stretch});
+        return std::pair(*found.values[0].standard_error, *found.values[1].standard_error);
+    };
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const auto torque_nm = noisy(clean, 0.06, 700 + seed);
+        const auto white = errors_of(torque_nm, 0), robust = errors_of(torque_nm, 100);
+        CHECK(robust.first >= white.first);
+        CHECK(robust.second >= white.second);
+        // 30 stretches tell a standard deviation within 13 %.
+        CHECK(robust.first < 1.5 * white.first);
+        // 0.05 Nm too much or too little in each half second: 6 of them, a mean that is off by
+        // 0.05 / sqrt(6) = 0.02 Nm, where white noise lets expect 0.001.
+        auto lacking = torque_nm;
+        for (std::size_t k = 0; k < lacking.size(); ++k) lacking[k] += k / 250 % 2 == 0 ? 0.05 : -0.05;
+        CHECK(errors_of(lacking, 250).first > 5.0 * errors_of(lacking, 0).first);
+    }
 }
 
 TEST_CASE("samples left out do not count, whatever they hold") {

@@ -10,7 +10,8 @@
 
 namespace ripplenotch {
 
-/// 95 % interval, of the errors being normal and the model being linear within it.
+/// 95 % interval, of the errors being normal and the model being linear within it. With
+/// FitOptions::error_stretch they need not be white.
 struct Interval {
     double low = 0.0, high = 0.0;
 };
@@ -45,6 +46,9 @@ struct FitOptions {
     int most_iterations = 50;
     /// Improvement of the sum of squares at which the search ends, relative.
     double settled = 1e-9;
+    /// Samples in a stretch of the log, for errors that look at how the residual pulls in each stretch: what
+    /// the noise remembers, and what the model lacks here and there, widens them. 0: the noise is white.
+    std::size_t error_stretch = 0;
     /// In place of noise_color and use; it must be made for torques of the same length.
     const Weighing* weighing = nullptr;
 };
