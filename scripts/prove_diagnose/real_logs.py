@@ -15,18 +15,23 @@ from . import table, tool
 LOGS = (("Franka Panda J1", "gpl3/panda_gaz_j1.csv", None, 120, ()),
         ("Franka Panda J4", "gpl3/panda_gaz_j4.csv", None, 120, ()),
         ("Neura LARA 8 J3", "neura_lara8_j3.csv", None, 101, ()),
+        ("Neura LARA 8 J3, its position left out", "neura_lara8_j3.csv", None, 101, ()),
         ("KUKA KR300 J4", "kuka_kr300_trajA_all.csv", "kuka_kr300_trajB_all.csv", 221, ("--joint", "j4")),
+        ("KUKA KR300 J6", "kuka_kr300_trajA_all.csv", "kuka_kr300_trajB_all.csv", 206793 / 1340, ("--joint", "j6")),
         ("UR10 shoulder pan", "ur10_unisa_exciting_all.csv", None, 101, ("--joint", "shoulder_pan_joint")))
 MODELS = (("paper's model", tool.BASE["effects"]), ("inertia alone", tool.BASE["effects"][:1]))
 
 
-def halves(path, folder):
-    """The log cut in two files after 60 % of its rows."""
-    header, *rows = path.read_text().splitlines(keepends=True)
+def parts(path, folder, blind):
+    """The log cut in two files after 60 % of its rows; blind: time, velocity and torque alone, which come first."""
+    rows = path.read_text().splitlines()
+    if blind:
+        rows = [",".join(row.split(",")[:3]) for row in rows]
+    header, *rows = rows
     cut = round(0.6 * len(rows))
     files = [folder / "train.csv", folder / "validate.csv"]
     for file, part in zip(files, (rows[:cut], rows[cut:])):
-        file.write_text(header + "".join(part))
+        file.write_text("\n".join([header, *part]) + "\n")
     return files
 
 
@@ -40,23 +45,26 @@ def diagnosed(program, robot, logs, ratio, effects, words, folder):
 
 
 def listed(found):
-    """Confirmed names, then the others with their status."""
+    """Confirmed names, then what else was found or could not be examined, with its status."""
     names = [entry["effect"] for entry in found["rounds"] if entry["status"] == "confirmed"]
+    names += [entry["effect"] for entry in found["faults"]]
     others = [f"{entry['effect']} ({entry['status']})" for entry in found["rounds"] if entry["status"] != "confirmed"]
+    others += [f"{entry['effect']} (not decidable)" for entry in found.get("undecidable", [])]
     return ", ".join(names) or "none", ", ".join(others) or "none"
 
 
 def line(robot, model, found, seconds):
     gap = found["gap"]
-    return [robot, model, f"{gap['before_nm']:.3g} → {gap['after_nm']:.3g}", f"{gap['noise_floor_nm']:.3g}",
+    whole = found["rounds"][-1]["gap_after_nm"] if found["rounds"] else gap["after_nm"]
+    return [robot, model, f"{gap['before_nm']:.3g} → {gap['after_nm']:.3g}", f"{whole:.3g}", f"{gap['noise_floor_nm']:.3g}",
             f"{gap['validation_before_nm']:.3g} → {gap['validation_after_nm']:.3g}", *listed(found),
             str(len(found["unexplained"])), found["verdict"], f"{seconds:.1f} s"]
 
 
 def tables(program, folder):
     """One line for each log and model; logs that are not there are said to be."""
-    head = ["robot", "model", "gap, Nm", "floor", "on the other rows", "confirmed", "not confirmed", "unexplained",
-            "verdict", "time"]
+    head = ["robot", "model", "gap, Nm", "with all that was tried", "floor", "on the other rows", "confirmed",
+            "not confirmed", "places unexplained", "verdict", "time"]
     lines = []
     for robot, train, validate, ratio, words in LOGS:
         if not (folder / train).exists():
@@ -65,7 +73,8 @@ def tables(program, folder):
         for model, effects in MODELS:
             with tempfile.TemporaryDirectory(prefix="prove-diagnose-") as name:
                 place = pathlib.Path(name)
-                logs = (folder / train, folder / validate) if validate else halves(folder / train, place)
+                logs = ((folder / train, folder / validate) if validate
+                        else parts(folder / train, place, "left out" in robot))
                 try:
                     lines.append(line(robot, model, *diagnosed(program, robot, logs, ratio, effects, words, place)))
                 except (tool.ToolFailed, KeyError, TypeError) as failure:

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch diagnose on logs of real robots, whose truth nobody knows: what must hold all the same."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+INERTIA = {"effect": "inertia"}
+PAPER = [INERTIA, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]
+KUKA_J6 = 206793 / 1340
+
+
+@unittest.skipUnless(LOGS.is_dir(), "no logs of real robots here (RIPPLENOTCH_LOGS)")
+class Robots(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def path(self, name):
+        return pathlib.Path(self.folder.name) / name
+
+    def part(self, log, name, first, last, columns=None):
+        """Rows of a log from the share `first` to the share `last`, in a file of their own."""
+        header, *rows = [line.split(",")[:columns] for line in (LOGS / log).read_text().splitlines()]
+        kept = rows[round(first * len(rows)):round(last * len(rows))]
+        self.path(name).write_text("\n".join(",".join(row) for row in [header, *kept]) + "\n")
+        return self.path(name)
+
+    def diagnosed(self, log, validation, ratio, effects, *words):
+        self.path("model.json").write_text(
+            json.dumps({"schema": "ripplenotch/model/1", "gear_ratio": ratio, "effects": effects}))
+        done = subprocess.run([TOOL, "diagnose", log, "--model", self.path("model.json"), "--validate", validation, "--json",
+                               *words], capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def halves(self, log, columns=None):
+        return self.part(log, "train.csv", 0.0, 0.6, columns), self.part(log, "other.csv", 0.6, 1.0, columns)
+
+    def check_no_false_story(self, found):
+        """Whatever it says, rows that it never saw are not told worse, and what is left is admitted."""
+        gap = found["gap"]
+        self.assertLessEqual(gap["after_nm"], 1.001 * gap["before_nm"])
+        self.assertLessEqual(gap["validation_after_nm"], 1.02 * gap["validation_before_nm"])
+        self.assertNotIn("tone", found["named"])
+        self.assertNotIn(found["verdict"], ("matches", "explained"))
+        self.assertGreater(len(found["unexplained"]), 0)
+
+    def test_an_arm_that_moves_as_a_whole_is_not_explained_by_one_joint(self):
+        for joint in ("j1", "j4"):
+            with self.subTest(joint):
+                self.check_no_false_story(self.diagnosed(*self.halves(f"gpl3/panda_gaz_{joint}.csv"), 120, PAPER))
+
+    def test_gravity_of_the_joint_that_moves_alone_is_found_and_holds_at_positions_that_were_never_seen(self):
+        found = self.diagnosed(*self.halves("neura_lara8_j3.csv"), 101, [INERTIA])
+        self.assertIn("gravity", found["named"])
+        gap = found["gap"]
+        self.assertLess(gap["after_nm"], 0.1 * gap["before_nm"])
+        self.assertLess(gap["validation_after_nm"], 0.4 * gap["validation_before_nm"])
+        self.check_no_false_story(found)
+
+    def test_friction_of_the_wrist_is_found_and_holds_on_a_second_recording(self):
+        logs = [LOGS / f"kuka_kr300_traj{name}_all.csv" for name in "AB"]
+        found = self.diagnosed(*logs, KUKA_J6, [INERTIA], "--joint", "j6")
+        self.assertIn("coulomb-friction", found["named"])
+        self.assertLess(found["gap"]["validation_after_nm"], 0.6 * found["gap"]["validation_before_nm"])
+        self.check_no_false_story(found)
+
+
+if __name__ == "__main__":
+    unittest.main()
