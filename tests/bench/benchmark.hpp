@@ -7,6 +7,8 @@
 // counts is processor time, the median of rounds that take all benchmarks in turn, and a rate that
 // scripts/bench-peers can read.
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -31,8 +33,23 @@ struct Benchmark {
 /// Keeps a result from being left out by the compiler.
 void keep(double value);
 
-/// A joint's log: speed through all bands of a table up to 166 deg/s, ripple at orders 1 and 2 of a gear of
-/// 40, noise. 2000 samples a second; time as decimal text reads, k / 2000.
+/// Samples of a joint, 2000 a second: speed through all bands of a table up to 166 deg/s, ripple at orders 1
+/// and 2 of a gear of 40, noise from a linear congruential generator. Joints differ in where their motion
+/// begins.
+class BenchSignal {
+  public:
+    struct Sample {
+        double time_s, velocity_deg_s, torque_nm;
+    };
+    explicit BenchSignal(std::size_t joint = 0) : joint_(static_cast<double>(joint)), seed_(joint + 1) {}
+    Sample next();
+
+  private:
+    double joint_, motor_ = 0.0;
+    std::uint64_t seed_, count_ = 0;
+};
+
+/// The first samples of a joint's signal.
 struct BenchLog {
     explicit BenchLog(std::size_t samples);
     std::vector<double> time_s, velocity_deg_s, torque_nm;

@@ -4,12 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <ctime>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "benchmark.hpp"
 
@@ -108,21 +105,6 @@ std::vector<const Benchmark*> all_benchmarks() {
 }
 
 void keep(double value) { kept = value; }
-
-BenchLog::BenchLog(std::size_t samples) {
-    double motor = 0.0;
-    std::uint64_t seed = 1;
-    for (std::size_t k = 0; k < samples; ++k) {
-        const double t = static_cast<double>(k) / 2000.0;
-        const double speed = 166.0 * std::sin(0.314 * t) * std::sin(0.17 * t + 1.0);
-        motor += 40.0 * speed * std::numbers::pi / 180.0 / 2000.0;
-        seed = seed * 16807 % 2147483647;
-        time_s.push_back(t);
-        velocity_deg_s.push_back(speed);
-        torque_nm.push_back(speed / 52.0 + 0.8 * std::sin(motor) + 0.35 * std::sin(2.0 * motor + 1.0) +
-                            0.2 * (static_cast<double>(seed) / 2147483647.0 - 0.5));
-    }
-}
 
 }  // namespace ripplenotch::bench
 

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""What is compared: logs, commands, rounds. Results are plain dictionaries, so that they can be kept and printed again."""
+
+import json
+import pathlib
+import shutil
+import subprocess
+from dataclasses import asdict
+
+from . import measure
+from .measure import Side
+
+TABLE_WORDS = ["--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20", "--q", "5",
+               "--width", "digital", "--above", "pass"]
+COLUMNS = ["--columns", "time,velocity,torque"]
+TOOL = "ripplenotch"
+
+
+class Bench:
+    def __init__(self, options, peers, say):
+        self.tool, self.make_log = pathlib.Path(options.tool), pathlib.Path(options.benchmarks) / "bench_make_log"
+        self.benchmarks = pathlib.Path(options.benchmarks) / "bench_ripplenotch"
+        self.folder, self.peers, self.say = pathlib.Path(options.work), peers, say
+        self.rows, self.rounds, self.slow = options.rows, options.rounds, options.slow_rounds
+        self.table = self.folder / "table.json"
+        subprocess.run([self.tool, "design", *TABLE_WORDS, "-o", self.table, "--force"], check=True)
+
+    def log(self, format, rows, joints=1):
+        """Made once; `format` is 6, shortest or npy."""
+        path = self.folder / f"{format}_{joints}_{rows}.{'npy' if format == 'npy' else 'csv'}"
+        if not path.exists():
+            self.say(f"making {path.name}")
+            with open(path, "wb") as sink:
+                subprocess.run([self.make_log, format, str(joints), str(rows)], stdout=sink, check=True)
+        return path
+
+    def out(self, side, log):
+        return self.folder / f"out_{''.join(c for c in side if c.isalnum())}{log.suffix}"
+
+    def filter(self, log, *words):
+        out = self.out(TOOL, log)
+        return Side(TOOL, [self.tool, "filter", log, "--table", self.table, "-o", out, "-q", *words], out)
+
+    def peer(self, name, words, log, most_runs=1000):
+        return Side(name, [word if word != "OUT" else self.out(name, log) for word in words], self.out(name, log), most_runs)
+
+    def compare(self, name, log, sides):
+        """One case: every side's runs, and how far the torques of the tool and of the first peer that filters are apart."""
+        self.say(f"{name}, {log.stat().st_size / 1e6:.0f} MB")
+        runs, failed = measure.in_turn(sides, self.rounds, self.say)
+        result = {"mb": log.stat().st_size / 1e6, "failed": failed,
+                  "runs": {side: [asdict(one) for one in taken] for side, taken in runs.items()}}
+        filters = [side for side in sides if side.name in runs and "SciPy" in side.name]
+        if filters and TOOL in runs and log.suffix == ".csv":
+            result["differs_nm"] = largest_difference(sides[0].makes, filters[0].makes)
+        for side in sides:
+            side.makes.unlink(missing_ok=True)
+        return result
+
+    def long_csv(self, digits):
+        log = self.log(digits, self.rows)
+        sides = [self.filter(log, "--decimals", digits), self.peer("cp", ["cp", log, "OUT"], log)]
+        if self.peers.has("pandas"):
+            words = self.peers.script("pandas_scipy.py", log, "OUT", digits)
+            sides.append(self.peer("pandas + SciPy", words, log, self.slow))
+        for name in ("Polars", "DuckDB"):
+            if self.peers.has(name):
+                words = self.peers.node(f"{name.lower()}.mjs", log, "OUT", digits)
+                sides.append(self.peer(f"{name}, no filter", words, log))
+        return self.compare(f"CSV, {digits} digits", log, sides)
+
+    def long_npy(self):
+        log = self.log("npy", self.rows)
+        sides = [self.filter(log, *COLUMNS), self.peer("cp", ["cp", log, "OUT"], log)]
+        if self.peers.has("SciPy"):
+            sides.append(self.peer("NumPy + SciPy", self.peers.script("numpy_scipy.py", log, "OUT"), log))
+        return self.compare("npy", log, sides)
+
+    def short_csv(self):
+        log = self.log("6", 100_000)
+        sides = [self.filter(log, "--decimals", "6")]
+        if self.peers.has("Octave"):
+            sides.append(self.peer("Octave", self.peers.octave(log, "OUT"), log))
+        if self.peers.has("pandas"):
+            sides.append(self.peer("pandas + SciPy", self.peers.script("pandas_scipy.py", log, "OUT", "6"), log))
+        return self.compare("CSV of 100,000 rows", log, sides)
+
+    def kernels(self):
+        """Processor seconds inside the process, of the library and of SciPy; processes alternate."""
+        log, ours, theirs = self.log("npy", self.rows), {}, {}
+        for _ in range(self.rounds):
+            done = subprocess.run([self.benchmarks, "--json", "--rounds", "3"], capture_output=True, text=True, check=True)
+            for one in json.loads(done.stdout):
+                ours.setdefault(one["name"], {"work": one["work"], "cpu_s": []})["cpu_s"] += one["cpu_s"]
+            if self.peers.has("SciPy"):
+                done = subprocess.run([str(w) for w in self.peers.script("scipy_kernels.py", log, "3")], capture_output=True,
+                                      text=True, check=True)
+                for name, one in json.loads(done.stdout).items():
+                    theirs.setdefault(name, {"work": one["work"], "cpu_s": []})["cpu_s"] += one["cpu_s"]
+        return {"ripplenotch": ours, "scipy": theirs}
+
+    def growth(self, row_counts, joint_counts):
+        """The tool alone: rows of one joint, then joints of one length; CSV with 6 decimals."""
+        cases = [(1, rows) for rows in row_counts] + [(joints, self.rows // 10) for joints in joint_counts]
+        found = []
+        for joints, rows in cases:
+            if room_for(self.folder, joints, rows):
+                log = self.log("6", rows, joints)
+                side = self.filter(log, "--decimals", "6", *(["--joint", "all"] if joints > 1 else []))
+                runs, failed = measure.in_turn([side], self.rounds if rows <= 10_000_000 else 1, self.say)
+                side.makes.unlink(missing_ok=True)
+                found.append({"joints": joints, "rows": rows, "mb": log.stat().st_size / 1e6, "failed": failed,
+                              "runs": [asdict(one) for one in runs.get(TOOL, [])]})
+                if rows > 10_000_000:
+                    log.unlink()
+            else:
+                found.append({"joints": joints, "rows": rows, "mb": 0, "runs": [], "failed": {TOOL: "not enough room on disk"}})
+        return found
+
+
+def room_for(folder, joints, rows):
+    return shutil.disk_usage(folder).free > 2.2 * rows * (8 + 20 * joints)
+
+
+def largest_difference(mine, theirs):
+    """Over the torque columns of some thousand rows all along both outputs, Nm."""
+    worst = 0.0
+    with open(mine) as first, open(theirs) as second:
+        for number, (a, b) in enumerate(zip(first, second)):
+            if number % 2003 == 1:
+                worst = max(worst, abs(float(a.split(",")[2]) - float(b.split(",")[2])))
+    return worst
+
+
+def all_cases(bench, row_counts, joint_counts):
+    return {"rows": bench.rows, "fixed": bench.long_csv("6"), "full": bench.long_csv("shortest"), "npy": bench.long_npy(),
+            "short": bench.short_csv(), "kernels": bench.kernels(), "growth": bench.growth(row_counts, joint_counts)}

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""The record of a run as the tables of docs/performance.md."""
+
+from .cases import TOOL
+from .measure import Run, median
+
+FIXED, SWITCHING = "filter: fixed notch, one channel", "filter: switching bank, one channel"
+WELCH = "spectra: Welch and its lines, segments of 4096"
+
+
+def table(head, lines):
+    return "\n".join("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *lines])
+
+
+def figure(value):
+    """Three digits: 0.0523, 1.52, 52.3, 1234."""
+    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
+
+
+def medians(case):
+    return {side: median([Run(**one) for one in runs]) for side, runs in case["runs"].items()}
+
+
+def rate(kernels, side, name):
+    """Million a second by the median of processor seconds; None where it was not measured."""
+    one = kernels[side].get(name)
+    return one["work"] / sorted(one["cpu_s"])[len(one["cpu_s"]) // 2] / 1e6 if one and one["cpu_s"] else None
+
+
+def ratio(case, side, other, what):
+    """What the other needs over what `side` needs; None where one of them was not measured."""
+    found = medians(case)
+    return getattr(found[other], what) / getattr(found[side], what) if side in found and other in found else None
+
+
+def at_least(what, must, unit, value):
+    return [what, f"at least {must} {unit}", "-" if value is None else figure(value), met(value, lambda v: v >= must)]
+
+
+def at_most(what, must, unit, value):
+    return [what, f"at most {must} {unit}", "-" if value is None else figure(value), met(value, lambda v: v <= must)]
+
+
+def met(value, holds):
+    return "not measured" if value is None else "yes" if holds(value) else "**no**"
+
+
+def peak(case):
+    found = medians(case)
+    return found[TOOL].peak_mib if TOOL in found else None
+
+
+def promises(record):
+    """Each line of what speed has to be, with what it is."""
+    fixed, full, npy, kernels = record["fixed"], record["full"], record["npy"], record["kernels"]
+    ours = {name: rate(kernels, "ripplenotch", name) for name in (FIXED, SWITCHING, WELCH)}
+    theirs = {name: rate(kernels, "scipy", name) for name in ("fixed", "switching", "welch")}
+
+    def beside(mine, other):
+        return ours[mine] / theirs[other] if ours[mine] and theirs[other] else None
+
+    copied = ratio(fixed, "cp", TOOL, "wall_s"), ratio(npy, "cp", TOOL, "wall_s")
+    return [
+        at_least("CSV, 6 decimals: CPU of pandas + SciPy over ours", 80, "times", ratio(fixed, TOOL, "pandas + SciPy", "cpu_s")),
+        at_least("CSV, 6 decimals: CPU of Polars without a filter over ours", 3, "times", ratio(fixed, TOOL, "Polars, no filter", "cpu_s")),
+        at_most("CSV, 6 decimals: our wall time over `cp`", 4, "times", copied[0]),
+        at_most("CSV, 6 decimals: peak memory", 32, "MiB", peak(fixed)),
+        at_least("CSV, 17 digits: CPU of Polars without a filter over ours", 2, "times", ratio(full, TOOL, "Polars, no filter", "cpu_s")),
+        at_most("npy: our wall time over `cp`", 2, "times", copied[1]),
+        at_most("npy: peak memory", 16, "MiB", peak(npy)),
+        at_least("CSV of 100,000 rows, whole process: Octave over ours", 30, "times", ratio(record["short"], TOOL, "Octave", "wall_s")),
+        at_least("fixed notch, one channel", 444, "Msamples/s", ours[FIXED]),
+        at_least("fixed notch, one channel: over SciPy's sosfilt", 4, "times", beside(FIXED, "fixed")),
+        at_least("switching bank, one channel: over SciPy by segments", 10, "times", beside(SWITCHING, "switching")),
+        at_least("Welch, segments of 4096: over SciPy", 5, "times", beside(WELCH, "welch")),
+    ]
+
+
+def processes(record):
+    lines = []
+    names = {"fixed": "CSV, 6 decimals", "full": "CSV, 17 digits", "npy": "npy", "short": "CSV, 6 decimals"}
+    for key, name in names.items():
+        case, rows = record[key], 100_000 if key == "short" else record["rows"]
+        for side, one in medians(case).items():
+            lines.append([f"{name}, {rows:,} rows, {case['mb']:.0f} MB", side, figure(one.wall_s), figure(one.cpu_s),
+                          figure(one.peak_mib), str(len(case["runs"][side]))])
+    return table(["log", "program", "wall, s", "CPU, s", "peak, MiB", "runs"], lines)
+
+
+def kernels(record):
+    lines = []
+    for side, found in record["kernels"].items():
+        for name, one in found.items():
+            lines.append([name if side == "ripplenotch" else {"fixed": "sosfilt, two sections", "switching": "sosfilt by segments",
+                                                             "welch": "signal.welch, segments of 4096"}[name],
+                          side, figure(rate(record["kernels"], side, name)), str(len(one["cpu_s"]))])
+    return table(["what", "by", "million a CPU second", "passes"], lines)
+
+
+def growth(record):
+    lines = []
+    for case in record["growth"]:
+        one = median([Run(**r) for r in case["runs"]]) if case["runs"] else None
+        each = f"{1e9 * one.cpu_s / case['rows'] / case['joints']:.0f}" if one else ", ".join(case["failed"].values())
+        lines.append([f"{case['rows']:,}", str(case["joints"]), f"{case['mb']:.0f}",
+                      *([figure(one.wall_s), figure(one.cpu_s), figure(one.peak_mib)] if one else ["-"] * 3), each])
+    return table(["rows", "joints", "MB", "wall, s", "CPU, s", "peak, MiB", "CPU, ns a row and joint"], lines)
+
+
+def raw(record):
+    """All runs, as wall/CPU/peak."""
+    lines = []
+    for key in ("fixed", "full", "npy", "short"):
+        for side, runs in record[key]["runs"].items():
+            lines.append(f"{key} · {side}: " + ", ".join(f"{r['wall_s']:.3f}/{r['cpu_s']:.3f}/{r['peak_mib']:.1f}" for r in runs))
+    for side, found in record["kernels"].items():
+        for name, one in found.items():
+            lines.append(f"{side} · {name}: " + ", ".join(f"{1e3 * s:.2f}" for s in one["cpu_s"]) + " ms")
+    for case in record["growth"]:
+        lines.append(f"{case['rows']} rows, {case['joints']} joints: " +
+                     ", ".join(f"{r['wall_s']:.3f}/{r['cpu_s']:.3f}/{r['peak_mib']:.1f}" for r in case["runs"]))
+    return "```text\n" + "\n".join(lines) + "\n```"
+
+
+def machine(record):
+    facts = [f"{record['date']}, ripplenotch {record['version']} ({record['commit']}).", record["machine"],
+             "With " + ", ".join(f"{name} {version}" for name, version in record["peers"].items()) + "."]
+    facts += [f"Left out: {name}, for {why}." for name, why in record["missing"].items()]
+    apart = record["fixed"].get("differs_nm")
+    if apart is not None:
+        facts.append(f"The filtered torques of ripplenotch and of pandas + SciPy differ by at most {apart:.1e} Nm at six decimals.")
+    return "\n".join(facts)
+
+
+def tables(record):
+    return {"machine": machine(record), "promises": table(["what", "must be", "measured", "met"], promises(record)),
+            "processes": processes(record), "kernels": kernels(record), "growth": growth(record), "raw": raw(record)}
