@@ -14,12 +14,14 @@ TABLE_WORDS = ["--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz",
                "--width", "digital", "--above", "pass"]
 COLUMNS = ["--columns", "time,velocity,torque"]
 TOOL = "ripplenotch"
+MODEL = pathlib.Path(__file__).resolve().parents[2] / "data" / "paper_model.json"
 
 
 class Bench:
     def __init__(self, options, peers, say):
-        self.tool, self.make_log = pathlib.Path(options.tool), pathlib.Path(options.benchmarks) / "bench_make_log"
-        self.benchmarks = pathlib.Path(options.benchmarks) / "bench_ripplenotch"
+        self.tool, programs = pathlib.Path(options.tool), pathlib.Path(options.benchmarks)
+        self.make_log, self.run_once = programs / "bench_make_log", programs / "bench_run_once"
+        self.benchmarks = programs / "bench_ripplenotch"
         self.folder, self.peers, self.say = pathlib.Path(options.work), peers, say
         self.rows, self.rounds, self.slow = options.rows, options.rounds, options.slow_rounds
         self.table = self.folder / "table.json"
@@ -47,7 +49,7 @@ class Bench:
     def compare(self, name, log, sides):
         """One case: every side's runs, and how far the torques of the tool and of the first peer that filters are apart."""
         self.say(f"{name}, {log.stat().st_size / 1e6:.0f} MB")
-        runs, failed = measure.in_turn(sides, self.rounds, self.say)
+        runs, failed = measure.in_turn(self.run_once, sides, self.rounds, self.say)
         result = {"mb": log.stat().st_size / 1e6, "failed": failed,
                   "runs": {side: [asdict(one) for one in taken] for side, taken in runs.items()}}
         filters = [side for side in sides if side.name in runs and "SciPy" in side.name]
@@ -87,7 +89,7 @@ class Bench:
 
     def kernels(self):
         """Processor seconds inside the process, of the library and of SciPy; processes alternate."""
-        log, ours, theirs = self.log("npy", self.rows), {}, {}
+        log, ours, theirs = self.log("npy", 10_000_000), {}, {}
         for _ in range(self.rounds):
             done = subprocess.run([self.benchmarks, "--json", "--rounds", "3"], capture_output=True, text=True, check=True)
             for one in json.loads(done.stdout):
@@ -99,6 +101,32 @@ class Bench:
                     theirs.setdefault(name, {"work": one["work"], "cpu_s": []})["cpu_s"] += one["cpu_s"]
         return {"ripplenotch": ours, "scipy": theirs}
 
+    def analysis(self, rows):
+        """The commands that look for lines, the tool alone, on a log at one speed and on one of moves of four seconds."""
+        found = {}
+        for motion, log in self.simulated(rows).items():
+            for words in (["spectrum", log, "--segment", "4.096s"], ["spectrum", log], ["spectrum", log, "--domain", "order"],
+                          ["identify", log]):
+                if motion == "moves" or "order" not in words:
+                    out = self.out("analysis", log)
+                    name = " ".join([words[0], *words[2:]])
+                    runs, failed = measure.in_turn(self.run_once, [Side(name, [self.tool, *words, "-q", "-o", out], out)],
+                                                   self.rounds, self.say)
+                    found[f"{name}, {motion}"] = {"rows": rows, "failed": failed,
+                                                  "runs": [asdict(one) for one in runs.get(name, [])]}
+        return found
+
+    def simulated(self, rows):
+        seconds = rows / 1000
+        motions = {"one speed": ["--motion", f"constant,speed=60deg/s,duration={seconds}s"],
+                   "moves": [word for k in range(int(seconds / 4)) for word in
+                             ("--motion", f"poly6,to={-90 if k % 2 == 0 else 90}deg,duration=4s" + (",from=90deg" if k == 0 else ""))]}
+        logs = {name: self.folder / f"{name.replace(' ', '_')}_{rows}.npy" for name in motions}
+        for name, log in logs.items():
+            subprocess.run([self.tool, "simulate", "--model", MODEL, *motions[name], "--sample-rate", "1kHz", "--noise", "0.05Nm",
+                            "--seed", "1", "-o", log, "--force", "-q"], check=True)
+        return logs
+
     def growth(self, row_counts, joint_counts):
         """The tool alone: rows of one joint, then joints of one length; CSV with 6 decimals."""
         cases = [(1, rows) for rows in row_counts] + [(joints, self.rows // 10) for joints in joint_counts]
@@ -107,7 +135,7 @@ class Bench:
             if room_for(self.folder, joints, rows):
                 log = self.log("6", rows, joints)
                 side = self.filter(log, "--decimals", "6", *(["--joint", "all"] if joints > 1 else []))
-                runs, failed = measure.in_turn([side], self.rounds if rows <= 10_000_000 else 1, self.say)
+                runs, failed = measure.in_turn(self.run_once, [side], self.rounds if rows <= 10_000_000 else 1, self.say)
                 side.makes.unlink(missing_ok=True)
                 found.append({"joints": joints, "rows": rows, "mb": log.stat().st_size / 1e6, "failed": failed,
                               "runs": [asdict(one) for one in runs.get(TOOL, [])]})
@@ -134,4 +162,5 @@ def largest_difference(mine, theirs):
 
 def all_cases(bench, row_counts, joint_counts):
     return {"rows": bench.rows, "fixed": bench.long_csv("6"), "full": bench.long_csv("shortest"), "npy": bench.long_npy(),
-            "short": bench.short_csv(), "kernels": bench.kernels(), "growth": bench.growth(row_counts, joint_counts)}
+            "short": bench.short_csv(), "kernels": bench.kernels(), "analysis": bench.analysis(bench.rows // 10),
+            "growth": bench.growth(row_counts, joint_counts)}

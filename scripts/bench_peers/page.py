@@ -8,6 +8,9 @@ FIXED, SWITCHING = "filter: fixed notch, one channel", "filter: switching bank, 
 WELCH = "spectra: Welch and its lines, segments of 4096"
 
 
+BROKEN = "**no**"
+
+
 def table(head, lines):
     return "\n".join("| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head), *lines])
 
@@ -42,7 +45,7 @@ def at_most(what, must, unit, value):
 
 
 def met(value, holds):
-    return "not measured" if value is None else "yes" if holds(value) else "**no**"
+    return "not measured" if value is None else "yes" if holds(value) else BROKEN
 
 
 def peak(case):
@@ -91,10 +94,20 @@ def kernels(record):
     lines = []
     for side, found in record["kernels"].items():
         for name, one in found.items():
-            lines.append([name if side == "ripplenotch" else {"fixed": "sosfilt, two sections", "switching": "sosfilt by segments",
+            lines.append([name if side == "ripplenotch" else {"fixed": "sosfilt, two sections", "switching": "sosfilt by segments", "all nine": "sosfilt, all nine",
                                                              "welch": "signal.welch, segments of 4096"}[name],
                           side, figure(rate(record["kernels"], side, name)), str(len(one["cpu_s"]))])
     return table(["what", "by", "million a CPU second", "passes"], lines)
+
+
+def analysis(record):
+    lines = []
+    for name, case in record["analysis"].items():
+        if case["runs"]:
+            one = median([Run(**r) for r in case["runs"]])
+            lines.append([f"`{name.split(', ')[0]}`, {name.split(', ')[1]}", f"{case['rows']:,}", figure(one.wall_s), figure(one.cpu_s),
+                          figure(one.peak_mib)])
+    return table(["command", "rows", "wall, s", "CPU, s", "peak, MiB"], lines)
 
 
 def growth(record):
@@ -107,18 +120,21 @@ def growth(record):
     return table(["rows", "joints", "MB", "wall, s", "CPU, s", "peak, MiB", "CPU, ns a row and joint"], lines)
 
 
+def as_words(runs):
+    return ", ".join(f"{r['wall_s']:.3f}/{r['cpu_s']:.3f}/{r['peak_mib']:.1f}" for r in runs)
+
+
 def raw(record):
-    """All runs, as wall/CPU/peak."""
+    """All runs: wall seconds / CPU seconds / peak MiB, and CPU milliseconds of a pass."""
     lines = []
     for key in ("fixed", "full", "npy", "short"):
         for side, runs in record[key]["runs"].items():
-            lines.append(f"{key} · {side}: " + ", ".join(f"{r['wall_s']:.3f}/{r['cpu_s']:.3f}/{r['peak_mib']:.1f}" for r in runs))
+            lines.append(f"{key} · {side}: {as_words(runs)}")
     for side, found in record["kernels"].items():
         for name, one in found.items():
             lines.append(f"{side} · {name}: " + ", ".join(f"{1e3 * s:.2f}" for s in one["cpu_s"]) + " ms")
-    for case in record["growth"]:
-        lines.append(f"{case['rows']} rows, {case['joints']} joints: " +
-                     ", ".join(f"{r['wall_s']:.3f}/{r['cpu_s']:.3f}/{r['peak_mib']:.1f}" for r in case["runs"]))
+    lines += [f"{name}: {as_words(case['runs'])}" for name, case in record["analysis"].items()]
+    lines += [f"{case['rows']} rows, {case['joints']} joints: {as_words(case['runs'])}" for case in record["growth"]]
     return "```text\n" + "\n".join(lines) + "\n```"
 
 
@@ -134,4 +150,4 @@ def machine(record):
 
 def tables(record):
     return {"machine": machine(record), "promises": table(["what", "must be", "measured", "met"], promises(record)),
-            "processes": processes(record), "kernels": kernels(record), "growth": growth(record), "raw": raw(record)}
+            "processes": processes(record), "kernels": kernels(record), "analysis": analysis(record), "growth": growth(record), "raw": raw(record)}

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""LOG.npy ROUNDS: processor seconds of sosfilt, of switching by segments and of Welch; JSON on standard output."""
+"""LOG.npy ROUNDS: processor seconds of sosfilt, of switching by two ways and of Welch; JSON on standard output."""
 import json
 import sys
 import time
 
 import numpy
 import scipy.signal
-from candidates import by_segments, sections
+from candidates import all_warm, by_segments, sections
 
 log = numpy.load(sys.argv[1])
 speed, torque = numpy.ascontiguousarray(log[:, 1]), numpy.ascontiguousarray(log[:, 2])
 some = slice(0, 1_000_000)
 TASKS = {
     "fixed": (torque[some], lambda: scipy.signal.sosfilt(sections(4), torque[some])),
+    "all nine": (torque[some], lambda: all_warm(speed[some], torque[some])),
     "switching": (torque[some], lambda: by_segments(speed[some], torque[some])),
     "welch": (torque, lambda: scipy.signal.welch(torque, 2000.0, nperseg=4096)),
 }
