@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A small part of the proof, within a minute: a dozen effects, a pair, logs without, disturbances. See docs/diagnose.md."""
 
-import json
 import pathlib
 import tempfile
 import unittest
 
 import prove  # first: it skips without numpy
+from prove_diagnose import record as records
 
 prove.skip_unless_command("diagnose")
 
@@ -21,7 +21,7 @@ class Part(unittest.TestCase):
             chosen = [word for label in only for word in ("--only", label)]
             done = prove.prove("--study", study, "--seeds", str(seeds), "--record", str(record), *chosen)
             self.assertEqual(done.returncode, 0, done.stderr)
-            rows = [json.loads(line) for line in record.read_text().splitlines()]
+            rows = records.read(record)[1]
         self.assertEqual([row for row in rows if "error" in row], [])
         return rows
 
