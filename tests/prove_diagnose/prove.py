@@ -5,6 +5,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
 TOOL = os.environ["RIPPLENOTCH"]
@@ -26,3 +27,16 @@ def skip_unless_command(name):
 def prove(*words):
     return subprocess.run([sys.executable, SOURCE / "scripts" / "prove-diagnose", "--tool", TOOL, *words],
                           capture_output=True, text=True, timeout=600)
+
+
+def rows(case, study, seeds, only=()):
+    """The scores of a study's cases; case: the TestCase, which fails when one of them did not end."""
+    from prove_diagnose import record as records
+    with tempfile.TemporaryDirectory() as folder:
+        record = pathlib.Path(folder) / "record.jsonl"
+        chosen = [word for label in only for word in ("--only", label)]
+        done = prove("--study", study, "--seeds", str(seeds), "--record", str(record), *chosen)
+        case.assertEqual(done.returncode, 0, done.stderr)
+        found = records.read(record)[1]
+    case.assertEqual([row for row in found if "error" in row], [])
+    return found

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: MIT
 """A small part of the proof, within a minute: a dozen effects, a pair, logs without, disturbances. See docs/diagnose.md."""
 
-import pathlib
-import tempfile
 import unittest
 
 import prove  # first: it skips without numpy
-from prove_diagnose import record as records
 
 prove.skip_unless_command("diagnose")
 
@@ -15,28 +12,18 @@ ALONE = ("offset", "gravity", "coulomb-friction", "ripple", "tone", "ripple-modu
 
 
 class Part(unittest.TestCase):
-    def rows(self, study, seeds, only=()):
-        with tempfile.TemporaryDirectory() as folder:
-            record = pathlib.Path(folder) / "record.jsonl"
-            chosen = [word for label in only for word in ("--only", label)]
-            done = prove.prove("--study", study, "--seeds", str(seeds), "--record", str(record), *chosen)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            rows = records.read(record)[1]
-        self.assertEqual([row for row in rows if "error" in row], [])
-        return rows
-
     def test_an_effect_hidden_alone_is_named_and_the_improved_model_does_on_another_log_what_was_said(self):
-        rows = self.rows("single", 1, ALONE) + self.rows("pair", 1)
+        rows = prove.rows(self, "single", 1, ALONE) + prove.rows(self, "pair", 1)
         self.assertEqual(len(rows), len(ALONE) + 1)
         self.assertEqual([(row["case"], row["named"]) for row in rows if not row["exact"]], [])
         self.assertEqual([row["case"] for row in rows if row["false"]], [])
         self.assertEqual([row["case"] for row in rows if row["gap"]["as_said"] is False], [])
 
     def test_nothing_hidden_nothing_named(self):
-        self.assertEqual([(row["case"], row["named"]) for row in self.rows("null", 3) if row["named"]], [])
+        self.assertEqual([(row["case"], row["named"]) for row in prove.rows(self, "null", 3) if row["named"]], [])
 
     def test_what_is_in_no_catalogue_is_reported_where_it_is_and_under_no_name(self):
-        rows = self.rows("outside", 1)
+        rows = prove.rows(self, "outside", 1)
         self.assertEqual([(row["case"], row["named"]) for row in rows if row["named"] or not row["unexplained"]], [])
 
 

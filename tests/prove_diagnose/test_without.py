@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: MIT
+"""The tool finds it, not its author: an effect that is taken out of the list leaves its place unexplained."""
+
+import unittest
+
+import prove  # first: it skips without numpy
+
+prove.skip_unless_command("diagnose")
+
+TAKEN_OUT = ("drift", "gravity", "stribeck-friction", "output-ripple", "tone", "resonance")
+
+
+class Without(unittest.TestCase):
+    def test_its_place_is_told_and_no_other_name_takes_it(self):
+        rows = prove.rows(self, "without", 1, TAKEN_OUT)
+        self.assertEqual([row["label"] for row in rows], list(TAKEN_OUT))
+        self.assertEqual([(row["case"], row["told"]) for row in rows if row["told"] < 0.5], [])
+        self.assertEqual([(row["case"], row["named"]) for row in rows if row["named"]], [])
+
+    def test_each_name_lowers_the_residual_and_taken_out_of_the_model_opens_it_again(self):
+        for row in prove.rows(self, "triple", 2):
+            self.assertEqual((row["lowers"], row["reopens"]), (True, True), row["case"])
+
+
+if __name__ == "__main__":
+    unittest.main()
