@@ -33,7 +33,7 @@ def commit():
 def about(program, options=()):
     """What was measured, where and when. The program counts as built from the sources that this script lies in."""
     return {"program": hashlib.sha256(pathlib.Path(program).read_bytes()).hexdigest()[:16], "commit": commit(),
-            "options": list(options), "machine": f"{processor()}, {os.cpu_count()} cores",
+            "options": list(options), "machine": f"{processor()}, {os.cpu_count()} cores", "load": round(os.getloadavg()[0], 1),
             "begun": datetime.datetime.now().isoformat(timespec="minutes")}
 
 

@@ -143,8 +143,8 @@ def about(abouts, rows):
     numbers = sorted({int(row["case"].rpartition("-")[2]) for row in rows if row["study"] == "single"}) or [0]
     day, _, begun = first["begun"].partition("T")
     return (f"Measured on {day} from {begun} to {last.partition('T')[2]} with `diagnose` of commit `{first['commit']}`{options}, "
-            f"one process on one core of a machine with other work on it ({first['machine']}): {len(rows)} logs, "
-            f"numbers from {numbers[0]} on.")
+            f"on a machine ({first['machine']}) whose load was {first['load']:g} at the start: {len(rows)} logs, numbers from "
+            f"{numbers[0]} on. Times are processor time of one core.")
 
 
 def studies(rows):
