@@ -10,10 +10,6 @@
 #include "filter/kernels/serial_cascade.hpp"
 
 namespace ripplenotch {
-namespace {
-constexpr std::size_t most_at_once = 1024;  // samples that stay in the first cache
-}
-
 CascadeFilter::CascadeFilter(Cascade cascade) : cascade_(std::move(cascade)), states_(cascade_.size()) {}
 
 std::string CascadeFilter::hurry() {
@@ -41,17 +37,7 @@ void CascadeFilter::process(const Samples& in, std::span<double> out) {
         blocks_->run(in.torque_nm, out);
         return;
     }
-    for (std::size_t at = 0; at < out.size(); at += most_at_once) {
-        const std::size_t count = std::min(most_at_once, out.size() - at);
-        run_recursion(in.torque_nm.subspan(at, count), out.subspan(at, count));
-    }
-}
-
-void CascadeFilter::run_recursion(std::span<const double> torque_nm, std::span<double> out) {
-    const double origin = origin_nm_;
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = torque_nm[k] - origin;
-    run_serial(cascade_, states_, out);
-    for (double& value : out) value += origin;
+    run_serial(cascade_, states_, in.torque_nm, origin_nm_, out);
 }
 
 }  // namespace ripplenotch

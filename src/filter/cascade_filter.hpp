@@ -22,8 +22,6 @@ class CascadeFilter final : public CausalFilter {
     std::string hurry() override;
 
   private:
-    void run_recursion(std::span<const double> torque_nm, std::span<double> out);
-
     Cascade cascade_;
     std::vector<BiquadState> states_;
     std::optional<BlockCascade> blocks_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/kernels/first_outside.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -46,16 +47,12 @@ void Supervisor::start(double velocity_deg_s) noexcept {
 
 std::size_t Supervisor::stay(std::span<const double> velocity_deg_s) noexcept {
     std::size_t count = 0;
-    const auto inside = [&](double velocity) {
-        const double speed = std::abs(velocity);
-        return speed > low_ && speed <= high_;
-    };
-    while (count < velocity_deg_s.size()) {
-        if (!inside(velocity_deg_s[count])) {
-            const bool must_dwell = since_switch_ + count < dwell_;
-            const SpeedRegion& next = regions_[find(std::abs(velocity_deg_s[count]))];
-            if (!must_dwell || candidate_in(next) == candidate_) break;
-        }
+    while (true) {
+        count += first_outside(velocity_deg_s.subspan(count), low_, high_);
+        if (count == velocity_deg_s.size()) break;
+        const bool must_dwell = since_switch_ + count < dwell_;
+        const SpeedRegion& next = regions_[find(std::abs(velocity_deg_s[count]))];
+        if (!must_dwell || candidate_in(next) == candidate_) break;
         ++count;
     }
     since_switch_ = std::min(since_switch_ + count, dwell_);

@@ -32,8 +32,8 @@ class Trial {
     }
 
     void hear(std::span<const double> signal) {
-        serial_.assign(signal.begin(), signal.end());
-        run_serial(sections_, states_, serial_);
+        serial_.resize(signal.size());
+        run_serial(sections_, states_, signal, 0.0, serial_);
         in_blocks_.resize(signal.size());
         blocks_.run(signal, in_blocks_);
         for (std::size_t k = 0; k < signal.size(); ++k)
@@ -55,7 +55,7 @@ std::vector<double> turning_signs(std::span<const Biquad> sections, std::size_t 
     std::vector<double> response(length);
     response.front() = 1.0;
     std::vector<BiquadState> states(sections.size());
-    run_serial(sections, states, response);
+    run_serial(sections, states, response, 0.0, response);
     for (double& value : response) value = std::copysign(1.0, value);
     std::reverse(response.begin(), response.end());
     return response;

@@ -8,7 +8,9 @@
 
 namespace ripplenotch {
 
-/// Filters `values` in place by step(), section after section. `states` has one entry a section.
-void run_serial(std::span<const Biquad> sections, std::span<BiquadState> states, std::span<double> values);
+/// out = origin + F(in - origin) by step(), section after section. `states` has one entry a section; `in` may
+/// be `out`.
+void run_serial(std::span<const Biquad> sections, std::span<BiquadState> states, std::span<const double> in,
+                double origin, std::span<double> out);
 
 }  // namespace ripplenotch

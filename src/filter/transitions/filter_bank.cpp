@@ -3,55 +3,35 @@
 
 namespace ripplenotch {
 
-FilterBank::FilterBank(const Candidates& candidates) {
-    const std::size_t count = (candidates.cascades.size() + lanes - 1) / lanes;
-    groups_.resize(count);
-    outputs_.resize(count);
-    for (std::size_t g = 0; g < count; ++g) {
-        groups_[g].resize(candidates.sections);
+FilterBank::FilterBank(const Candidates& candidates, bool avx2)
+    : groups_((candidates.cascades.size() + lanes - 1) / lanes),
+      sections_(groups_ * candidates.sections),
+      outputs_(groups_ * capacity()),
+      avx2_(avx2) {
+    for (std::size_t filter = 0; filter < groups_ * lanes; ++filter) {
         for (std::size_t s = 0; s < candidates.sections; ++s) {
-            Section& section = groups_[g][s];
-            for (std::size_t lane = 0; lane < lanes; ++lane) {
-                const std::size_t candidate = g * lanes + lane;
-                const Biquad f =
-                    candidate < candidates.cascades.size() ? candidates.cascades[candidate][s] : Biquad{};
-                section.b0[lane] = f.b0;
-                section.b1[lane] = f.b1;
-                section.b2[lane] = f.b2;
-                section.a1[lane] = f.a1;
-                section.a2[lane] = f.a2;
-            }
+            const Biquad f = filter < candidates.cascades.size() ? candidates.cascades[filter][s] : Biquad{};
+            BankSection& section = sections_[filter / lanes * candidates.sections + s];
+            const std::size_t lane = filter % lanes;
+            section.b0[lane] = f.b0;
+            section.b1[lane] = f.b1;
+            section.b2[lane] = f.b2;
+            section.a1[lane] = f.a1;
+            section.a2[lane] = f.a2;
         }
     }
 }
 
 void FilterBank::start(double torque_nm) {
     origin_nm_ = torque_nm;
-    for (Group& group : groups_) {
-        for (Section& section : group) section.s1 = section.s2 = Lanes{};
-    }
+    for (BankSection& section : sections_) section.s1 = section.s2 = {};
 }
 
 void FilterBank::run(std::span<const double> torque_nm) {
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-        auto& outputs = outputs_[g];
-        for (std::size_t k = 0; k < torque_nm.size(); ++k) outputs[k].fill(torque_nm[k] - origin_nm_);
-        for (Section& stored : groups_[g]) {
-            Section f = stored;
-            for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-                Lanes& value = outputs[k];
-                for (std::size_t lane = 0; lane < lanes; ++lane) {
-                    const double x = value[lane];
-                    const double y = f.b0[lane] * x + f.s1[lane];
-                    f.s1[lane] = f.b1[lane] * x - f.a1[lane] * y + f.s2[lane];
-                    f.s2[lane] = f.b2[lane] * x - f.a2[lane] * y;
-                    value[lane] = y;
-                }
-            }
-            stored.s1 = f.s1;
-            stored.s2 = f.s2;
-        }
-    }
+    std::array<double, capacity()> signal;
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) signal[k] = torque_nm[k] - origin_nm_;
+    const BankRun bank{sections_, groups_, outputs_, capacity()};
+    (avx2_ ? run_bank_avx2 : run_bank)(bank, std::span(signal).first(torque_nm.size()));
 }
 
 }  // namespace ripplenotch

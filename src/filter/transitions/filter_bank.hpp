@@ -2,12 +2,13 @@
 #pragma once
 // All candidates kept warm on the same input, several at a time in vector lanes.
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "filter/kernels/bank_sections.hpp"
 #include "filter/transitions/transition.hpp"
+#include "log/quick_rows_avx2.hpp"
 
 namespace ripplenotch {
 
@@ -15,7 +16,7 @@ namespace ripplenotch {
 /// how many candidates there are, nor on the width of the machine's vectors.
 class FilterBank {
   public:
-    explicit FilterBank(const Candidates& candidates);
+    explicit FilterBank(const Candidates& candidates, bool avx2 = has_avx2());
 
     /// Every candidate settled at a constant input.
     void start(double torque_nm);
@@ -23,23 +24,19 @@ class FilterBank {
     void run(std::span<const double> torque_nm);
     /// Output of a candidate at a sample of the latest run().
     [[nodiscard]] double output(int candidate, std::size_t sample) const noexcept {
-        const auto lane = static_cast<std::size_t>(candidate);
-        return origin_nm_ + outputs_[lane / lanes][sample][lane % lanes];
+        const auto filter = static_cast<std::size_t>(candidate);
+        return origin_nm_ + outputs_[filter / lanes * capacity() + sample].lanes[filter % lanes];
     }
     [[nodiscard]] static constexpr std::size_t capacity() { return 128; }
 
   private:
     static constexpr std::size_t lanes = 4;
-    using Lanes = std::array<double, lanes>;
-    struct Section {
-        Lanes b0, b1, b2, a1, a2;
-        Lanes s1, s2;
-    };
-    using Group = std::vector<Section>;  ///< sections in series, each of `lanes` candidates
 
-    std::vector<Group> groups_;
-    std::vector<std::array<Lanes, 128>> outputs_;
+    std::size_t groups_;
+    std::vector<BankSection> sections_;
+    std::vector<BankOutput> outputs_;  ///< by group and sample
     double origin_nm_ = 0.0;
+    bool avx2_;
 };
 
 }  // namespace ripplenotch

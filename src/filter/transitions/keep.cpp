@@ -5,20 +5,28 @@
 // times larger.
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "filter/kernels/in_series.hpp"
 #include "filter/transitions/transition.hpp"
 
 namespace ripplenotch {
 namespace {
 
-using Past = std::array<double, 2>;  ///< one and two samples ago
+/// Inputs and outputs of a section one and two samples ago.
+struct Past {
+    double x1 = 0.0, x2 = 0.0, y1 = 0.0, y2 = 0.0;
+};
+
+double advance(const Biquad& f, Past& past, double x) {
+    const double y = f.b0 * x + f.b1 * past.x1 + f.b2 * past.x2 - f.a1 * past.y1 - f.a2 * past.y2;
+    past = {x, past.x1, y, past.y1};
+    return y;
+}
 
 class Keep final : public Transition {
   public:
-    explicit Keep(Candidates candidates)
-        : candidates_(std::move(candidates)), past_(candidates_.sections + 1) {}
+    explicit Keep(Candidates candidates) : candidates_(std::move(candidates)), past_(candidates_.sections) {}
 
     void start(int candidate, double torque_nm) override {
         candidate_ = candidate;
@@ -30,50 +38,38 @@ class Keep final : public Transition {
             std::copy(torque_nm.begin(), torque_nm.end(), out.begin());
             return;
         }
-        for (std::size_t k = 0; k < out.size(); ++k) out[k] = advance(torque_nm[k]);
+        run_in_series(std::span<const Biquad>(cascade()), std::span(past_), torque_nm, origin_nm_, out,
+                      [](const Biquad& f, Past& past, double x) { return advance(f, past, x); });
     }
 
     Change change(int candidate, double torque_nm) override {
-        const double unchanged = candidate_ == no_candidate ? torque_nm : peek(torque_nm);
+        std::vector<Past> unchanged_past = past_;
+        const double unchanged = candidate_ == no_candidate ? torque_nm : through(unchanged_past, torque_nm);
         // While no filter is in force there is no past worth keeping: its outputs were never made.
         if (candidate_ == no_candidate) settle(torque_nm);
         candidate_ = candidate;
-        return {candidate == no_candidate ? torque_nm : advance(torque_nm), unchanged};
+        return {candidate == no_candidate ? torque_nm : through(past_, torque_nm), unchanged};
     }
 
   private:
     // All signals are relative to the torque at which the cascade was settled; see CascadeFilter.
     void settle(double torque_nm) {
         origin_nm_ = torque_nm;
-        for (Past& past : past_) past = {0.0, 0.0};
+        std::fill(past_.begin(), past_.end(), Past{});
     }
 
-    double advance(double torque_nm) {
+    [[nodiscard]] const Cascade& cascade() const {
+        return candidates_.cascades[static_cast<std::size_t>(candidate_)];
+    }
+
+    double through(std::vector<Past>& past, double torque_nm) const {
         double signal = torque_nm - origin_nm_;
-        const Cascade& cascade = candidates_.cascades[static_cast<std::size_t>(candidate_)];
-        for (std::size_t i = 0; i < cascade.size(); ++i) {
-            const double result = next(cascade[i], signal, past_[i], past_[i + 1]);
-            past_[i] = {signal, past_[i][0]};
-            signal = result;
-        }
-        past_.back() = {signal, past_.back()[0]};
+        for (std::size_t i = 0; i < past.size(); ++i) signal = advance(cascade()[i], past[i], signal);
         return origin_nm_ + signal;
-    }
-
-    [[nodiscard]] double peek(double torque_nm) const {
-        double signal = torque_nm - origin_nm_;
-        const Cascade& cascade = candidates_.cascades[static_cast<std::size_t>(candidate_)];
-        for (std::size_t i = 0; i < cascade.size(); ++i)
-            signal = next(cascade[i], signal, past_[i], past_[i + 1]);
-        return origin_nm_ + signal;
-    }
-
-    static double next(const Biquad& f, double x, const Past& inputs, const Past& outputs) {
-        return f.b0 * x + f.b1 * inputs[0] + f.b2 * inputs[1] - f.a1 * outputs[0] - f.a2 * outputs[1];
     }
 
     Candidates candidates_;
-    std::vector<Past> past_;  ///< of the input and of each section's output
+    std::vector<Past> past_;  ///< by section
     double origin_nm_ = 0.0;
     int candidate_ = no_candidate;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "filter/kernels/in_series.hpp"
 #include "filter/transitions/transition.hpp"
 #include "ripplenotch/core/state_variable.hpp"
 
@@ -58,7 +59,9 @@ class KeepStateVariable final : public Transition {
             std::copy(torque_nm.begin(), torque_nm.end(), out.begin());
             return;
         }
-        for (std::size_t k = 0; k < out.size(); ++k) out[k] = through(states_, torque_nm[k]);
+        run_in_series(std::span<const Section>(sections_[static_cast<std::size_t>(candidate_)]),
+                      std::span(states_), torque_nm, origin_nm_, out,
+                      [](const Section& f, BandPassState& s, double x) { return advance(f, s, x); });
     }
 
     Change change(int candidate, double torque_nm) override {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "filter/kernels/serial_cascade.hpp"
 #include "filter/transitions/transition.hpp"
 
 namespace ripplenotch {
@@ -25,7 +26,8 @@ class Reset final : public Transition {
             std::copy(torque_nm.begin(), torque_nm.end(), out.begin());
             return;
         }
-        for (std::size_t k = 0; k < out.size(); ++k) out[k] = advance(states_, torque_nm[k]);
+        run_serial(candidates_.cascades[static_cast<std::size_t>(candidate_)], states_, torque_nm, origin_nm_,
+                   out);
     }
 
     Change change(int candidate, double torque_nm) override {

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "filter/kernels/bank_sections.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "filter/kernels/lanes.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// A section waits for its own output of the sample before. Three groups of two sections are six that wait at
+// the same time; their memories fill twelve of sixteen registers.
+constexpr std::size_t most_groups = 3;
+
+template <class Lanes>
+struct Memory {
+    Lanes s1, s2;
+};
+
+template <class Lanes>
+RIPPLENOTCH_INLINED void advance(const BankSection& f, Memory<Lanes>& memory, Lanes& value) {
+    Lanes b0, b1, b2, a1, a2;
+    load(b0, f.b0.data());
+    load(b1, f.b1.data());
+    load(b2, f.b2.data());
+    load(a1, f.a1.data());
+    load(a2, f.a2.data());
+    const Lanes x = value;
+    value = b0 * x + memory.s1;
+    memory.s1 = b1 * x - a1 * value + memory.s2;
+    memory.s2 = b2 * x - a2 * value;
+}
+
+template <class Lanes>
+RIPPLENOTCH_INLINED void recall(Memory<Lanes>& memory, const BankSection& f) {
+    load(memory.s1, f.s1.data());
+    load(memory.s2, f.s2.data());
+}
+
+template <class Lanes>
+RIPPLENOTCH_INLINED void keep(BankSection& f, const Memory<Lanes>& memory) {
+    store(f.s1.data(), memory.s1);
+    store(f.s2.data(), memory.s2);
+}
+
+/// Some sections of one group, from the signal or from what the sections before left in `output`.
+template <bool FromSignal, class Lanes, std::size_t... S>
+RIPPLENOTCH_INLINED void advance_group(const BankSection* f, Memory<Lanes>* memories, double x,
+                                       BankOutput& output, std::index_sequence<S...>) {
+    Lanes value;
+    if constexpr (FromSignal) {
+        fill(value, x);
+    } else {
+        load(value, output.lanes.data());
+    }
+    (advance(f[S], memories[S], value), ...);
+    store(output.lanes.data(), value);
+}
+
+/// Sections `first` and following of the groups from `group` on.
+struct Part {
+    std::size_t group, first;
+};
+
+template <class Lanes, bool FromSignal, std::size_t Sections, std::size_t... G>
+RIPPLENOTCH_INLINED void run_part(const BankRun& bank, const Part& part, std::span<const double> in,
+                                  std::index_sequence<G...>) {
+    const std::size_t length = bank.sections.size() / bank.groups;
+    constexpr std::make_index_sequence<Sections> sections{};
+    BankSection* const f[] = {&bank.sections[(part.group + G) * length + part.first]...};
+    BankOutput* const outputs[] = {&bank.outputs[(part.group + G) * bank.stride]...};
+    Memory<Lanes> memories[sizeof...(G)][Sections];
+    for (std::size_t s = 0; s < Sections; ++s) (recall(memories[G][s], f[G][s]), ...);
+    for (std::size_t k = 0; k < in.size(); ++k)
+        (advance_group<FromSignal>(f[G], memories[G], in[k], outputs[G][k], sections), ...);
+    for (std::size_t s = 0; s < Sections; ++s) (keep(f[G][s], memories[G][s]), ...);
+}
+
+template <class Lanes, std::size_t Groups>
+RIPPLENOTCH_INLINED void run_some_groups(const BankRun& bank, std::size_t group, std::span<const double> in) {
+    constexpr std::make_index_sequence<Groups> groups{};
+    const std::size_t length = bank.sections.size() / bank.groups;
+    if (length == 1) run_part<Lanes, true, 1>(bank, {group, 0}, in, groups);
+    if (length >= 2) run_part<Lanes, true, 2>(bank, {group, 0}, in, groups);
+    std::size_t first = 2;
+    for (; first + 2 <= length; first += 2) run_part<Lanes, false, 2>(bank, {group, first}, in, groups);
+    if (first < length) run_part<Lanes, false, 1>(bank, {group, first}, in, groups);
+}
+
+template <class Lanes>
+RIPPLENOTCH_INLINED void run_groups_of_bank(const BankRun& bank, std::span<const double> in) {
+    for (std::size_t group = 0; group < bank.groups; group += most_groups) {
+        const std::size_t count = std::min(most_groups, bank.groups - group);
+        if (count == 3) run_some_groups<Lanes, 3>(bank, group, in);
+        if (count == 2) run_some_groups<Lanes, 2>(bank, group, in);
+        if (count == 1) run_some_groups<Lanes, 1>(bank, group, in);
+    }
+}
+
+}  // namespace
+
+void run_bank(const BankRun& bank, std::span<const double> in) { run_groups_of_bank<TwoAndTwo>(bank, in); }
+
+RIPPLENOTCH_TARGET_AVX2 void run_bank_avx2(const BankRun& bank, std::span<const double> in) {
+    run_groups_of_bank<Four>(bank, in);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include <cstddef>
+#include <span>
+
+namespace ripplenotch {
+
+/// Index of the first value whose magnitude is not within low < |value| <= high, as no NaN is; values.size()
+/// when all are.
+[[nodiscard]] std::size_t first_outside(std::span<const double> values, double low, double high) noexcept;
+
+}  // namespace ripplenotch
