@@ -3,10 +3,13 @@
 #include <cstddef>
 #include <span>
 
+#include "log/quick_rows_avx2.hpp"
+
 namespace ripplenotch {
 
 /// Index of the first value whose magnitude is not within low < |value| <= high, as no NaN is; values.size()
 /// when all are.
-[[nodiscard]] std::size_t first_outside(std::span<const double> values, double low, double high) noexcept;
+[[nodiscard]] std::size_t first_outside(std::span<const double> values, double low, double high,
+                                        bool avx2 = has_avx2()) noexcept;
 
 }  // namespace ripplenotch

@@ -6,7 +6,7 @@ namespace ripplenotch {
 FilterBank::FilterBank(const Candidates& candidates, bool avx2)
     : groups_((candidates.cascades.size() + lanes - 1) / lanes),
       sections_(groups_ * candidates.sections),
-      outputs_(groups_ * capacity()),
+      outputs_(groups_ * stride),
       avx2_(avx2) {
     for (std::size_t filter = 0; filter < groups_ * lanes; ++filter) {
         for (std::size_t s = 0; s < candidates.sections; ++s) {
@@ -30,7 +30,7 @@ void FilterBank::start(double torque_nm) {
 void FilterBank::run(std::span<const double> torque_nm) {
     std::array<double, capacity()> signal;
     for (std::size_t k = 0; k < torque_nm.size(); ++k) signal[k] = torque_nm[k] - origin_nm_;
-    const BankRun bank{sections_, groups_, outputs_, capacity()};
+    const BankRun bank{sections_, groups_, outputs_, stride};
     (avx2_ ? run_bank_avx2 : run_bank)(bank, std::span(signal).first(torque_nm.size()));
 }
 
