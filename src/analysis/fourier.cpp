@@ -11,10 +11,14 @@
 #include <mutex>
 #include <numbers>
 
+#include "analysis/spreading_kernel.hpp"
+
 namespace ripplenotch {
 namespace {
 
 constexpr double tau = 2.0 * std::numbers::pi;
+constexpr std::size_t width = SpreadingKernel::width;
+constexpr double beta = SpreadingKernel::beta;
 
 template <class T>
 using FftwArray = std::unique_ptr<T, decltype(&fftw_free)>;
@@ -43,12 +47,6 @@ fftw_plan plan_for(std::size_t n) {
     if (!entry) entry = std::make_unique<Plan>(n);
     return entry->plan;
 }
-
-/// Kernel of nonuniform_fourier: `width` grid points wide, on a grid twice as fine as needed.
-constexpr std::size_t width = 10;
-constexpr double beta = 2.30 * static_cast<double>(width);
-
-double kernel(double x) { return std::exp(beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0)); }
 
 /// Transform of the kernel at 0, 1, 2, ... steps of phase (radians per half width), by the trapezoid rule in
 /// x = sin t, where the integrand and all its derivatives are negligible at both ends.
@@ -92,18 +90,27 @@ class KernelTransform {
     Row place_{}, weight_{}, turn_real_{}, turn_imaginary_{}, real_{}, imaginary_{};
 };
 
+/// Adds each value to the `width` grid points around its place, weighted by the kernel.
 void spread(std::span<const double> where, std::span<const double> value, double spacing,
             std::span<double> grid) {
+    static const SpreadingKernel weights;
     const auto n = static_cast<double>(grid.size());
+    const double half = static_cast<double>(width) / 2.0;
+    SpreadingKernel::Row row;
     for (std::size_t j = 0; j < where.size(); ++j) {
         const double turns = where[j] * spacing;
         const double at = (turns - std::floor(turns)) * n;  // 0 <= at <= n
-        const double half = static_cast<double>(width) / 2.0;
         const double first = std::ceil(at - half);
+        weights.at(first - (at - half), row);
         auto cell = static_cast<std::size_t>(first < 0.0 ? first + n : first);
+        if (cell + width <= grid.size()) {
+            double* const cells = grid.data() + cell;
+            for (std::size_t i = 0; i < width; ++i) cells[i] += value[j] * row[i];
+            continue;
+        }
         for (std::size_t i = 0; i < width; ++i, ++cell) {
             if (cell >= grid.size()) cell -= grid.size();
-            grid[cell] += value[j] * kernel((first + static_cast<double>(i) - at) / half);
+            grid[cell] += value[j] * row[i];
         }
     }
 }

@@ -132,10 +132,10 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
     for (std::size_t from = spectrum.first; from < n; from += stride) {
         const std::size_t to = std::min(from + stride, n - 1);
         const double there = at(to);
-        const double slope = to > from ? std::log(there / here) / static_cast<double>(to - from) : 0.0;
-        for (std::size_t k = from; k < std::min(from + stride, n); ++k) {
-            floor[k] = here * std::exp(slope * static_cast<double>(k - from));
-        }
+        const double factor =
+            to > from ? std::exp(std::log(there / here) / static_cast<double>(to - from)) : 1.0;
+        double level = here;
+        for (std::size_t k = from; k < std::min(from + stride, n); ++k, level *= factor) floor[k] = level;
         here = there;
     }
     return floor;

@@ -3,33 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
-// Two copies of each function, and the processor says at the start of the process which one runs. Contraction
-// is off for the whole build, so that both round alike.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define RIPPLENOTCH_FOR_AVX2_TOO __attribute__((target_clones("avx2", "default")))
-#else
-#define RIPPLENOTCH_FOR_AVX2_TOO
-#endif
+#include "analysis/four_lanes.hpp"
 
 namespace ripplenotch {
 namespace {
 
+using namespace four_lanes;
+
 // Four groups of four lanes under way: an addition takes several steps of the processor, and the next need
 // not wait.
-constexpr std::size_t lanes = 4, groups = 4;
-constexpr double next_groups = 16.0;
-using Four = double __attribute__((vector_size(lanes * sizeof(double))));
-using FourInMemory = double __attribute__((vector_size(lanes * sizeof(double)), aligned(8), may_alias));
-
-#define RIPPLENOTCH_INLINED inline __attribute__((always_inline))
-
-RIPPLENOTCH_INLINED void load(Four& four, const double* from) {
-    four = *reinterpret_cast<const FourInMemory*>(from);
-}
-RIPPLENOTCH_INLINED void store(double* to, const Four& four) { *reinterpret_cast<FourInMemory*>(to) = four; }
-RIPPLENOTCH_INLINED double sum(const Four& four) { return (four[0] + four[1]) + (four[2] + four[3]); }
+constexpr std::size_t groups = 4;
+constexpr double next_groups = groups * lanes;
 
 }  // namespace
 
