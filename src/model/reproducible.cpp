@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace ripplenotch {
@@ -69,17 +71,30 @@ Reduced reduce(double angle_deg) {
     return {static_cast<int>(static_cast<long long>(turns) & 3), angle_deg - 90.0 * turns};
 }
 
+// Both halves of the circle's eighths are computed and one is chosen: which, is chance, and a branch that is
+// guessed wrong every other time costs more.
 double cosine_in(int quadrant, double x) {
-    switch (quadrant & 3) {
-        case 0:
-            return cos_small(x);
-        case 1:
-            return -sin_small(x);
-        case 2:
-            return -cos_small(x);
-        default:
-            return sin_small(x);
-    }
+    const double even = cos_small(x), odd = sin_small(x);
+    const double value = (quadrant & 1) != 0 ? odd : even;
+    return ((quadrant + 1) & 2) != 0 ? -value : value;
+}
+
+constexpr std::uint64_t exponent_bits = 0x7ff0000000000000U, fraction_bits = 0x000fffffffffffffU;
+constexpr int bias = 1023;
+
+// std::frexp of what is above 0, without the call.
+double mantissa_of(double x, int& exponent) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const auto stored = static_cast<int>((bits & exponent_bits) >> 52U);
+    if (stored == 0 || stored == 2047 || (bits >> 63U) != 0) return std::frexp(x, &exponent);
+    exponent = stored - (bias - 1);
+    return std::bit_cast<double>((bits & fraction_bits) | (std::uint64_t{bias - 1} << 52U));
+}
+
+// x * 2^power, as std::ldexp, of x near 1.
+double scaled(double x, int power) {
+    if (power < -1020 || power > 1020) return std::ldexp(x, power);
+    return x * std::bit_cast<double>(static_cast<std::uint64_t>(power + bias) << 52U);
 }
 
 }  // namespace
@@ -96,7 +111,7 @@ double sin_degrees(double angle_deg) {
 
 double natural_log(double x) {
     int exponent = 0;
-    double mantissa = std::frexp(x, &exponent);
+    double mantissa = mantissa_of(x, exponent);
     if (mantissa < std::numbers::sqrt2 / 2.0) {
         mantissa *= 2.0;
         --exponent;
@@ -112,7 +127,7 @@ double exponential(double x) {
     constexpr double ln2_low = 0x1.cf79abc9e3b39p-40;
     const double power = nearest_integer(x / std::numbers::ln2);
     const double rest = (x - power * ln2_high) - power * ln2_low;
-    return std::ldexp(polynomial(exponential_terms, rest), static_cast<int>(power));
+    return scaled(polynomial(exponential_terms, rest), static_cast<int>(power));
 }
 
 double power(double x, double p) {

@@ -50,8 +50,10 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
         const double angle_deg = cycles_per_turn * position_deg[k] + phase_deg;
         const auto gain = situation.ripple_gain[k];
-        torque_nm[k] +=
-            amplitude_nm * (gain.real() * cos_degrees(angle_deg) - gain.imag() * sin_degrees(angle_deg));
+        const double along = gain.real() * cos_degrees(angle_deg);
+        // Most changes of the ripple leave its phase as it is.
+        const double across = gain.imag() != 0.0 ? gain.imag() * sin_degrees(angle_deg) : 0.0;
+        torque_nm[k] += amplitude_nm * (along - across);
     }
 }
 
