@@ -27,6 +27,10 @@ class Crossfade final : public Transition {
             const std::size_t count = std::min(FilterBank::capacity(), out.size() - first);
             const auto in = torque_nm.subspan(first, count);
             bank_.run(in);
+            if (leaving_.empty()) {
+                bank_.outputs(candidate_, in, out.subspan(first, count));
+                continue;
+            }
             for (std::size_t k = 0; k < count; ++k) out[first + k] = mixture(k, in[k]);
         }
     }

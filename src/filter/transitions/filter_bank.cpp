@@ -34,4 +34,17 @@ void FilterBank::run(std::span<const double> torque_nm) {
     (avx2_ ? run_bank_avx2 : run_bank)(bank, std::span(signal).first(torque_nm.size()));
 }
 
+void FilterBank::outputs(int candidate, std::span<const double> torque_nm,
+                         std::span<double> out) const noexcept {
+    if (candidate == no_candidate) {
+        std::copy(torque_nm.begin(), torque_nm.end(), out.begin());
+        return;
+    }
+    const auto filter = static_cast<std::size_t>(candidate);
+    const BankOutput* from = &outputs_[filter / lanes * stride];
+    const std::size_t lane = filter % lanes;
+    const double origin = origin_nm_;  // a copy, which `out` cannot change
+    for (double& value : out) value = origin + (from++)->lanes[lane];
+}
+
 }  // namespace ripplenotch

@@ -27,6 +27,8 @@ class FilterBank {
         const auto filter = static_cast<std::size_t>(candidate);
         return origin_nm_ + outputs_[filter / lanes * stride + sample].lanes[filter % lanes];
     }
+    /// The same for all samples of the latest run(), which is given again for no_candidate, where it passes.
+    void outputs(int candidate, std::span<const double> torque_nm, std::span<double> out) const noexcept;
     [[nodiscard]] static constexpr std::size_t capacity() { return most_samples; }
 
   private:

@@ -24,7 +24,7 @@ class Parallel final : public Transition {
             const std::size_t count = std::min(FilterBank::capacity(), out.size() - first);
             const auto in = torque_nm.subspan(first, count);
             bank_.run(in);
-            for (std::size_t k = 0; k < count; ++k) out[first + k] = output(candidate_, k, in[k]);
+            bank_.outputs(candidate_, in, out.subspan(first, count));
         }
     }
 
