@@ -18,18 +18,24 @@ struct Memory {
     Lanes s1, s2;
 };
 
-template <class Lanes>
+/// `Mirrored`: b2 is b0, as in notches of full depth, and so are their products.
+template <bool Mirrored, class Lanes>
 RIPPLENOTCH_INLINED void advance(const BankSection& f, Memory<Lanes>& memory, Lanes& value) {
-    Lanes b0, b1, b2, a1, a2;
+    Lanes b0, b1, a1, a2;
     load(b0, f.b0.data());
     load(b1, f.b1.data());
-    load(b2, f.b2.data());
     load(a1, f.a1.data());
     load(a2, f.a2.data());
-    const Lanes x = value;
-    value = b0 * x + memory.s1;
+    const Lanes x = value, first = b0 * x;
+    value = first + memory.s1;
     memory.s1 = b1 * x - a1 * value + memory.s2;
-    memory.s2 = b2 * x - a2 * value;
+    if constexpr (Mirrored) {
+        memory.s2 = first - a2 * value;
+    } else {
+        Lanes b2;
+        load(b2, f.b2.data());
+        memory.s2 = b2 * x - a2 * value;
+    }
 }
 
 template <class Lanes>
@@ -45,7 +51,7 @@ RIPPLENOTCH_INLINED void keep(BankSection& f, const Memory<Lanes>& memory) {
 }
 
 /// Some sections of one group, from the signal or from what the sections before left in `output`.
-template <bool FromSignal, class Lanes, std::size_t... S>
+template <bool Mirrored, bool FromSignal, class Lanes, std::size_t... S>
 RIPPLENOTCH_INLINED void advance_group(const BankSection* f, Memory<Lanes>* memories, double x,
                                        BankOutput& output, std::index_sequence<S...>) {
     Lanes value;
@@ -54,7 +60,7 @@ RIPPLENOTCH_INLINED void advance_group(const BankSection* f, Memory<Lanes>* memo
     } else {
         load(value, output.lanes.data());
     }
-    (advance(f[S], memories[S], value), ...);
+    (advance<Mirrored>(f[S], memories[S], value), ...);
     store(output.lanes.data(), value);
 }
 
@@ -63,7 +69,7 @@ struct Part {
     std::size_t group, first;
 };
 
-template <class Lanes, bool FromSignal, std::size_t Sections, std::size_t... G>
+template <class Lanes, bool Mirrored, bool FromSignal, std::size_t Sections, std::size_t... G>
 RIPPLENOTCH_INLINED void run_part(const BankRun& bank, const Part& part, std::span<const double> in,
                                   std::index_sequence<G...>) {
     const std::size_t length = bank.sections.size() / bank.groups;
@@ -73,37 +79,47 @@ RIPPLENOTCH_INLINED void run_part(const BankRun& bank, const Part& part, std::sp
     Memory<Lanes> memories[sizeof...(G)][Sections];
     for (std::size_t s = 0; s < Sections; ++s) (recall(memories[G][s], f[G][s]), ...);
     for (std::size_t k = 0; k < in.size(); ++k)
-        (advance_group<FromSignal>(f[G], memories[G], in[k], outputs[G][k], sections), ...);
+        (advance_group<Mirrored, FromSignal>(f[G], memories[G], in[k], outputs[G][k], sections), ...);
     for (std::size_t s = 0; s < Sections; ++s) (keep(f[G][s], memories[G][s]), ...);
 }
 
-template <class Lanes, std::size_t Groups>
+template <class Lanes, bool Mirrored, std::size_t Groups>
 RIPPLENOTCH_INLINED void run_some_groups(const BankRun& bank, std::size_t group, std::span<const double> in) {
     constexpr std::make_index_sequence<Groups> groups{};
     const std::size_t length = bank.sections.size() / bank.groups;
-    if (length == 1) run_part<Lanes, true, 1>(bank, {group, 0}, in, groups);
-    if (length >= 2) run_part<Lanes, true, 2>(bank, {group, 0}, in, groups);
+    if (length == 1) run_part<Lanes, Mirrored, true, 1>(bank, {group, 0}, in, groups);
+    if (length >= 2) run_part<Lanes, Mirrored, true, 2>(bank, {group, 0}, in, groups);
     std::size_t first = 2;
-    for (; first + 2 <= length; first += 2) run_part<Lanes, false, 2>(bank, {group, first}, in, groups);
-    if (first < length) run_part<Lanes, false, 1>(bank, {group, first}, in, groups);
+    for (; first + 2 <= length; first += 2)
+        run_part<Lanes, Mirrored, false, 2>(bank, {group, first}, in, groups);
+    if (first < length) run_part<Lanes, Mirrored, false, 1>(bank, {group, first}, in, groups);
 }
 
-template <class Lanes>
+template <class Lanes, bool Mirrored>
 RIPPLENOTCH_INLINED void run_groups_of_bank(const BankRun& bank, std::span<const double> in) {
     for (std::size_t group = 0; group < bank.groups; group += most_groups) {
         const std::size_t count = std::min(most_groups, bank.groups - group);
-        if (count == 3) run_some_groups<Lanes, 3>(bank, group, in);
-        if (count == 2) run_some_groups<Lanes, 2>(bank, group, in);
-        if (count == 1) run_some_groups<Lanes, 1>(bank, group, in);
+        if (count == 3) run_some_groups<Lanes, Mirrored, 3>(bank, group, in);
+        if (count == 2) run_some_groups<Lanes, Mirrored, 2>(bank, group, in);
+        if (count == 1) run_some_groups<Lanes, Mirrored, 1>(bank, group, in);
+    }
+}
+
+template <class Lanes>
+RIPPLENOTCH_INLINED void run_any(const BankRun& bank, std::span<const double> in) {
+    if (bank.mirrored) {
+        run_groups_of_bank<Lanes, true>(bank, in);
+    } else {
+        run_groups_of_bank<Lanes, false>(bank, in);
     }
 }
 
 }  // namespace
 
-void run_bank(const BankRun& bank, std::span<const double> in) { run_groups_of_bank<TwoAndTwo>(bank, in); }
+void run_bank(const BankRun& bank, std::span<const double> in) { run_any<TwoAndTwo>(bank, in); }
 
 RIPPLENOTCH_TARGET_AVX2 void run_bank_avx2(const BankRun& bank, std::span<const double> in) {
-    run_groups_of_bank<Four>(bank, in);
+    run_any<Four>(bank, in);
 }
 
 }  // namespace ripplenotch

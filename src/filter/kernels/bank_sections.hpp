@@ -28,6 +28,7 @@ struct BankRun {
     std::size_t groups;
     std::span<BankOutput> outputs;
     std::size_t stride;
+    bool mirrored;  ///< b2 is b0 in every section and lane
 };
 void run_bank(const BankRun& bank, std::span<const double> in);
 void run_bank_avx2(const BankRun& bank, std::span<const double> in);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "filter/transitions/filter_bank.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace ripplenotch {
 
 FilterBank::FilterBank(const Candidates& candidates, bool avx2)
@@ -10,7 +13,9 @@ FilterBank::FilterBank(const Candidates& candidates, bool avx2)
       avx2_(avx2) {
     for (std::size_t filter = 0; filter < groups_ * lanes; ++filter) {
         for (std::size_t s = 0; s < candidates.sections; ++s) {
-            const Biquad f = filter < candidates.cascades.size() ? candidates.cascades[filter][s] : Biquad{};
+            // Lanes without a candidate run the last one once more.
+            const Biquad& f = candidates.cascades[std::min(filter, candidates.cascades.size() - 1)][s];
+            mirrored_ = mirrored_ && f.b0 == f.b2;
             BankSection& section = sections_[filter / lanes * candidates.sections + s];
             const std::size_t lane = filter % lanes;
             section.b0[lane] = f.b0;
@@ -30,7 +35,7 @@ void FilterBank::start(double torque_nm) {
 void FilterBank::run(std::span<const double> torque_nm) {
     std::array<double, capacity()> signal;
     for (std::size_t k = 0; k < torque_nm.size(); ++k) signal[k] = torque_nm[k] - origin_nm_;
-    const BankRun bank{sections_, groups_, outputs_, stride};
+    const BankRun bank{sections_, groups_, outputs_, stride, mirrored_};
     (avx2_ ? run_bank_avx2 : run_bank)(bank, std::span(signal).first(torque_nm.size()));
 }
 

@@ -41,7 +41,7 @@ class FilterBank {
     std::vector<BankSection> sections_;
     std::vector<BankOutput> outputs_;  ///< by group and sample
     double origin_nm_ = 0.0;
-    bool avx2_;
+    bool avx2_, mirrored_ = true;
 };
 
 }  // namespace ripplenotch
