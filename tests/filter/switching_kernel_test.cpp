@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "filter/kernels/direct_form.hpp"
 #include "filter/kernels/first_outside.hpp"
 #include "filter/kernels/in_series.hpp"
 #include "filter/tables.hpp"
@@ -92,6 +93,28 @@ TEST_CASE("the first value outside a range is found wherever it is, by every ins
         }
         CHECK(first_outside(std::vector<double>(40, 1e9), 180.0, infinity, avx2) == 40);
         CHECK(first_outside(std::vector<double>(40, 0.0), -infinity, 18.0, avx2) == 40);
+    }
+}
+
+TEST_CASE("direct form I gives the bits of one section after the other, in stretches of any length") {
+    std::mt19937 engine(3);
+    for (std::size_t sections = 1; sections <= 5; ++sections) {
+        const Candidates candidates(some_table(1, sections, engine).bands());
+        std::vector<Past> past(sections), alone(sections);
+        const double origin = between(-2.0, 2.0, engine);
+        for (const std::size_t count : {1UL, 2UL, 3UL, 4UL, 5UL, 1000UL, 1UL, 17UL}) {
+            std::vector<double> in(count), out(count);
+            for (double& value : in) value = between(-2.0, 2.0, engine);
+            run_direct_form(candidates.cascades[0], past, in, origin, out);
+            std::size_t wrong = 0;
+            for (std::size_t k = 0; k < count; ++k) {
+                double signal = in[k] - origin;
+                for (std::size_t i = 0; i < sections; ++i)
+                    signal = advance(candidates.cascades[0][i], alone[i], signal);
+                wrong += !same_bits(out[k], origin + signal);
+            }
+            CHECK(wrong == 0);
+        }
     }
 }
 

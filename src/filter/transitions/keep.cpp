@@ -7,22 +7,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "filter/kernels/in_series.hpp"
+#include "filter/kernels/direct_form.hpp"
 #include "filter/transitions/transition.hpp"
 
 namespace ripplenotch {
 namespace {
-
-/// Inputs and outputs of a section one and two samples ago.
-struct Past {
-    double x1 = 0.0, x2 = 0.0, y1 = 0.0, y2 = 0.0;
-};
-
-double advance(const Biquad& f, Past& past, double x) {
-    const double y = f.b0 * x + f.b1 * past.x1 + f.b2 * past.x2 - f.a1 * past.y1 - f.a2 * past.y2;
-    past = {x, past.x1, y, past.y1};
-    return y;
-}
 
 class Keep final : public Transition {
   public:
@@ -38,8 +27,7 @@ class Keep final : public Transition {
             std::copy(torque_nm.begin(), torque_nm.end(), out.begin());
             return;
         }
-        run_in_series(std::span<const Biquad>(cascade()), std::span(past_), torque_nm, origin_nm_, out,
-                      [](const Biquad& f, Past& past, double x) { return advance(f, past, x); });
+        run_direct_form(cascade(), past_, torque_nm, origin_nm_, out);
     }
 
     Change change(int candidate, double torque_nm) override {
