@@ -67,11 +67,10 @@ Json round_json(const Finding& finding) {
     if (!finding.reason.empty()) json["reason"] = finding.reason;
     json["parameters"] = parameters_json(term, finding.values);
     json["where"] = place_json(finding.where);
-    json["evidence"] = {{"gain", six(finding.evidence.gain)},
-                        {"price", six(finding.evidence.price)},
-                        {"share_nm", six(finding.evidence.share_nm)},
-                        {"share_of_noise", six(finding.evidence.share_sigma)},
-                        {"gain_elsewhere", six(finding.evidence.elsewhere)}};
+    json["evidence"] = {
+        {"gain", six(finding.evidence.gain)},         {"price", six(finding.evidence.price)},
+        {"share_nm", six(finding.evidence.share_nm)}, {"share_of_noise", six(finding.evidence.share_sigma)},
+        {"own_nm", six(finding.evidence.own_nm)},     {"gain_elsewhere", six(finding.evidence.elsewhere)}};
     json["alternatives"] = Json::array();
     for (const RivalFinding& rival : finding.alternatives)
         json["alternatives"].push_back({{"effect", rival.effect}, {"margin", six(rival.margin)}});

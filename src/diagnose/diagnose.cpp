@@ -82,17 +82,9 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
     return found;
 }
 
-bool is_doubtful(const Finding& finding) {
-    return finding.status == FindingStatus::tentative || finding.status == FindingStatus::unidentifiable;
-}
-
 DiagnosisVerdict verdict_of(const Diagnosis& diagnosis) {
     const bool told = !diagnosis.named.empty() || !diagnosis.ambiguous.empty();
-    const bool doubtful =
-        std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), [](const Finding& finding) {
-            return finding.status == FindingStatus::tentative ||
-                   finding.status == FindingStatus::unidentifiable;
-        });
+    const bool doubtful = std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), is_doubtful);
     if (diagnosis.unexplained.empty() && !doubtful)
         return told ? DiagnosisVerdict::explained : DiagnosisVerdict::matches;
     return told ? DiagnosisVerdict::partly_explained : DiagnosisVerdict::unexplained;
@@ -159,16 +151,6 @@ void tell_rounds(Diagnosis& diagnosis, const Bench& bench, const Candidate& last
         finding.gap_before_nm = before;
         finding.gap_after_nm = before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
     }
-}
-
-// The model without findings that are in doubt.
-Candidate believed(const Bench& bench, const Candidate& last, std::size_t own,
-                   const std::vector<Finding>& rounds) {
-    Candidate kept = last;
-    for (std::size_t i = rounds.size(); i-- > 0;) {
-        if (is_doubtful(rounds[i])) kept = without_term(bench, kept, own + i);
-    }
-    return kept;
 }
 
 bool set_aside(Case& c, const std::vector<Leftover>& left) {

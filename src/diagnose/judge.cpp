@@ -7,15 +7,15 @@
 #include <cmath>
 #include <map>
 
+#include "diagnose/evenness.hpp"
 #include "diagnose/leftover.hpp"
+#include "diagnose/place.hpp"
 #include "diagnose/search.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
 namespace {
 
-// A rival that explains the log as well but for this gain is not told from a finding.
-constexpr double tie_margin = 12.0;
 // Part of the gain that must remain without the finding's best fortieth of the log.
 constexpr double least_elsewhere = 0.2;
 constexpr double stretches = 40.0;
@@ -25,8 +25,12 @@ constexpr double most_inflation = 12.0;
 constexpr double shape_part = 0.04;
 // Below this, whatever its kind.
 constexpr double slight_sigma = 0.25;
+// Above this a large torque is a finding of its own, however little of it no other can explain.
+constexpr double stands_sigma = 0.5;
 // Part of a finding's torque that must be left unexplained where it acts to cast doubt on it.
 constexpr double casts_doubt = 0.4;
+// A real effect's size is the same wherever it acts, but for what its formula leaves out.
+constexpr double most_uneven = 0.3;
 constexpr double outgrown = 0.7;
 
 double rms(const std::vector<double>& values) {
@@ -61,6 +65,11 @@ bool touches(Domain domain, const Leftover& leftover) {
     return domain == Domain::time || domain == Domain::speed || domain == Domain::position;
 }
 
+std::string uneven_words(const Unevenness& uneven) {
+    return fmt::format("what is there only looks like it: its size is not the same {} ({:.0f} % off)",
+                       uneven.where, 100.0 * std::min(uneven.part, 9.99));
+}
+
 bool of_one_kind(Domain a, Domain b) {
     const auto fast = [](Domain d) { return d == Domain::order || d == Domain::frequency; };
     return fast(a) == fast(b);
@@ -74,81 +83,6 @@ bool within_a_sample(const Term& term, const Case& looked_at) {
         if (std::abs(*term.values[p]) < 0.75 / looked_at.motion.sample_rate.value()) return true;
     }
     return false;
-}
-
-// A shape that is bent as far as it goes is not the effect's own. At a bound that is neutral it has no shape
-// at all, which is all right: a drift whose time constant has no end is a straight line.
-std::string_view name_at_bound(const Term& term, const std::vector<FittedValue>& values) {
-    for (const FittedValue& value : values) {
-        const Parameter& parameter = term.effect->parameters[value.parameter];
-        // A logarithm and back is off by rounding.
-        const double from_neutral = std::abs(value.value - parameter.neutral);
-        if (value.at_bound && !parameter.linear &&
-            from_neutral > 1e-6 * std::max(1.0, std::abs(parameter.neutral)))
-            return parameter.name;
-    }
-    return {};
-}
-
-Place place_of(const Case& c, const std::vector<double>& torque_nm, const Term& term) {
-    // Bins in which the rms of what the term adds is at least half of the largest.
-    Place place;
-    const auto bins_of = [&](const std::vector<double>& quantity, double floor) {
-        const auto [low, high] = std::minmax_element(quantity.begin(), quantity.end());
-        constexpr std::size_t bins = 20;
-        std::vector<double> power(bins, 0.0), count(bins, 0.0);
-        std::vector<Span> spans;
-        if (!(*high - *low > floor)) return spans;
-        for (std::size_t k = 0; k < c.size(); ++k) {
-            const auto b =
-                std::min(static_cast<std::size_t>((quantity[k] - *low) / (*high - *low) * bins), bins - 1);
-            power[b] += torque_nm[k] * torque_nm[k];
-            count[b] += 1.0;
-        }
-        double most = 0.0;
-        for (std::size_t b = 0; b < bins; ++b) {
-            power[b] = count[b] > 20.0 ? power[b] / count[b] : 0.0;
-            most = std::max(most, power[b]);
-        }
-        const double width = (*high - *low) / bins;
-        std::size_t taken = 0;
-        for (std::size_t b = 0; b < bins; ++b) {
-            if (power[b] < 0.25 * most || most == 0.0) continue;
-            ++taken;
-            const double from = *low + static_cast<double>(b) * width;
-            if (b > 0 && power[b - 1] >= 0.25 * most)
-                spans.back().to = from + width;
-            else
-                spans.push_back({from, from + width});
-        }
-        if (taken > bins * 3 / 4) spans.clear();  // nowhere in particular
-        return spans;
-    };
-    place.time_s = bins_of(c.motion.time_s, 0.0);
-    place.speed_deg_s = bins_of(c.motion.velocity_deg_s, 1.0);
-    place.position_deg = bins_of(c.motion.position_deg, 5.0);
-    double moving[2] = {0.0, 0.0}, count[2] = {0.0, 0.0}, rest = 0.0, rests = 0.0;
-    for (std::size_t k = 0; k < c.size(); ++k) {
-        const double v = c.motion.velocity_deg_s[k], power = torque_nm[k] * torque_nm[k];
-        if (std::abs(v) < 1.0) {
-            rest += power;
-            rests += 1.0;
-        } else {
-            moving[v > 0.0] += power;
-            count[v > 0.0] += 1.0;
-        }
-    }
-    const double up = count[1] > 0.0 ? moving[1] / count[1] : 0.0,
-                 down = count[0] > 0.0 ? moving[0] / count[0] : 0.0;
-    const double still = rests > 0.0 ? rest / rests : 0.0;
-    if (still < 0.25 * std::max(up, down))
-        place.direction = up > 4.0 * down ? "positive" : down > 4.0 * up ? "negative" : "both";
-    for (std::size_t p = 0; p < term.values.size(); ++p) {
-        if (!term.values[p]) continue;
-        if (term.effect->ripple_order == p && *term.values[p] > 0.0) place.order.push_back(*term.values[p]);
-        if (term.effect->parameters[p].name == "frequency_hz") place.hz.push_back(*term.values[p]);
-    }
-    return place;
 }
 
 void find_rivals(const Bench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
@@ -175,77 +109,148 @@ std::string what_would_tell(const Effect& one, const Effect& other) {
     return "a log with rests, both directions, several speeds and a travel of more than a revolution";
 }
 
+namespace {
+
+// What speaks against a finding by itself; empty reason when nothing does.
+struct Doubt {
+    FindingStatus status = FindingStatus::confirmed;
+    std::string reason;
+};
+
+Doubt doubt_alone(const Bench& bench, const Candidate& model, std::size_t term, const Evidence& evidence,
+                  double own_nm) {
+    const Term& stated = model.stated.terms[term];
+    if (evidence.share_sigma < material_sigma(bench.looked_at()) ||
+        within_a_sample(stated, bench.looked_at()))
+        return {FindingStatus::immaterial,
+                fmt::format("it changes the torque by {:.2g} Nm rms beside a noise of {:.2g} Nm",
+                            evidence.share_nm, bench.noise().rms_nm)};
+    if (own_nm > most_inflation * std::max(evidence.share_nm, 1e-12))
+        return {FindingStatus::unidentifiable,
+                "most of its torque is held in balance by another effect's: this log cannot tell them"};
+    if (const auto bent = bent_parameter(bench, model, term); !bent.empty())
+        return {FindingStatus::tentative,
+                fmt::format("its {} ends at a bound: it stands in for something else", bent)};
+    if (evidence.elsewhere < least_elsewhere)
+        return {FindingStatus::tentative,
+                "it explains one short stretch of the log and hardly anything elsewhere"};
+    if (const Unevenness uneven = unevenness(bench, model.stated, term); uneven.part > most_uneven)
+        return {FindingStatus::tentative, uneven_words(uneven)};
+    return {};
+}
+
+Finding finding_of(const Bench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
+                   const std::vector<double>& torque_nm) {
+    Finding finding;
+    finding.term = model.stated.terms[term];
+    for (const FittedValue& value : model.values) {
+        if (value.term == term) finding.values.push_back(value);
+    }
+    Evidence& evidence = finding.evidence;
+    evidence.gain = fewer.gain_left - model.gain_left;
+    evidence.price = model.prices[term];
+    evidence.share_sigma = bench.share(model, fewer);
+    evidence.share_nm = evidence.share_sigma * bench.noise().rms_nm;
+    evidence.own_nm = rms(torque_nm);
+    evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
+    finding.where = place_of(bench.looked_at(), torque_nm, finding.term);
+    return finding;
+}
+
+bool is_trusted(const Finding& finding) {
+    return finding.status == FindingStatus::confirmed || finding.status == FindingStatus::ambiguous;
+}
+
+// Where more is left over than a finding explains, it may have fed on that.
+void doubt_for_leftovers(Finding& finding, double excess_nm, const Bench& bench,
+                         const std::vector<Leftover>& unexplained) {
+    if (excess_nm > outgrown * finding.evidence.share_nm && !unexplained.empty()) {
+        finding.status = FindingStatus::tentative;
+        finding.reason = "more is left unexplained than it explains";
+    }
+    for (const Leftover& place : unexplained) {
+        // What is left must not be small beside the finding to cast doubt on it.
+        if (!touches(finding.term.effect->domain, place) ||
+            place.rms_nm < casts_doubt * finding.evidence.share_nm || is_confined(place, bench.looked_at()))
+            continue;
+        finding.status = FindingStatus::tentative;
+        finding.reason = "something unexplained is left where it acts";
+    }
+}
+
+// A finding that is slight beside a far larger one may only mend its form. One whose torque is large, and of
+// which others explain much because they look alike, is no such thing.
+void doubt_for_size(Finding& finding, const std::vector<Finding>& findings) {
+    const Evidence& evidence = finding.evidence;
+    for (const Finding& other : findings) {
+        const Effect& larger = *other.term.effect;
+        const bool slight = evidence.share_sigma < slight_sigma;
+        const bool stands =
+            evidence.share_sigma > stands_sigma && evidence.own_nm > shape_part * other.evidence.own_nm;
+        if (evidence.share_sigma > shape_part * other.evidence.share_sigma || stands ||
+            !(slight || of_one_kind(finding.term.effect->domain, larger.domain)))
+            continue;
+        finding.status = FindingStatus::shape_correction;
+        finding.reason = fmt::format("it may only mend the form of {}, which is far larger", larger.name);
+    }
+}
+
+}  // namespace
+
 std::vector<Finding> judge(const Bench& bench, const Candidate& model, std::size_t own_terms,
                            std::span<const Effect* const> effects, const std::vector<Leftover>& unexplained) {
     std::vector<Finding> findings;
     for (std::size_t term = own_terms; term < model.stated.terms.size(); ++term) {
-        const Term& stated = model.stated.terms[term];
-        Finding finding;
-        finding.term = stated;
-        for (const FittedValue& value : model.values) {
-            if (value.term == term) finding.values.push_back(value);
-        }
         const Candidate fewer = without_term(bench, model, term);
-        Evidence& evidence = finding.evidence;
-        evidence.gain = fewer.gain_left - model.gain_left;
-        evidence.price = model.prices[term];
-        evidence.share_sigma = bench.share(model, fewer);
-        evidence.share_nm = evidence.share_sigma * bench.noise().rms_nm;
-        evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
         Model removed = model.stated;
         removed.terms.erase(removed.terms.begin() + static_cast<std::ptrdiff_t>(term));
-        const auto torque_nm = Prediction(removed, bench.looked_at().motion).added(stated);
-        finding.where = place_of(bench.looked_at(), torque_nm, stated);
-        if (evidence.share_sigma < material_sigma(bench.looked_at()) ||
-            within_a_sample(stated, bench.looked_at())) {
-            finding.status = FindingStatus::immaterial;
-            finding.reason = fmt::format("it changes the torque by {:.2g} Nm rms beside a noise of {:.2g} Nm",
-                                         evidence.share_nm, bench.noise().rms_nm);
-        } else if (rms(torque_nm) > most_inflation * std::max(evidence.share_nm, 1e-12)) {
-            finding.status = FindingStatus::unidentifiable;
-            finding.reason =
-                "most of its torque is held in balance by another effect's: this log cannot tell them";
-        } else if (const auto bound = name_at_bound(stated, finding.values); !bound.empty()) {
-            finding.status = FindingStatus::tentative;
-            finding.reason = fmt::format("its {} ends at a bound: it stands in for something else", bound);
-        } else if (evidence.elsewhere < least_elsewhere) {
-            finding.status = FindingStatus::tentative;
-            finding.reason = "it explains one short stretch of the log and hardly anything elsewhere";
-        } else {
-            find_rivals(bench, model, fewer, term, effects, finding);
-        }
+        const auto torque_nm = Prediction(removed, bench.looked_at().motion).added(model.stated.terms[term]);
+        Finding finding = finding_of(bench, model, fewer, term, torque_nm);
+        const Doubt doubt = doubt_alone(bench, model, term, finding.evidence, finding.evidence.own_nm);
+        finding.status = doubt.status;
+        finding.reason = doubt.reason;
+        if (is_trusted(finding)) find_rivals(bench, model, fewer, term, effects, finding);
         findings.push_back(std::move(finding));
     }
-    // Where more is left over than a finding explains, it may have fed on that.
     const auto left = bench.cleared_residual(model.stated);
     const double excess_nm =
         std::sqrt(std::max(rms(left) * rms(left) - std::pow(bench.noise().rms_nm, 2), 0.0));
     for (Finding& finding : findings) {
-        const Effect& effect = *finding.term.effect;
-        if (finding.status != FindingStatus::confirmed && finding.status != FindingStatus::ambiguous)
-            continue;
-        if (excess_nm > outgrown * finding.evidence.share_nm && !unexplained.empty()) {
-            finding.status = FindingStatus::tentative;
-            finding.reason = "more is left unexplained than it explains";
-        }
-        for (const Leftover& place : unexplained) {
-            // What is left must not be small beside the finding to cast doubt on it.
-            if (!touches(effect.domain, place) || place.rms_nm < casts_doubt * finding.evidence.share_nm)
-                continue;
-            if (is_confined(place, bench.looked_at())) continue;
-            finding.status = FindingStatus::tentative;
-            finding.reason = "something unexplained is left where it acts";
-        }
-        for (const Finding& other : findings) {
-            const Effect& larger = *other.term.effect;
-            const double part = finding.evidence.share_sigma / other.evidence.share_sigma;
-            const bool slight = finding.evidence.share_sigma < slight_sigma;
-            if (part > shape_part || !(slight || of_one_kind(effect.domain, larger.domain))) continue;
-            finding.status = FindingStatus::shape_correction;
-            finding.reason = fmt::format("it may only mend the form of {}, which is far larger", larger.name);
-        }
+        if (!is_trusted(finding)) continue;
+        doubt_for_leftovers(finding, excess_nm, bench, unexplained);
+        doubt_for_size(finding, findings);
     }
     return findings;
+}
+
+bool is_doubtful(const Finding& finding) {
+    return finding.status == FindingStatus::tentative || finding.status == FindingStatus::unidentifiable;
+}
+
+Candidate believed(const Bench& bench, const Candidate& model, std::size_t own_terms,
+                   std::vector<Finding>& findings) {
+    while (true) {
+        Candidate kept = model;
+        for (std::size_t i = findings.size(); i-- > 0;) {
+            if (is_doubtful(findings[i])) kept = without_term(bench, kept, own_terms + i);
+        }
+        bool changed = false;
+        std::size_t term = own_terms;
+        for (Finding& finding : findings) {
+            if (is_doubtful(finding)) continue;
+            const std::size_t place = term++;
+            const bool beside = std::any_of(findings.begin(), findings.end(), [&](const Finding& other) {
+                return is_doubtful(other) && other.term.effect->domain == finding.term.effect->domain;
+            });
+            if (!beside || !is_trusted(finding)) continue;
+            const Unevenness uneven = unevenness(bench, kept.stated, place);
+            if (uneven.part <= most_uneven) continue;
+            finding.status = FindingStatus::tentative;
+            finding.reason = uneven_words(uneven);
+            changed = true;
+        }
+        if (!changed) return kept;
+    }
 }
 
 }  // namespace ripplenotch

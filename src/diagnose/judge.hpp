@@ -16,6 +16,14 @@ namespace ripplenotch {
                                          std::span<const Effect* const> effects,
                                          const std::vector<Leftover>& unexplained);
 
+/// True for findings that are told and not believed: they are not in the improved model.
+[[nodiscard]] bool is_doubtful(const Finding& finding);
+
+/// The model without findings that are in doubt. Those that stay are looked at once more without these:
+/// beside a surrogate of its own domain a finding may look right that does not by itself.
+[[nodiscard]] Candidate believed(const Bench& bench, const Candidate& model, std::size_t own_terms,
+                                 std::vector<Finding>& findings);
+
 /// The advice of the catalogue for telling two effects apart; a general one when it has none.
 [[nodiscard]] std::string what_would_tell(const Effect& one, const Effect& other);
 

@@ -32,15 +32,11 @@ class Residual {
         // Errors of the measured motion are no disagreement.
         const auto cleared = bench.cleared_residual(stated);
         for (std::size_t r = 0; r < cleared.size(); ++r) raw_nm_[bench.rows()[r]] = cleared[r];
-        double sum = 1.0;
-        for (const double a : bench.noise().color) sum -= a;
-        // Variance of a mean of coloured noise, against white noise of the same rms.
-        const double white_share = std::pow(bench.noise().white_nm / bench.noise().rms_nm, 2);
         // Of whole steps a torque that stays on one is off by up to half of it.
         const double step_nm = bench.looked_at().step_nm;
         matters_mean_ = std::max(matters_mean, 0.55 * step_nm / bench.noise().rms_nm);
         matters_power_ = step_nm > 0.0 ? 4.0 : matters_power;
-        inflation_ = std::max(1.0, white_share / std::max(sum * sum, 1e-3));
+        inflation_ = bench.noise().of_sums();
     }
 
     [[nodiscard]] const std::vector<double>& raw_nm() const { return raw_nm_; }

@@ -192,6 +192,13 @@ double quiet_rms(const VectorXd& left, const Case& c) {
 
 }  // namespace
 
+double NoiseFloor::of_sums() const {
+    double sum = 1.0;
+    for (const double a : color) sum -= a;
+    const double white_share = white_nm / rms_nm * (white_nm / rms_nm);
+    return std::max(1.0, white_share / std::max(sum * sum, 1e-3));
+}
+
 NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open) {
     const Case& c = looked_at;
     std::vector<double> torque_nm = c.torque_nm;

@@ -13,6 +13,9 @@ struct NoiseFloor {
     double rms_nm = 0.0;        ///< of the noise
     double white_nm = 0.0;      ///< rms of its white part
     std::vector<double> color;  ///< coefficients of FitOptions::noise_color
+
+    /// Variance of a sum over many samples, against that of white noise of the same rms; at least 1.
+    [[nodiscard]] double of_sums() const;
 };
 
 /// `model`: the best one so far, wholly stated; its own slopes take part.

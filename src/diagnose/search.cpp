@@ -17,6 +17,8 @@ constexpr double within_reach = 0.4;
 // what closes less only feeds on something else.
 constexpr double open_gap = 0.02, fair_part = 0.12;
 constexpr int swap_rounds = 2;
+// Part of the gain of a bent shape with which another is preferred to it.
+constexpr double instead_of_bent = 0.5;
 
 // The lines of a trial are names of their own: ripple of order 3 and of order 4 may both be there.
 bool same_place(const Term& a, const Term& b) {
@@ -27,17 +29,29 @@ bool same_place(const Term& a, const Term& b) {
     return true;
 }
 
+bool newest_is_bent(const Bench& bench, const Candidate& model) {
+    return !bent_parameter(bench, model, model.stated.terms.size() - 1).empty();
+}
+
+// A shape that is bent as far as it goes stands in for something else: before it is taken, whatever closes a
+// fair part of what it closes has its turn.
 std::optional<Candidate> best_addition(const Bench& bench, const Candidate& now,
                                        const std::vector<Trial>& trials) {
-    std::optional<Candidate> best;
-    std::size_t looked_at = 0;
+    std::vector<Candidate> tried;
     const double worth = trials.empty() ? 0.0 : std::max(within_reach * trials[0].score(), 0.0);
     for (const Trial& trial : trials) {
-        if (looked_at++ >= finalists || trial.score() <= worth) break;
-        Candidate next = with_trial(bench, now, trial);
-        if (!best || next.criterion() < best->criterion()) best = std::move(next);
+        if (tried.size() >= finalists || trial.score() <= worth) break;
+        tried.push_back(with_trial(bench, now, trial));
     }
-    return best;
+    if (tried.empty()) return std::nullopt;
+    std::stable_sort(tried.begin(), tried.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.criterion() < b.criterion(); });
+    const double most = now.criterion() - tried[0].criterion();
+    for (const Candidate& next : tried) {
+        if (now.criterion() - next.criterion() < instead_of_bent * most) break;
+        if (!newest_is_bent(bench, next)) return next;
+    }
+    return tried[0];
 }
 
 bool worth_it(const Bench& bench, const Candidate& now, const Candidate& next) {
@@ -71,7 +85,7 @@ bool swap_once(const Bench& bench, Candidate& now, std::size_t own_terms,
             if (same_place(trial.start, now.stated.terms[term])) continue;
             if (trial.gain < 0.8 * gain || tried++ >= 2) break;
             const Candidate other = with_trial(bench, fewer, trial);
-            if (other.criterion() < now.criterion() - 1.0) {
+            if (other.criterion() < now.criterion() - 1.0 && !newest_is_bent(bench, other)) {
                 now = other;
                 return true;
             }
@@ -103,6 +117,27 @@ Candidate without_term(const Bench& bench, const Candidate& model, std::size_t t
     guess.terms.erase(guess.terms.begin() + at);
     prices.erase(prices.begin() + at);
     return bench.fitted(open, guess, std::move(prices));
+}
+
+std::string_view bent_parameter(const Bench& bench, const Candidate& model, std::size_t term) {
+    const Effect& effect = *model.stated.terms[term].effect;
+    for (const FittedValue& value : model.values) {
+        const Parameter& parameter = effect.parameters[value.parameter];
+        // A logarithm and back is off by rounding.
+        const double from_neutral = std::abs(value.value - parameter.neutral);
+        if (value.term != term || !value.at_bound || parameter.linear ||
+            from_neutral <= 1e-6 * std::max(1.0, std::abs(parameter.neutral)))
+            continue;
+        const bool at_lower = value.value - parameter.lower < parameter.upper - value.value;
+        const double inward = 0.05 * (parameter.upper - parameter.lower);
+        double within = value.value + (at_lower ? inward : -inward);
+        if (parameter.lower > 0.0) within = value.value * (at_lower ? 2.0 : 0.5);
+        Model held = model.open, guess = model.stated;
+        held.terms[term].values[value.parameter] = guess.terms[term].values[value.parameter] = within;
+        const Candidate moved = bench.fitted(held, guess, model.prices);
+        if (moved.gain_left > model.gain_left + tie_margin) return parameter.name;
+    }
+    return {};
 }
 
 Candidate search(Bench& bench, const Candidate& start, std::size_t own_terms,

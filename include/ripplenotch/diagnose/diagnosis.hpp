@@ -54,6 +54,7 @@ struct Evidence {
     double price = 0.0;        ///< gain that chance might bring, given all that was tried
     double share_nm = 0.0;     ///< rms torque that only this finding explains
     double share_sigma = 0.0;  ///< the same in units of the noise floor
+    double own_nm = 0.0;       ///< rms of its whole torque, of which others might explain a part as well
     double elsewhere = 0.0;    ///< part of the gain that is left without its best stretch of the log
 };
 

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/evenness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ripplenotch/model/prediction.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+// A place tells a size when it would be told from twice the size by so many standard deviations, and when the
+// torque there is not far below the noise.
+constexpr double telling_deviations = 10.0;
+constexpr double least_sigma = 0.5;
+
+struct Sums {
+    double samples = 0.0, left = 0.0, torque = 0.0, both = 0.0, square = 0.0;
+};
+
+// The finding's torque and what is left over, a number per row that counts.
+struct Torques {
+    std::vector<double> finding_nm, left_nm;
+    double variance_nm2 = 0.0;  ///< of a sum of noise over places, per sample
+    bool changes = false;       ///< in the log, be it in rows that do not count
+};
+
+Torques torques_of(const Bench& bench, const Model& stated, std::size_t term) {
+    Model removed = stated;
+    removed.terms.erase(removed.terms.begin() + static_cast<std::ptrdiff_t>(term));
+    const auto added = Prediction(removed, bench.looked_at().motion).added(stated.terms[term]);
+    Torques torques;
+    torques.left_nm = bench.cleared_residual(stated);
+    for (const std::size_t k : bench.rows()) torques.finding_nm.push_back(added[k]);
+    const auto [low, high] = std::minmax_element(added.begin(), added.end());
+    torques.changes = *high - *low > 1e-6 * std::max(std::abs(*low), std::abs(*high));
+    torques.variance_nm2 = std::pow(bench.noise().rms_nm, 2) * bench.noise().of_sums();
+    return torques;
+}
+
+// `place`: of each row; none for those that do not count.
+std::vector<Sums> sums_of(const Torques& torques, const std::vector<std::size_t>& place, std::size_t count) {
+    std::vector<Sums> sums(count);
+    for (std::size_t r = 0; r < place.size(); ++r) {
+        if (place[r] == none) continue;
+        Sums& sum = sums[place[r]];
+        sum.samples += 1.0;
+        sum.left += torques.left_nm[r];
+        sum.torque += torques.finding_nm[r];
+        sum.both += torques.left_nm[r] * torques.finding_nm[r];
+        sum.square += torques.finding_nm[r] * torques.finding_nm[r];
+    }
+    return sums;
+}
+
+// Each place that tells a size has the same say.
+double between(const Torques& torques, const std::vector<std::size_t>& place, std::size_t count) {
+    double off = 0.0, places = 0.0;
+    for (const Sums& sum : sums_of(torques, place, count)) {
+        const double variance = torques.variance_nm2;
+        if (sum.square < telling_deviations * telling_deviations * variance ||
+            sum.square < least_sigma * least_sigma * variance * sum.samples)
+            continue;
+        const double part = sum.both / sum.square;
+        off += std::max(part * part - variance / sum.square, 0.0);
+        places += 1.0;
+    }
+    return places > 1.0 ? std::sqrt(off / places) : 0.0;
+}
+
+// A torque that changes only where rows do not count is a constant in those that do, which may be anything.
+bool only_constant(const Torques& torques) {
+    if (!torques.changes) return false;
+    const Sums sum = sums_of(torques, std::vector<std::size_t>(torques.finding_nm.size(), 0), 1)[0];
+    return sum.square - sum.torque * sum.torque / sum.samples <
+           telling_deviations * telling_deviations * torques.variance_nm2;
+}
+
+// Of the change within places alone; each has the say of how much the torque changes in it.
+double within(const Torques& torques, const std::vector<std::size_t>& place, std::size_t count) {
+    double off = 0.0, all = 0.0, chance = 0.0;
+    for (const Sums& sum : sums_of(torques, place, count)) {
+        if (sum.samples < 2.0) continue;
+        const double square = sum.square - sum.torque * sum.torque / sum.samples;
+        const double both = sum.both - sum.torque * sum.left / sum.samples;
+        if (!(square > 0.0)) continue;
+        off += both * both / square;
+        all += square;
+        chance += torques.variance_nm2;
+    }
+    if (!(all > telling_deviations * chance)) return 0.0;
+    return std::sqrt(std::max(off - chance, 0.0) / all);
+}
+
+std::vector<std::size_t> by_time(const Bench& bench, std::size_t count) {
+    const auto& time_s = bench.looked_at().motion.time_s;
+    const double start_s = time_s.front(), length_s = (time_s.back() - start_s) / static_cast<double>(count);
+    std::vector<std::size_t> place;
+    for (const std::size_t k : bench.rows())
+        place.push_back(std::min(static_cast<std::size_t>((time_s[k] - start_s) / length_s), count - 1));
+    return place;
+}
+
+// Speeds in equal parts of the samples that move, each direction by itself.
+std::vector<std::size_t> by_speed(const Bench& bench, std::size_t count) {
+    const auto& velocity = bench.looked_at().motion.velocity_deg_s;
+    std::vector<double> speeds;
+    for (const std::size_t k : bench.rows()) {
+        if (std::abs(velocity[k]) > 1.0) speeds.push_back(std::abs(velocity[k]));
+    }
+    std::vector<double> ends;
+    for (std::size_t b = 1; b < count && !speeds.empty(); ++b) {
+        const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() * b / count);
+        std::nth_element(speeds.begin(), middle, speeds.end());
+        ends.push_back(*middle);
+    }
+    std::vector<std::size_t> place;
+    for (const std::size_t k : bench.rows()) {
+        const double speed = std::abs(velocity[k]);
+        const auto b =
+            static_cast<std::size_t>(std::lower_bound(ends.begin(), ends.end(), speed) - ends.begin());
+        const bool counts = speed > 1.0 && bench.looked_at().edge[k] == 0;
+        place.push_back(counts ? b + (velocity[k] > 0.0 ? count : 0) : none);
+    }
+    return place;
+}
+
+}  // namespace
+
+Unevenness unevenness(const Bench& bench, const Model& stated, std::size_t term) {
+    const Torques torques = torques_of(bench, stated, term);
+    if (only_constant(torques)) return {1.0, "where it changes and where it does not"};
+    Unevenness worst;
+    const auto take = [&](double part, std::string_view where) {
+        if (part > worst.part) worst = {part, where};
+    };
+    take(between(torques, by_time(bench, 8), 8), "early and late in the log");
+    take(between(torques, by_speed(bench, 6), 12), "slow and fast, forth and back");
+    for (const std::size_t stretches : {40U, 10U})
+        take(within(torques, by_time(bench, stretches), stretches), "within short stretches of the log");
+    return worst;
+}
+
+}  // namespace ripplenotch
