@@ -74,6 +74,8 @@ Json round_json(const Finding& finding) {
     json["alternatives"] = Json::array();
     for (const RivalFinding& rival : finding.alternatives)
         json["alternatives"].push_back({{"effect", rival.effect}, {"margin", six(rival.margin)}});
+    json["validation_before_nm"] = six(finding.validation_before_nm);
+    json["validation_after_nm"] = six(finding.validation_after_nm);
     json["gap_before_nm"] = six(finding.gap_before_nm);
     json["gap_after_nm"] = six(finding.gap_after_nm);
     return json;
@@ -92,7 +94,8 @@ Json leftovers_json(const std::vector<Leftover>& leftovers) {
     for (const Leftover& leftover : leftovers) {
         list.push_back({{"kind", leftover.kind},
                         {"where", place_json(leftover.where)},
-                        {"rms_nm", six(leftover.rms_nm)}});
+                        {"rms_nm", six(leftover.rms_nm)},
+                        {"part_of_gap", six(leftover.part)}});
     }
     return list;
 }
@@ -135,6 +138,11 @@ std::string write_diagnosis(const Diagnosis& diagnosis, const Provenance& proven
         json["ambiguous"].push_back({{"effects", tie.effects}, {"advice", tie.advice}});
     json["unexplained"] = leftovers_json(diagnosis.unexplained);
     json["disagreement"] = leftovers_json(diagnosis.disagreement);
+    json["undecidable"] = Json::array();
+    for (const Undecidable& entry : diagnosis.undecidable)
+        json["undecidable"].push_back({{"effect", entry.effect},
+                                       {"reason", entry.reason},
+                                       {"would_explain_nm", six(entry.would_explain_nm)}});
     json["gap"] = gap_json(diagnosis.gap);
     json["own_terms"] = baseline_json(diagnosis);
     json["samples"] = diagnosis.samples;

@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_places = 4;
+constexpr std::size_t most_places = 4, most_of_a_kind = 3;
 
 std::string short_number(double value) {
     const std::string text = fmt::format("{:.4g}", value);
@@ -69,6 +70,11 @@ std::string round_text(const Finding& finding, std::size_t number) {
     text +=
         fmt::format("  gap {} -> {} Nm; alone it explains {} Nm rms\n", short_number(finding.gap_before_nm),
                     short_number(finding.gap_after_nm), short_number(finding.evidence.share_nm));
+    if (finding.validation_before_nm) {
+        text += fmt::format("  on the validation log {} -> {} Nm with it\n",
+                            short_number(*finding.validation_before_nm),
+                            short_number(*finding.validation_after_nm));
+    }
     for (const RivalFinding& rival : finding.alternatives)
         text += fmt::format("  instead of it, {} would leave {} more (a tie below 12)\n", rival.effect,
                             short_number(rival.margin));
@@ -76,7 +82,27 @@ std::string round_text(const Finding& finding, std::size_t number) {
 }
 
 std::string leftover_text(const Leftover& leftover) {
-    return fmt::format("{} Nm rms {}", short_number(leftover.rms_nm), where_text(leftover.where));
+    return fmt::format("{} Nm rms {} ({:.0f} % of the squared residual)", short_number(leftover.rms_nm),
+                       where_text(leftover.where), 100.0 * std::min(leftover.part, 1.0));
+}
+
+// Places of one kind are told together beyond the largest: a log may disagree in dozens of stretches of time.
+std::string leftovers_text(const std::vector<Leftover>& leftovers, std::string_view verb) {
+    std::string text;
+    std::map<std::string, std::pair<std::size_t, double>> more;  // number and part
+    std::map<std::string, std::size_t> told;
+    for (const Leftover& leftover : leftovers) {
+        if (told[leftover.kind]++ < most_of_a_kind) {
+            text += fmt::format("{} {}\n", verb, leftover_text(leftover));
+        } else {
+            ++more[leftover.kind].first;
+            more[leftover.kind].second += leftover.part;
+        }
+    }
+    for (const auto& [kind, rest] : more)
+        text += fmt::format("{} in {} further places by {} ({:.0f} %)\n", verb, rest.first, kind,
+                            100.0 * std::min(rest.second, 1.0));
+    return text;
 }
 
 std::string joined(const std::vector<std::string>& words, std::string_view between) {
@@ -113,8 +139,14 @@ std::string diagnosis_story(const Diagnosis& diagnosis) {
     for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) text += round_text(diagnosis.rounds[i], i + 1);
     for (const Tie& tie : diagnosis.ambiguous)
         text += fmt::format("{}: this log cannot tell; {} would\n", joined(tie.effects, " or "), tie.advice);
-    for (const Leftover& leftover : diagnosis.unexplained)
-        text += fmt::format("unexplained: {}\n", leftover_text(leftover));
+    text += leftovers_text(diagnosis.unexplained, "unexplained:");
+    for (const Undecidable& entry : diagnosis.undecidable) {
+        text += fmt::format("not examined: {}: {}", entry.effect, entry.reason);
+        if (entry.would_explain_nm > 0.0)
+            text += fmt::format("; along the integral of the speed it would explain {} Nm rms",
+                                short_number(entry.would_explain_nm));
+        text += "\n";
+    }
     text += fmt::format("gap {} -> {} Nm", short_number(gap.before_nm), short_number(gap.after_nm));
     if (gap.closed_percent) text += fmt::format(", {:.1f} % of it closed", *gap.closed_percent);
     text += "\n";

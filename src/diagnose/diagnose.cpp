@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <set>
+#include <optional>
 
 #include "diagnose/faults.hpp"
 #include "diagnose/judge.hpp"
 #include "diagnose/leftover.hpp"
+#include "diagnose/reproduction.hpp"
 #include "diagnose/search.hpp"
+#include "diagnose/summary.hpp"
+#include "diagnose/undecidable.hpp"
 #include "diagnose/values.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -21,33 +24,23 @@ namespace {
 constexpr double noise_was_too_large = 0.985;
 constexpr int most_looks = 3;
 
-double rms_of(const std::vector<double>& values, const std::vector<unsigned char>& use) {
-    double sum = 0.0, count = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        if (use[k] == 0) continue;
-        sum += values[k] * values[k];
-        count += 1.0;
-    }
-    return std::sqrt(sum / std::max(count, 1.0));
+bool is_among(std::span<const std::string> names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-double residual_rms(const Case& c, const Model& stated, const std::vector<unsigned char>& use) {
-    std::vector<double> left = predict_nm(stated, c.motion);
-    for (std::size_t k = 0; k < left.size(); ++k) left[k] = c.torque_nm[k] - left[k];
-    return rms_of(left, use);
-}
-
-// Converter effects are found in the log itself (find_faults), not by a fit.
-std::vector<const Effect*> screened(const Model& model, std::span<const std::string> without) {
-    for (const std::string& name : without) (void)find_effect(name);
+// Converter effects are found in the log itself (find_faults), not by a fit. `of_position`: whether effects
+// that need the joint's position take part.
+std::vector<const Effect*> screened(const Model& model, std::span<const std::string> without,
+                                    bool of_position) {
     std::vector<const Effect*> effects;
     for (const Effect* effect : catalogue()) {
-        const bool left_out = std::find(without.begin(), without.end(), effect->name) != without.end();
+        const bool left_out = is_among(without, effect->name);
         // Without ripple in the model there is nothing that these could change.
         const bool ripple = std::any_of(model.terms.begin(), model.terms.end(), [](const Term& term) {
             return term.effect->ripple_order.has_value();
         });
-        if (left_out || effect->side == Side::converter || (effect->side == Side::ripple && !ripple))
+        if (left_out || effect->side == Side::converter || (effect->side == Side::ripple && !ripple) ||
+            (!of_position && needs_position(*effect)))
             continue;
         effects.push_back(effect);
     }
@@ -80,61 +73,6 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
         if (left > noise_was_too_large && found.last.stated.terms.size() == own) break;
     }
     return found;
-}
-
-DiagnosisVerdict verdict_of(const Diagnosis& diagnosis) {
-    const bool told = !diagnosis.named.empty() || !diagnosis.ambiguous.empty();
-    const bool doubtful = std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), is_doubtful);
-    if (diagnosis.unexplained.empty() && !doubtful)
-        return told ? DiagnosisVerdict::explained : DiagnosisVerdict::matches;
-    return told ? DiagnosisVerdict::partly_explained : DiagnosisVerdict::unexplained;
-}
-
-void name_findings(Diagnosis& diagnosis) {
-    std::set<std::set<std::string>> ties;
-    for (const Finding& finding : diagnosis.rounds) {
-        const Effect& effect = *finding.term.effect;
-        const std::string name(effect.name);
-        auto& named = diagnosis.named;
-        if (finding.status == FindingStatus::confirmed &&
-            std::find(named.begin(), named.end(), name) == named.end())
-            named.push_back(name);
-        if (finding.status != FindingStatus::ambiguous) continue;
-        Tie tie{{name}, {}};
-        for (const RivalFinding& rival : finding.alternatives) {
-            if (rival.margin >= 12.0) continue;
-            tie.effects.emplace_back(rival.effect);
-            if (tie.advice.empty()) tie.advice = what_would_tell(effect, find_effect(rival.effect));
-        }
-        if (ties.insert({tie.effects.begin(), tie.effects.end()}).second) diagnosis.ambiguous.push_back(tie);
-    }
-}
-
-// Part of the squared gap above the floor that is gone, of samples that no fault spoiled. Empty when there
-// was no gap to speak of.
-std::optional<double> closed_percent(const Case& c, const Diagnosis& diagnosis) {
-    const double floor = std::pow(diagnosis.gap.noise_floor_nm, 2);
-    const double before = std::pow(residual_rms(c, diagnosis.baseline, c.use), 2) - floor;
-    const double after = std::pow(residual_rms(c, diagnosis.model, c.use), 2) - floor;
-    if (before < 0.02 * floor) return std::nullopt;
-    const double closed = 100.0 * (1.0 - std::max(after, 0.0) / before);
-    return std::abs(closed) < 1e-3 ? 0.0 : closed;  // the same model, fitted anew
-}
-
-// Gaps are over every sample, so that they are what `simulate` says of the same model and log.
-void measure_gap(Diagnosis& diagnosis, const Case& whole, const TraceView* validation, Seconds smoothing) {
-    DiagnosisGap& gap = diagnosis.gap;
-    const std::vector<unsigned char> all(whole.size(), 1);
-    gap.before_nm = residual_rms(whole, diagnosis.baseline, all);
-    gap.after_nm = residual_rms(whole, diagnosis.model, all);
-    gap.closed_percent = closed_percent(whole, diagnosis);
-    if (validation == nullptr) return;
-    Case other = whole_case(*validation, smoothing);
-    (void)find_faults(other);
-    const std::vector<unsigned char> every(other.size(), 1);
-    gap.validation_before_nm = residual_rms(other, diagnosis.baseline, every);
-    gap.validation_after_nm = residual_rms(other, diagnosis.model, every);
-    gap.validation_closed_percent = closed_percent(other, diagnosis);
 }
 
 // The gap after each addition, in the order of adoption.
@@ -179,27 +117,68 @@ double confined_part(const Case& c, const std::vector<Leftover>& left) {
     return total_s / (c.motion.time_s.back() - c.motion.time_s.front());
 }
 
-}  // namespace
+// Faults whose effect is not to be tried have no name: what they spoiled is unexplained.
+std::vector<Leftover> nameless(std::vector<Fault>& faults, std::span<const std::string> without) {
+    std::vector<Leftover> left;
+    for (const Fault& fault : faults) {
+        if (is_among(without, fault.term.effect->name))
+            left.push_back({"time", {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
+    }
+    std::erase_if(faults, [&](const Fault& fault) { return is_among(without, fault.term.effect->name); });
+    return left;
+}
 
-Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
-                   const DiagnosisOptions& options) {
-    const auto effects = screened(model, options.without);
-    const std::size_t own = model.terms.size();
-    Case whole = whole_case(log, options.smoothing);
-    Diagnosis diagnosis;
-    diagnosis.has_position = log.has_position();
-    diagnosis.samples = whole.size();
-    diagnosis.faults = find_faults(whole);
-    Case part = excerpt(whole);
+// What stands in spoiled samples, known when there is a model of the others.
+void measure_at_samples(std::vector<Leftover>& nameless, const Case& c, const Model& stated) {
+    std::vector<double> left = predict_nm(stated, c.motion);
+    double all = 0.0;
+    for (std::size_t k = 0; k < left.size(); ++k) {
+        left[k] = c.torque_nm[k] - left[k];
+        all += left[k] * left[k];
+    }
+    for (Leftover& leftover : nameless) {
+        double sum = 0.0, count = 0.0;
+        for (const Span& span : leftover.where.time_s) {
+            const auto first = std::lower_bound(c.motion.time_s.begin(), c.motion.time_s.end(), span.from);
+            for (auto at = first; at != c.motion.time_s.end() && *at <= span.to; ++at, count += 1.0)
+                sum += std::pow(left[static_cast<std::size_t>(at - c.motion.time_s.begin())], 2);
+        }
+        leftover.rms_nm = std::sqrt(sum / std::max(count, 1.0));
+        leftover.part = sum / std::max(all, 1e-300);
+    }
+}
+
+// Without position an effect of the position may fit along the integral of the speed and be something else.
+std::vector<Undecidable> undecidable(const Bench& bench, const Candidate& model,
+                                     std::span<const Effect* const> examined,
+                                     std::span<const std::string> without) {
+    std::vector<const Effect*> others;
+    for (const Effect* effect : screened(model.stated, without, true)) {
+        if (std::find(examined.begin(), examined.end(), effect) == examined.end()) others.push_back(effect);
+    }
+    std::vector<Undecidable> told;
+    for (const Effect* effect : others)
+        told.push_back({effect->name, "it depends on where the joint is, and the log has no position", 0.0});
+    bench.screened().clear();
+    for (const Trial& trial : screen(bench, model, others)) {
+        for (Undecidable& entry : told) {
+            if (entry.effect == trial.start.effect->name && trial.score() > 0.0)
+                entry.would_explain_nm = bench.noise().rms_nm * std::sqrt(trial.gain / bench.samples());
+        }
+    }
+    return told;
+}
+
+// A disturbance of short duration bends everything that is fitted to it. It is told, set aside, and the rest
+// of the log is diagnosed without it.
+Searched search_rest(Case& part, const Model& model, std::span<const Effect* const> effects,
+                     Diagnosis& diagnosis, std::vector<Leftover>& aside) {
     Searched found = search_case(part, model, effects);
     {
         Bench bench(part, found.noise);
         bench.settle_on(found.first.stated);
         diagnosis.disagreement = leftovers(bench, found.first.stated);
     }
-    // A disturbance of short duration bends everything that is fitted to it. It is told, set aside, and the
-    // rest of the log is diagnosed without it.
-    std::vector<Leftover> aside;
     for (int look = 0; look < 2; ++look) {
         const auto left = leftovers(*found.bench, found.last.stated);
         if (confined_part(part, left) > 0.15 || !set_aside(part, left)) break;
@@ -208,7 +187,13 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
         }
         found = search_case(part, model, effects);
     }
-    Bench& bench = *found.bench;
+    return found;
+}
+
+// What of the findings is believed, and what is left then. `other`: the validation log, if there is one.
+Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
+                 std::span<const Effect* const> effects, const Case* other) {
+    const Bench& bench = *found.bench;
     diagnosis.unexplained = leftovers(bench, found.last.stated);
     diagnosis.rounds = judge(bench, found.last, own, effects, diagnosis.unexplained);
     diagnosis.baseline = found.first.stated;
@@ -216,9 +201,38 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     diagnosis.noise_color = found.noise.color;
     tell_rounds(diagnosis, bench, found.last, own);
     Candidate last = believed(bench, found.last, own, diagnosis.rounds);
+    if (other != nullptr) last = reproduced(bench, found.last, last, *other, own, diagnosis.rounds);
     // What a doubtful finding would explain is not explained.
     if (last.stated.terms.size() < found.last.stated.terms.size())
         diagnosis.unexplained = leftovers(bench, last.stated);
+    return last;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
+                   const DiagnosisOptions& options) {
+    for (const std::string& name : options.without) (void)find_effect(name);
+    const auto effects = screened(model, options.without, log.has_position());
+    const std::size_t own = model.terms.size();
+    Case whole = whole_case(log, options.smoothing);
+    std::optional<Case> other;
+    if (validation != nullptr) {
+        other = whole_case(*validation, options.smoothing);
+        (void)find_faults(*other);
+    }
+    Diagnosis diagnosis;
+    diagnosis.has_position = log.has_position();
+    diagnosis.samples = whole.size();
+    diagnosis.faults = find_faults(whole);
+    std::vector<Leftover> spoiled = nameless(diagnosis.faults, options.without), aside;
+    Case part = excerpt(whole);
+    const Searched found = search_rest(part, model, effects, diagnosis, aside);
+    Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr);
+    if (!log.has_position())
+        diagnosis.undecidable = undecidable(*found.bench, last, effects, options.without);
+    measure_at_samples(spoiled, whole, last.stated);
+    diagnosis.unexplained.insert(diagnosis.unexplained.begin(), spoiled.begin(), spoiled.end());
     diagnosis.unexplained.insert(diagnosis.unexplained.begin(), aside.begin(), aside.end());
     // The excerpt chose; the whole log gives the values.
     if (part.size() < whole.size()) {
@@ -247,7 +261,7 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     }
     name_findings(diagnosis);
     diagnosis.samples_used = part.size() < whole.size() ? whole.used() : part.used();
-    measure_gap(diagnosis, whole, validation, options.smoothing);
+    measure_gap(diagnosis, whole, other ? &*other : nullptr);
     diagnosis.verdict = verdict_of(diagnosis);
     return diagnosis;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "diagnose/bent_shape.hpp"
 #include "diagnose/evenness.hpp"
 #include "diagnose/leftover.hpp"
 #include "diagnose/place.hpp"
@@ -32,6 +33,7 @@ constexpr double casts_doubt = 0.4;
 // A real effect's size is the same wherever it acts, but for what its formula leaves out.
 constexpr double most_uneven = 0.3;
 constexpr double outgrown = 0.7;
+constexpr const char* more_is_left = "more is left unexplained than it explains";
 
 double rms(const std::vector<double>& values) {
     double sum = 0.0;
@@ -70,10 +72,9 @@ std::string uneven_words(const Unevenness& uneven) {
                        uneven.where, 100.0 * std::min(uneven.part, 9.99));
 }
 
-bool of_one_kind(Domain a, Domain b) {
-    const auto fast = [](Domain d) { return d == Domain::order || d == Domain::frequency; };
-    return fast(a) == fast(b);
-}
+bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
+
+bool of_one_kind(Domain a, Domain b) { return is_fast(a) == is_fast(b); }
 
 // A delay of part of a sample is a matter of when a sample is said to be taken.
 bool within_a_sample(const Term& term, const Case& looked_at) {
@@ -111,6 +112,19 @@ std::string what_would_tell(const Effect& one, const Effect& other) {
 
 namespace {
 
+// A size that its own error covers, unless another number tells that the effect is there.
+std::string_view untold_size(const Term& stated, const std::vector<FittedValue>& values, std::size_t term) {
+    std::string_view untold;
+    for (const FittedValue& value : values) {
+        const Parameter& parameter = stated.effect->parameters[value.parameter];
+        if (value.term != term || !parameter.linear) continue;
+        const double off = std::abs(value.value - parameter.neutral);
+        if (value.standard_error && *value.standard_error < 0.5 * off) return {};
+        untold = parameter.name;
+    }
+    return untold;
+}
+
 // What speaks against a finding by itself; empty reason when nothing does.
 struct Doubt {
     FindingStatus status = FindingStatus::confirmed;
@@ -128,15 +142,26 @@ Doubt doubt_alone(const Bench& bench, const Candidate& model, std::size_t term, 
     if (own_nm > most_inflation * std::max(evidence.share_nm, 1e-12))
         return {FindingStatus::unidentifiable,
                 "most of its torque is held in balance by another effect's: this log cannot tell them"};
+    if (const auto size = untold_size(stated, model.values, term); !size.empty())
+        return {FindingStatus::unidentifiable, fmt::format("this log does not tell its {}", size)};
+    if (evidence.raw_gain <= 0.0) return {FindingStatus::tentative, "the gap is no smaller with it"};
     if (const auto bent = bent_parameter(bench, model, term); !bent.empty())
-        return {FindingStatus::tentative,
-                fmt::format("its {} ends at a bound: it stands in for something else", bent)};
+        return {
+            FindingStatus::tentative,
+            fmt::format("its {} ends at a bound, or as good as that: it stands in for something else", bent)};
     if (evidence.elsewhere < least_elsewhere)
         return {FindingStatus::tentative,
                 "it explains one short stretch of the log and hardly anything elsewhere"};
     if (const Unevenness uneven = unevenness(bench, model.stated, term); uneven.part > most_uneven)
         return {FindingStatus::tentative, uneven_words(uneven)};
     return {};
+}
+
+double squares(const Bench& bench, const Model& stated) {
+    const auto left = bench.raw_residual(stated);
+    double sum = 0.0;
+    for (const std::size_t k : bench.rows()) sum += left[k] * left[k];
+    return sum;
 }
 
 Finding finding_of(const Bench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
@@ -152,13 +177,16 @@ Finding finding_of(const Bench& bench, const Candidate& model, const Candidate& 
     evidence.share_sigma = bench.share(model, fewer);
     evidence.share_nm = evidence.share_sigma * bench.noise().rms_nm;
     evidence.own_nm = rms(torque_nm);
+    evidence.raw_gain = squares(bench, fewer.stated) - squares(bench, model.stated);
     evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
     finding.where = place_of(bench.looked_at(), torque_nm, finding.term);
     return finding;
 }
 
-bool is_trusted(const Finding& finding) {
-    return finding.status == FindingStatus::confirmed || finding.status == FindingStatus::ambiguous;
+// rms of what is left above the noise.
+double excess_of(const Bench& bench, const Model& stated) {
+    const double left_nm = rms(bench.cleared_residual(stated));
+    return std::sqrt(std::max(left_nm * left_nm - std::pow(bench.noise().rms_nm, 2), 0.0));
 }
 
 // Where more is left over than a finding explains, it may have fed on that.
@@ -166,7 +194,7 @@ void doubt_for_leftovers(Finding& finding, double excess_nm, const Bench& bench,
                          const std::vector<Leftover>& unexplained) {
     if (excess_nm > outgrown * finding.evidence.share_nm && !unexplained.empty()) {
         finding.status = FindingStatus::tentative;
-        finding.reason = "more is left unexplained than it explains";
+        finding.reason = more_is_left;
     }
     for (const Leftover& place : unexplained) {
         // What is left must not be small beside the finding to cast doubt on it.
@@ -187,11 +215,13 @@ void doubt_for_size(Finding& finding, const std::vector<Finding>& findings) {
         const bool slight = evidence.share_sigma < slight_sigma;
         const bool stands =
             evidence.share_sigma > stands_sigma && evidence.own_nm > shape_part * other.evidence.own_nm;
-        if (evidence.share_sigma > shape_part * other.evidence.share_sigma || stands ||
+        const double larger_nm = std::max(other.evidence.share_nm, other.evidence.own_nm);
+        if (evidence.share_nm > shape_part * larger_nm || stands ||
             !(slight || of_one_kind(finding.term.effect->domain, larger.domain)))
             continue;
-        finding.status = FindingStatus::shape_correction;
-        finding.reason = fmt::format("it may only mend the form of {}, which is far larger", larger.name);
+        finding.status = is_doubtful(other) ? FindingStatus::tentative : FindingStatus::shape_correction;
+        finding.reason = fmt::format("it may only mend the form of {}, which is {}", larger.name,
+                                     is_doubtful(other) ? "in doubt" : "far larger");
     }
 }
 
@@ -212,9 +242,7 @@ std::vector<Finding> judge(const Bench& bench, const Candidate& model, std::size
         if (is_trusted(finding)) find_rivals(bench, model, fewer, term, effects, finding);
         findings.push_back(std::move(finding));
     }
-    const auto left = bench.cleared_residual(model.stated);
-    const double excess_nm =
-        std::sqrt(std::max(rms(left) * rms(left) - std::pow(bench.noise().rms_nm, 2), 0.0));
+    const double excess_nm = excess_of(bench, model.stated);
     for (Finding& finding : findings) {
         if (!is_trusted(finding)) continue;
         doubt_for_leftovers(finding, excess_nm, bench, unexplained);
@@ -223,9 +251,45 @@ std::vector<Finding> judge(const Bench& bench, const Candidate& model, std::size
     return findings;
 }
 
-bool is_doubtful(const Finding& finding) {
-    return finding.status == FindingStatus::tentative || finding.status == FindingStatus::unidentifiable;
+bool is_trusted(const Finding& finding) {
+    return finding.status == FindingStatus::confirmed || finding.status == FindingStatus::ambiguous;
 }
+
+bool is_doubtful(const Finding& finding) {
+    return finding.status == FindingStatus::tentative || finding.status == FindingStatus::unidentifiable ||
+           finding.status == FindingStatus::not_reproduced;
+}
+
+namespace {
+
+// Once more without the findings in doubt: beside a surrogate of its kind a finding may look right that does
+// not by itself. True when one was doubted.
+bool doubt_beside(const Bench& bench, const Candidate& kept, std::size_t own_terms,
+                  std::vector<Finding>& findings) {
+    const double excess_nm = excess_of(bench, kept.stated);
+    bool changed = false;
+    std::size_t term = own_terms;
+    for (Finding& finding : findings) {
+        if (is_doubtful(finding)) continue;
+        const std::size_t place = term++;
+        const Domain domain = finding.term.effect->domain;
+        bool same = false, kin = false;
+        for (const Finding& other : findings) {
+            same = same || (is_doubtful(other) && other.term.effect->domain == domain);
+            kin = kin || (is_doubtful(other) && is_fast(other.term.effect->domain) && is_fast(domain));
+        }
+        if (!is_trusted(finding)) continue;
+        const Unevenness uneven = same ? unevenness(bench, kept.stated, place) : Unevenness{};
+        const bool outdone = (same || kin) && excess_nm > outgrown * finding.evidence.share_nm;
+        if (!outdone && uneven.part <= most_uneven) continue;
+        finding.status = FindingStatus::tentative;
+        finding.reason = outdone ? more_is_left : uneven_words(uneven);
+        changed = true;
+    }
+    return changed;
+}
+
+}  // namespace
 
 Candidate believed(const Bench& bench, const Candidate& model, std::size_t own_terms,
                    std::vector<Finding>& findings) {
@@ -234,22 +298,7 @@ Candidate believed(const Bench& bench, const Candidate& model, std::size_t own_t
         for (std::size_t i = findings.size(); i-- > 0;) {
             if (is_doubtful(findings[i])) kept = without_term(bench, kept, own_terms + i);
         }
-        bool changed = false;
-        std::size_t term = own_terms;
-        for (Finding& finding : findings) {
-            if (is_doubtful(finding)) continue;
-            const std::size_t place = term++;
-            const bool beside = std::any_of(findings.begin(), findings.end(), [&](const Finding& other) {
-                return is_doubtful(other) && other.term.effect->domain == finding.term.effect->domain;
-            });
-            if (!beside || !is_trusted(finding)) continue;
-            const Unevenness uneven = unevenness(bench, kept.stated, place);
-            if (uneven.part <= most_uneven) continue;
-            finding.status = FindingStatus::tentative;
-            finding.reason = uneven_words(uneven);
-            changed = true;
-        }
-        if (!changed) return kept;
+        if (!doubt_beside(bench, kept, own_terms, findings)) return kept;
     }
 }
 

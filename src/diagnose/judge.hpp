@@ -16,6 +16,8 @@ namespace ripplenotch {
                                          std::span<const Effect* const> effects,
                                          const std::vector<Leftover>& unexplained);
 
+/// True for findings that are named, alone or as one side of a tie.
+[[nodiscard]] bool is_trusted(const Finding& finding);
 /// True for findings that are told and not believed: they are not in the improved model.
 [[nodiscard]] bool is_doubtful(const Finding& finding);
 

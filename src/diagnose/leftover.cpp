@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "diagnose/lines.hpp"
@@ -40,6 +41,12 @@ class Residual {
     }
 
     [[nodiscard]] const std::vector<double>& raw_nm() const { return raw_nm_; }
+    /// Part of the squared residual that `samples` of this rms are.
+    [[nodiscard]] double part(double rms_nm, double samples) const {
+        double all = 0.0;
+        for (const std::size_t k : bench_.rows()) all += raw_nm_[k] * raw_nm_[k];
+        return rms_nm * rms_nm * samples / std::max(all, 1e-300);
+    }
     [[nodiscard]] double sigma_nm() const { return bench_.noise().rms_nm; }
 
     [[nodiscard]] std::vector<Leftover> in_time() const {
@@ -80,7 +87,7 @@ class Residual {
                 sum[b] += raw_nm_[k];
                 count[b] += 1.0;
             }
-            Leftover leftover{by_position ? "position" : "speed", {}, 0.0};
+            Leftover leftover{by_position ? "position" : "speed", {}, 0.0, 0.0};
             double squares = 0.0, total = 0.0;
             for (std::size_t b = 0; b < sum.size(); ++b) {
                 if (count[b] < 30.0) continue;
@@ -101,6 +108,7 @@ class Residual {
             if (total == 0.0) continue;
             leftover.where.direction = direction > 0 ? "positive" : "negative";
             leftover.rms_nm = sigma_nm() * std::sqrt(squares / total);
+            leftover.part = part(leftover.rms_nm, total);
             found.push_back(leftover);
         }
         return found;
@@ -108,10 +116,15 @@ class Residual {
 
     [[nodiscard]] std::vector<Leftover> in_lines(const GearRatio& ratio) const {
         std::vector<Leftover> found;
-        for (const Line& line : standing_out(bench_.looked_at(), raw_nm_, line_prominence, 4)) {
-            const double rms_nm = line.amplitude_nm / std::sqrt(2.0);
-            if (rms_nm < material_sigma(bench_.looked_at()) * sigma_nm()) continue;
-            Leftover leftover{line.by_angle ? "order" : "tone", {}, rms_nm};
+        std::vector<double> left_nm = raw_nm_;
+        for (int peeled = 0; peeled < 4; ++peeled) {
+            // One at a time: what is beside a strong line is often its own foot.
+            const auto lines = standing_out(bench_.looked_at(), left_nm, line_prominence, 1);
+            if (lines.empty()) break;
+            const Line& line = lines[0];
+            const double rms_nm = peel(line, left_nm);
+            if (rms_nm < material_sigma(bench_.looked_at()) * sigma_nm()) break;
+            Leftover leftover{line.by_angle ? "order" : "tone", {}, rms_nm, part(rms_nm, bench_.samples())};
             if (line.by_angle) {
                 leftover.where.order.push_back(line.frequency * 360.0 / ratio.value());
             } else {
@@ -123,6 +136,35 @@ class Residual {
     }
 
   private:
+    // Takes the line out of the rows that count; its rms in them.
+    [[nodiscard]] double peel(const Line& line, std::vector<double>& left_nm) const {
+        const Motion& motion = bench_.looked_at().motion;
+        const auto& where = line.by_angle ? motion.position_deg : motion.time_s;
+        double cc = 0.0, cs = 0.0, ss = 0.0, cy = 0.0, sy = 0.0;
+        const auto waves = [&](std::size_t k) {
+            const double angle = 2.0 * std::numbers::pi * line.frequency * where[k];
+            return std::pair(std::cos(angle), std::sin(angle));
+        };
+        for (const std::size_t k : bench_.rows()) {
+            const auto [c, s] = waves(k);
+            cc += c * c;
+            cs += c * s;
+            ss += s * s;
+            cy += c * left_nm[k];
+            sy += s * left_nm[k];
+        }
+        const double determinant = cc * ss - cs * cs;
+        if (!(determinant > 1e-9 * cc * ss)) return 0.0;
+        const double a = (ss * cy - cs * sy) / determinant, b = (cc * sy - cs * cy) / determinant;
+        double sum = 0.0;
+        for (const std::size_t k : bench_.rows()) {
+            const auto [c, s] = waves(k);
+            left_nm[k] -= a * c + b * s;
+            sum += (a * c + b * s) * (a * c + b * s);
+        }
+        return std::sqrt(sum / bench_.samples());
+    }
+
     void scan(std::size_t length, std::vector<Window>& windows) const {
         const auto& rows = bench_.rows();
         const auto& edge = bench_.looked_at().edge;
@@ -175,7 +217,7 @@ class Residual {
             last = window.end;
         }
         for (const auto& [first, end] : stretches) {
-            Leftover leftover{"time", {}, 0.0};
+            Leftover leftover{"time", {}, 0.0, 0.0};
             leftover.where.time_s.push_back({motion.time_s[rows[first]], motion.time_s[rows[end - 1]]});
             double squares = 0.0, slow = 1e300, fast = -1e300;
             for (std::size_t r = first; r < end; ++r) {
@@ -185,6 +227,7 @@ class Residual {
             }
             leftover.where.speed_deg_s.push_back({slow, fast});
             leftover.rms_nm = std::sqrt(squares / static_cast<double>(end - first));
+            leftover.part = part(leftover.rms_nm, static_cast<double>(end - first));
             found.push_back(leftover);
         }
         return found;

@@ -65,6 +65,22 @@ std::vector<double> background(const std::vector<double>& power) {
     return all;
 }
 
+// Against the angle each stretch of it counts the same, however long the joint stayed there: rests and slow
+// passes would spread a line over its whole neighbourhood.
+Samples evenly_by_angle(const Case& c, const std::vector<double>& values) {
+    Samples samples;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+        const double speed = std::abs(c.motion.velocity_deg_s[k]);
+        if (c.use[k] == 0 || speed < 1.0) continue;
+        samples.where.push_back(c.motion.position_deg[k]);
+        samples.value.push_back(values[k] * speed);
+        sum += speed;
+    }
+    for (double& value : samples.value) value *= static_cast<double>(samples.value.size()) / sum;
+    return samples;
+}
+
 double highest_cycles_per_deg(const Case& c) {
     // Order 8.6 of a hundredfold gear, or what the sampling resolves at moderate speed: beyond, noise alone.
     double fastest = 0.0;
@@ -93,7 +109,8 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t first, double l
 
 void gather(const Case& c, const std::vector<double>& residual_nm, bool by_angle, double least,
             std::vector<Line>& lines) {
-    const auto samples = counted(c, by_angle ? c.motion.position_deg : c.motion.time_s, residual_nm);
+    const auto samples =
+        by_angle ? evenly_by_angle(c, residual_nm) : counted(c, c.motion.time_s, residual_nm);
     if (samples.where.size() < 50) return;
     const auto [low, high] = std::minmax_element(samples.where.begin(), samples.where.end());
     if (!(*high - *low > 1.0)) return;

@@ -4,8 +4,8 @@
 namespace ripplenotch {
 
 std::string_view status_name(FindingStatus status) {
-    constexpr std::string_view names[] = {"confirmed",  "ambiguous",        "tentative",
-                                          "immaterial", "shape-correction", "unidentifiable"};
+    constexpr std::string_view names[] = {"confirmed",        "ambiguous",      "tentative",     "immaterial",
+                                          "shape-correction", "unidentifiable", "not-reproduced"};
     return names[static_cast<std::size_t>(status)];
 }
 

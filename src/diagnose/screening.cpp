@@ -65,6 +65,26 @@ Hints hints_of(const Bench& bench, const Model& stated) {
     return hints;
 }
 
+// A joint has one delay, one lag, one gear ratio, and ripple grows with the speed in one way: what a second
+// one would mend is another effect's.
+bool is_there_already(const Term& tried, const Candidate& model) {
+    const Effect& effect = *tried.effect;
+    if (effect.side == Side::joint) return false;
+    return std::any_of(model.open.terms.begin(), model.open.terms.end(), [&](const Term& term) {
+        if (term.effect != &effect) return false;
+        bool fitted = false;
+        for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+            if (!term.values[p]) {
+                fitted = true;
+            } else if (effect.parameters[p].left_out != LeftOut::fitted &&
+                       term.values[p] != tried.values[p]) {
+                return false;
+            }
+        }
+        return fitted;
+    });
+}
+
 class Screening {
   public:
     Screening(const Bench& bench, const Candidate& model, Case some, const Hints& hints)
@@ -89,6 +109,7 @@ class Screening {
         const auto starts = starts_of(effect, cells);
         std::optional<Trial> best;
         for (const Term& start : starts) {
+            if (is_there_already(start, model_)) continue;
             Trial trial = opened(start);
             const double values = static_cast<double>(free_values(trial.open));
             trial.price = values * std::log(samples_) + 2.0 * std::log(cells) +

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnose/bent_shape.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -117,27 +119,6 @@ Candidate without_term(const Bench& bench, const Candidate& model, std::size_t t
     guess.terms.erase(guess.terms.begin() + at);
     prices.erase(prices.begin() + at);
     return bench.fitted(open, guess, std::move(prices));
-}
-
-std::string_view bent_parameter(const Bench& bench, const Candidate& model, std::size_t term) {
-    const Effect& effect = *model.stated.terms[term].effect;
-    for (const FittedValue& value : model.values) {
-        const Parameter& parameter = effect.parameters[value.parameter];
-        // A logarithm and back is off by rounding.
-        const double from_neutral = std::abs(value.value - parameter.neutral);
-        if (value.term != term || !value.at_bound || parameter.linear ||
-            from_neutral <= 1e-6 * std::max(1.0, std::abs(parameter.neutral)))
-            continue;
-        const bool at_lower = value.value - parameter.lower < parameter.upper - value.value;
-        const double inward = 0.05 * (parameter.upper - parameter.lower);
-        double within = value.value + (at_lower ? inward : -inward);
-        if (parameter.lower > 0.0) within = value.value * (at_lower ? 2.0 : 0.5);
-        Model held = model.open, guess = model.stated;
-        held.terms[term].values[value.parameter] = guess.terms[term].values[value.parameter] = within;
-        const Candidate moved = bench.fitted(held, guess, model.prices);
-        if (moved.gain_left > model.gain_left + tie_margin) return parameter.name;
-    }
-    return {};
 }
 
 Candidate search(Bench& bench, const Candidate& start, std::size_t own_terms,

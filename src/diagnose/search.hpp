@@ -4,7 +4,6 @@
 // ones made needless is dropped, and each is tried against its rivals.
 
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "diagnose/screening.hpp"
@@ -20,11 +19,6 @@ namespace ripplenotch {
 
 [[nodiscard]] Candidate without_term(const Bench& bench, const Candidate& model, std::size_t term);
 [[nodiscard]] Candidate with_trial(const Bench& bench, const Candidate& model, const Trial& trial);
-
-/// The parameter of a term whose shape is bent as far as its bounds allow, which is not the effect's own;
-/// empty when there is none. At a neutral bound there is no shape at all, and where the log hardly tells the
-/// bound from a value well within, nothing is bent: both are all right.
-[[nodiscard]] std::string_view bent_parameter(const Bench& bench, const Candidate& model, std::size_t term);
 
 /// A rival that explains the log as well but for this gain is not told from a finding.
 inline constexpr double tie_margin = 12.0;

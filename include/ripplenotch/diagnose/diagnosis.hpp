@@ -23,7 +23,8 @@ enum class FindingStatus {
     tentative,         ///< something unexplained touches what it is a function of
     immaterial,        ///< there, and too small to matter
     shape_correction,  ///< mends the form of a larger finding
-    unidentifiable,    ///< two large torques that cancel: this log cannot tell them
+    unidentifiable,    ///< two large torques that cancel, or a size within its error: this log cannot tell
+    not_reproduced,    ///< the validation log is predicted worse with it than without
 };
 [[nodiscard]] std::string_view status_name(FindingStatus status);
 
@@ -55,6 +56,7 @@ struct Evidence {
     double share_nm = 0.0;     ///< rms torque that only this finding explains
     double share_sigma = 0.0;  ///< the same in units of the noise floor
     double own_nm = 0.0;       ///< rms of its whole torque, of which others might explain a part as well
+    double raw_gain = 0.0;     ///< fall of the sum of squares of the residual, Nm^2
     double elsewhere = 0.0;    ///< part of the gain that is left without its best stretch of the log
 };
 
@@ -72,6 +74,8 @@ struct Finding {
     Evidence evidence;
     std::vector<RivalFinding> alternatives;
     double gap_before_nm = 0.0, gap_after_nm = 0.0;
+    /// rms residual of the validation log, without it and with it beside what is believed.
+    std::optional<double> validation_before_nm, validation_after_nm;
     std::string reason;  ///< of a status other than confirmed, in words
 };
 
@@ -86,6 +90,14 @@ struct Leftover {
     std::string kind;  ///< "time", "tone", "order", "position", "speed", "noise"
     Place where;
     double rms_nm = 0.0;  ///< within the place
+    double part = 0.0;    ///< of the squared residual of the whole log
+};
+
+/// An effect that this log does not let be examined.
+struct Undecidable {
+    std::string_view effect;
+    std::string reason;
+    double would_explain_nm = 0.0;  ///< rms torque, if the missing measurement were what is assumed for it
 };
 
 /// A fault of the converter that was seen in the log itself.
@@ -113,6 +125,7 @@ struct Diagnosis {
     std::vector<std::string> named;
     std::vector<Tie> ambiguous;
     std::vector<Leftover> unexplained;
+    std::vector<Undecidable> undecidable;
     DiagnosisGap gap;
     std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Whether a fitted shape is the effect's own.
+
+#include <string_view>
+
+#include "diagnose/bench.hpp"
+
+namespace ripplenotch {
+
+/// The parameter of a term that is bent as far as its bounds allow, or so far that the torque is as good as
+/// at a bound; empty when there is none. Such an effect has lost what tells it from others: Stribeck friction
+/// of a Stribeck speed far above all speeds is Coulomb friction. A bound at which the effect is what it is at
+/// its neutral value, and one that the log hardly tells from a value within, bend nothing.
+[[nodiscard]] std::string_view bent_parameter(const Bench& bench, const Candidate& model, std::size_t term);
+
+}  // namespace ripplenotch

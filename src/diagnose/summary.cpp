@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "diagnose/judge.hpp"
+#include "diagnose/search.hpp"
+
+namespace ripplenotch {
+namespace {
+
+double residual_rms(const Case& c, const Model& stated, const std::vector<unsigned char>& use) {
+    std::vector<double> left = predict_nm(stated, c.motion);
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] = c.torque_nm[k] - left[k];
+    return rms_of(left, use);
+}
+
+// Part of the squared gap above the floor that is gone, of samples that no fault spoiled. Empty when there
+// was no gap to speak of.
+std::optional<double> closed_percent(const Case& c, const Diagnosis& diagnosis) {
+    const double floor = std::pow(diagnosis.gap.noise_floor_nm, 2);
+    const double before = std::pow(residual_rms(c, diagnosis.baseline, c.use), 2) - floor;
+    const double after = std::pow(residual_rms(c, diagnosis.model, c.use), 2) - floor;
+    if (before < 0.02 * floor) return std::nullopt;
+    const double closed = 100.0 * (1.0 - std::max(after, 0.0) / before);
+    return std::abs(closed) < 1e-3 ? 0.0 : closed;  // the same model, fitted anew
+}
+
+}  // namespace
+
+double rms_of(const std::vector<double>& values, const std::vector<unsigned char>& use) {
+    double sum = 0.0, count = 0.0;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        if (use[k] == 0) continue;
+        sum += values[k] * values[k];
+        count += 1.0;
+    }
+    return std::sqrt(sum / std::max(count, 1.0));
+}
+
+DiagnosisVerdict verdict_of(const Diagnosis& diagnosis) {
+    const bool told = !diagnosis.named.empty() || !diagnosis.ambiguous.empty();
+    const bool doubtful = std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), is_doubtful);
+    if (diagnosis.unexplained.empty() && !doubtful)
+        return told ? DiagnosisVerdict::explained : DiagnosisVerdict::matches;
+    return told ? DiagnosisVerdict::partly_explained : DiagnosisVerdict::unexplained;
+}
+
+void name_findings(Diagnosis& diagnosis) {
+    std::set<std::set<std::string>> ties;
+    for (const Finding& finding : diagnosis.rounds) {
+        const Effect& effect = *finding.term.effect;
+        const std::string name(effect.name);
+        auto& named = diagnosis.named;
+        if (finding.status == FindingStatus::confirmed &&
+            std::find(named.begin(), named.end(), name) == named.end())
+            named.push_back(name);
+        if (finding.status != FindingStatus::ambiguous) continue;
+        Tie tie{{name}, {}};
+        for (const RivalFinding& rival : finding.alternatives) {
+            if (rival.margin >= tie_margin) continue;
+            tie.effects.emplace_back(rival.effect);
+            if (tie.advice.empty()) tie.advice = what_would_tell(effect, find_effect(rival.effect));
+        }
+        if (ties.insert({tie.effects.begin(), tie.effects.end()}).second) diagnosis.ambiguous.push_back(tie);
+    }
+}
+
+// Gaps are over every sample, so that they are what `simulate` says of the same model and log.
+void measure_gap(Diagnosis& diagnosis, const Case& whole, const Case* validation) {
+    DiagnosisGap& gap = diagnosis.gap;
+    const std::vector<unsigned char> all(whole.size(), 1);
+    gap.before_nm = residual_rms(whole, diagnosis.baseline, all);
+    gap.after_nm = residual_rms(whole, diagnosis.model, all);
+    gap.closed_percent = closed_percent(whole, diagnosis);
+    if (validation == nullptr) return;
+    const Case& other = *validation;
+    const std::vector<unsigned char> every(other.size(), 1);
+    gap.validation_before_nm = residual_rms(other, diagnosis.baseline, every);
+    gap.validation_after_nm = residual_rms(other, diagnosis.model, every);
+    gap.validation_closed_percent = closed_percent(other, diagnosis);
+}
+
+}  // namespace ripplenotch

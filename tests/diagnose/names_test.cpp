@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// Which names a diagnosis gives, and which it keeps to itself: look-alikes, surrogates, what another log
+// contradicts, what the log does not hold.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "diagnose/undecidable.hpp"
+#include "diagnose_fixture.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::fixture;
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+Model joint_with(std::initializer_list<std::string_view> hidden) {
+    Model truth = joint();
+    for (const auto term : hidden) truth.terms.push_back(parse_term(term));
+    return truth;
+}
+
+void tell(const Diagnosis& found) {
+    for (const Finding& finding : found.rounds) {
+        UNSCOPED_INFO(finding.term.effect->name << " " << status_name(finding.status) << " "
+                                                << finding.reason);
+    }
+}
+
+Names sorted(Names names) {
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+bool tells(const Diagnosis& found, std::string_view kind) {
+    return std::any_of(found.unexplained.begin(), found.unexplained.end(),
+                       [&](const Leftover& leftover) { return leftover.kind == kind; });
+}
+
+}  // namespace
+
+TEST_CASE("with an effect taken out of the list, no look-alike takes its place") {
+    const std::pair<std::string, std::string_view> cases[] = {
+        {"offset", "offset,torque_nm=-0.43"},
+        {"viscous-friction", "viscous-friction,coefficient_nm_per_deg_s=0.0063"},
+        {"coulomb-friction", "coulomb-friction,torque_nm=0.84,width_deg_s=0.12"}};
+    for (const auto& [name, hidden] : cases) {
+        const Trace log = logged(joint_with({hidden}), tour(), 31);
+        const Names without = {name};
+        const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr, {.without = without});
+        CAPTURE(name);
+        tell(found);
+        CHECK(found.named.empty());
+        CHECK(!found.unexplained.empty());
+        CHECK(diagnose(opened(joint()), log.view(), nullptr).named == without);
+    }
+}
+
+TEST_CASE("a ripple that may not be named is unexplained at its order") {
+    const Trace log = logged(joint_with({"ripple,order=4,amplitude_nm=0.3,phase_deg=20"}), tour(), 32);
+    const Names ripple = {"ripple"};
+    const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr, {.without = ripple});
+    tell(found);
+    CHECK(found.named.empty());
+    double order = 0.0, most_nm = 0.0;
+    for (const Leftover& leftover : found.unexplained) {
+        if (leftover.kind != "order" || leftover.rms_nm < most_nm) continue;
+        order = leftover.where.order[0];
+        most_nm = leftover.rms_nm;
+    }
+    CHECK(order == Approx(4.0).margin(0.01));
+    CHECK(most_nm == Approx(0.3 / std::numbers::sqrt2).epsilon(0.2));
+}
+
+TEST_CASE("an offset beside gravity and a drift is a finding and no correction of theirs") {
+    const Model truth = joint_with({"drift,rate_nm_s=0.04,time_constant_s=8",
+                                    "gravity,amplitude_nm=3,phase_deg=69", "offset,torque_nm=0.5"});
+    const Diagnosis found = diagnose(opened(joint()), logged(truth, tour(), 33).view(), nullptr);
+    tell(found);
+    CHECK(sorted(found.named) == Names{"drift", "gravity", "offset"});
+}
+
+TEST_CASE("a name that the validation log contradicts is withdrawn, with the figures") {
+    const Model with = joint_with({"viscous-friction,coefficient_nm_per_deg_s=0.005"});
+    const Trace log = logged(with, tour(), 34), same = logged(with, tour(), 35),
+                other = logged(joint(), tour(), 36);
+    const TraceView same_view = same.view(), other_view = other.view();
+    const Diagnosis kept = diagnose(opened(joint()), log.view(), &same_view);
+    tell(kept);
+    CHECK(kept.named == Names{"viscous-friction"});
+    CHECK(*kept.rounds[0].validation_after_nm < 0.5 * *kept.rounds[0].validation_before_nm);
+    const Diagnosis withdrawn = diagnose(opened(joint()), log.view(), &other_view);
+    tell(withdrawn);
+    CHECK(withdrawn.named.empty());
+    REQUIRE(!withdrawn.rounds.empty());
+    const Finding& finding = withdrawn.rounds[0];
+    CHECK(finding.status == FindingStatus::not_reproduced);
+    CHECK(*finding.validation_after_nm > *finding.validation_before_nm);
+    CHECK(finding.reason.find("validation log") != std::string::npos);
+    // It is not in the improved model, and what it would explain is unexplained.
+    CHECK(withdrawn.model.terms.size() == joint().terms.size());
+    CHECK(withdrawn.verdict == DiagnosisVerdict::unexplained);
+    CHECK(!withdrawn.unexplained.empty());
+}
+
+TEST_CASE("without position, what depends on where the joint is cannot be decided, and is not named") {
+    Names needing;
+    for (const Effect* effect : catalogue()) {
+        if (needs_position(*effect)) needing.emplace_back(effect->name);
+    }
+    CHECK(sorted(needing) == Names{"gravity", "output-ripple", "ripple-modulation"});
+    Trace log = logged(joint_with({"gravity,amplitude_nm=2,phase_deg=30"}), tour(), 37);
+    log.position_deg.clear();
+    const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr);
+    tell(found);
+    CHECK(std::find(found.named.begin(), found.named.end(), "gravity") == found.named.end());
+    CHECK(!found.unexplained.empty());
+    REQUIRE(found.undecidable.size() == 3);
+    const auto gravity = std::find_if(found.undecidable.begin(), found.undecidable.end(),
+                                      [](const Undecidable& entry) { return entry.effect == "gravity"; });
+    CHECK(gravity->would_explain_nm == Approx(1.4).margin(0.7));
+    log.position_deg = tour().position_deg;
+    CHECK(diagnose(opened(joint()), log.view(), nullptr).undecidable.empty());
+}
+
+TEST_CASE("faults that may not be named are unexplained at their samples") {
+    const Trace log = logged(joint_with({"spikes,rate_percent=0.15,size_nm=5"}), tour(), 38);
+    const Names spikes = {"spikes"};
+    const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr, {.without = spikes});
+    CHECK(found.named.empty());
+    CHECK(found.faults.empty());
+    REQUIRE(tells(found, "time"));
+    CHECK(found.unexplained[0].rms_nm > 3.0);
+    CHECK(found.unexplained[0].where.time_s.size() >= 5);
+}
