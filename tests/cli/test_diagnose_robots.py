@@ -64,6 +64,12 @@ class Robots(unittest.TestCase):
         self.assertLess(gap["validation_after_nm"], 0.4 * gap["validation_before_nm"])
         self.check_no_false_story(found)
 
+    def test_without_a_position_gravity_is_not_decidable_and_said_to_be(self):
+        found = self.diagnosed(*self.halves("neura_lara8_j3.csv", 3), 101, [INERTIA])
+        self.assertFalse(found["position_in_log"])
+        self.assertNotIn("gravity", found["named"])
+        self.assertIn("gravity", [entry["effect"] for entry in found["undecidable"]])
+
     def test_friction_of_the_wrist_is_told_with_what_it_is_worth_on_a_second_recording_and_not_believed(self):
         """Its size is not the same wherever it acts: the catalogue holds no friction of just this form."""
         logs = [LOGS / f"kuka_kr300_traj{name}_all.csv" for name in "AB"]
