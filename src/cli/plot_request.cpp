@@ -101,20 +101,14 @@ void draw_plot(const PlotRequest& request, const CommonOptions& common, const Pr
                      how_to_install);
 }
 
-void WatchedWriter::write(const RowBlock& block, std::span<const double> torque_nm) {
-    std::string bytes;
-    prepare(block, torque_nm, bytes);
-    put(block, torque_nm, bytes);
+std::string_view WatchedWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
+    return writer_ ? writer_->prepare(block, torque_nm, room) : std::string_view{};
 }
 
-void WatchedWriter::prepare(const RowBlock& block, std::span<const double> torque_nm,
-                            std::string& bytes) const {
-    if (writer_) writer_->prepare(block, torque_nm, bytes);
-}
-
-void WatchedWriter::put(const RowBlock& block, std::span<const double> torque_nm, std::string_view bytes) {
+void WatchedWriter::put(const RowBlock& block, Torques torque_nm, std::string_view bytes) {
+    const JointRows& joint = block.joints.front();
     for (std::size_t k = 0; k < block.size(); ++k)
-        course_.add(block.time_s[k], block.velocity_deg_s[k], block.torque_nm[k], torque_nm[k]);
+        course_.add(block.time_s[k], joint.velocity_deg_s[k], joint.torque_nm[k], torque_nm.front()[k]);
     if (writer_) writer_->put(block, torque_nm, bytes);
 }
 

@@ -41,9 +41,8 @@ void draw_plot(const PlotRequest& request, const CommonOptions& common, const Pr
 class WatchedWriter : public LogWriter {
   public:
     explicit WatchedWriter(std::unique_ptr<LogWriter> writer) : writer_(std::move(writer)) {}
-    void write(const RowBlock& block, std::span<const double> torque_nm) override;
-    void prepare(const RowBlock& block, std::span<const double> torque_nm, std::string& bytes) const override;
-    void put(const RowBlock& block, std::span<const double> torque_nm, std::string_view bytes) override;
+    std::string_view prepare(RowBlock& block, Torques torque_nm, std::string& room) const override;
+    void put(const RowBlock& block, Torques torque_nm, std::string_view bytes) override;
     void finish() override;
     [[nodiscard]] const TorqueCourse& course() const { return course_; }
 

@@ -7,6 +7,7 @@
 #include <exception>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ripplenotch/log/format.hpp"
@@ -16,9 +17,10 @@ namespace ripplenotch {
 /// A block on its way.
 struct BlockItem {
     RowBlock block;
-    std::vector<double> torque_nm;  ///< filtered
-    std::string bytes;              ///< to be written
-    bool accepted = false;          ///< came parsed and accepted
+    std::vector<std::vector<double>> torque_nm;  ///< filtered, by joint
+    std::string room;                            ///< of the writer
+    std::string_view bytes;                      ///< to be written
+    bool accepted = false;                       ///< came parsed and accepted
     std::exception_ptr error;
 };
 

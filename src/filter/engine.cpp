@@ -2,12 +2,11 @@
 #include "ripplenotch/filter/engine.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "filter/block_pipeline.hpp"
-#include "filter/held_rows.hpp"
+#include "filter/stream_pass.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -90,9 +89,6 @@ LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : read
                          head.size() == 0 ? "no row" : "one row");
     }
     measure_clock(head, gap_steps);
-    double fastest = 0.0;
-    for (const double velocity : head.velocity_deg_s) fastest = std::max(fastest, std::abs(velocity));
-    moving_deg_s_ = 0.02 * fastest;
 }
 
 // Which rows count as first depends on the log alone, not on how its bytes arrived: a pipe and a file must
@@ -100,6 +96,7 @@ LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : read
 Trace LogStream::read_head() {
     Trace head;
     std::size_t bytes = 0;
+    moving_deg_s_.assign(1 + reader_->layout().others.size(), 0.0);
     while (head.size() < clock_rows && bytes < most_read_ahead_bytes) {
         RowBlock block;
         if (!reader_->next(block)) {
@@ -111,19 +108,29 @@ Trace LogStream::read_head() {
                (count >= block.row_end.size() || bytes + block.row_end[count] < most_read_ahead_bytes)) {
             ++count;
         }
+        const JointRows& joint = block.joints.front();
         append(head.time_s, block.time_s, count);
-        append(head.velocity_deg_s, block.velocity_deg_s, count);
-        append(head.torque_nm, block.torque_nm, count);
-        for (std::size_t k = 0; k < std::min(count, block.torque_end.size()); ++k) {
-            const std::string_view cell =
-                std::string_view(block.bytes)
-                    .substr(block.torque_begin[k], block.torque_end[k] - block.torque_begin[k]);
-            torque_decimals_ = std::max(torque_decimals_.value_or(0), decimals_of(cell));
-        }
+        append(head.velocity_deg_s, joint.velocity_deg_s, count);
+        append(head.torque_nm, joint.torque_nm, count);
+        note_head(block, count);
         bytes += block.bytes.size();
         read_ahead_.push_back(std::move(block));
     }
     return head;
+}
+
+void LogStream::note_head(const RowBlock& block, std::size_t count) {
+    for (std::size_t j = 0; j < block.joints.size(); ++j) {
+        const JointRows& joint = block.joints[j];
+        for (std::size_t k = 0; k < count; ++k)
+            moving_deg_s_[j] = std::max(moving_deg_s_[j], 0.02 * std::abs(joint.velocity_deg_s[k]));
+        for (std::size_t k = 0; k < std::min(count, joint.torque_end.size()); ++k) {
+            const std::string_view cell =
+                std::string_view(block.bytes)
+                    .substr(joint.torque_begin[k], joint.torque_end[k] - joint.torque_begin[k]);
+            torque_decimals_ = std::max(torque_decimals_.value_or(0), decimals_of(cell));
+        }
+    }
 }
 
 void LogStream::measure_clock(const Trace& head, double gap_steps) {
@@ -150,88 +157,15 @@ void LogStream::measure_clock(const Trace& head, double gap_steps) {
     gap_s_ = gap_steps * clock.median_step.value();
 }
 
-// The state of one pass over the log.
-struct LogStream::Pass {
-    const LogStream& stream;
-    CausalFilter& filter;
-    RippleMeter* meter;
-    StreamReport report{};
-    double last_time_s = 0.0;
-    HeldRows held{stream.moving_deg_s_};
-    double duration_s = 0.0;  // gaps left out
-    std::size_t steps = 0;
-
-    // Accounts for the step that leads to row k of a block. True when it is a gap.
-    bool step_to(const RowBlock& block, std::size_t k) {
-        const double step_s = block.time_s[k] - last_time_s;
-        if (step_s < 0.0) {
-            raise<DataError>(
-                "{}: data row {}: time runs backward, from {} s to {} s; put the rows in order, or count the "
-                "rows at a stated "
-                "rate with --sample-rate",
-                stream.reader().layout().source, block.first_row + k + 1, shortest(last_time_s),
-                shortest(block.time_s[k]));
-        }
-        if (step_s > stream.gap_s_) {
-            const std::size_t before = block.first_row + k - 1;
-            if (report.gaps.size() < most_listed_gaps)
-                report.gaps.push_back({before, last_time_s, block.time_s[k]});
-            ++report.gap_count;
-            return true;
-        }
-        if (step_s == 0.0) ++report.repeated_times;
-        duration_s += step_s;
-        ++steps;
-        return false;
-    }
-
-    void filter_rows(const RowBlock& block, std::size_t first, std::size_t count, std::vector<double>& out) {
-        const auto part = [first, count](const std::vector<double>& values) {
-            return values.empty() ? std::span<const double>{} : std::span(values).subspan(first, count);
-        };
-        filter.process({part(block.velocity_deg_s), part(block.torque_nm), part(block.position_deg)},
-                       std::span(out).subspan(first, count));
-        if (meter == nullptr) return;
-        for (std::size_t k = first; k < first + count; ++k) {
-            const double* position = block.position_deg.empty() ? nullptr : &block.position_deg[k];
-            const std::array torque = {block.torque_nm[k], out[k]};
-            meter->add(block.velocity_deg_s[k], position, torque);
-        }
-    }
-
-    void take(const RowBlock& block, std::vector<double>& out) {
-        out.resize(block.size());
-        std::size_t first = 0;
-        for (std::size_t k = 0; k < block.size(); ++k) {
-            const bool any_before = report.rows + k > 0;
-            const bool gap = any_before && step_to(block, k);
-            if (gap) {
-                filter_rows(block, first, k - first, out);
-                filter.restart();
-                if (meter != nullptr) meter->split();
-                first = k;
-            }
-            held.add(block, k, any_before && !gap);
-            last_time_s = block.time_s[k];
-        }
-        filter_rows(block, first, block.size() - first, out);
-        const auto switches = filter.switches();
-        for (std::size_t i = report.switches.size(); i < switches.size(); ++i) {
-            report.switches.push_back({switches[i], block.time_s[switches[i].sample - report.rows]});
-        }
-        for (std::size_t k = 0; k < block.size(); ++k) {
-            const double speed = std::abs(block.velocity_deg_s[k]);
-            report.slowest_deg_s = report.rows + k == 0 ? speed : std::min(report.slowest_deg_s, speed);
-            report.fastest_deg_s = std::max(report.fastest_deg_s, speed);
-        }
-        report.rows += block.size();
-        report.held_bad_values += block.held_bad_values;
-    }
-};
-
 StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter,
                             std::size_t threads) {
-    Pass pass{*this, filter, meter};
+    const JointRun joint{&filter, meter};
+    return std::move(run(std::span(&joint, 1), writer, threads).front());
+}
+
+std::vector<StreamReport> LogStream::run(std::span<const JointRun> joints, LogWriter* writer,
+                                         std::size_t threads) {
+    StreamPass pass(reader_->layout().source, gap_s_, joints, moving_deg_s_);
     BlockSteps steps;
     steps.fetch = [&](BlockItem& item) {
         if (read_ahead_.empty()) return reader_->fetch(item.block);
@@ -246,7 +180,7 @@ StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter
         pass.take(item.block, item.torque_nm);
     };
     steps.prepare = [&](BlockItem& item) {
-        if (writer != nullptr) writer->prepare(item.block, item.torque_nm, item.bytes);
+        if (writer != nullptr) item.bytes = writer->prepare(item.block, item.torque_nm, item.room);
     };
     steps.put = [&](BlockItem& item) {
         if (writer != nullptr) writer->put(item.block, item.torque_nm, item.bytes);
@@ -254,11 +188,7 @@ StreamReport LogStream::run(CausalFilter& filter, LogWriter* writer, RippleMeter
     };
     run_blocks(steps, read_whole_ ? 1 : threads);
     if (writer != nullptr) writer->finish();
-    pass.report.held_samples = pass.held.count();
-    pass.report.switch_count = filter.switch_count();
-    if (pass.duration_s > 0.0)
-        pass.report.measured_rate = Hertz(static_cast<double>(pass.steps) / pass.duration_s);
-    return std::move(pass.report);
+    return pass.reports();
 }
 
 }  // namespace ripplenotch

@@ -16,10 +16,10 @@ class HeldRows {
   public:
     explicit HeldRows(double moving_deg_s) : moving_deg_s_(moving_deg_s) {}
 
-    void add(const RowBlock& block, std::size_t k, bool continues) {
-        const double velocity = block.velocity_deg_s[k], torque = block.torque_nm[k];
-        const double position = block.position_deg.empty() ? 0.0 : block.position_deg[k];
-        has_position_ = !block.position_deg.empty();
+    void add(const JointRows& rows, std::size_t k, bool continues) {
+        const double velocity = rows.velocity_deg_s[k], torque = rows.torque_nm[k];
+        const double position = rows.position_deg.empty() ? 0.0 : rows.position_deg[k];
+        has_position_ = !rows.position_deg.empty();
         if (continues && std::min(std::abs(velocity), std::abs(velocity_)) > moving_deg_s_) {
             const bool same_velocity = velocity == velocity_, same_position = position == position_;
             ++moving_;

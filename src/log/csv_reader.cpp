@@ -68,14 +68,10 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
 }
 
 void CsvReader::plan_columns() {
-    const JointColumns& chosen = layout_.chosen;
-    const std::array columns = {chosen.time, chosen.velocity, chosen.torque, chosen.position};
-    for (std::size_t slot = 0; slot < columns.size(); ++slot) {
-        before_[slot] = not_a_number;
-        if (!columns[slot]) continue;
-        wanted_.push_back({*columns[slot], slot});
-        factors_[slot] = layout_.columns[*columns[slot]].factor;
-    }
+    before_ = row_ = ParsedRow(1 + layout_.others.size());
+    std::fill(before_.values.begin(), before_.values.end(), not_a_number);
+    wanted_ = wanted_columns(layout_);
+    factors_ = slot_factors(layout_, wanted_);
     std::sort(wanted_.begin(), wanted_.end(),
               [](const auto& a, const auto& b) { return a.column < b.column; });
     quick_.emplace(RowPlan{dialect_.rules, dialect_.line_end, dialect_.columns, wanted_, factors_});
@@ -95,6 +91,7 @@ bool CsvReader::next(RowBlock& block) {
 // Whole lines into block.bytes, the rest into carry_.
 bool CsvReader::fetch(RowBlock& block) {
     block.clear();
+    block.joints.resize(1 + layout_.others.size());
     std::string& bytes = block.bytes;
     bytes.swap(carry_);
     carry_.clear();
@@ -152,7 +149,7 @@ std::size_t CsvReader::take_on(RowBlock& block, std::size_t begin) {
     // A row that needed care is seldom alone.
     if (!plain_row_ || end_mark_seen_ || next == block.bytes.size()) return next;
     const std::size_t before = block.size();
-    const std::size_t taken = quick_->take(block, next, before_[time_slot]);
+    const std::size_t taken = quick_->take(block, next, before_.values[time_slot]);
     note_quick_rows(block, before);
     return taken;
 }
@@ -163,9 +160,9 @@ bool CsvReader::continues(const RowBlock& block) const {
     if (block.size() == 0) return true;
     if (end_mark_seen_) return false;
     if (!layout_.chosen.time) return true;
-    ParsedRow first;
+    ParsedRow first(block.joints.size());
     static_cast<void>(quick_->parse(std::string_view(block.bytes).substr(0, block.row_end[0]), first));
-    return !(first.values[time_slot] < before_[time_slot]);
+    return !(first.values[time_slot] < before_.values[time_slot]);
 }
 
 // What the next line, and messages about it, need to know of rows that were taken at once.
@@ -181,9 +178,8 @@ void CsvReader::note_quick_rows(RowBlock& block, std::size_t before) {
     bytes_without_row_ = 0;
     const std::string_view bytes(block.bytes.data(), block.row_end.back());
     const std::size_t line_end = bytes.rfind(dialect_.line_end);
-    ParsedRow last;
-    if (quick_->parse(bytes.substr(line_end == std::string_view::npos ? 0 : line_end + 1), last))
-        before_ = last.values;
+    if (quick_->parse(bytes.substr(line_end == std::string_view::npos ? 0 : line_end + 1), row_))
+        std::swap(before_, row_);
 }
 
 // False for a comment, a blank line and the end mark.
@@ -191,24 +187,26 @@ bool CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
     const char* const base = block.bytes.data();
     if (end > begin && base[end - 1] == '\r') --end;
     const std::string_view line(base + begin, end - begin);
-    ParsedRow row;
-    plain_row_ = quick_->parse(line, row);
+    plain_row_ = quick_->parse(line, row_);
     if (!plain_row_) {
         if (is_blank_line(line) || is_comment_line(line)) return false;
         if (line == "EOF") {
             end_mark_seen_ = true;
             return false;
         }
-        parse_carefully(line, block, row);
+        parse_carefully(line, block, row_);
     }
     if (end_mark_seen_)
         complain(1,
                  "read a row after the line EOF, expected the end; remove the line EOF or what follows it");
-    append_row(block, row);
+    append_row(block, row_);
     const auto place = [base](const char* at) { return static_cast<std::uint32_t>(at - base); };
-    block.torque_begin.push_back(place(row.torque_begin == nullptr ? line.data() : row.torque_begin));
-    block.torque_end.push_back(place(row.torque_begin == nullptr ? line.data() : row.torque_end));
-    block.row_end.push_back(place(row.content_end));
+    for (std::size_t j = 0; j < block.joints.size(); ++j) {
+        const auto& [torque_begin, torque_end] = before_.torques[j];
+        block.joints[j].torque_begin.push_back(place(torque_begin == nullptr ? line.data() : torque_begin));
+        block.joints[j].torque_end.push_back(place(torque_begin == nullptr ? line.data() : torque_end));
+    }
+    block.row_end.push_back(place(before_.content_end));
     return true;
 }
 
@@ -237,10 +235,8 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
     for (const WantedColumn& wanted : wanted_) {
         const Cell& cell = cells[wanted.column];
         row.values[wanted.slot] = read_cell(line, cell, wanted.slot, block);
-        if (wanted.slot == torque_slot) {
-            row.torque_begin = line.data() + cell.begin;
-            row.torque_end = line.data() + cell.end;
-        }
+        if (is_torque(wanted.slot))
+            row.torques[joint_of(wanted.slot)] = {line.data() + cell.begin, line.data() + cell.end};
     }
     const Cell& last = cells.back();
     row.content_end = line.data() + last.end + (last.quoted ? 1 : 0);
@@ -258,7 +254,7 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, std::size_t
     const bool missing = text.empty() || (number && std::isnan(*number));
     if (missing && options_.hold_bad_values && slot != time_slot && rows_ > 0) {
         ++block.held_bad_values;
-        return before_[slot];
+        return before_.values[slot];
     }
     std::string remedy = "mend or remove the line";
     if (missing && slot != time_slot) {
@@ -275,28 +271,32 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, std::size_t
                                          name, number ? "finite " : "", remedy));
 }
 
-void CsvReader::append_row(RowBlock& block, const ParsedRow& row) {
-    const JointColumns& chosen = layout_.chosen;
-    if (chosen.time) {
-        const double time = row.values[time_slot];
-        if (time < before_[time_slot]) {
-            complain(
-                1,
-                fmt::format(
-                    "read the time {} after {}, expected time to run forward; sort or split the log, or say "
-                    "--sample-rate if the clock is of no use",
-                    shortest(time), shortest(before_[time_slot])));
-        }
+void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
+    const double time = row.values[time_slot], before = before_.values[time_slot];
+    if (layout_.chosen.time && time < before) {
+        complain(1,
+                 fmt::format(
+                     "read the time {} after {}, expected time to run forward; sort or split the log, or say "
+                     "--sample-rate if the clock is of no use",
+                     shortest(time), shortest(before)));
+    }
+    if (layout_.chosen.time)
         block.time_s.push_back(time * factors_[time_slot]);
-    } else {
+    else
         block.time_s.push_back(layout_.stated_rate ? static_cast<double>(rows_) / layout_.stated_rate->value()
                                                    : not_a_number);
+    for (std::size_t j = 0; j < block.joints.size(); ++j) {
+        const auto number = [&](RowSlot of_first) {
+            const std::size_t slot = slot_of(of_first, j);
+            return row.values[slot] * factors_[slot];
+        };
+        const JointColumns& columns = j == 0 ? layout_.chosen : layout_.others[j - 1];
+        JointRows& joint = block.joints[j];
+        joint.velocity_deg_s.push_back(columns.velocity ? number(velocity_slot) : not_a_number);
+        joint.torque_nm.push_back(columns.torque ? number(torque_slot) : not_a_number);
+        if (columns.position) joint.position_deg.push_back(number(position_slot));
     }
-    block.velocity_deg_s.push_back(chosen.velocity ? row.values[velocity_slot] * factors_[velocity_slot]
-                                                   : not_a_number);
-    block.torque_nm.push_back(chosen.torque ? row.values[torque_slot] * factors_[torque_slot] : not_a_number);
-    if (chosen.position) block.position_deg.push_back(row.values[position_slot] * factors_[position_slot]);
-    before_ = row.values;
+    std::swap(before_, row);
     ++rows_;
 }
 

@@ -33,7 +33,7 @@ class CsvReader : public LogReader {
     bool take_line(RowBlock& block, std::size_t begin, std::size_t end);
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
     double read_cell(std::string_view line, const Cell& cell, std::size_t slot, RowBlock& block);
-    void append_row(RowBlock& block, const ParsedRow& row);
+    void append_row(RowBlock& block, ParsedRow& row);
     [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
 
     std::unique_ptr<ByteSource> source_;
@@ -51,8 +51,8 @@ class CsvReader : public LogReader {
     std::size_t bytes_without_row_ = 0;
     std::optional<QuickRows> quick_;
     std::vector<WantedColumn> wanted_;
-    std::array<double, 4> factors_{};
-    std::array<double, 4> before_{};  ///< the row before, as in the file
+    std::vector<double> factors_;  ///< by slot
+    ParsedRow before_, row_;       ///< as in the file; `before_` is the row before
     CellSplit split_;
 };
 

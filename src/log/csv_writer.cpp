@@ -29,12 +29,53 @@ std::string appended_name(const std::string& wanted, const std::string& torque_n
     return wanted + torque_name.substr(from, at - from) + torque_name.substr(at);
 }
 
+std::vector<std::string> appended_names(const Layout& layout, const WriteOptions& options) {
+    std::vector<std::string> names;
+    for (const JointColumns& joint : layout.all_chosen()) {
+        const std::string prefix = layout.others.empty() ? "" : joint.joint + "_";
+        names.push_back(appended_name(prefix + options.append_name, layout.columns[*joint.torque].name));
+    }
+    return names;
+}
+
 CsvWriter::CsvWriter(std::unique_ptr<ByteSink> sink, const CsvReader& reader, const WriteOptions& options)
     : sink_(std::move(sink)), options_(options), rules_(reader.dialect().rules) {
-    const auto torque = reader.layout().chosen.torque;
-    if (!torque) raise<UsageError>("{}: there is no torque column to write", reader.layout().source);
-    factor_ = reader.layout().columns[*torque].factor;
+    std::vector<std::size_t> columns;
+    for (const JointColumns& joint : reader.layout().all_chosen()) {
+        if (!joint.torque)
+            raise<UsageError>("{}: there is no torque column to write", reader.layout().source);
+        joints_.push_back(columns.size());
+        columns.push_back(*joint.torque);
+        factors_.push_back(reader.layout().columns[*joint.torque].factor);
+    }
+    std::sort(joints_.begin(), joints_.end(),
+              [&](std::size_t a, std::size_t b) { return columns[a] < columns[b]; });
     write_head(reader);
+}
+
+std::string CsvWriter::names_appended(const CsvReader& reader) const {
+    std::string text;
+    for (std::string& name : appended_names(reader.layout(), options_)) {
+        if (reader.dialect().quoted_names || name.find(rules_.delimiter) != std::string::npos)
+            name = '"' + name + '"';
+        text += rules_.delimiter + name;
+    }
+    return text;
+}
+
+std::string CsvWriter::units_appended(const CsvReader& reader) const {
+    const TextDialect& dialect = reader.dialect();
+    const std::string_view head = reader.head();
+    std::string text;
+    for (const JointColumns& joint : reader.layout().all_chosen()) {
+        std::string unit = dialect.units[*joint.torque];
+        // The unit row's own brackets are copied from the torque's cell.
+        const std::size_t at = head.find(unit, dialect.header_end);
+        if (at != std::string::npos && at > 0 && (head[at - 1] == '[' || head[at - 1] == '('))
+            unit = head[at - 1] + unit + (head[at - 1] == '[' ? ']' : ')');
+        text += rules_.delimiter + unit;
+    }
+    return text;
 }
 
 void CsvWriter::write_head(const CsvReader& reader) {
@@ -44,86 +85,86 @@ void CsvWriter::write_head(const CsvReader& reader) {
         sink_->write(head);
         return;
     }
-    const Column& torque = reader.layout().columns[*reader.layout().chosen.torque];
-    std::string name = appended_name(options_.append_name, torque.name);
-    if (dialect.quoted_names || name.find(rules_.delimiter) != std::string::npos) name = '"' + name + '"';
-    std::string unit;
-    if (dialect.unit_row_end > 0) {
-        unit = dialect.units[*reader.layout().chosen.torque];
-        // The unit row's own brackets are copied from the torque's cell.
-        const std::size_t at = head.find(unit, dialect.header_end);
-        if (at != std::string::npos && at > 0 && (head[at - 1] == '[' || head[at - 1] == '(')) {
-            unit = head[at - 1] + unit + (head[at - 1] == '[' ? ']' : ')');
-        }
-    }
     std::string changed(head.substr(0, dialect.header_end));
-    changed += rules_.delimiter + name;
+    changed += names_appended(reader);
+    std::size_t done = dialect.header_end;
     if (dialect.unit_row_end > 0) {
-        changed.append(head, dialect.header_end, dialect.unit_row_end - dialect.header_end);
-        changed += rules_.delimiter + unit;
-        changed.append(head, dialect.unit_row_end);
-    } else {
-        changed.append(head, dialect.header_end);
+        changed.append(head, done, dialect.unit_row_end - done);
+        changed += units_appended(reader);
+        done = dialect.unit_row_end;
     }
+    changed.append(head, done);
     sink_->write(changed);
 }
 
-void CsvWriter::append_number(std::string& text, double value, std::string_view as_in) const {
-    const std::size_t from = text.size();
+char* CsvWriter::put_number(char* into, double value, std::string_view as_in) const {
+    char* end = into;
     switch (options_.decimals) {
         case WriteOptions::Decimals::shortest:
-            append_shortest(text, value);
+            end = put_shortest(into, value);
             break;
         case WriteOptions::Decimals::input:
-            append_fixed(text, value, decimals_of(as_in, rules_.decimal_mark));
+            end = put_fixed(into, value, decimals_of(as_in, rules_.decimal_mark));
             break;
         case WriteOptions::Decimals::fixed:
-            append_fixed(text, value, options_.fixed_decimals);
+            end = put_fixed(into, value, options_.fixed_decimals);
             break;
     }
-    if (rules_.decimal_mark == '.') return;
-    const std::size_t mark = text.find('.', from);
-    if (mark != std::string::npos) text[mark] = rules_.decimal_mark;
+    if (rules_.decimal_mark != '.') std::replace(into, end, '.', rules_.decimal_mark);
+    return end;
 }
 
-void CsvWriter::write(const RowBlock& block, std::span<const double> torque_nm) {
-    std::string bytes;
-    prepare(block, torque_nm, bytes);
-    put(block, torque_nm, bytes);
+std::string_view CsvWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
+    TextRoom text(room, block.bytes.size() + 16 * block.size() * joints_.size());
+    if (options_.append)
+        append(block, torque_nm, text);
+    else
+        replace(block, torque_nm, text);
+    return text.text();
 }
 
-void CsvWriter::prepare(const RowBlock& block, std::span<const double> torque_nm, std::string& text) const {
-    text.clear();
-    text.reserve(block.bytes.size() + 16 * block.size());
+void CsvWriter::replace(const RowBlock& block, Torques torque_nm, TextRoom& text) const {
     const std::string_view bytes = block.bytes;
-    std::size_t done = 0;
-    // Cells whose bad values were replaced do not hold what block.torque_nm says.
+    // Cells whose bad values were replaced do not hold what the block's torque says.
     const bool as_written = options_.decimals != WriteOptions::Decimals::fixed && block.held_bad_values == 0;
+    std::size_t done = 0;
     for (std::size_t i = 0; i < block.size(); ++i) {
-        const std::string_view cell =
-            bytes.substr(block.torque_begin[i], block.torque_end[i] - block.torque_begin[i]);
-        const double value = torque_nm[i] / factor_;
-        if (options_.append) {
-            text.append(bytes, done, block.row_end[i] - done);
-            text += rules_.delimiter;
-            const bool quoted = rules_.delimiter == ',' && rules_.decimal_mark == ',';
-            if (quoted) text += '"';
-            append_number(text, value, cell);
-            if (quoted) text += '"';
-            done = block.row_end[i];
-        } else if (as_written && torque_nm[i] == block.torque_nm[i]) {
-            continue;  // a value that nobody changed keeps its text
-        } else {
-            text.append(bytes, done, block.torque_begin[i] - done);
-            append_number(text, value, cell);
-            done = block.torque_end[i];
+        for (const std::size_t j : joints_) {
+            const JointRows& joint = block.joints[j];
+            const double torque = torque_nm[j][i];
+            if (as_written && torque == joint.torque_nm[i]) continue;  // unchanged, it keeps its text
+            const std::size_t begin = joint.torque_begin[i], end = joint.torque_end[i];
+            text.copy(bytes, done, begin);
+            text.number([&](char* into) {
+                return put_number(into, torque / factors_[j], bytes.substr(begin, end - begin));
+            });
+            done = end;
         }
     }
-    text.append(bytes, done);
+    text.copy(bytes, done, bytes.size());
 }
 
-void CsvWriter::put(const RowBlock& /*block*/, std::span<const double> /*torque_nm*/,
-                    std::string_view bytes) {
+void CsvWriter::append(const RowBlock& block, Torques torque_nm, TextRoom& text) const {
+    const std::string_view bytes = block.bytes;
+    const bool quoted = rules_.delimiter == ',' && rules_.decimal_mark == ',';
+    std::size_t done = 0;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+        text.copy(bytes, done, block.row_end[i]);
+        done = block.row_end[i];
+        for (std::size_t j = 0; j < block.joints.size(); ++j) {
+            const JointRows& joint = block.joints[j];
+            const std::string_view cell =
+                bytes.substr(joint.torque_begin[i], joint.torque_end[i] - joint.torque_begin[i]);
+            text.put(rules_.delimiter);
+            if (quoted) text.put('"');
+            text.number([&](char* into) { return put_number(into, torque_nm[j][i] / factors_[j], cell); });
+            if (quoted) text.put('"');
+        }
+    }
+    text.copy(bytes, done, bytes.size());
+}
+
+void CsvWriter::put(const RowBlock& /*block*/, Torques /*torque_nm*/, std::string_view bytes) {
     sink_->write(bytes);
 }
 

@@ -4,31 +4,39 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "log/csv_reader.hpp"
+#include "log/text_room.hpp"
 
 namespace ripplenotch {
 
 class CsvWriter : public LogWriter {
   public:
     CsvWriter(std::unique_ptr<ByteSink> sink, const CsvReader& reader, const WriteOptions& options);
-    void write(const RowBlock& block, std::span<const double> torque_nm) override;
-    void prepare(const RowBlock& block, std::span<const double> torque_nm, std::string& bytes) const override;
-    void put(const RowBlock& block, std::span<const double> torque_nm, std::string_view bytes) override;
+    std::string_view prepare(RowBlock& block, Torques torque_nm, std::string& room) const override;
+    void put(const RowBlock& block, Torques torque_nm, std::string_view bytes) override;
     void finish() override;
 
   private:
     void write_head(const CsvReader& reader);
-    void append_number(std::string& text, double value, std::string_view as_in) const;
+    [[nodiscard]] std::string names_appended(const CsvReader& reader) const;
+    [[nodiscard]] std::string units_appended(const CsvReader& reader) const;
+    char* put_number(char* into, double value, std::string_view as_in) const;
+    void replace(const RowBlock& block, Torques torque_nm, TextRoom& text) const;
+    void append(const RowBlock& block, Torques torque_nm, TextRoom& text) const;
 
     std::unique_ptr<ByteSink> sink_;
     WriteOptions options_;
     CellRules rules_;
-    double factor_;  ///< newton-metres in one unit of the torque column
+    std::vector<std::size_t> joints_;  ///< in the order of their torque columns
+    std::vector<double> factors_;      ///< by joint: newton-metres in one unit of its torque column
 };
 
 /// "torque_filtered [Nm]" beside "tau [Nm]", "torque_filtered_Nm" beside "torque_Nm": a new column's name in
 /// the style of the torque column's.
 [[nodiscard]] std::string appended_name(const std::string& wanted, const std::string& torque_name);
+/// One for each joint that is read; with its joint's name before it where there are several.
+[[nodiscard]] std::vector<std::string> appended_names(const Layout& layout, const WriteOptions& options);
 
 }  // namespace ripplenotch

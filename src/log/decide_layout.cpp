@@ -195,27 +195,59 @@ class Decision {
                 if (candidate.key == key) group = &candidate;
             }
         }
+        if (options_.every_joint) {
+            choose_every_joint();
+            return;
+        }
         if (group == nullptr && groups_.size() > 1 && options_.needs_torque) {
             raise<DataError>(
-                "{}: read {} joints ({}), expected one; say which with --joint {} (identify and info also take --joint all)", source_,
-                groups_.size(), fmt::join(layout_.joints, ", "), layout_.joints.front());
+                "{}: read {} joints ({}), expected one; say which with --joint {} (info, identify and filter "
+                "also take --joint all)",
+                source_, groups_.size(), fmt::join(layout_.joints, ", "), layout_.joints.front());
         }
-        if (group != nullptr) {
-            layout_.chosen.joint = group->name;
-            layout_.chosen.velocity = choose(*group, Role::velocity);
-            layout_.chosen.torque = choose(*group, Role::torque);
-            layout_.chosen.position = choose(*group, Role::position);
-        }
-        for (const JointGroup& each : groups_) give_roles(each, group == &each);
+        if (group != nullptr) layout_.chosen = columns_of(*group);
+        for (const JointGroup& each : groups_) give_roles(each, group == &each ? &layout_.chosen : nullptr);
         if (options_.needs_torque) require_torque_and_velocity();
     }
 
-    void give_roles(const JointGroup& group, bool chosen) {
+    JointColumns columns_of(const JointGroup& group) {
+        JointColumns columns{group.name, layout_.chosen.time, {}, {}, {}};
+        columns.velocity = choose(group, Role::velocity);
+        columns.torque = choose(group, Role::torque);
+        columns.position = choose(group, Role::position);
+        return columns;
+    }
+
+    // Joints without a velocity or without a torque have nothing to be filtered.
+    void choose_every_joint() {
         for (const Role role : motion_roles) {
-            if (chosen) {
-                const auto column = role == Role::velocity ? layout_.chosen.velocity
-                                    : role == Role::torque ? layout_.chosen.torque
-                                                           : layout_.chosen.position;
+            if (!forced_.column_of(role)) continue;
+            raise<UsageError>("--joint all: --columns names one joint's {}; leave one of the two out",
+                              role_name(role));
+        }
+        std::vector<const JointGroup*> groups;
+        for (const JointGroup& group : groups_) {
+            const JointColumns columns = columns_of(group);
+            if (!columns.velocity || !columns.torque) continue;
+            groups.push_back(&group);
+            (groups.size() == 1 ? layout_.chosen : layout_.others.emplace_back()) = columns;
+        }
+        for (const JointGroup& group : groups_) {
+            const auto place = std::find(groups.begin(), groups.end(), &group) - groups.begin();
+            const auto number = static_cast<std::size_t>(place);
+            give_roles(group, number == groups.size() ? nullptr
+                              : number == 0           ? &layout_.chosen
+                                                      : &layout_.others[number - 1]);
+        }
+        require_torque_and_velocity();
+    }
+
+    void give_roles(const JointGroup& group, const JointColumns* chosen) {
+        for (const Role role : motion_roles) {
+            if (chosen != nullptr) {
+                const auto column = role == Role::velocity ? chosen->velocity
+                                    : role == Role::torque ? chosen->torque
+                                                           : chosen->position;
                 if (column) give_role(*column, role, group.name);
                 continue;
             }
@@ -277,8 +309,10 @@ class Decision {
     }
 
     bool is_chosen(std::size_t c) const {
-        const JointColumns& chosen = layout_.chosen;
-        return chosen.time == c || chosen.velocity == c || chosen.torque == c || chosen.position == c;
+        const auto all = layout_.all_chosen();
+        return std::any_of(all.begin(), all.end(), [c](const JointColumns& chosen) {
+            return chosen.time == c || chosen.velocity == c || chosen.torque == c || chosen.position == c;
+        });
     }
 
     std::optional<std::string> asked_unit(const std::string& name, Role role) const {
@@ -297,8 +331,10 @@ class Decision {
     // One sentence for all units that nobody stated.
     void state_units() {
         std::vector<std::string> taken, asked;
-        for (const auto& column :
-             {layout_.chosen.time, layout_.chosen.velocity, layout_.chosen.torque, layout_.chosen.position}) {
+        std::vector<std::optional<std::size_t>> columns = {layout_.chosen.time};
+        for (const JointColumns& joint : layout_.all_chosen())
+            columns.insert(columns.end(), {joint.velocity, joint.torque, joint.position});
+        for (const auto& column : columns) {
             if (!column || !layout_.columns[*column].unit_assumed) continue;
             const Column& c = layout_.columns[*column];
             taken.push_back(fmt::format("{} as {}", column_label(facts_.names, *column), c.unit));

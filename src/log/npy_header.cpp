@@ -4,10 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cctype>
-#include <cstring>
 #include <optional>
 
 #include "ripplenotch/core/error.hpp"
@@ -238,21 +235,6 @@ class HeaderText {
     NpyHeader header_;
 };
 
-template <class Word>
-Word load_word(const char* bytes, bool big_endian) {
-    std::array<unsigned char, sizeof(Word)> raw{};
-    std::memcpy(raw.data(), bytes, sizeof(Word));
-    if (big_endian != (std::endian::native == std::endian::big)) std::reverse(raw.begin(), raw.end());
-    return std::bit_cast<Word>(raw);
-}
-
-template <class Word>
-void store_word(char* bytes, bool big_endian, Word value) {
-    auto raw = std::bit_cast<std::array<unsigned char, sizeof(Word)>>(value);
-    if (big_endian != (std::endian::native == std::endian::big)) std::reverse(raw.begin(), raw.end());
-    std::memcpy(bytes, raw.data(), sizeof(Word));
-}
-
 }  // namespace
 
 std::size_t npy_header_size(std::string_view bytes) {
@@ -298,48 +280,6 @@ std::string make_npy_header(std::string_view descr, std::string_view shape, bool
     header += '\0';
     for (std::size_t i = 0; i < start - 8; ++i) header += static_cast<char>((text.size() >> (8 * i)) & 0xff);
     return header + text;
-}
-
-double load_field(const char* record, const NpyField& field) {
-    const char* const at = record + field.offset;
-    const bool big = field.big_endian;
-    switch (field.kind) {
-        case 'f':
-            return field.size == 4 ? static_cast<double>(load_word<float>(at, big))
-                                   : load_word<double>(at, big);
-        case 'i':
-            switch (field.size) {
-                case 1:
-                    return load_word<std::int8_t>(at, big);
-                case 2:
-                    return load_word<std::int16_t>(at, big);
-                case 4:
-                    return load_word<std::int32_t>(at, big);
-                default:
-                    return static_cast<double>(load_word<std::int64_t>(at, big));
-            }
-        case 'u':
-            switch (field.size) {
-                case 1:
-                    return load_word<std::uint8_t>(at, big);
-                case 2:
-                    return load_word<std::uint16_t>(at, big);
-                case 4:
-                    return load_word<std::uint32_t>(at, big);
-                default:
-                    return static_cast<double>(load_word<std::uint64_t>(at, big));
-            }
-        default:
-            return 0.0;
-    }
-}
-
-void store_float(char* record, const NpyField& field, double value) {
-    if (field.size == 4) {
-        store_word(record + field.offset, field.big_endian, static_cast<float>(value));
-    } else {
-        store_word(record + field.offset, field.big_endian, value);
-    }
 }
 
 }  // namespace ripplenotch

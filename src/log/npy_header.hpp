@@ -4,21 +4,13 @@
 // Proposal 1, versions 1.0, 2.0 and 3.0.
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace ripplenotch {
+#include "log/npy_field.hpp"
 
-/// One number in a record.
-struct NpyField {
-    std::string name;      ///< empty in plain arrays
-    char kind = 'f';       ///< 'f' float, 'i' signed, 'u' unsigned, 0 anything that is no number
-    std::size_t size = 8;  ///< bytes
-    bool big_endian = false;
-    std::size_t offset = 0;  ///< in the record
-};
+namespace ripplenotch {
 
 struct NpyHeader {
     std::vector<NpyField> fields;
@@ -43,9 +35,5 @@ inline constexpr std::string_view npy_magic = "\x93NUMPY";
 /// brackets. With `reserve_rows`, space for any number of rows is left, so that a later header of the same
 /// fields has the same size.
 [[nodiscard]] std::string make_npy_header(std::string_view descr, std::string_view shape, bool reserve_rows);
-
-/// A number of a record, and back; `record` points at its first byte.
-[[nodiscard]] double load_field(const char* record, const NpyField& field);
-void store_float(char* record, const NpyField& field, double value);
 
 }  // namespace ripplenotch

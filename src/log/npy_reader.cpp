@@ -14,19 +14,15 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t piece_size = std::size_t{1} << 20;
+constexpr std::size_t piece_size = std::size_t{1} << 19;
+constexpr std::size_t largest_header = std::size_t{1} << 20;
 constexpr std::size_t sample_size = std::size_t{1} << 16;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
 NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
-    : source_(std::move(source)),
-      hold_bad_values_(options.hold_bad_values),
-      time_before_(not_a_number),
-      velocity_before_(not_a_number),
-      torque_before_(not_a_number),
-      position_before_(not_a_number) {
+    : source_(std::move(source)), hold_bad_values_(options.hold_bad_values) {
     read_up_to(first_bytes, 12);
     if (first_bytes.substr(0, npy_magic.size()) != npy_magic) {
         raise<DataError>(
@@ -34,7 +30,7 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes
             source_->name(), first_bytes.substr(0, 6));
     }
     const std::size_t header_size = npy_header_size(first_bytes);
-    if (header_size <= piece_size) read_up_to(first_bytes, header_size);
+    if (header_size <= largest_header) read_up_to(first_bytes, header_size);
     header_ = parse_npy_header(first_bytes, source_->name());
     read_up_to(first_bytes, header_.data_offset + std::min(sample_size, header_.rows * header_.record_size));
     head_ = first_bytes.substr(0, header_.data_offset);
@@ -73,6 +69,7 @@ void NpyReader::decide(const ReadOptions& options) {
         !header_.structured && options.columns.empty() && (facts.columns == 3 || facts.columns == 4);
     if (by_place) {
         with_default.columns = {"time", "velocity", "torque"};
+        with_default.every_joint = false;  // there is one
         if (facts.columns == 4) with_default.columns.emplace_back("position");
     }
     layout_ = decide_layout(source_->name(), "npy", facts, with_default);
@@ -83,22 +80,35 @@ void NpyReader::decide(const ReadOptions& options) {
                 "the array names no columns: took time, velocity, torque{} by place; --columns settles it",
                 facts.columns == 4 ? ", position" : ""));
     }
-    const JointColumns& chosen = layout_.chosen;
-    for (const auto& column : {chosen.time, chosen.velocity, chosen.torque, chosen.position}) {
-        if (column && header_.fields[*column].kind == '\0') {
-            raise<DataError>("{}: {} holds no numbers, expected a {}; say which column with --columns",
-                             source_->name(), column_label(facts.names, *column),
-                             role_name(layout_.columns[*column].role));
-        }
+    plan_columns(facts.names);
+}
+
+void NpyReader::plan_columns(const std::vector<std::string>& names) {
+    wanted_ = wanted_columns(layout_);
+    factors_ = slot_factors(layout_, wanted_);
+    before_.assign(factors_.size(), not_a_number);
+    for (const WantedColumn& wanted : wanted_) {
+        if (header_.fields[wanted.column].kind != '\0') continue;
+        raise<DataError>("{}: {} holds no numbers, expected a {}; say which column with --columns",
+                         source_->name(), column_label(names, wanted.column),
+                         role_name(layout_.columns[wanted.column].role));
     }
 }
 
 bool NpyReader::next(RowBlock& block) {
-    block.first_row = rows_;
-    block.clear();
+    if (!fetch(block)) return false;
+    parse(block);
+    accept(block);
+    if (block.failure) std::rethrow_exception(block.failure);
+    return true;
+}
 
+// Whole records into block.bytes, the rest into carry_.
+bool NpyReader::fetch(RowBlock& block) {
+    block.clear();
+    block.joints.resize(1 + layout_.others.size());
     const std::size_t size = header_.record_size;
-    const std::size_t left = header_.rows - rows_;
+    const std::size_t left = header_.rows - fetched_;
     block.bytes.swap(carry_);
     carry_.clear();
     if (left == 0) {
@@ -116,60 +126,106 @@ bool NpyReader::next(RowBlock& block) {
     if (have == 0) {
         raise<DataError>(
             "{}: read {} rows and a part of one, expected {} rows; the file is cut off, save the array again",
-            source_->name(), rows_, header_.rows);
+            source_->name(), fetched_, header_.rows);
     }
     carry_.assign(block.bytes, have * size);
     block.bytes.resize(have * size);
-    for (std::size_t r = 0; r < have; ++r) take_row(block, r * size);
+    fetched_ += have;
     return true;
 }
 
-double NpyReader::take_value(RowBlock& block, const char* record, std::size_t column, double before) {
-    const double value = load_field(record, header_.fields[column]);
+void NpyReader::parse(RowBlock& block) const {
+    if (take_columns(block))
+        block.parsed_bytes = block.bytes.size();
+    else
+        block.drop_rows();
+}
+
+void NpyReader::accept(RowBlock& block) {
+    block.first_row = rows_;
+    if (block.parsed_bytes > 0 && continues(block)) {
+        count_rows(block);
+        return;
+    }
+    block.drop_rows();
+    std::size_t at = 0;
+    try {
+        for (; at < block.bytes.size(); at += header_.record_size) take_row(block, at);
+    } catch (const Error&) {
+        block.failure = std::current_exception();
+        block.bytes.resize(at);
+    }
+}
+
+// False where a number is not finite or time runs backward: the careful way has the place and the words.
+bool NpyReader::take_columns(RowBlock& block) const {
+    const std::size_t rows = block.bytes.size() / header_.record_size;
+    for (std::size_t slot = 0; slot < factors_.size(); ++slot) {
+        if (slot == time_slot || !is_position(slot)) numbers_of(block, slot).assign(rows, not_a_number);
+    }
+    for (const WantedColumn& wanted : wanted_) {
+        std::vector<double>& numbers = numbers_of(block, wanted.slot);
+        numbers.resize(rows);
+        if (!load_column(block.bytes.data(), header_.record_size, header_.fields[wanted.column], numbers))
+            return false;
+        if (wanted.slot == time_slot && !std::is_sorted(numbers.begin(), numbers.end())) return false;
+        const double factor = factors_[wanted.slot];
+        if (factor != 1.0)
+            for (double& number : numbers) number *= factor;
+    }
+    return true;
+}
+
+bool NpyReader::continues(const RowBlock& block) const {
+    if (!layout_.chosen.time) return true;
+    return !(load_field(block.bytes.data(), header_.fields[*layout_.chosen.time]) < before_[time_slot]);
+}
+
+void NpyReader::count_rows(RowBlock& block) {
+    const std::size_t count = block.size();
+    if (!layout_.chosen.time && layout_.stated_rate) {
+        for (std::size_t i = 0; i < count; ++i)
+            block.time_s[i] = static_cast<double>(rows_ + i) / layout_.stated_rate->value();
+    }
+    const char* const last = block.bytes.data() + (count - 1) * header_.record_size;
+    for (const WantedColumn& wanted : wanted_)
+        before_[wanted.slot] = load_field(last, header_.fields[wanted.column]);
+    rows_ += count;
+}
+
+double NpyReader::take_value(RowBlock& block, const char* record, const WantedColumn& wanted) {
+    const double value = load_field(record, header_.fields[wanted.column]);
+    const bool time = wanted.slot == time_slot;
+    if (time && value < before_[time_slot]) {
+        complain(
+            wanted.column,
+            fmt::format("read the time {} after {}, expected time to run forward; sort or split the log, or "
+                        "say --sample-rate if the clock is of no use",
+                        shortest(value), shortest(before_[time_slot])));
+    }
     if (std::isfinite(value)) return value;
-    const bool time = layout_.chosen.time == column;
     if (std::isnan(value) && hold_bad_values_ && !time && rows_ > 0) {
         ++block.held_bad_values;
-        return before;
+        return before_[wanted.slot];
     }
-    complain(column, fmt::format("read {}, expected a finite number; {}", shortest(value),
-                                 std::isnan(value) && !time && !hold_bad_values_
-                                     ? "remove the row, or say --hold-bad-values to repeat the value before"
-                                     : "remove the row"));
+    complain(wanted.column,
+             fmt::format("read {}, expected a finite number; {}", shortest(value),
+                         std::isnan(value) && !time && !hold_bad_values_
+                             ? "remove the row, or say --hold-bad-values to repeat the value before"
+                             : "remove the row"));
 }
 
 void NpyReader::take_row(RowBlock& block, std::size_t offset) {
-    const char* const record = block.bytes.data() + offset;
-    const JointColumns& chosen = layout_.chosen;
-    const auto factor = [this](std::size_t column) { return layout_.columns[column].factor; };
-    if (chosen.time) {
-        const double time = take_value(block, record, *chosen.time, time_before_);
-        if (time < time_before_) {
-            complain(*chosen.time,
-                     fmt::format(
-                         "read the time {} after {}, expected time to run forward; sort or split the log, or "
-                         "say --sample-rate if the clock is of no use",
-                         shortest(time), shortest(time_before_)));
-        }
-        time_before_ = time;
-        block.time_s.push_back(time * factor(*chosen.time));
-    } else {
-        block.time_s.push_back(layout_.stated_rate ? static_cast<double>(rows_) / layout_.stated_rate->value()
-                                                   : not_a_number);
+    std::vector<double> row = before_;
+    for (const WantedColumn& wanted : wanted_)
+        row[wanted.slot] = take_value(block, block.bytes.data() + offset, wanted);
+    before_ = row;
+    for (std::size_t slot = 0; slot < row.size(); ++slot) row[slot] *= factors_[slot];
+    if (!layout_.chosen.time && layout_.stated_rate)
+        row[time_slot] = static_cast<double>(rows_) / layout_.stated_rate->value();
+    for (std::size_t slot = 0; slot < row.size(); ++slot) {
+        if (!is_position(slot) || !std::isnan(row[slot])) numbers_of(block, slot).push_back(row[slot]);
     }
-    const auto take = [&](const std::optional<std::size_t>& column, double& before,
-                          std::vector<double>& into) {
-        if (column) before = take_value(block, record, *column, before);
-        into.push_back(column ? before * factor(*column) : not_a_number);
-    };
-    take(chosen.velocity, velocity_before_, block.velocity_deg_s);
-    take(chosen.torque, torque_before_, block.torque_nm);
-    if (chosen.position) take(chosen.position, position_before_, block.position_deg);
-    const std::size_t torque = chosen.torque ? offset + header_.fields[*chosen.torque].offset : offset;
-    const std::size_t torque_end = chosen.torque ? torque + header_.fields[*chosen.torque].size : torque;
-    block.torque_begin.push_back(static_cast<std::uint32_t>(torque));
-    block.torque_end.push_back(static_cast<std::uint32_t>(torque_end));
-    block.row_end.push_back(static_cast<std::uint32_t>(offset + header_.record_size));
     ++rows_;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "log/npy_header.hpp"
+#include "log/row_parser.hpp"
 #include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
@@ -18,14 +19,21 @@ class NpyReader : public LogReader {
     [[nodiscard]] const Layout& layout() const override { return layout_; }
     [[nodiscard]] std::string_view head() const override { return head_; }
     bool next(RowBlock& block) override;
+    bool fetch(RowBlock& block) override;
+    void parse(RowBlock& block) const override;
+    void accept(RowBlock& block) override;
 
     [[nodiscard]] const NpyHeader& header() const { return header_; }
 
   private:
     void decide(const ReadOptions& options);
     void read_up_to(std::string& bytes, std::size_t size);
+    void plan_columns(const std::vector<std::string>& names);
+    bool take_columns(RowBlock& block) const;
+    [[nodiscard]] bool continues(const RowBlock& block) const;
+    void count_rows(RowBlock& block);
     void take_row(RowBlock& block, std::size_t offset);
-    double take_value(RowBlock& block, const char* record, std::size_t column, double before);
+    double take_value(RowBlock& block, const char* record, const WantedColumn& wanted);
     [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
 
     std::unique_ptr<ByteSource> source_;
@@ -33,8 +41,9 @@ class NpyReader : public LogReader {
     Layout layout_;
     std::string head_, carry_;
     bool hold_bad_values_ = false;
-    std::size_t rows_ = 0;
-    double time_before_, velocity_before_, torque_before_, position_before_;  ///< as in the file
+    std::size_t fetched_ = 0, rows_ = 0;
+    std::vector<WantedColumn> wanted_;
+    std::vector<double> factors_, before_;  ///< by slot; before: the row before, as in the file
 };
 
 }  // namespace ripplenotch

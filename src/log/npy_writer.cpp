@@ -27,53 +27,74 @@ std::string shape_of_rows(std::size_t rows) { return fmt::format("{},", rows); }
 }  // namespace
 
 NpyWriter::NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, const WriteOptions& options)
-    : sink_(std::move(sink)), append_(options.append) {
-    const auto torque = reader.layout().chosen.torque;
-    if (!torque) raise<UsageError>("{}: there is no torque column to write", reader.layout().source);
+    : sink_(std::move(sink)),
+      record_in_(reader.header().record_size),
+      record_out_(record_in_),
+      append_(options.append) {
+    const Layout& layout = reader.layout();
     const NpyHeader& header = reader.header();
-    factor_ = reader.layout().columns[*torque].factor;
-    field_ = header.fields[*torque];
-    record_in_ = record_out_ = header.record_size;
-    if (field_.kind != 'f' && !(append_ && header.structured)) {
+    for (const JointColumns& joint : layout.all_chosen()) {
+        if (!joint.torque) raise<UsageError>("{}: there is no torque column to write", layout.source);
+        fields_.push_back(header.fields[*joint.torque]);
+        factors_.push_back(layout.columns[*joint.torque].factor);
+        if (fields_.back().kind == 'f' || (append_ && header.structured)) continue;
         raise<UsageError>(
             "{}: the torque is stored in integers, which would round the result; write it as CSV with -o "
             "NAME.csv{}",
-            reader.layout().source, header.structured ? ", or add a column with --append" : "");
+            layout.source, header.structured ? ", or add a column with --append" : "");
     }
-    if (!append_) {
+    if (append_)
+        append_head(reader, options);
+    else
         sink_->write(reader.head());
-        return;
-    }
-    field_.offset = header.record_size;
-    if (header.structured) {
-        if (field_.kind != 'f') field_ = {"", 'f', 8, false, header.record_size};
-        const std::string name = appended_name(options.append_name, reader.layout().columns[*torque].name);
-        const std::size_t bracket = header.descr.rfind(']');
-        std::string_view before = std::string_view(header.descr).substr(0, bracket);
-        while (before.back() == ' ' || before.back() == ',') before.remove_suffix(1);
-        sink_->write(make_npy_header(fmt::format("{}, ({}, '{}f{}')]", before, python_string(name),
-                                                 field_.big_endian ? '>' : '<', field_.size),
-                                     shape_of_rows(header.rows), false));
-    } else {
-        sink_->write(make_npy_header(header.descr,
-                                     fmt::format("{}, {}", header.rows, header.fields.size() + 1), false));
-    }
-    record_out_ += field_.size;
 }
 
-void NpyWriter::write(const RowBlock& block, std::span<const double> torque_nm) {
-    if (!append_) records_ = block.bytes;
-    if (append_) records_.resize(block.size() * record_out_);
-    for (std::size_t i = 0; i < block.size(); ++i) {
-        char* const record = records_.data() + i * record_out_;
-        if (append_) {
-            block.bytes.copy(record, record_in_, i * record_in_);
-        } else if (torque_nm[i] == block.torque_nm[i] && block.held_bad_values == 0) {
-            continue;  // a value that nobody changed keeps its bits, whatever the unit
-        }
-        store_float(record, field_, torque_nm[i] / factor_);
+void NpyWriter::append_head(const NpyReader& reader, const WriteOptions& options) {
+    const NpyHeader& header = reader.header();
+    const std::vector<std::string> names = appended_names(reader.layout(), options);
+    std::string fields;
+    for (std::size_t j = 0; j < fields_.size(); ++j) {
+        NpyField& field = fields_[j];
+        if (field.kind != 'f') field = {"", 'f', 8, false, 0};
+        field.offset = record_out_;
+        record_out_ += field.size;
+        fields +=
+            fmt::format(", ({}, '{}f{}')", python_string(names[j]), field.big_endian ? '>' : '<', field.size);
     }
-    sink_->write(records_);
+    if (!header.structured) {
+        const auto shape = fmt::format("{}, {}", header.rows, header.fields.size() + fields_.size());
+        sink_->write(make_npy_header(header.descr, shape, false));
+        return;
+    }
+    std::string_view before = std::string_view(header.descr).substr(0, header.descr.rfind(']'));
+    while (before.back() == ' ' || before.back() == ',') before.remove_suffix(1);
+    sink_->write(make_npy_header(fmt::format("{}{}]", before, fields), shape_of_rows(header.rows), false));
+}
+
+std::string_view NpyWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
+    char* records = block.bytes.data();
+    std::size_t size = block.bytes.size();
+    if (append_) {
+        size = block.size() * record_out_;
+        if (room.size() < size) room.resize(size);
+        records = room.data();
+        for (std::size_t i = 0; i < block.size(); ++i)
+            block.bytes.copy(records + i * record_out_, record_in_, i * record_in_);
+    }
+    // A value that nobody changed keeps its bits, whatever the unit.
+    const bool as_written = !append_ && block.held_bad_values == 0;
+    for (std::size_t j = 0; j < fields_.size(); ++j) {
+        const std::vector<double>& raw = block.joints[j].torque_nm;
+        for (std::size_t i = 0; i < block.size(); ++i) {
+            if (as_written && torque_nm[j][i] == raw[i]) continue;
+            store_float(records + i * record_out_, fields_[j], torque_nm[j][i] / factors_[j]);
+        }
+    }
+    return {records, size};
+}
+
+void NpyWriter::put(const RowBlock& /*block*/, Torques /*torque_nm*/, std::string_view bytes) {
+    sink_->write(bytes);
 }
 
 void NpyWriter::finish() { sink_->finish(); }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "log/npy_reader.hpp"
 #include "log/table_writer.hpp"
@@ -16,16 +17,18 @@ class NpyWriter : public LogWriter {
   public:
     /// Throws UsageError when the torque is an integer and would be rounded (--append adds a float instead).
     NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, const WriteOptions& options);
-    void write(const RowBlock& block, std::span<const double> torque_nm) override;
+    std::string_view prepare(RowBlock& block, Torques torque_nm, std::string& room) const override;
+    void put(const RowBlock& block, Torques torque_nm, std::string_view bytes) override;
     void finish() override;
 
   private:
+    void append_head(const NpyReader& reader, const WriteOptions& options);
+
     std::unique_ptr<ByteSink> sink_;
-    NpyField field_;  ///< where the new torque goes, in a record of the output
+    std::vector<NpyField> fields_;  ///< by joint: where the new torque goes, in a record of the output
+    std::vector<double> factors_;   ///< by joint
     std::size_t record_in_, record_out_;
-    double factor_;
     bool append_;
-    std::string records_;
 };
 
 /// A structured array of float64 columns whose length is known only at the end: the header is patched in a

@@ -11,7 +11,7 @@ namespace ripplenotch {
 
 QuickRows::QuickRows(RowPlan plan)
     : plan_(std::move(plan)),
-      parser_(plan_.rules, plan_.columns, plan_.wanted, static_cast<std::size_t>(torque_slot)),
+      parser_(plan_.rules, plan_.columns, plan_.wanted),
       vectorised_(has_avx2() && plan_.rules.delimiter != ' ' && plan_.columns > 0) {}
 
 std::size_t QuickRows::take(RowBlock& block, std::size_t begin, double time_before) const {
@@ -23,24 +23,20 @@ std::size_t QuickRows::take_by_parser(RowBlock& block, std::size_t begin, double
     const char* const text = block.bytes.data();
     const std::size_t size = block.bytes.size();
     RowSink sink(block, begin, plan_);
-    ParsedRow row;
-    const bool timed = !plan_.wanted.empty() &&
-                       std::any_of(plan_.wanted.begin(), plan_.wanted.end(),
-                                   [](const WantedColumn& wanted) { return wanted.slot == time_slot; });
+    ParsedRow row(plan_.joints());
+    const bool timed = plan_.column_of(time_slot).has_value();
     while (begin < size) {
         const auto* const found =
             static_cast<const char*>(std::memchr(text + begin, plan_.line_end, size - begin));
         if (found == nullptr) break;
         const char* end = found;
         if (end > text + begin && end[-1] == '\r') --end;
-        row.torque_begin = row.torque_end = nullptr;
         if (!parser_.parse(text + begin, end, row)) break;
         if (timed && row.values[time_slot] < time_before) break;
         time_before = row.values[time_slot];
-        const bool torque = row.torque_begin != nullptr;
-        sink.add(row.values, torque ? static_cast<std::size_t>(row.torque_begin - text) : begin,
-                 torque ? static_cast<std::size_t>(row.torque_end - text) : begin,
-                 static_cast<std::size_t>(row.content_end - text));
+        sink.make_room(1);
+        sink.set(0, row, begin, text);
+        sink.commit(1);
         begin = static_cast<std::size_t>(found - text) + 1;
     }
     sink.finish();

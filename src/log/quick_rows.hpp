@@ -2,7 +2,6 @@
 #pragma once
 // Many well-formed rows of numbers at once, from any thread. Stops at the first row that it is not sure of.
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string_view>
@@ -18,10 +17,19 @@ struct RowPlan {
     CellRules rules;
     char line_end = '\n';
     std::size_t columns = 0;
-    std::vector<WantedColumn> wanted;  ///< sorted by column; slots: time, velocity, torque, position
-    std::array<double, 4> factors{};   ///< into the tool's units, by slot
+    std::vector<WantedColumn> wanted;  ///< sorted by column
+    std::vector<double> factors =
+        std::vector<double>(slot_count(1), 1.0);  ///< into the tool's units, by slot
+
+    [[nodiscard]] std::size_t joints() const { return factors.size() / slots_a_joint; }
+
+    [[nodiscard]] std::optional<std::size_t> column_of(std::size_t slot) const {
+        for (const WantedColumn& one : wanted) {
+            if (one.slot == slot) return one.column;
+        }
+        return std::nullopt;
+    }
 };
-enum RowSlot : std::size_t { time_slot, velocity_slot, torque_slot, position_slot };
 
 class QuickRows {
   public:

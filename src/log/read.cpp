@@ -22,9 +22,10 @@ Log read_rows(LogReader& reader, const ReadOptions& options) {
     RowBlock block;
     while (reader.next(block)) {
         append(log.trace.time_s, block.time_s);
-        append(log.trace.velocity_deg_s, block.velocity_deg_s);
-        append(log.trace.torque_nm, block.torque_nm);
-        append(log.trace.position_deg, block.position_deg);
+        const JointRows& joint = block.joints.front();
+        append(log.trace.velocity_deg_s, joint.velocity_deg_s);
+        append(log.trace.torque_nm, joint.torque_nm);
+        append(log.trace.position_deg, joint.position_deg);
         log.held_bad_values += block.held_bad_values;
     }
     log.layout = reader.layout();

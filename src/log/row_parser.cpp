@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "log/row_parser.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -59,7 +60,7 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
         if (wanted != wanted_.end() && wanted->column == column) {
             while (!runs && at < end && *at == ' ' && delimiter != '\t') ++at;
             double& value = row.values[wanted->slot];
-            const char* const begin = at;
+            ParsedRow::Place place{at, nullptr};
             const char* stop = read_short_decimal(at, end, rules_.decimal_mark, value);
             if (stop == nullptr || !at_cell_end(stop)) {
                 stop = at;
@@ -70,11 +71,11 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
                     parse_number({at, static_cast<std::size_t>(content - at)}, rules_.decimal_mark);
                 if (!number || !std::isfinite(*number)) return false;
                 value = *number;
-                if (wanted->slot == torque_slot_) row.torque_end = content;
-            } else if (wanted->slot == torque_slot_) {
-                row.torque_end = stop;
+                place.end = content;
+            } else {
+                place.end = stop;
             }
-            if (wanted->slot == torque_slot_) row.torque_begin = begin;
+            if (is_torque(wanted->slot)) row.torques[joint_of(wanted->slot)] = place;
             at = stop;
             ++wanted;
         } else {

@@ -4,43 +4,41 @@
 // only what is certainly well formed; whatever else is left to the careful way, which also finds the words
 // for what is wrong.
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
+#include "log/row_slots.hpp"
 #include "log/text_cells.hpp"
 
 namespace ripplenotch {
 
-/// One wanted column: its place in the row and where its number goes.
-struct WantedColumn {
-    std::size_t column = 0;
-    std::size_t slot = 0;  ///< into the row's numbers
-};
-
-/// The numbers of a row and the place of the torque cell.
+/// The numbers of a row and the places of the torque cells.
 struct ParsedRow {
-    std::array<double, 4> values{};
-    const char* torque_begin = nullptr;
-    const char* torque_end = nullptr;
+    struct Place {
+        const char* begin = nullptr;
+        const char* end = nullptr;
+    };
+    explicit ParsedRow(std::size_t joints = 1) : values(slot_count(joints)), torques(joints) {}
+
+    std::vector<double> values;         ///< by slot
+    std::vector<Place> torques;         ///< by joint; null without a torque column
     const char* content_end = nullptr;  ///< just past the last cell
 };
 
 class RowParser {
   public:
-    /// `wanted` sorted by column; `torque_slot` is the slot whose cell's place is kept.
-    RowParser(CellRules rules, std::size_t columns, std::vector<WantedColumn> wanted, std::size_t torque_slot)
-        : rules_(rules), columns_(columns), wanted_(std::move(wanted)), torque_slot_(torque_slot) {}
+    /// `wanted` sorted by column.
+    RowParser(CellRules rules, std::size_t columns, std::vector<WantedColumn> wanted)
+        : rules_(rules), columns_(columns), wanted_(std::move(wanted)) {}
 
     /// True when every wanted cell held a plain finite number and the row has the right number of cells,
-    /// without quotes.
+    /// without quotes. `row` has room for the slots that are wanted.
     [[nodiscard]] bool parse(const char* begin, const char* end, ParsedRow& row) const;
 
   private:
     CellRules rules_;
     std::size_t columns_;
     std::vector<WantedColumn> wanted_;
-    std::size_t torque_slot_;
 };
 
 }  // namespace ripplenotch

@@ -14,22 +14,30 @@ class Converter : public LogWriter {
   public:
     Converter(std::unique_ptr<ByteSink> sink, const LogReader& reader, const WriteOptions& options,
               MakeTableWriter make)
-        : sink_(std::move(sink)),
-          table_(make(*sink_, options)),
-          append_(options.append),
-          has_position_(reader.layout().chosen.position.has_value()) {
-        std::vector<std::string> names = {"time_s", "velocity_deg_s", "torque_nm"};
-        if (has_position_) names.emplace_back("position_deg");
-        if (append_) names.push_back(options.append_name + "_nm");
+        : sink_(std::move(sink)), table_(make(*sink_, options)), append_(options.append) {
+        const std::vector<JointColumns> joints = reader.layout().all_chosen();
+        std::vector<std::string> names = {"time_s"};
+        for (const JointColumns& joint : joints) {
+            // One joint needs no name.
+            const std::string prefix = joints.size() == 1 ? "" : joint.joint + "_";
+            names.push_back(prefix + "velocity_deg_s");
+            names.push_back(prefix + "torque_nm");
+            has_position_.push_back(joint.position.has_value());
+            if (joint.position) names.push_back(prefix + "position_deg");
+            if (append_) names.push_back(prefix + options.append_name + "_nm");
+        }
         table_->begin(names);
     }
 
-    void write(const RowBlock& block, std::span<const double> torque_nm) override {
-        std::vector<std::span<const double>> columns = {
-            block.time_s, block.velocity_deg_s,
-            append_ ? std::span<const double>(block.torque_nm) : torque_nm};
-        if (has_position_) columns.emplace_back(block.position_deg);
-        if (append_) columns.push_back(torque_nm);
+    void put(const RowBlock& block, Torques torque_nm, std::string_view /*bytes*/) override {
+        std::vector<std::span<const double>> columns = {block.time_s};
+        for (std::size_t j = 0; j < block.joints.size(); ++j) {
+            const JointRows& joint = block.joints[j];
+            columns.emplace_back(joint.velocity_deg_s);
+            columns.emplace_back(append_ ? joint.torque_nm : torque_nm[j]);
+            if (has_position_[j]) columns.emplace_back(joint.position_deg);
+            if (append_) columns.emplace_back(torque_nm[j]);
+        }
         table_->rows(columns);
     }
 
@@ -41,7 +49,8 @@ class Converter : public LogWriter {
   private:
     std::unique_ptr<ByteSink> sink_;
     std::unique_ptr<TableWriter> table_;
-    bool append_, has_position_;
+    bool append_;
+    std::vector<bool> has_position_;
 };
 
 }  // namespace

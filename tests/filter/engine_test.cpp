@@ -45,8 +45,8 @@ class FakeReader final : public LogReader {
         };
         block.first_row = at_;
         block.time_s = part(rows_.time_s);
-        block.velocity_deg_s = part(rows_.velocity_deg_s);
-        block.torque_nm = part(rows_.torque_nm);
+        block.joints[0].velocity_deg_s = part(rows_.velocity_deg_s);
+        block.joints[0].torque_nm = part(rows_.torque_nm);
         at_ += count;
         return true;
     }
@@ -59,10 +59,11 @@ class FakeReader final : public LogReader {
 
 class Collector final : public LogWriter {
   public:
-    void write(const RowBlock& block, std::span<const double> torque_nm) override {
-        REQUIRE(block.size() == torque_nm.size());
+    void put(const RowBlock& block, Torques torque_nm, std::string_view /*bytes*/) override {
+        REQUIRE(torque_nm.size() == 1);
+        REQUIRE(block.size() == torque_nm[0].size());
         REQUIRE(block.first_row == values.size());
-        values.insert(values.end(), torque_nm.begin(), torque_nm.end());
+        values.insert(values.end(), torque_nm[0].begin(), torque_nm[0].end());
     }
     void finish() override { finished = true; }
     std::vector<double> values;

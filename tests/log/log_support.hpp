@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -75,10 +76,14 @@ inline std::string rewritten(const std::string& bytes, const TorqueMap& map, con
         rewrite_log(out.string(), *reader, find_log_format(format.empty() ? reader->layout().format : format),
                     write, ByteSink::Overwrite::yes);
     RowBlock block;
-    std::vector<double> torque;
+    std::vector<std::vector<double>> torque;
     while (reader->next(block)) {
-        torque.resize(block.size());
-        for (std::size_t i = 0; i < block.size(); ++i) torque[i] = map(block.torque_nm[i]);
+        torque.resize(block.joints.size());
+        for (std::size_t j = 0; j < torque.size(); ++j) {
+            const std::vector<double>& raw = block.joints[j].torque_nm;
+            torque[j].resize(raw.size());
+            std::transform(raw.begin(), raw.end(), torque[j].begin(), map);
+        }
         writer->write(block, torque);
     }
     writer->finish();

@@ -22,7 +22,7 @@ QuickRows three_columns(char delimiter = ',', char mark = '.', char line_end = '
                       line_end,
                       3,
                       {{0, velocity_slot}, {1, torque_slot}, {2, position_slot}},
-                      {1.0, 1.0, 1.0, 1.0}});
+                      std::vector<double>(4, 1.0)});
 }
 
 bool same_bits(double a, double b) {
@@ -71,8 +71,8 @@ std::size_t misread(std::uint64_t seed, std::size_t rows) {
     REQUIRE(quick.take(scalars, 0, no_time) == scalars.bytes.size());
     REQUIRE(vectors.size() == rows);
     REQUIRE(scalars.size() == rows);
-    REQUIRE(vectors.torque_begin == scalars.torque_begin);
-    REQUIRE(vectors.torque_end == scalars.torque_end);
+    REQUIRE(vectors.joints[0].torque_begin == scalars.joints[0].torque_begin);
+    REQUIRE(vectors.joints[0].torque_end == scalars.joints[0].torque_end);
     REQUIRE(vectors.row_end == scalars.row_end);
     std::size_t different = 0;
     for (std::size_t i = 0; i < rows; ++i) {
@@ -80,10 +80,11 @@ std::size_t misread(std::uint64_t seed, std::size_t rows) {
             const double want = *parse_number(cells[3 * i + column]);
             different += same_bits(got, want) && same_bits(other, want) ? 0 : 1;
         };
-        expect(0, vectors.velocity_deg_s[i], scalars.velocity_deg_s[i]);
-        expect(1, vectors.torque_nm[i], scalars.torque_nm[i]);
-        expect(2, vectors.position_deg[i], scalars.position_deg[i]);
-        const std::size_t begin = vectors.torque_begin[i], size = vectors.torque_end[i] - begin;
+        expect(0, vectors.joints[0].velocity_deg_s[i], scalars.joints[0].velocity_deg_s[i]);
+        expect(1, vectors.joints[0].torque_nm[i], scalars.joints[0].torque_nm[i]);
+        expect(2, vectors.joints[0].position_deg[i], scalars.joints[0].position_deg[i]);
+        const std::size_t begin = vectors.joints[0].torque_begin[i],
+                          size = vectors.joints[0].torque_end[i] - begin;
         different += vectors.bytes.compare(begin, size, cells[3 * i + 1]) == 0 ? 0 : 1;
     }
     return different;
@@ -127,13 +128,14 @@ TEST_CASE("taking goes on behind a row that was taken otherwise, and keeps what 
     const QuickRows quick = three_columns();
     CHECK(quick.take(block, 0, no_time) == 6);
     CHECK(quick.take(block, 10, no_time) == block.bytes.size());
-    CHECK(block.torque_nm == std::vector<double>{2, 7, 10});
-    CHECK(block.torque_begin == std::vector<std::uint32_t>{2, 12, 18});
+    CHECK(block.joints[0].torque_nm == std::vector<double>{2, 7, 10});
+    CHECK(block.joints[0].torque_begin == std::vector<std::uint32_t>{2, 12, 18});
 }
 
 TEST_CASE("time that runs backward ends what is taken at once", "[log]") {
     for (const bool scalar : {false, true}) {
-        QuickRows quick({{',', '.'}, '\n', 2, {{0, time_slot}, {1, torque_slot}}, {1.0, 1.0, 1.0, 1.0}});
+        QuickRows quick(
+            {{',', '.'}, '\n', 2, {{0, time_slot}, {1, torque_slot}}, std::vector<double>(4, 1.0)});
         if (scalar) quick.use_scalar_way();
         RowBlock block;
         block.bytes = "1,5\n2,5\n2,6\n1.999,7\n3,8\n";
@@ -149,9 +151,9 @@ TEST_CASE("decimal commas, semicolons, lone carriage returns and wide rows are t
     block.bytes = "1,5;-2,25;3\r4;5,125;6\r";
     const QuickRows quick = three_columns(';', ',', '\r');
     CHECK(quick.take(block, 0, no_time) == block.bytes.size());
-    CHECK(block.torque_nm == std::vector<double>{-2.25, 5.125});
+    CHECK(block.joints[0].torque_nm == std::vector<double>{-2.25, 5.125});
     // 400 columns of 30 characters: a row longer than the stretch that is searched at once is left alone.
-    QuickRows wide({{',', '.'}, '\n', 400, {{399, torque_slot}}, {1.0, 1.0, 1.0, 1.0}});
+    QuickRows wide({{',', '.'}, '\n', 400, {{399, torque_slot}}, std::vector<double>(4, 1.0)});
     RowBlock rows;
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 399; ++column) rows.bytes += std::string(29, 'x') + ",";
@@ -161,5 +163,5 @@ TEST_CASE("decimal commas, semicolons, lone carriage returns and wide rows are t
     CHECK((taken == 0 || taken == rows.bytes.size()));
     wide.use_scalar_way();
     CHECK(wide.take(rows, taken, no_time) == rows.bytes.size());
-    CHECK(rows.torque_nm == std::vector<double>{7.5, 7.5, 7.5});
+    CHECK(rows.joints[0].torque_nm == std::vector<double>{7.5, 7.5, 7.5});
 }

@@ -2,6 +2,8 @@
 #pragma once
 // Numbers as text: strict, independent of the locale, exact in both directions.
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,8 +15,19 @@ namespace ripplenotch {
 /// overflows a double.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text, char decimal_mark = '.');
 
+/// mantissa * 10^exponent, correctly rounded; empty in the rare cases where that takes more than the 128 bits
+/// of Lemire's method (Number parsing at a gigabyte per second, 2021), and outside the range of a double.
+[[nodiscard]] std::optional<double> decimal_number(std::uint64_t mantissa, int exponent);
+
 /// The shortest text that reads back as the same double, e.g. "0.1", "1e+30", "nan", "-inf".
 [[nodiscard]] std::string shortest(double value);
+
+/// Bytes that put_shortest() and put_fixed() may use of where they write to, for any value.
+inline constexpr std::size_t number_room = 352;
+/// shortest(value) at `into`; returns its end. For inner loops.
+char* put_shortest(char* into, double value);
+/// append_fixed() at `into`; returns its end.
+char* put_fixed(char* into, double value, int decimals);
 
 /// Appends shortest(value) to `out`; for inner loops.
 void append_shortest(std::string& out, double value);

@@ -45,7 +45,7 @@ struct TimedSwitch {
     double time_s = 0.0;
 };
 
-/// What a whole log turned out to be.
+/// What a whole log turned out to be, for one of its joints.
 struct StreamReport {
     std::size_t rows = 0;
     Hertz measured_rate;    ///< of the whole log, gaps left out
@@ -59,7 +59,13 @@ struct StreamReport {
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< of |v|; both 0 without a row
 };
 
-/// One log on its way through a filter.
+/// What one joint goes through. The meter may be null; it gets two signals, raw and filtered torque.
+struct JointRun {
+    CausalFilter* filter = nullptr;
+    RippleMeter* meter = nullptr;
+};
+
+/// One log on its way through a filter, or through one filter for each joint that is read.
 class LogStream {
   public:
     /// Reads the first clock_rows rows (fewer when they are wide) and measures their rate. A gap is a step of
@@ -75,14 +81,18 @@ class LogStream {
     /// text.
     [[nodiscard]] std::optional<int> torque_decimals() const { return torque_decimals_; }
 
-    /// Carries the whole log through `filter`, once. `writer` and `meter` may be null; the meter gets two
-    /// signals, raw and filtered torque. Throws DataError when time runs backward. The result is the same
-    /// for any number of `threads`; logs that were read whole at once take one.
+    /// Carries the whole log through the filters, once: one for each joint, in the order of
+    /// Layout::all_chosen(), and a report for each. `writer` may be null. Throws DataError when time runs
+    /// backward. The result is the same for any number of `threads`; logs that were read whole at once take
+    /// one.
+    std::vector<StreamReport> run(std::span<const JointRun> joints, LogWriter* writer,
+                                  std::size_t threads = 1);
+    /// The same for a log that is read for one joint.
     StreamReport run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter, std::size_t threads = 1);
 
   private:
-    struct Pass;
     Trace read_head();
+    void note_head(const RowBlock& block, std::size_t count);
     void measure_clock(const Trace& head, double gap_steps);
 
     std::unique_ptr<LogReader> reader_;
@@ -90,8 +100,8 @@ class LogStream {
     bool read_whole_ = false;
     Hertz measured_rate_, design_rate_;
     std::optional<int> torque_decimals_;
-    double moving_deg_s_ = 0.0;  ///< slower is standing, as far as held samples go
-    double gap_s_ = 0.0;         ///< a longer step is a gap
+    std::vector<double> moving_deg_s_;  ///< by joint: slower is standing, as far as held samples go
+    double gap_s_ = 0.0;                ///< a longer step is a gap
 };
 
 }  // namespace ripplenotch

@@ -16,25 +16,35 @@
 
 namespace ripplenotch {
 
-/// A run of consecutive rows of the chosen joint, in the tool's units, with the bytes they came from.
-/// Reused between calls; the vectors keep their capacity.
+/// One joint's part of consecutive rows, in the tool's units, and where its torque stands in their bytes.
+struct JointRows {
+    std::vector<double> velocity_deg_s, torque_nm, position_deg;  ///< equal lengths; position may be empty
+    std::vector<std::uint32_t> torque_begin,
+        torque_end;  ///< per row, offsets into the block's bytes of the torque cell
+};
+
+/// A run of consecutive rows, in the tool's units, with the bytes they came from. Reused between calls; the
+/// vectors keep their capacity.
 struct RowBlock {
     std::size_t first_row = 0;  ///< 0-based number of the first row in the log
-    std::vector<double> time_s, velocity_deg_s, torque_nm,
-        position_deg;   ///< equal lengths; position may be empty
-    std::string bytes;  ///< the rows as they stand in the file, line ends included
-    std::vector<std::uint32_t> torque_begin,
-        torque_end;                      ///< per row, offsets into `bytes` of the torque cell
+    std::vector<double> time_s;
+    std::vector<JointRows> joints = std::vector<JointRows>(1);  ///< as Layout::all_chosen()
+    std::string bytes;                   ///< the rows as they stand in the file, line ends included
     std::vector<std::uint32_t> row_end;  ///< per row, offset just past the row's last byte of content
     std::exception_ptr failure;       ///< what is wrong behind the last row; for when the rows are done with
     std::size_t parsed_bytes = 0;     ///< of `bytes`; between LogReader's steps only
     std::size_t held_bad_values = 0;  ///< cells replaced because hold_bad_values was set
 
-    [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
+    [[nodiscard]] std::size_t size() const { return time_s.size(); }
     /// Forgets the rows, not their bytes.
     void drop_rows() {
-        for (auto* values : {&time_s, &velocity_deg_s, &torque_nm, &position_deg}) values->clear();
-        for (auto* places : {&torque_begin, &torque_end, &row_end}) places->clear();
+        time_s.clear();
+        row_end.clear();
+        for (JointRows& joint : joints) {
+            for (auto* values : {&joint.velocity_deg_s, &joint.torque_nm, &joint.position_deg})
+                values->clear();
+            for (auto* places : {&joint.torque_begin, &joint.torque_end}) places->clear();
+        }
         held_bad_values = parsed_bytes = 0;
         failure = nullptr;
     }
@@ -72,21 +82,26 @@ struct WriteOptions {
     std::string append_name = "torque_filtered";  ///< its name; a unit is added as in the torque column
 };
 
-/// Writes rows that a reader gave, with other torque values.
+/// Filtered torque of a block, in newton-metres: one vector of block.size() entries for each of its joints.
+using Torques = std::span<const std::vector<double>>;
+
+/// Writes rows that a reader gave, with other torque values, in the units of their columns.
 class LogWriter {
   public:
     virtual ~LogWriter() = default;
-    /// `torque_nm` has block.size() entries, in newton-metres; it is written in the unit of the torque
-    /// column.
-    virtual void write(const RowBlock& block, std::span<const double> torque_nm) = 0;
-
-    /// write() in two steps: prepare() makes the bytes, of several blocks at a time; put() takes the blocks
-    /// one after another. Writers that have nothing to prepare do all in put().
-    virtual void prepare(const RowBlock& /*block*/, std::span<const double> /*torque_nm*/,
-                         std::string& /*bytes*/) const {}
-    virtual void put(const RowBlock& block, std::span<const double> torque_nm, std::string_view /*bytes*/) {
-        write(block, torque_nm);
+    /// prepare() and put().
+    void write(RowBlock& block, Torques torque_nm) {
+        std::string room;
+        put(block, torque_nm, prepare(block, torque_nm, room));
     }
+    /// Makes the bytes, of several blocks at a time; they stand in `room`, which only grows, or in place of
+    /// block.bytes. Writers that have nothing to prepare do all in put().
+    virtual std::string_view prepare(RowBlock& /*block*/, Torques /*torque_nm*/,
+                                     std::string& /*room*/) const {
+        return {};
+    }
+    /// Takes the blocks one after another.
+    virtual void put(const RowBlock& block, Torques torque_nm, std::string_view bytes) = 0;
 
     /// Completes the file; nothing appears under its name before.
     virtual void finish() = 0;

@@ -29,6 +29,7 @@ struct Column {
 struct ReadOptions {
     std::optional<std::string> format;         ///< name in the format registry: "csv", "npy"
     std::optional<std::string> joint;          ///< one joint's name
+    bool every_joint = false;                  ///< read all joints that have a velocity and a torque, at once
     std::vector<std::string> columns;          ///< "time,velocity,torque" by place, or "torque=tau_J" by name
     std::map<std::string, std::string> units;  ///< role or column name -> unit
     std::optional<Hertz> sample_rate;          ///< for logs without time; overrides the log's own time
@@ -51,10 +52,18 @@ struct Layout {
     std::string format;  ///< "csv", "npy"
     std::vector<Column> columns;
     std::vector<std::string> joints;    ///< all joints in the file, in file order
-    JointColumns chosen;                ///< the joint that is read
+    JointColumns chosen;                ///< the joint that is read; the first of them
+    std::vector<JointColumns> others;   ///< that are read with it, when every joint is
     std::optional<Hertz> stated_rate;   ///< from --sample-rate
     std::string options;                ///< the option line that would force this reading
     std::vector<std::string> warnings;  ///< one sentence each
+
+    /// All joints that are read.
+    [[nodiscard]] std::vector<JointColumns> all_chosen() const {
+        std::vector<JointColumns> all = {chosen};
+        all.insert(all.end(), others.begin(), others.end());
+        return all;
+    }
 };
 
 }  // namespace ripplenotch

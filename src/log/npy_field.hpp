@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// One number in the records of a NumPy array.
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace ripplenotch {
+
+/// One number in a record.
+struct NpyField {
+    std::string name;      ///< empty in plain arrays
+    char kind = 'f';       ///< 'f' float, 'i' signed, 'u' unsigned, 0 anything that is no number
+    std::size_t size = 8;  ///< bytes
+    bool big_endian = false;
+    std::size_t offset = 0;  ///< in the record
+};
+
+/// A number of a record, and back; `record` points at its first byte.
+[[nodiscard]] double load_field(const char* record, const NpyField& field);
+void store_float(char* record, const NpyField& field, double value);
+
+/// load_field of `rows` records that follow each other. False when a number is not finite.
+bool load_column(const char* records, std::size_t record_size, const NpyField& field, std::span<double> into);
+
+}  // namespace ripplenotch

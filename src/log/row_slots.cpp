@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "log/row_slots.hpp"
+
+namespace ripplenotch {
+
+std::vector<WantedColumn> wanted_columns(const Layout& layout) {
+    std::vector<WantedColumn> wanted;
+    const auto want = [&wanted](std::optional<std::size_t> column, std::size_t slot) {
+        if (column) wanted.push_back({*column, slot});
+    };
+    want(layout.chosen.time, time_slot);
+    const std::vector<JointColumns> joints = layout.all_chosen();
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        want(joints[j].velocity, slot_of(velocity_slot, j));
+        want(joints[j].torque, slot_of(torque_slot, j));
+        want(joints[j].position, slot_of(position_slot, j));
+    }
+    return wanted;
+}
+
+std::vector<double> slot_factors(const Layout& layout, const std::vector<WantedColumn>& wanted) {
+    std::vector<double> factors(slot_count(1 + layout.others.size()), 1.0);
+    for (const WantedColumn& one : wanted) factors[one.slot] = layout.columns[one.column].factor;
+    return factors;
+}
+
+}  // namespace ripplenotch
