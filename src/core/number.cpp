@@ -18,17 +18,18 @@ namespace {
 
 constexpr std::array<double, 10> powers_of_ten = {1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 
-// magnitude * 10^decimals rounded to a whole number, where that is certain in spite of the product's own
-// rounding.
-std::optional<std::uint64_t> scaled_surely(double magnitude, int decimals) {
-    if (decimals < 0 || decimals >= static_cast<int>(powers_of_ten.size())) return std::nullopt;
-    const double scaled = magnitude * powers_of_ten[static_cast<std::size_t>(decimals)];
-    if (!(scaled < 1e15)) return std::nullopt;
-    const auto whole = static_cast<std::int64_t>(scaled);
-    const double rest = scaled - static_cast<double>(whole);
+// magnitude * 10^decimals rounded to a whole number; false where that is not certain in spite of the
+// product's own rounding.
+bool scaled_surely(double magnitude, int decimals, std::uint64_t& scaled) {
+    if (decimals < 0 || decimals >= static_cast<int>(powers_of_ten.size())) return false;
+    const double product = magnitude * powers_of_ten[static_cast<std::size_t>(decimals)];
+    if (!(product < 1e15)) return false;
+    const auto whole = static_cast<std::int64_t>(product);
+    const double short_of_half = 0.5 - (product - static_cast<double>(whole));
+    // As good as a coin's toss, so not a branch.
+    scaled = static_cast<std::uint64_t>(whole) + (std::signbit(short_of_half) ? 1U : 0U);
     // The product is off by at most half a unit in its last place, 1.2e-16 of itself.
-    if (std::abs(rest - 0.5) <= 4e-16 * scaled) return std::nullopt;
-    return static_cast<std::uint64_t>(whole) + (rest > 0.5 ? 1 : 0);
+    return std::abs(short_of_half) > 4e-16 * product;
 }
 
 /// The eight digits of a number below 1e8, one a byte, the first in the lowest: halves of it side by side,
@@ -41,10 +42,37 @@ std::uint64_t eight_digits(std::uint32_t value) {
     return upper | (parts - 10 * upper) << 8;
 }
 
-void put_text(char* into, std::uint64_t digits) {
-    digits += 0x3030303030303030U;
-    if constexpr (std::endian::native == std::endian::big) digits = __builtin_bswap64(digits);
-    std::memcpy(into, &digits, 8);
+/// Eight characters, the first in the lowest byte.
+void put_eight(char* into, std::uint64_t text) {
+    if constexpr (std::endian::native == std::endian::big) text = __builtin_bswap64(text);
+    std::memcpy(into, &text, sizeof text);
+}
+
+/// A number below 1e8 with 1 to 7 decimals: what comes first is shifted out, so that nothing takes the way
+/// through memory.
+char* put_short(char* into, std::uint32_t scaled, int decimals) {
+    const std::uint64_t digits = eight_digits(scaled);
+    const int leading = std::min(std::countr_zero(digits) / 8, 7 - decimals);
+    const std::uint64_t text = digits + 0x3030303030303030U;
+    put_eight(into, text >> (8 * leading));
+    into += 8 - decimals - leading;
+    *into++ = '.';
+    put_eight(into, text >> (8 * (8 - decimals)));
+    return into + decimals;
+}
+
+/// Any other of up to sixteen digits.
+char* put_long(char* into, std::uint64_t scaled, int decimals) {
+    std::array<char, 17> text;
+    put_eight(text.data(),
+              eight_digits(static_cast<std::uint32_t>(scaled / 100000000)) + 0x3030303030303030U);
+    put_eight(text.data() + 8,
+              eight_digits(static_cast<std::uint32_t>(scaled % 100000000)) + 0x3030303030303030U);
+    const auto mark = text.begin() + 16 - decimals;
+    const auto first = std::find_if(text.begin(), mark - 1, [](char digit) { return digit != '0'; });
+    into = std::copy(first, mark, into);
+    if (decimals > 0) *into++ = '.';
+    return std::copy(mark, text.begin() + 16, into);
 }
 
 }  // namespace
@@ -81,26 +109,14 @@ char* put_shortest(char* into, double value) { return fmt::format_to(into, FMT_C
 // Printing a whole number and setting the mark takes a tenth of the time of exact decimal printing, which is
 // left for what lies too near a tie, is large, or has many decimals.
 char* put_fixed(char* into, double value, int decimals) {
-    const auto scaled = scaled_surely(std::abs(value), decimals);
-    if (!scaled) return fmt::format_to(into, FMT_COMPILE("{:.{}f}"), value, decimals);
-    const std::uint64_t upper = eight_digits(static_cast<std::uint32_t>(*scaled / 100000000));
-    const std::uint64_t lower = eight_digits(static_cast<std::uint32_t>(*scaled % 100000000));
-    std::array<char, 32> digits;  // sixteen, and what is copied behind them
-    put_text(digits.data(), upper);
-    put_text(digits.data() + 8, lower);
-    const auto zeros = [](std::uint64_t eight) {
-        return static_cast<std::size_t>(std::countr_zero(eight)) / 8;
-    };
-    const std::size_t leading = upper != 0 ? zeros(upper) : 8 + zeros(lower);
-    const std::size_t mark = 16 - static_cast<std::size_t>(decimals);
-    const std::size_t first = std::min(leading, mark - 1);
-    if (std::signbit(value)) *into++ = '-';
-    std::memcpy(into, digits.data() + first, 16);
-    into += mark - first;
-    if (decimals == 0) return into;
-    *into++ = '.';
-    std::memcpy(into, digits.data() + mark, 16);
-    return into + decimals;
+    std::uint64_t scaled = 0;
+    if (!scaled_surely(std::abs(value), decimals, scaled))
+        return fmt::format_to(into, FMT_COMPILE("{:.{}f}"), value, decimals);
+    *into = '-';
+    into += std::signbit(value) ? 1 : 0;
+    const bool is_short = scaled < 100000000 && decimals > 0 && decimals < 8;
+    return is_short ? put_short(into, static_cast<std::uint32_t>(scaled), decimals)
+                    : put_long(into, scaled, decimals);
 }
 
 void append_shortest(std::string& out, double value) {

@@ -92,18 +92,20 @@ std::optional<std::size_t> choose_time(const std::string& source, const ColumnFa
                 "{} only counts rows; the time is taken from {}; --columns time=NAME decides otherwise",
                 labels(facts, counters), column_label(facts.names, clocks[0])));
         }
-        // A date written as text beside a numeric clock is common; a numeric time that stands still or jumps back
-        // means that the columns are not what their names say.
+        // A date written as text beside a numeric clock is common; a numeric time that stands still or jumps
+        // back means that the columns are not what their names say.
         for (const std::size_t column : broken) {
             if (!finite_values(facts, column).empty()) {
-                raise<DataError>("{}: {} and {} are both named as times, and the first does not run forward; check the "
-                                 "header, or say which is the time with --columns time={}",
-                                 source, column_label(facts.names, column), column_label(facts.names, clocks[0]),
-                                 facts.names[clocks[0]]);
+                raise<DataError>(
+                    "{}: {} and {} are both named as times, and the first does not run forward; check the "
+                    "header, or say which is the time with --columns time={}",
+                    source, column_label(facts.names, column), column_label(facts.names, clocks[0]),
+                    facts.names[clocks[0]]);
             }
-            warnings.push_back(fmt::format(
-                "{} is not a number of seconds; the time is taken from {}; --columns time=NAME decides otherwise",
-                column_label(facts.names, column), column_label(facts.names, clocks[0])));
+            warnings.push_back(
+                fmt::format("{} is not a number of seconds; the time is taken from {}; --columns time=NAME "
+                            "decides otherwise",
+                            column_label(facts.names, column), column_label(facts.names, clocks[0])));
         }
         return clocks[0];
     }

@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t piece_size = std::size_t{1} << 19;
+constexpr std::size_t piece_size = std::size_t{1} << 17;
 constexpr std::size_t sniff_size = std::size_t{1} << 16;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 

@@ -97,33 +97,48 @@ void CsvWriter::write_head(const CsvReader& reader) {
     sink_->write(changed);
 }
 
-char* CsvWriter::put_number(char* into, double value, std::string_view as_in) const {
-    char* end = into;
-    switch (options_.decimals) {
-        case WriteOptions::Decimals::shortest:
-            end = put_shortest(into, value);
-            break;
-        case WriteOptions::Decimals::input:
-            end = put_fixed(into, value, decimals_of(as_in, rules_.decimal_mark));
-            break;
-        case WriteOptions::Decimals::fixed:
-            end = put_fixed(into, value, options_.fixed_decimals);
-            break;
-    }
-    if (rules_.decimal_mark != '.') std::replace(into, end, '.', rules_.decimal_mark);
-    return end;
-}
-
+// `write` takes where to write to, the number and the cell that it replaces; it is known when this is
+// compiled, for there is one call a row.
 std::string_view CsvWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
     TextRoom text(room, block.bytes.size() + 16 * block.size() * joints_.size());
-    if (options_.append)
-        append(block, torque_nm, text);
-    else
-        replace(block, torque_nm, text);
+    switch (options_.decimals) {
+        case WriteOptions::Decimals::shortest:
+            write_rows(block, torque_nm, text,
+                       [](char* into, double value, std::string_view) { return put_shortest(into, value); });
+            break;
+        case WriteOptions::Decimals::input:
+            write_rows(block, torque_nm, text, [this](char* into, double value, std::string_view cell) {
+                return put_fixed(into, value, decimals_of(cell, rules_.decimal_mark));
+            });
+            break;
+        case WriteOptions::Decimals::fixed:
+            write_rows(block, torque_nm, text,
+                       [decimals = options_.fixed_decimals](char* into, double value, std::string_view) {
+                           return put_fixed(into, value, decimals);
+                       });
+            break;
+    }
     return text.text();
 }
 
-void CsvWriter::replace(const RowBlock& block, Torques torque_nm, TextRoom& text) const {
+template <typename Write>
+void CsvWriter::write_rows(const RowBlock& block, Torques torque_nm, TextRoom& text,
+                           const Write& write) const {
+    if (options_.append) {
+        append(block, torque_nm, text, write);
+    } else if (rules_.decimal_mark == '.') {
+        replace(block, torque_nm, text, write);
+    } else {
+        replace(block, torque_nm, text, [&](char* into, double value, std::string_view cell) {
+            char* const end = write(into, value, cell);
+            std::replace(into, end, '.', rules_.decimal_mark);
+            return end;
+        });
+    }
+}
+
+template <typename Write>
+void CsvWriter::replace(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const {
     const std::string_view bytes = block.bytes;
     // Cells whose bad values were replaced do not hold what the block's torque says.
     const bool as_written = options_.decimals != WriteOptions::Decimals::fixed && block.held_bad_values == 0;
@@ -136,7 +151,7 @@ void CsvWriter::replace(const RowBlock& block, Torques torque_nm, TextRoom& text
             const std::size_t begin = joint.torque_begin[i], end = joint.torque_end[i];
             text.copy(bytes, done, begin);
             text.number([&](char* into) {
-                return put_number(into, torque / factors_[j], bytes.substr(begin, end - begin));
+                return write(into, torque / factors_[j], bytes.substr(begin, end - begin));
             });
             done = end;
         }
@@ -144,7 +159,8 @@ void CsvWriter::replace(const RowBlock& block, Torques torque_nm, TextRoom& text
     text.copy(bytes, done, bytes.size());
 }
 
-void CsvWriter::append(const RowBlock& block, Torques torque_nm, TextRoom& text) const {
+template <typename Write>
+void CsvWriter::append(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const {
     const std::string_view bytes = block.bytes;
     const bool quoted = rules_.delimiter == ',' && rules_.decimal_mark == ',';
     std::size_t done = 0;
@@ -157,7 +173,11 @@ void CsvWriter::append(const RowBlock& block, Torques torque_nm, TextRoom& text)
                 bytes.substr(joint.torque_begin[i], joint.torque_end[i] - joint.torque_begin[i]);
             text.put(rules_.delimiter);
             if (quoted) text.put('"');
-            text.number([&](char* into) { return put_number(into, torque_nm[j][i] / factors_[j], cell); });
+            text.number([&](char* into) {
+                char* const end = write(into, torque_nm[j][i] / factors_[j], cell);
+                if (rules_.decimal_mark != '.') std::replace(into, end, '.', rules_.decimal_mark);
+                return end;
+            });
             if (quoted) text.put('"');
         }
     }

@@ -22,9 +22,12 @@ class CsvWriter : public LogWriter {
     void write_head(const CsvReader& reader);
     [[nodiscard]] std::string names_appended(const CsvReader& reader) const;
     [[nodiscard]] std::string units_appended(const CsvReader& reader) const;
-    char* put_number(char* into, double value, std::string_view as_in) const;
-    void replace(const RowBlock& block, Torques torque_nm, TextRoom& text) const;
-    void append(const RowBlock& block, Torques torque_nm, TextRoom& text) const;
+    template <typename Write>
+    void write_rows(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const;
+    template <typename Write>
+    void replace(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const;
+    template <typename Write>
+    void append(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const;
 
     std::unique_ptr<ByteSink> sink_;
     WriteOptions options_;

@@ -22,7 +22,10 @@ std::size_t QuickRows::take(RowBlock& block, std::size_t begin, double time_befo
 std::size_t QuickRows::take_by_parser(RowBlock& block, std::size_t begin, double time_before) const {
     const char* const text = block.bytes.data();
     const std::size_t size = block.bytes.size();
+    constexpr std::size_t rows_at_once = 128;
+    std::size_t rows = 0;
     RowSink sink(block, begin, plan_);
+    sink.make_room(rows_at_once);
     ParsedRow row(plan_.joints());
     const bool timed = plan_.column_of(time_slot).has_value();
     while (begin < size) {
@@ -34,12 +37,14 @@ std::size_t QuickRows::take_by_parser(RowBlock& block, std::size_t begin, double
         if (!parser_.parse(text + begin, end, row)) break;
         if (timed && row.values[time_slot] < time_before) break;
         time_before = row.values[time_slot];
-        sink.make_room(1);
-        sink.set(0, row, begin, text);
-        sink.commit(1);
+        sink.set(rows++, row, begin, text);
+        if (rows == rows_at_once) {
+            sink.commit(rows);
+            rows = 0;
+        }
         begin = static_cast<std::size_t>(found - text) + 1;
     }
-    sink.finish();
+    sink.commit(rows);
     return begin;
 }
 

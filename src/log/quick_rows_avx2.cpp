@@ -199,7 +199,6 @@ std::size_t take_rows_avx2(RowBlock& block, std::size_t begin, double time_befor
         begin = stretch.take(bytes, begin, time_before);
         if (begin == from) break;  // an irregular row, or one longer than the stretch
     }
-    sink.finish();
     return begin;
 }
 

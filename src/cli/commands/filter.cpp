@@ -8,13 +8,13 @@
 #include <memory>
 #include <set>
 #include <thread>
+#include <vector>
 
-#include "cli/chosen_method.hpp"
 #include "cli/command.hpp"
-#include "cli/filter_gear.hpp"
 #include "cli/filter_summary.hpp"
 #include "cli/gates.hpp"
 #include "cli/joint_facts.hpp"
+#include "cli/joint_methods.hpp"
 #include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/metrics.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -68,6 +68,8 @@ WriteOptions write_options(const Request& request, std::optional<int> log_decima
     return options;
 }
 
+bool every_joint(const Request& request) { return request.log.joint == "all"; }
+
 std::vector<Job> jobs_of(const Request& request) {
     const bool several = request.logs.size() > 1;
     if (!several && !request.out_directory)
@@ -88,7 +90,8 @@ std::vector<Job> jobs_of(const Request& request) {
         }
         Job job{log, (std::filesystem::path(*request.out_directory) / path.filename()).string(), {}};
         if (request.metrics) {
-            job.metrics = (std::filesystem::path(*request.metrics) / path.stem()).string() + ".metrics.json";
+            job.metrics = (std::filesystem::path(*request.metrics) / path.stem()).string() +
+                          (every_joint(request) ? ".{joint}" : "") + ".metrics.json";
         }
         jobs.push_back(std::move(job));
     }
@@ -100,16 +103,31 @@ std::vector<Job> jobs_of(const Request& request) {
     return jobs;
 }
 
+ReadOptions read_options(const Request& request) {
+    ReadOptions options = request.log.resolve();
+    options.every_joint = every_joint(request);
+    if (options.every_joint) options.joint.reset();
+    return options;
+}
+
+void check_joints(const Request& request) {
+    if (request.common.json)
+        raise<UsageError>(
+            "--json prints the metrics of one joint; for all of them use --metrics 'NAME-{}.json'",
+            joint_mark);
+    if (request.plot.wanted()) raise<UsageError>("--plot draws one joint; say which with --joint");
+    if (request.metrics && !request.out_directory && !names_joint(*request.metrics)) {
+        raise<UsageError>("--metrics {}: each joint has metrics of its own; put {} into the name",
+                          *request.metrics, joint_mark);
+    }
+}
+
 void check(const Request& request) {
     if (request.method.empty() && !request.table) {
         raise<UsageError>(
             "--method is missing, for example --method lowpass,cutoff=13rad/s or --table table.json");
     }
-    if (request.log.joint == "all") {
-        raise<UsageError>(
-            "--joint all: filter takes one joint at a time; pipe one into the next: filter --joint j1 ... | "
-            "ripplenotch filter --joint j2 ... -");
-    }
+    if (every_joint(request)) check_joints(request);
     if (!(request.gap_steps > 1.0))
         raise<UsageError>("--gap: {} median steps is not above 1", shortest(request.gap_steps));
     const bool log_on_stdout =
@@ -133,80 +151,152 @@ void check(const Request& request) {
     if (request.common.json && request.metrics) raise<UsageError>("--json is --metrics -; give one of them");
 }
 
-Provenance provenance_of(const Request& request, const Job& job, const ChosenMethod& method, std::size_t rows,
-                         const std::string& command_line) {
-    Provenance provenance;
-    provenance.command = command_line;
-    provenance.inputs.push_back(input_record(job.log));
-    provenance.inputs.back().rows = rows;
-    if (!method.table_path.empty()) provenance.inputs.push_back(input_record(method.table_path));
-    if (!method.joint_path.empty()) provenance.inputs.push_back(input_record(method.joint_path));
-    if (request.joint_file && *request.joint_file != method.joint_path)
-        provenance.inputs.push_back(input_record(*request.joint_file));
-    return provenance;
-}
-
 std::size_t threads_of(const Request& request) {
     constexpr unsigned enough = 4;  // reading, filtering and writing take one block at a time
     if (request.threads > 0) return static_cast<std::size_t>(request.threads);
     return std::clamp(std::thread::hardware_concurrency(), 1U, enough);
 }
 
-// The filter of a method that looks at the whole log first, from a pass of its own.
-std::unique_ptr<CausalFilter> learn(const Request& request, const ChosenMethod& method, const Spool& spool) {
-    LogStream stream(open_log(spool.open(), request.log.resolve()), request.gap_steps);
-    const auto learner = method.learner(stream.design_rate());
-    static_cast<void>(stream.run(*learner, nullptr, nullptr));
-    auto filter = learner->learned();
-    for (const std::string& note : learner->notes())
-        say(request.common, fmt::format("{}: {}", stream.reader().layout().source, note));
-    return filter;
-}
-
-void say_way(const Request& request, CausalFilter& filter, const std::string& source) {
-    if (const std::string way = filter.hurry(); !way.empty())
-        say(request.common, fmt::format("{}: {}", source, way));
-}
-
-/// True when everything is within the limits.
-bool run_job(const Request& request, const Job& job, const ChosenMethod& method, const Gear& gear,
-             const std::string& command_line) {
-    std::optional<Spool> spool;
-    if (method.method->learner != nullptr) spool.emplace(job.log);
-    LogStream stream(
-        spool ? open_log(spool->open(), request.log.resolve()) : open_log(job.log, request.log.resolve()),
-        request.gap_steps);
-    const Layout& layout = stream.reader().layout();
-    say_layout(request.common, layout);
-    if (method.table != nullptr) {
-        refuse_table_rate(method.table->spec().sample_rate, stream.design_rate(), layout.source);
-    }
+/// One joint of a log on its way through its filter.
+struct JointWork {
+    std::shared_ptr<const JointMethod> method;
+    std::unique_ptr<CausalFilter> filter;
+    std::optional<RippleMeter> meter;
     FilterMetrics metrics;
-    metrics.source = layout.source;
-    metrics.joint = layout.chosen.joint;
+    std::string metrics_path;  ///< empty when none are wanted
+    std::unique_ptr<ByteSink> metrics_sink;
+};
+
+/// Whether something about the ripple is told, and whether it is measured.
+bool tells(const Request& request, const Job& job) {
+    return job.metrics || request.common.json || request.common.verbose || request.crossover;
+}
+bool measures(const Request& request, const Job& job) {
+    return tells(request, job) || request.gates.min_attenuation_db;
+}
+
+/// All but the filter, which may have to learn from the log first.
+JointWork start_work(const Request& request, const Job& job, const LogStream& stream,
+                     const std::string& joint, JointMethods& methods) {
+    JointWork work;
+    work.method = methods.of(joint);
+    const ChosenMethod& method = work.method->chosen;
+    const Gear& gear = work.method->gear;
+    FilterMetrics& metrics = work.metrics;
+    metrics.source = stream.reader().layout().source;
+    if (method.table != nullptr) {
+        metrics.table_rate = method.table->spec().sample_rate;
+        refuse_table_rate(*metrics.table_rate, stream.design_rate(), metrics.source);
+    }
+    metrics.joint = joint;
     metrics.method = method.text;
     metrics.sample_rate = stream.design_rate();
-    if (method.table != nullptr) metrics.table_rate = method.table->spec().sample_rate;
     metrics.gear_ratio = gear.ratio;
-
-    const bool told = job.metrics || request.common.json || request.common.verbose || request.crossover;
-    const bool wanted = told || request.gates.min_attenuation_db;
-    std::optional<RippleMeter> meter;
-    if (wanted && gear.ratio) {
-        meter.emplace(*gear.ratio, gear.orders, stream.design_rate(), 2);
-        if (predictable(method)) meter->expect(gains_of(method, gear, stream.design_rate()));
+    if (measures(request, job) && gear.ratio) {
+        work.meter.emplace(*gear.ratio, gear.orders, stream.design_rate(), 2);
+        if (predictable(method)) work.meter->expect(gains_of(method, gear, stream.design_rate()));
     }
-    if (told) {
+    if (tells(request, job)) {
         metrics.crossover = request.crossover;
         metrics.amplitude_nm = gear.amplitude_nm;
         metrics.delays = delay_ledger(method.contender(), stream.design_rate(), {request.crossover, true});
     }
-    const auto filter = spool ? learn(request, method, *spool) : method.start(stream.design_rate());
-    if (!request.exact) say_way(request, *filter, layout.source);
-    // Both outputs are opened before the work, so that a name that is taken costs nobody an hour.
-    std::optional<ByteSink> metrics_sink;
-    const std::optional<std::string> metrics_path = request.common.json ? "-" : job.metrics;
-    if (metrics_path) metrics_sink.emplace(*metrics_path, request.common.overwrite());
+    if (request.common.json) work.metrics_path = "-";
+    if (job.metrics) work.metrics_path = with_joint(*job.metrics, joint);
+    return work;
+}
+
+/// Sentences about one joint among several say which.
+std::string about(const JointWork& work, const std::string& sentence) {
+    return work.metrics.joint.empty() ? sentence : fmt::format("joint {}: {}", work.metrics.joint, sentence);
+}
+
+// The filters of a method that looks at the whole log first, from a pass of its own.
+void learn(const Request& request, const Spool& spool, std::vector<JointWork>& works) {
+    LogStream stream(open_log(spool.open(), read_options(request)), request.gap_steps);
+    std::vector<std::unique_ptr<Learner>> learners;
+    std::vector<JointRun> runs;
+    for (const JointWork& work : works) {
+        learners.push_back(work.method->chosen.learner(stream.design_rate()));
+        runs.push_back({learners.back().get()});
+    }
+    static_cast<void>(stream.run(runs, nullptr));
+    for (std::size_t j = 0; j < works.size(); ++j) {
+        works[j].filter = learners[j]->learned();
+        for (const std::string& note : learners[j]->notes())
+            say(request.common, fmt::format("{}: {}", works[j].metrics.source, about(works[j], note)));
+    }
+}
+
+void start_filter(const Request& request, JointWork& work) {
+    if (!work.filter) work.filter = work.method->chosen.start(work.metrics.sample_rate);
+    if (request.exact) return;
+    if (const std::string way = work.filter->hurry(); !way.empty())
+        say(request.common, fmt::format("{}: {}", work.metrics.source, about(work, way)));
+}
+
+Provenance provenance_of(const Job& job, const JointWork& work, const std::string& command_line) {
+    const ChosenMethod& method = work.method->chosen;
+    Provenance provenance;
+    provenance.command = command_line;
+    provenance.inputs.push_back(input_record(job.log));
+    provenance.inputs.back().rows = work.metrics.stream.rows;
+    if (!method.table_path.empty()) provenance.inputs.push_back(input_record(method.table_path));
+    if (!method.joint_path.empty()) provenance.inputs.push_back(input_record(method.joint_path));
+    if (work.method->joint_file && *work.method->joint_file != method.joint_path)
+        provenance.inputs.push_back(input_record(*work.method->joint_file));
+    return provenance;
+}
+
+/// Says and writes what became of a joint; true when everything is within the limits.
+bool tell(const Request& request, const Job& job, JointWork& work, const std::string& command_line) {
+    FilterMetrics& metrics = work.metrics;
+    if (work.meter) metrics.levels = work.meter->levels();
+    std::vector<std::string> warnings = filter_warnings(metrics);
+    if (measures(request, job) && !metrics.gear_ratio) {
+        warnings.emplace_back(
+            "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file");
+    }
+    const auto broken = filter_violations(request.gates, work.method->chosen.contender(), metrics);
+    for (std::string& warning : warnings) warning = every_joint(request) ? about(work, warning) : warning;
+    say_warnings(request.common, warnings);
+    for (const std::string& line : filter_summary(metrics))
+        say(request.common, every_joint(request) ? about(work, line) : line);
+    if (work.metrics_sink) {
+        work.metrics_sink->write(metrics_to_json(metrics, provenance_of(job, work, command_line)));
+        work.metrics_sink->finish();
+    }
+    for (const std::string& one : broken) {
+        const std::string sentence = every_joint(request) ? about(work, one) : one;
+        say_warnings(request.common, {&sentence, 1});
+    }
+    return broken.empty();
+}
+
+std::vector<JointWork> start_works(const Request& request, const Job& job, const LogStream& stream,
+                                   JointMethods& methods, const std::optional<Spool>& spool) {
+    std::vector<JointWork> works;
+    for (const JointColumns& joint : stream.reader().layout().all_chosen())
+        works.push_back(start_work(request, job, stream, joint.joint, methods));
+    if (spool) learn(request, *spool, works);
+    for (JointWork& work : works) {
+        start_filter(request, work);
+        // Outputs are opened before the work, so that a name that is taken costs nobody an hour.
+        if (!work.metrics_path.empty())
+            work.metrics_sink = std::make_unique<ByteSink>(work.metrics_path, request.common.overwrite());
+    }
+    return works;
+}
+
+/// True when everything is within the limits.
+bool run_job(const Request& request, const Job& job, JointMethods& methods, const std::string& command_line) {
+    std::optional<Spool> spool;
+    if (methods.learns()) spool.emplace(job.log);
+    LogStream stream(
+        spool ? open_log(spool->open(), read_options(request)) : open_log(job.log, read_options(request)),
+        request.gap_steps);
+    say_layout(request.common, stream.reader().layout());
+    std::vector<JointWork> works = start_works(request, job, stream, methods, spool);
     std::unique_ptr<LogWriter> writer;
     if (!request.plot.instead_of(job.output)) {
         writer = rewrite_log(job.output, stream.reader(), output_format(job.output, request.output_format),
@@ -218,45 +308,30 @@ bool run_job(const Request& request, const Job& job, const ChosenMethod& method,
         watched = watching.get();
         writer = std::move(watching);
     }
-    metrics.stream = stream.run(*filter, writer.get(), meter ? &*meter : nullptr, threads_of(request));
-
-    if (meter) metrics.levels = meter->levels();
-    say_warnings(request.common, filter_warnings(metrics));
-    if (wanted && !gear.ratio) {
-        const std::string no_gear =
-            "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file";
-        say_warnings(request.common, {&no_gear, 1});
-    }
-    for (const std::string& line : filter_summary(metrics)) say(request.common, line);
-    if (metrics_sink) {
-        metrics_sink->write(
-            metrics_to_json(metrics, provenance_of(request, job, method, metrics.stream.rows, command_line)));
-        metrics_sink->finish();
+    std::vector<JointRun> runs;
+    for (JointWork& work : works) runs.push_back({work.filter.get(), work.meter ? &*work.meter : nullptr});
+    std::vector<StreamReport> reports = stream.run(runs, writer.get(), threads_of(request));
+    bool within = true;
+    for (std::size_t j = 0; j < works.size(); ++j) {
+        works[j].metrics.stream = std::move(reports[j]);
+        if (!tell(request, job, works[j], command_line)) within = false;
     }
     if (watched != nullptr) {
-        draw_plot(request.plot, request.common,
-                  provenance_of(request, job, method, metrics.stream.rows, command_line),
-                  [&] { return watched->course().figure(metrics.source, method.text, metrics.stream); });
+        const FilterMetrics& metrics = works.front().metrics;
+        draw_plot(request.plot, request.common, provenance_of(job, works.front(), command_line),
+                  [&] { return watched->course().figure(metrics.source, metrics.method, metrics.stream); });
     }
-    const auto broken = filter_violations(request.gates, method.contender(), metrics);
-    say_warnings(request.common, broken);
-    return broken.empty();
+    return within;
 }
 
 ExitCode run(const Request& request, const std::string& command_line) {
     check(request);
-    const ChosenMethod method =
-        choose_method(request.method.empty() ? "switching" : request.method, request.table,
-                      {request.gear_ratio, request.orders, request.joint_file});
-    const Gear gear = gear_of(request.joint_file, request.gear_ratio, request.orders, method);
-    if (request.gates.min_attenuation_db && !gear.ratio) {
-        raise<UsageError>(
-            "--min-attenuation-db needs to know where the ripple is; give --gear-ratio and --orders, or "
-            "--joint-file");
-    }
+    JointMethods methods({request.method.empty() ? "switching" : request.method, request.table,
+                          request.joint_file, request.gear_ratio, request.orders,
+                          request.gates.min_attenuation_db.has_value()});
     bool within = true;
     for (const Job& job : jobs_of(request)) {
-        if (!run_job(request, job, method, gear, command_line)) within = false;
+        if (!run_job(request, job, methods, command_line)) within = false;
     }
     return within ? ExitCode::done : ExitCode::limit_violated;
 }
