@@ -246,7 +246,6 @@ class Errors(Case):
                 self.assertIn(word, self.refused(2, "filter", log, "--method", spec, "-o", "out.csv"))
         self.assertIn("--method", self.refused(2, "filter", log))
         self.assertIn("--table", self.refused(2, "filter", log, "--method", LOWPASS, "--table", "table.json"))
-        self.assertIn("all", self.refused(2, "filter", log, "--method", LOWPASS, "--joint", "all"))
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_files_that_are_missing_or_taken_are_exit_code_4_and_nothing_is_lost(self):

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""Several joints of a log in one pass: the same bytes as one joint after another."""
+
+import json
+import math
+import unittest
+
+from test_filter import Case
+
+ROWS = 6000
+
+
+def wide_log():
+    """Three joints whose speeds pass bands at different times, with ripple of their gears; j3 has no position."""
+    lines = ["time_s,j1_velocity_deg_s,j1_torque_nm,j1_position_deg,note,j2_torque_nm,j2_velocity_deg_s,j2_position_deg,"
+             "j3_velocity_deg_s,j3_torque_nm"]
+    position = [0.0, 0.0, 0.0]
+    for k in range(ROWS):
+        speed = [90 + 60 * math.sin(k / 400), 100 - 50 * math.cos(k / 700), -60 - 30 * math.sin(k / 300)]
+        torque = [1 + 0.5 * math.sin(math.radians(ratio * x)) for ratio, x in zip((100, 120, 80), position)]
+        lines.append(f"{k / 1000},{speed[0]:.4f},{torque[0]:.5f},{position[0]:.5f},run,{torque[1]:.5f},{speed[1]:.4f},"
+                     f"{position[1]:.5f},{speed[2]:.4f},{torque[2]:.5f}")
+        position = [x + v / 1000 for x, v in zip(position, speed)]
+    return "\n".join(lines) + "\n"
+
+
+class Joints(Case):
+    def setUp(self):
+        super().setUp()
+        self.log = self.write("wide.csv", wide_log())
+        for joint, ratio in (("j1", 100), ("j2", 120), ("j3", 80)):
+            self.good("design", "--gear-ratio", ratio, "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "20:180:20",
+                      "--q", "1", "-o", f"{joint}.json")
+
+    def one_after_another(self, log, name, *words):
+        for joint in ("j1", "j2", "j3"):
+            done = f"{name}_{joint}{log.suffix}"
+            self.good("filter", log, "--joint", joint, *[w.replace("{joint}", joint) for w in words], "-o", done)
+            log = self.folder / done
+        return log.read_bytes()
+
+    def test_one_pass_gives_the_bytes_of_one_joint_after_another(self):
+        for name, words in (("own", ("--table", "{joint}.json")), ("low", ("--method", "lowpass,cutoff=5Hz,order=2")),
+                            ("fixed", ("--method", "fixed,centers=20Hz,q=1", "--decimals", "4")),
+                            ("keep", ("--method", "switching,table={joint}.json,transition=keep,hysteresis=2deg/s")),
+                            ("learns", ("--method", "subtract,gear-ratio=100,orders=1:2"))):
+            with self.subTest(name):
+                together = self.good("filter", self.log, "--joint", "all", *words).stdout
+                self.assertTrue(together == self.one_after_another(self.log, name, *words), "not the same bytes")
+                self.assertTrue(together != self.log.read_bytes(), "nothing was filtered")
+                again = self.good("filter", self.log, "--joint", "all", *words, "--threads", "3").stdout
+                self.assertTrue(together == again, "the bytes depend on the threads")
+
+    def test_arrays_too(self):
+        self.good("filter", self.log, "--joint", "all", "--method", "none", "-o", "wide.npy")
+        together = self.good("filter", "wide.npy", "--joint", "all", "--table", "{joint}.json", "-o", "all.npy")
+        self.assertEqual(together.stdout, b"")
+        one_by_one = self.one_after_another(self.folder / "wide.npy", "array", "--table", "{joint}.json")
+        self.assertTrue((self.folder / "all.npy").read_bytes() == one_by_one, "not the same bytes")
+
+    def test_added_columns_bear_the_joints_names(self):
+        text = self.good("filter", self.log, "--joint", "all", "--method", "none", "--append").stdout.decode().splitlines()
+        self.assertTrue(text[0].endswith(",j1_torque_filtered_nm,j2_torque_filtered_nm,j3_torque_filtered_nm"), text[0])
+        cells = text[1].split(",")
+        self.assertEqual([float(c) for c in cells[-3:]], [float(cells[2]), float(cells[5]), float(cells[9])])
+        # What was added is read again, by name.
+        self.write("added.csv", "\n".join(text) + "\n")
+        self.good("filter", "added.csv", "--joint", "j2", "--columns", "torque=j2_torque_filtered_nm,velocity=j2_velocity_deg_s",
+                  "--method", "none")
+
+    def test_each_joint_has_metrics_of_its_own_and_they_are_those_of_one_joint(self):
+        self.good("filter", self.log, "--joint", "all", "--table", "{joint}.json", "--metrics", "m_{joint}.json", "-o", "all.csv")
+        for joint, ratio in (("j1", 100), ("j2", 120), ("j3", 80)):
+            alone = self.good("filter", self.log, "--joint", joint, "--table", f"{joint}.json", "--json", "-o", f"x_{joint}.csv")
+            first, second = json.loads((self.folder / f"m_{joint}.json").read_text()), json.loads(alone.stdout)
+            for metrics in (first, second):
+                metrics.pop("provenance", None)
+                metrics.pop("created_by", None)
+            self.assertEqual(first["joint"], joint)
+            self.assertEqual(first["gear_ratio"], ratio)
+            self.assertGreater(first["switch_count"], 0)
+            for key in set(first) | set(second):
+                if key not in ("command", "inputs", "tool"):
+                    self.assertEqual(first.get(key), second.get(key), key)
+
+    def test_a_limit_that_one_joint_breaks_is_told_with_its_name(self):
+        done = self.run_tool("filter", self.log, "--joint", "all", "--table", "{joint}.json", "--max-delay-ms", "12", "-o", "all.csv")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("joint j3: ", done.stderr.decode())
+
+    def test_what_needs_one_joint_says_so(self):
+        for words, said in ((("--json", "-o", "a.csv"), "{joint}"), (("--plot", "p.svg", "-o", "a.csv"), "--joint"),
+                            (("--metrics", "m.json", "-o", "a.csv"), "{joint}"),
+                            (("--columns", "torque=j1_torque_nm", "-o", "a.csv"), "--columns")):
+            with self.subTest(words[0]):
+                self.assertIn(said, self.refused(2, "filter", self.log, "--joint", "all", "--table", "j1.json", *words))
+                self.assertFalse((self.folder / "a.csv").exists())
+        (self.folder / "j2.json").unlink()
+        self.assertIn("j2.json", self.refused(4, "filter", self.log, "--joint", "all", "--table", "{joint}.json", "-o", "a.csv"))
+        self.assertFalse((self.folder / "a.csv").exists())
+        one = self.write("one.csv", "time_s,velocity_deg_s,torque_nm\n0,1,2\n0.001,1,3\n0.002,1,2\n")
+        self.assertIn("{joint}", self.refused(2, "filter", one, "--joint", "all", "--table", "{joint}.json"))
+        self.assertEqual(self.good("filter", one, "--joint", "all", "--method", "none").stdout, one.read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main()
