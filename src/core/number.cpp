@@ -32,20 +32,29 @@ bool scaled_surely(double magnitude, int decimals, std::uint64_t& scaled) {
     return std::abs(short_of_half) > 4e-16 * product;
 }
 
+/// From numbers side by side, each split into quotient (in its lower half) and remainder (in its upper half)
+/// by `divisor`: parts << half | quotients, less divisor times the quotients in the upper half.
+constexpr std::uint64_t split(std::uint64_t parts, std::uint64_t quotients, std::uint64_t divisor, int half) {
+    return (parts << half) - quotients * ((divisor << half) - 1);
+}
+
 /// The eight digits of a number below 1e8, one a byte, the first in the lowest: halves of it side by side,
 /// then halves of these, each division by 10000, 100 and 10 a multiplication.
 std::uint64_t eight_digits(std::uint32_t value) {
-    std::uint64_t parts = value / 10000 | static_cast<std::uint64_t>(value % 10000) << 32;
-    std::uint64_t upper = ((parts * 10486) >> 20) & 0x0000007F0000007FU;
-    parts = upper | (parts - 100 * upper) << 16;
-    upper = ((parts * 103) >> 10) & 0x000F000F000F000FU;
-    return upper | (parts - 10 * upper) << 8;
+    const std::uint64_t fours = split(value, value / 10000, 10000, 32);
+    const std::uint64_t twos = split(fours, ((fours * 10486) >> 20) & 0x0000007F0000007FU, 100, 16);
+    return split(twos, ((twos * 103) >> 10) & 0x000F000F000F000FU, 10, 8);
 }
 
 /// Eight characters, the first in the lowest byte.
 void put_eight(char* into, std::uint64_t text) {
     if constexpr (std::endian::native == std::endian::big) text = __builtin_bswap64(text);
     std::memcpy(into, &text, sizeof text);
+}
+
+/// Exact decimal printing, for what lies too near a tie, is large, or has many decimals.
+[[gnu::noinline]] char* put_exactly(char* into, double value, int decimals) {
+    return fmt::format_to(into, FMT_COMPILE("{:.{}f}"), value, decimals);
 }
 
 /// A number below 1e8 with 1 to 7 decimals: what comes first is shifted out, so that nothing takes the way
@@ -61,8 +70,8 @@ char* put_short(char* into, std::uint32_t scaled, int decimals) {
     return into + decimals;
 }
 
-/// Any other of up to sixteen digits.
-char* put_long(char* into, std::uint64_t scaled, int decimals) {
+/// Any other of up to sixteen digits. Not inline, nor is the exact way: the usual way needs no stack then.
+[[gnu::noinline]] char* put_long(char* into, std::uint64_t scaled, int decimals) {
     std::array<char, 17> text;
     put_eight(text.data(),
               eight_digits(static_cast<std::uint32_t>(scaled / 100000000)) + 0x3030303030303030U);
@@ -110,8 +119,7 @@ char* put_shortest(char* into, double value) { return fmt::format_to(into, FMT_C
 // left for what lies too near a tie, is large, or has many decimals.
 char* put_fixed(char* into, double value, int decimals) {
     std::uint64_t scaled = 0;
-    if (!scaled_surely(std::abs(value), decimals, scaled))
-        return fmt::format_to(into, FMT_COMPILE("{:.{}f}"), value, decimals);
+    if (!scaled_surely(std::abs(value), decimals, scaled)) return put_exactly(into, value, decimals);
     *into = '-';
     into += std::signbit(value) ? 1 : 0;
     const bool is_short = scaled < 100000000 && decimals > 0 && decimals < 8;
