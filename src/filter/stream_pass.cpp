@@ -104,8 +104,8 @@ void StreamPass::note_motion(const JointRows& rows, Lane& lane, const std::vecto
     if (lane.report.rows == 0 && !rows.velocity_deg_s.empty())
         slowest = fastest = std::abs(rows.velocity_deg_s.front());
     for (const Stretch& stretch : stretches) {
+        lane.held.add(rows, stretch.first, stretch.first + stretch.count, !stretch.begins_run);
         for (std::size_t k = stretch.first; k < stretch.first + stretch.count; ++k) {
-            lane.held.add(rows, k, k > stretch.first || !stretch.begins_run);
             const double speed = std::abs(rows.velocity_deg_s[k]);
             slowest = std::min(slowest, speed);
             fastest = std::max(fastest, speed);
