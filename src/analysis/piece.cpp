@@ -44,9 +44,12 @@ PieceMaker::PieceMaker(std::size_t length, Hertz rate)
     }
 }
 
-const Piece& PieceMaker::make(std::span<const double> time_s, std::span<const double> torque_nm) {
+const Piece& PieceMaker::make(std::span<const double> time_s, std::span<const double> torque_nm,
+                              std::size_t repeated) {
     piece_.middle_s = 0.5 * (time_s.front() + time_s.back());
-    piece_.even = off_even_grid(time_s, step_s_) <= even_share * step_s_;
+    // What an even piece has seen is not looked at again; its own beginning may be as far off as that, no
+    // more.
+    piece_.even = off_even_grid(time_s, step_s_, piece_.even ? repeated : 0) <= even_share * step_s_;
     if (piece_.even)
         make_even(torque_nm);
     else

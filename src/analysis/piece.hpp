@@ -25,8 +25,10 @@ class PieceMaker {
   public:
     PieceMaker(std::size_t length, Hertz rate);
 
-    /// From `length` samples, in seconds and Nm. What is returned holds until the next one.
-    const Piece& make(std::span<const double> time_s, std::span<const double> torque_nm);
+    /// From `length` samples, in seconds and Nm, of which so many at the beginning were the last ones of the
+    /// piece before. What is returned holds until the next one.
+    const Piece& make(std::span<const double> time_s, std::span<const double> torque_nm,
+                      std::size_t repeated = 0);
     /// Sums of that piece at the multiples of rate / length, 0 Hz to half the rate.
     std::span<const std::complex<double>> transform();
 

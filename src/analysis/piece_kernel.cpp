@@ -19,12 +19,13 @@ constexpr double next_groups = groups * lanes;
 }  // namespace
 
 RIPPLENOTCH_FOR_AVX2_TOO
-double off_even_grid(std::span<const double> time, double step) {
+double off_even_grid(std::span<const double> time, double step, std::size_t from) {
     const double* const t = time.data();
-    const std::size_t n = time.size(), even = n - n % (groups * lanes);
+    const std::size_t n = time.size(), even = n - (n - from) % (groups * lanes);
     const double begin = n > 0 ? t[0] : 0.0;
     Four place = {0.0, 1.0, 2.0, 3.0}, now, most[groups] = {}, least[groups] = {};
-    for (std::size_t k = 0; k < even; k += groups * lanes, place += next_groups) {
+    place += static_cast<double>(from);
+    for (std::size_t k = from; k < even; k += groups * lanes, place += next_groups) {
 #pragma GCC unroll 4
         for (std::size_t g = 0; g < groups; ++g) {
             load(now, t + k + g * lanes);

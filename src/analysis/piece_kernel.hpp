@@ -10,8 +10,9 @@
 
 namespace ripplenotch {
 
-/// Largest distance of a time from an even grid that begins with the first one, in the unit of time.
-[[nodiscard]] double off_even_grid(std::span<const double> time, double step);
+/// Largest distance of time[from] and those after it from an even grid that begins with time[0], in the unit
+/// of time.
+[[nodiscard]] double off_even_grid(std::span<const double> time, double step, std::size_t from = 0);
 
 /// Straight line through values at 0, 1, 2, ... by least squares: mean + slope * (k - (n - 1) / 2).
 struct EvenLine {

@@ -56,8 +56,8 @@ std::vector<SignificantPeak> without_skirts(std::vector<SignificantPeak> found,
 Welch::Welch(std::size_t length, Hertz rate)
     : length_(length), rate_(rate.value()), maker_(length, rate), power_(length / 2 + 1, 0.0) {}
 
-void Welch::add(std::span<const double> time_s, std::span<const double> torque_nm) {
-    const Piece& piece = maker_.make(time_s, torque_nm);
+void Welch::add(std::span<const double> time_s, std::span<const double> torque_nm, std::size_t repeated) {
+    const Piece& piece = maker_.make(time_s, torque_nm, repeated);
     add_power(maker_.transform(), 4.0 / (piece.window_sum * piece.window_sum), power_);
     gain_ += 0.5 * piece.window_sum * piece.window_sum / (piece.window_square_sum * rate_);
     ++pieces_;
@@ -84,8 +84,8 @@ bool Welch::find_lines(double false_alarm) {
     return !found_.empty();
 }
 
-void Welch::measure(std::span<const double> time_s, std::span<const double> torque_nm) {
-    const Piece& piece = maker_.make(time_s, torque_nm);
+void Welch::measure(std::span<const double> time_s, std::span<const double> torque_nm, std::size_t repeated) {
+    const Piece& piece = maker_.make(time_s, torque_nm, repeated);
     for (LineMeter& meter : meters_) meter.add(piece);
 }
 

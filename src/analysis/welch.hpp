@@ -18,12 +18,12 @@ class Welch {
     /// `length` samples a piece.
     Welch(std::size_t length, Hertz rate);
 
-    /// First pass: seconds and Nm of one piece.
-    void add(std::span<const double> time_s, std::span<const double> torque_nm);
+    /// First pass: seconds and Nm of one piece, `repeated` as in PieceMaker.
+    void add(std::span<const double> time_s, std::span<const double> torque_nm, std::size_t repeated);
     /// Between the passes. False when there is no line, and so no need of a second pass.
     bool find_lines(double false_alarm);
     /// Second pass, the same pieces.
-    void measure(std::span<const double> time_s, std::span<const double> torque_nm);
+    void measure(std::span<const double> time_s, std::span<const double> torque_nm, std::size_t repeated);
 
     [[nodiscard]] Spectrum spectrum() const;
 

@@ -91,6 +91,20 @@ TEST_CASE("an even piece is detrended, windowed and transformed as an uneven one
         CHECK_THAT(std::abs(sums[k]), WithinAbs(std::abs(likewise[k]), 0.02));
 }
 
+TEST_CASE("a sample off the clock makes every piece that holds it uneven, and no other") {
+    const std::size_t n = 64, hop = 32;
+    const std::size_t off = GENERATE(0U, 1U, 40U, 100U, 159U);
+    std::vector<double> time(160), torque(160, 1.0);
+    for (std::size_t k = 0; k < time.size(); ++k) time[k] = 0.001 * static_cast<double>(k);
+    time[off] += 1e-4;
+    PieceMaker maker(n, Hertz(1000.0));
+    for (std::size_t first = 0; first + n <= time.size(); first += hop) {
+        const Piece& piece = maker.make(std::span(time).subspan(first, n),
+                                        std::span(torque).subspan(first, n), first > 0 ? n - hop : 0);
+        CHECK(piece.even == (off < first || off >= first + n));
+    }
+}
+
 TEST_CASE("a line's maximum from moments is the one that Newton's method finds on the samples") {
     const std::size_t n = 512;
     const double rate = 1000.0, bin = rate / static_cast<double>(n);
