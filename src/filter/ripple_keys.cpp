@@ -9,6 +9,10 @@
 
 namespace ripplenotch {
 
+MotorAngle::Source angle_source(const Settings& settings) {
+    return settings.text("angle") == "velocity" ? MotorAngle::Source::velocity : MotorAngle::Source::best;
+}
+
 double RippleOrders::hz(std::size_t line, double speed_deg_s) const noexcept {
     return orders[line] * gear_ratio * std::abs(speed_deg_s) / 360.0;
 }

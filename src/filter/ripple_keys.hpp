@@ -2,8 +2,11 @@
 #pragma once
 // Keys that every method has that follows the gear: where the ripple is.
 
+#include <array>
+#include <string_view>
 #include <vector>
 
+#include "filter/motor_angle.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/units.hpp"
 
@@ -27,6 +30,15 @@ inline constexpr Key joint_key{.name = "joint",
                                .help =
                                    "joint.json of identify: gear ratio, orders and what else the method "
                                    "has keys for, unless given"};
+
+inline constexpr std::array<std::string_view, 2> angle_choices = {"best", "velocity"};
+inline constexpr Key angle_key{
+    .name = "angle",
+    .kind = KeyKind::choice,
+    .default_text = "best",
+    .choices = angle_choices,
+    .help = "best: position, velocity where there is none or it is not the joint's; velocity: always that"};
+[[nodiscard]] MotorAngle::Source angle_source(const Settings& settings);
 
 struct RippleOrders {
     double gear_ratio = 0.0;

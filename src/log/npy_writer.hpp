@@ -35,7 +35,8 @@ class NpyWriter : public LogWriter {
 /// file, and the rows are spooled when the target is a pipe.
 class NpyTableWriter : public TableWriter {
   public:
-    explicit NpyTableWriter(ByteSink& sink) : sink_(sink) {}
+    /// Arrays hold every digit: of the options none concerns them.
+    NpyTableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
     void begin(std::span<const std::string> names) override;
     void rows(std::span<const std::span<const double>> columns) override;
     void end() override;

@@ -20,6 +20,29 @@ inline constexpr Parameter width_parameter = {.name = "width_deg_s",
                                               .logarithmic = true,
                                               .left_out = LeftOut::assumed};
 
+/// Cycles per turn of what goes with a cosine of an angle, and its phase; where a screening begins is
+/// `tried`.
+constexpr Parameter cycles_parameter(std::string_view name, std::string_view help, double start, double upper,
+                                     std::span<const double> tried) {
+    return {.name = name,
+            .unit = "",
+            .help = help,
+            .neutral = start,
+            .start = start,
+            .lower = 0.01,
+            .upper = upper,
+            .left_out = LeftOut::refused,
+            .tried = tried};
+}
+inline constexpr Parameter cosine_amplitude_parameter = {
+    .name = "amplitude_nm", .unit = "Nm", .help = "zero to peak", .start = 0.5, .upper = 1e5, .linear = true};
+inline constexpr Parameter cosine_phase_parameter = {
+    .name = "phase_deg",
+    .unit = "deg",
+    .help = "phase of the cosine where the position of the joint is zero",
+    .lower = -360.0,
+    .upper = 360.0};
+
 /// Which ripple terms an effect changes.
 inline constexpr Parameter ripple_order_parameter = {
     .name = "order",

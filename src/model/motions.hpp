@@ -23,6 +23,32 @@ inline constexpr Key from_key = {
     .at_most = largest_angle_deg,
     .help = "position at its beginning; without it, where the motion before ended, or 0deg"};
 
+/// Keys that the kinds made of sines have, with what they mean there.
+constexpr Key swing_amplitude_key(std::string_view help) {
+    return {.name = "amplitude",
+            .dimension = Dimension::angle,
+            .required = true,
+            .above = 0.0,
+            .at_most = largest_angle_deg,
+            .help = help};
+}
+constexpr Key swing_frequency_key(std::string_view name, std::string_view help) {
+    return {.name = name,
+            .dimension = Dimension::frequency,
+            .required = true,
+            .above = 0.0,
+            .at_most = 1000.0,
+            .help = help};
+}
+constexpr Key swing_phase_key(std::string_view default_text, std::string_view help) {
+    return {.name = "phase",
+            .dimension = Dimension::angle,
+            .default_text = default_text,
+            .above = -largest_angle_deg,
+            .at_most = largest_angle_deg,
+            .help = help};
+}
+
 /// Position at which a piece begins. Throws UsageError when `from` contradicts the piece before, naming
 /// `kind`.
 [[nodiscard]] double start_position_deg(std::string_view kind, const Settings& settings,

@@ -27,7 +27,6 @@ namespace {
 constexpr double slowest_corrected_turns = 1e-5;  ///< of the motor in a sample
 constexpr double standing_deg_s = 1.0;            ///< a log that begins slower than this begins at standstill
 
-constexpr std::array<std::string_view, 2> angles = {"best", "velocity"};
 constexpr std::array<std::string_view, 2> gains = {"exact", "scheduled"};
 constexpr std::array<std::string_view, 2> outputs = {"torque", "minus-ripple"};
 
@@ -82,12 +81,7 @@ constexpr std::array keys = {
         .help =
             "torque that the joint is known to bear where a log begins at standstill, 0Nm for an unloaded "
             "arm: the rest is ripple"},
-    Key{.name = "angle",
-        .kind = KeyKind::choice,
-        .default_text = "best",
-        .choices = angles,
-        .help =
-            "best: position, velocity where there is none or it is not the joint's; velocity: always that"},
+    angle_key,
     Key{.name = "start",
         .dimension = Dimension::angle,
         .help = "position at the first row of a log without one, so that phases mean something"},
@@ -182,7 +176,7 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
         raise<UsageError>(
             "method oscillator, jump: needs gain=exact, which knows how far off a sample may be");
     if (p.has_start) p.start_deg = settings.number("start");
-    if (settings.text("angle") == "velocity") p.source = MotorAngle::Source::velocity;
+    p.source = angle_source(settings);
     p.minus_ripple = settings.text("output") == "minus-ripple";
     p.largest_offset_deg_s = settings.number("offset");
     p.largest_slip = settings.number("slip");

@@ -17,8 +17,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 2> angles = {"best", "velocity"};
-
 constexpr std::array keys = {
     gear_ratio_key,
     orders_key,
@@ -28,12 +26,7 @@ constexpr std::array keys = {
         .above = 2.0,
         .at_most = 1000.0,
         .help = "motor turns of the windows that the ripple is fitted in"},
-    Key{.name = "angle",
-        .kind = KeyKind::choice,
-        .default_text = "best",
-        .choices = angles,
-        .help =
-            "best: position, velocity where there is none or it is not the joint's; velocity: always that"},
+    angle_key,
 };
 
 struct Plan {
@@ -51,7 +44,7 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     Plan p;
     p.ripple = ripple_orders("subtract", settings);
     p.rule.turns = settings.number("turns");
-    if (settings.text("angle") == "velocity") p.source = MotorAngle::Source::velocity;
+    p.source = angle_source(settings);
     p.sample_rate_hz = sample_rate.value();
     return p;
 }

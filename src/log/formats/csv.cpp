@@ -22,16 +22,6 @@ bool sniff(std::string_view first_bytes) {
            static_cast<unsigned char>(first_bytes[0]) != 0x89;
 }
 
-std::unique_ptr<LogReader> open(std::unique_ptr<ByteSource> source, std::string first_bytes,
-                                const ReadOptions& options) {
-    return std::make_unique<CsvReader>(std::move(source), std::move(first_bytes), options);
-}
-
-std::unique_ptr<LogWriter> rewrite(std::unique_ptr<ByteSink> sink, const LogReader& reader,
-                                   const WriteOptions& options) {
-    return std::make_unique<CsvWriter>(std::move(sink), dynamic_cast<const CsvReader&>(reader), options);
-}
-
 void append_rows(std::string& text, std::span<const std::span<const double>> columns, std::size_t first,
                  std::size_t last, const WriteOptions& options) {
     for (std::size_t row = first; row < last; ++row) {
@@ -49,7 +39,7 @@ void append_rows(std::string& text, std::span<const std::span<const double>> col
 
 class CsvTableWriter : public TableWriter {
   public:
-    explicit CsvTableWriter(ByteSink& sink, const WriteOptions& options) : sink_(sink), options_(options) {}
+    CsvTableWriter(ByteSink& sink, const WriteOptions& options) : sink_(sink), options_(options) {}
     void begin(std::span<const std::string> names) override {
         std::string text;
         for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
@@ -68,19 +58,6 @@ class CsvTableWriter : public TableWriter {
     std::string text_;
 };
 
-std::unique_ptr<TableWriter> table(ByteSink& sink, const WriteOptions& options) {
-    return std::make_unique<CsvTableWriter>(sink, options);
-}
-
-std::unique_ptr<LogWriter> convert(std::unique_ptr<ByteSink> sink, const LogReader& reader,
-                                   const WriteOptions& options) {
-    return convert_rows(std::move(sink), reader, options, table);
-}
-
-void write_columns(ByteSink& sink, std::span<const NumberColumn> columns) {
-    write_table(sink, columns, table);
-}
-
 }  // namespace
 
 const LogFormat formats::csv{
@@ -89,10 +66,10 @@ const LogFormat formats::csv{
     .extensions = extensions,
     .binary = false,
     .sniff = sniff,
-    .open = open,
-    .rewrite = rewrite,
-    .convert = convert,
-    .write_columns = write_columns,
+    .open = open_with<CsvReader>,
+    .rewrite = rewrite_with<CsvWriter, CsvReader>,
+    .convert = convert_with<CsvTableWriter>,
+    .write_columns = write_columns_with<CsvTableWriter>,
 };
 
 }  // namespace ripplenotch

@@ -9,26 +9,9 @@ namespace {
 constexpr double tried_orders[] = {2.0, 3.0, 4.0, 5.0, 6.0};
 
 constexpr Parameter parameters[] = {
-    {.name = "order",
-     .unit = "",
-     .help = "cycles per output revolution",
-     .neutral = 2.0,
-     .start = 2.0,
-     .lower = 0.01,
-     .upper = 1e5,
-     .left_out = LeftOut::refused,
-     .tried = tried_orders},
-    {.name = "amplitude_nm",
-     .unit = "Nm",
-     .help = "zero to peak",
-     .start = 0.5,
-     .upper = 1e5,
-     .linear = true},
-    {.name = "phase_deg",
-     .unit = "deg",
-     .help = "phase of the cosine where the position of the joint is zero",
-     .lower = -360.0,
-     .upper = 360.0},
+    cycles_parameter("order", "cycles per output revolution", 2.0, 1e5, tried_orders),
+    cosine_amplitude_parameter,
+    cosine_phase_parameter,
 };
 
 constexpr LookAlike look_alikes[] = {

@@ -9,26 +9,9 @@ namespace {
 constexpr double tried_orders[] = {0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0};
 
 constexpr Parameter parameters[] = {
-    {.name = "order",
-     .unit = "",
-     .help = "cycles per motor revolution",
-     .neutral = 1.0,
-     .start = 1.0,
-     .lower = 0.01,
-     .upper = 1000.0,
-     .left_out = LeftOut::refused,
-     .tried = tried_orders},
-    {.name = "amplitude_nm",
-     .unit = "Nm",
-     .help = "zero to peak",
-     .start = 0.5,
-     .upper = 1e5,
-     .linear = true},
-    {.name = "phase_deg",
-     .unit = "deg",
-     .help = "phase of the cosine where the joint's position is zero",
-     .lower = -360.0,
-     .upper = 360.0},
+    cycles_parameter("order", "cycles per motor revolution", 1.0, 1000.0, tried_orders),
+    cosine_amplitude_parameter,
+    cosine_phase_parameter,
 };
 
 constexpr LookAlike look_alikes[] = {

@@ -9,26 +9,15 @@ namespace {
 constexpr double tried_orders[] = {1.0, 2.0, 3.0};
 
 constexpr Parameter parameters[] = {
-    {.name = "output_order",
-     .unit = "",
-     .help = "cycles of the modulation per output revolution",
-     .neutral = 1.0,
-     .start = 1.0,
-     .lower = 0.01,
-     .upper = 1e4,
-     .left_out = LeftOut::refused,
-     .tried = tried_orders},
+    cycles_parameter("output_order", "cycles of the modulation per output revolution", 1.0, 1e4,
+                     tried_orders),
     {.name = "depth_percent",
      .unit = "%",
      .help = "zero to peak, of the size of the ripple",
      .start = 30.0,
      .upper = 1000.0,
      .linear = true},
-    {.name = "phase_deg",
-     .unit = "deg",
-     .help = "phase of the cosine where the position of the joint is zero",
-     .lower = -360.0,
-     .upper = 360.0},
+    cosine_phase_parameter,
     ripple_order_parameter,
 };
 

@@ -8,24 +8,9 @@ namespace ripplenotch {
 namespace {
 
 constexpr Key keys[] = {
-    {.name = "amplitude",
-     .dimension = Dimension::angle,
-     .required = true,
-     .above = 0.0,
-     .at_most = largest_angle_deg,
-     .help = "zero to peak"},
-    {.name = "frequency",
-     .dimension = Dimension::frequency,
-     .required = true,
-     .above = 0.0,
-     .at_most = 1000.0,
-     .help = "swings per second"},
-    {.name = "phase",
-     .dimension = Dimension::angle,
-     .default_text = "-90deg",
-     .above = -largest_angle_deg,
-     .at_most = largest_angle_deg,
-     .help = "phase of the sine at its beginning; -90deg starts from rest"},
+    swing_amplitude_key("zero to peak"),
+    swing_frequency_key("frequency", "swings per second"),
+    swing_phase_key("-90deg", "phase of the sine at its beginning; -90deg starts from rest"),
     duration_key,
     from_key,
 };
