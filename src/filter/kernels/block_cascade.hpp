@@ -16,6 +16,7 @@ namespace ripplenotch {
 /// whether or not its group is complete yet: so the bits do not depend on the pieces.
 class BlockCascade {
   public:
+    /// One section at least.
     explicit BlockCascade(std::span<const Biquad> sections, bool avx2 = has_avx2());
 
     /// Settled at a constant input; sections have unity gain at 0 Hz.

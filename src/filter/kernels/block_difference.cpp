@@ -87,7 +87,7 @@ double trial_difference(std::span<const Biquad> sections) {
 }
 
 bool block_form_serves(std::span<const Biquad> sections) {
-    return trial_reserve * trial_difference(sections) <= most_block_difference;
+    return !sections.empty() && trial_reserve * trial_difference(sections) <= most_block_difference;
 }
 
 }  // namespace ripplenotch

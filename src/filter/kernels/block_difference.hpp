@@ -20,7 +20,7 @@ inline constexpr double trial_reserve = 4.0;
 /// thousandth of the circle, which are not tried.
 [[nodiscard]] double trial_difference(std::span<const Biquad> sections);
 
-/// trial_difference() with its reserve is within most_block_difference.
+/// There is a section, and trial_difference() with its reserve is within most_block_difference.
 [[nodiscard]] bool block_form_serves(std::span<const Biquad> sections);
 
 }  // namespace ripplenotch

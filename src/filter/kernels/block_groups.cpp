@@ -27,37 +27,6 @@ RIPPLENOTCH_INLINED void multiply(Lanes& sum, const double* columns, std::size_t
     sum = (first * memory[0] + second * memory[1]) + (third * memory[2] + fourth * memory[3]);
 }
 
-template <class Lanes>
-RIPPLENOTCH_INLINED void run_pass(BlockPass& pass, double* values, std::size_t count, double offset) {
-    const double* const feed = pass.form.feed.front().data();
-    const double* const recall = pass.form.recall.front().data();
-    const double* const drive = pass.form.drive.front().data();
-    const double* const turn = pass.form.turn.front().data();
-    Lanes origin, memory;
-    fill(origin, offset);
-    load(memory, pass.memory.data());
-    for (const double* const end = values + count; values != end; values += BlockForm::samples) {
-        Lanes early, late, next, part, spread_memory[4];
-#pragma GCC unroll 8
-        for (std::size_t j = 0; j < BlockForm::samples; ++j) {
-            Lanes x;
-            fill(x, values[j]);
-            // The first outputs know nothing of the last inputs.
-            if (j < half) add_product(early, feed + j * BlockForm::samples, x, j == 0);
-            add_product(late, feed + j * BlockForm::samples + half, x, j == 0);
-            add_product(next, drive + j * BlockForm::memory, x, j == 0);
-        }
-        spread(spread_memory, memory);
-        multiply(part, recall, BlockForm::samples, spread_memory);
-        store(values, early + part + origin);
-        multiply(part, recall + half, BlockForm::samples, spread_memory);
-        store(values + half, late + part + origin);
-        multiply(part, turn, BlockForm::memory, spread_memory);
-        memory = next + part;
-    }
-    store(pass.memory.data(), memory);
-}
-
 /// Finite and far from infinity: times this is still a number. No filter in use amplifies by what is left.
 constexpr double headroom = 1e140;
 
@@ -69,30 +38,84 @@ RIPPLENOTCH_INLINED void weigh(Lanes& excess, const Lanes& values) {
     excess = excess + (scaled - scaled);  // zero, or not a number
 }
 
+/// What four inputs add, to the outputs that may know them and to the memory.
+template <bool Early, class Lanes>
+RIPPLENOTCH_INLINED void feed_four(const BlockForm& form, const Lanes& inputs, Lanes& early, Lanes& late,
+                                   Lanes& next) {
+    constexpr std::size_t first = Early ? 0 : half;
+    Lanes x[4];
+    spread(x, inputs);
+#pragma GCC unroll 4
+    for (std::size_t j = 0; j < half; ++j) {
+        const bool begins = Early && j == 0;
+        const double* const feed = form.feed[first + j].data();
+        if (Early) add_product(early, feed, x[j], begins);
+        add_product(late, feed + half, x[j], begins);
+        add_product(next, form.drive[first + j].data(), x[j], begins);
+    }
+}
+
+/// A stretch of signal on its way through one pass: out = plus + F(in - less).
+struct Stretch {
+    const double* in;
+    double less;
+    double* out;
+    double plus;
+    std::size_t count;
+};
+
+/// The first pass weighs its inputs on the way.
+template <bool First, class Lanes>
+RIPPLENOTCH_INLINED void run_pass(BlockPass& pass, const Stretch& stretch, Lanes& excess) {
+    const BlockForm& form = pass.form;
+    Lanes less, plus, memory;
+    fill(less, stretch.less);
+    fill(plus, stretch.plus);
+    load(memory, pass.memory.data());
+    for (std::size_t k = 0; k < stretch.count; k += BlockForm::samples) {
+        Lanes low, high, early, late, next, part, spread_memory[4];
+        load(low, stretch.in + k);
+        load(high, stretch.in + k + half);
+        if constexpr (First) {
+            low = low - less;
+            high = high - less;
+            weigh(excess, low);
+            weigh(excess, high);
+        }
+        feed_four<true>(form, low, early, late, next);
+        feed_four<false>(form, high, early, late, next);
+        spread(spread_memory, memory);
+        multiply(part, form.recall.front().data(), BlockForm::samples, spread_memory);
+        store(stretch.out + k, early + part + plus);
+        multiply(part, form.recall.front().data() + half, BlockForm::samples, spread_memory);
+        store(stretch.out + k + half, late + part + plus);
+        multiply(part, form.turn.front().data(), BlockForm::memory, spread_memory);
+        memory = next + part;
+    }
+    store(pass.memory.data(), memory);
+}
+
 template <class Lanes>
 RIPPLENOTCH_INLINED bool run_all(std::span<BlockPass> passes, std::span<const double> in, double origin,
                                  std::span<double> out, bool whatever) {
-    Lanes origins, values, excess;
-    fill(origins, origin);
+    Lanes values, excess;
     fill(excess, 0.0);
     for (const BlockPass& pass : passes) {
         load(values, pass.memory.data());
         weigh(excess, values);
     }
-    for (std::size_t k = 0; k < in.size(); k += half) {
-        load(values, in.data() + k);
-        values = values - origins;
-        weigh(excess, values);
-        store(out.data() + k, values);
-    }
+    const BlockForm::Memory before = passes.front().memory;
+    const auto plus = [&](std::size_t pass) { return pass + 1 == passes.size() ? origin : 0.0; };
+    run_pass<true>(passes.front(), {in.data(), origin, out.data(), plus(0), in.size()}, excess);
     double lanes[4];
     store(lanes, excess);
     const bool moderate = lanes[0] == 0.0 && lanes[1] == 0.0 && lanes[2] == 0.0 && lanes[3] == 0.0;
-    if (!moderate && !whatever) return false;
-    for (BlockPass& pass : passes) {
-        const double offset = &pass == &passes.back() ? origin : 0.0;
-        run_pass<Lanes>(pass, out.data(), out.size(), offset);
+    if (!moderate && !whatever) {
+        passes.front().memory = before;
+        return false;
     }
+    for (std::size_t i = 1; i < passes.size(); ++i)
+        run_pass<false>(passes[i], {out.data(), 0.0, out.data(), plus(i), out.size()}, excess);
     return true;
 }
 

@@ -15,8 +15,9 @@ struct BlockPass {
     alignas(32) BlockForm::Memory memory{};
 };
 
-/// out = origin + F(in - origin) for whole groups of BlockForm::samples, through all passes; sizes are equal.
-/// False, and nothing done, where an input or a memory is so large, or no number, that an input could be
+/// out = origin + F(in - origin) for whole groups of BlockForm::samples, through all passes, of which there
+/// is one at least; sizes are equal, and the spans may not overlap. False, with the memories as before and
+/// nothing of use in `out`, where an input or a memory is so large, or no number, that an input could be
 /// heard in an output before it (zero times infinity is no zero), unless it is to run `whatever` they are.
 /// The same bits from both.
 [[nodiscard]] bool run_groups(std::span<BlockPass> passes, std::span<const double> in, double origin,
