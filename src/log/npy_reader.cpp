@@ -160,9 +160,6 @@ void NpyReader::accept(RowBlock& block) {
 // False where a number is not finite or time runs backward: the careful way has the place and the words.
 bool NpyReader::take_columns(RowBlock& block) const {
     const std::size_t rows = block.bytes.size() / header_.record_size;
-    for (std::size_t slot = 0; slot < factors_.size(); ++slot) {
-        if (slot == time_slot || !is_position(slot)) numbers_of(block, slot).assign(rows, not_a_number);
-    }
     for (const WantedColumn& wanted : wanted_) {
         std::vector<double>& numbers = numbers_of(block, wanted.slot);
         numbers.resize(rows);
@@ -172,6 +169,11 @@ bool NpyReader::take_columns(RowBlock& block) const {
         const double factor = factors_[wanted.slot];
         if (factor != 1.0)
             for (double& number : numbers) number *= factor;
+    }
+    // Columns that the log has not.
+    for (std::size_t slot = 0; slot < factors_.size(); ++slot) {
+        std::vector<double>& numbers = numbers_of(block, slot);
+        if (numbers.empty() && !is_position(slot)) numbers.assign(rows, not_a_number);
     }
     return true;
 }
