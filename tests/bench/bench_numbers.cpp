@@ -54,7 +54,7 @@ Benchmark::Pass parse_rows(Digits digits, bool vectors) {
         block->drop_rows();
         if (quick->take(*block, 0, -1.0) != block->bytes.size())
             throw std::logic_error("not all rows were taken");
-        keep(block->torque_nm.back());
+        keep(block->joints.front().torque_nm.back());
     };
 }
 
