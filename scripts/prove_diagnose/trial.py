@@ -68,7 +68,8 @@ def laws(program, found, folder):
         shorter.write_text(json.dumps({**found["model"], "effects": kept}))
         least = math.hypot(after, entry["evidence"]["share_nm"])
         opens.append(tool.residual_nm(program, shorter, folder / "train.npy") >= 0.9 * least)
-    return {"lowers": all(lower) if lower else None, "reopens": all(opens) if opens else None}
+    # A share is of the rows that no fault of the converter spoiled; simulate counts all, and clipped ones hardly open.
+    return {"lowers": all(lower) if lower else None, "reopens": all(opens) if opens and not found["faults"] else None}
 
 
 def judged_yardsticks(case, acceptable, hidden, train, validate, floor):
