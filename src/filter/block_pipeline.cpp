@@ -4,10 +4,13 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include <limits>
+
 namespace ripplenotch {
 namespace {
 
 constexpr std::size_t blocks_a_thread = 2;
+constexpr std::size_t short_log_bytes = std::size_t{4} << 20;  // done before threads would have started
 
 /// Does one step of a block that has not failed; keeps the failure for put's turn.
 template <typename Step>
@@ -25,23 +28,25 @@ void renew(BlockItem& item) {
     item.error = nullptr;
 }
 
-void run_alone(const BlockSteps& steps) {
+/// Runs blocks one after another until there are none left (true) or `most_bytes` have passed.
+bool run_alone(const BlockSteps& steps, std::size_t most_bytes) {
     BlockItem item;
-    for (; steps.fetch(item); renew(item)) {
+    for (std::size_t bytes = 0; bytes < most_bytes; renew(item)) {
+        if (!steps.fetch(item)) return true;
+        bytes += item.block.bytes.size();
         if (!item.accepted) steps.parse(item);
         steps.filter(item);
         steps.prepare(item);
         steps.put(item);
     }
+    return false;
 }
 
 }  // namespace
 
 void run_blocks(const BlockSteps& steps, std::size_t threads) {
-    if (threads < 2) {
-        run_alone(steps);
-        return;
-    }
+    const std::size_t alone = threads < 2 ? std::numeric_limits<std::size_t>::max() : short_log_bytes;
+    if (run_alone(steps, alone)) return;
     // At most so many blocks are on their way, so a slot is free again when its turn comes round.
     std::vector<BlockItem> slots(blocks_a_thread * threads);
     std::size_t fetched = 0;

@@ -14,7 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t piece_size = std::size_t{1} << 19;
+constexpr std::size_t piece_size = std::size_t{1} << 18;
 constexpr std::size_t largest_header = std::size_t{1} << 20;
 constexpr std::size_t sample_size = std::size_t{1} << 16;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();

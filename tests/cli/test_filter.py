@@ -296,16 +296,16 @@ class RealLogs(Case):
 
 
 class Threads(Case):
-    """A log of several megabytes, cut into blocks that are worked on side by side."""
+    """A log that is well beyond the 4 MiB that one thread takes alone, cut into blocks that are worked on side by side."""
 
-    ROWS = 150_000
+    ROWS = 240_000
 
     def setUp(self):
         super().setUp()
         rows = ["time_s,velocity_deg_s,torque_nm,note"]
         for k in range(self.ROWS):
             rows.append(f"{k / 1000:.3f},{60 * math.sin(k / 3000):.6f},{math.sin(k / 40) + math.sin(k / 7000):.6f},n{k}")
-        for k, comment in ((2, "# between rows, with, commas"), (70_000, "# a line, longer"), (self.ROWS, "EOF")):
+        for k, comment in ((2, "# between rows, with, commas"), (170_000, "# a line, longer"), (self.ROWS, "EOF")):
             rows.insert(k, comment)
         self.text = "\n".join(rows) + "\n"
         self.log = self.write("long.csv", self.text)
@@ -347,7 +347,7 @@ class Threads(Case):
 
     def test_a_bad_row_is_named_with_its_line_and_what_came_before_is_the_same(self):
         rows = self.text.splitlines()
-        for line, bad, said in ((90_000, "oops", "5: read 1 cells, expected 4"),
+        for line, bad, said in ((190_000, "oops", "5: read 1 cells, expected 4"),
                                 (self.ROWS + 1, "9999,1,1,n", "1: read a row after the line EOF")):
             text = "\n".join([*rows[:line], bad, *rows[line + 1:]]).encode()
             outputs = set()
