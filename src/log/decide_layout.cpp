@@ -9,20 +9,15 @@
 #include <set>
 
 #include "log/column_name.hpp"
+#include "log/joint_groups.hpp"
 #include "log/unit_text.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::array motion_roles = {Role::velocity, Role::torque, Role::position};
-
-// All columns that could be one joint's velocity, torque or position.
-struct JointGroup {
-    std::string key, name;
-    std::map<Role, std::vector<std::size_t>> candidates;
-    [[nodiscard]] bool has(Role role) const { return candidates.count(role) > 0; }
-};
+using layout_detail::JointGroup;
+using layout_detail::motion_roles;
 
 class Decision {
   public:
@@ -40,7 +35,8 @@ class Decision {
         layout_.chosen.time =
             layout_detail::choose_time(source_, facts_, forced_, options_, layout_.warnings);
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
-        group_joints();
+        groups_ = layout_detail::group_joints(known(), options_.joint.has_value());
+        for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
         choose_joint();
         state_units();
         report_repeated_names();
@@ -66,109 +62,6 @@ class Decision {
                 names_[c].current = names_[c].current || is_current_unit(names_[c].unit);
             }
         }
-    }
-
-    void group_joints() {
-        collect_groups(false);
-        const auto complete = [this](const JointGroup& group) {
-            const auto has = [&](Role role) { return group.has(role) || forced_.column_of(role); };
-            return has(Role::torque) && (has(Role::velocity) || has(Role::position));
-        };
-        if (groups_.empty() && (forced_.column_of(Role::torque) || forced_.column_of(Role::velocity))) {
-            const std::string joint = joint_of_forced();
-            groups_.push_back({joint_key(joint), joint, {}});
-        }
-        if (std::none_of(groups_.begin(), groups_.end(), complete) && groups_.size() > 1 && !options_.joint) {
-            // "motor_torque" beside "link_velocity": one joint whose columns are named after different
-            // things.
-            std::array<std::size_t, 3> counts{};
-            for (std::size_t r = 0; r < motion_roles.size(); ++r) {
-                for (const JointGroup& group : groups_) counts[r] += group.has(motion_roles[r]);
-            }
-            if (std::all_of(counts.begin(), counts.end(), [](std::size_t n) { return n <= 1; })) {
-                groups_.clear();
-                collect_groups(true);
-            }
-        }
-        const bool any_complete = std::any_of(groups_.begin(), groups_.end(), complete);
-        if (any_complete) {
-            groups_.erase(std::remove_if(groups_.begin(), groups_.end(),
-                                         [&](const JointGroup& g) { return !complete(g); }),
-                          groups_.end());
-        }
-        for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
-    }
-
-    // Columns named one by one belong to a named joint only when their names agree on it.
-    std::string joint_of_forced() const {
-        const auto torque = forced_.column_of(Role::torque);
-        auto motion = forced_.column_of(Role::velocity);
-        if (!motion) motion = forced_.column_of(Role::position);
-        if (forced_.by_place || !torque || !motion) return "";
-        const std::string& joint = names_[*torque].joint;
-        return joint_key(joint) == joint_key(names_[*motion].joint) ? joint : "";
-    }
-
-    void collect_groups(bool merge) {
-        for (const bool reference : {false, true}) {
-            for (std::size_t c = 0; c < facts_.columns; ++c) {
-                const ColumnName& name = names_[c];
-                if (forced_.roles[c] || name.reference != reference) continue;
-                if (name.role == Role::other || name.role == Role::time) continue;
-                const std::string key = merge ? "" : joint_key(name.joint);
-                auto group = std::find_if(groups_.begin(), groups_.end(),
-                                          [&](const JointGroup& g) { return g.key == key; });
-                if (group == groups_.end()) {
-                    if (reference && !groups_.empty()) continue;  // a wish alone does not make a joint
-                    groups_.push_back({key, merge ? "" : name.joint, {}});
-                    group = groups_.end() - 1;
-                }
-                group->candidates[name.role].push_back(c);
-            }
-        }
-    }
-
-    // The one column for a role; several equally good ones are an error.
-    std::optional<std::size_t> choose(const JointGroup& group, Role role) {
-        if (const auto forced = forced_.column_of(role)) return forced;
-        const auto found = group.candidates.find(role);
-        if (found == group.candidates.end()) return std::nullopt;
-        const auto cost = [this](std::size_t c) { return names_[c].rank + (names_[c].reference ? 100 : 0); };
-        int lowest = 1000;
-        for (const std::size_t c : found->second) lowest = std::min(lowest, cost(c));
-        std::vector<std::size_t> best, still;
-        for (const std::size_t c : found->second) {
-            if (cost(c) != lowest) continue;
-            const bool moves = facts_.sample.empty() || layout_detail::varies(facts_.sample[c]);
-            (moves ? best : still).push_back(c);
-        }
-        if (best.empty()) best.swap(still);
-        if (best.size() > 1) refuse_tie(role, best);
-        if (!still.empty()) {
-            layout_.warnings.push_back(
-                fmt::format("{} does not change at the start of the log; the {} is taken from {}; --columns "
-                            "{}=NAME decides otherwise",
-                            column_label(facts_.names, still.front()), role_name(role),
-                            column_label(facts_.names, best.front()), role_name(role)));
-        }
-        if (names_[best.front()].reference) {
-            layout_.warnings.push_back(
-                fmt::format("{} is a wish or a model, not a measurement, and the only {} here",
-                            column_label(facts_.names, best.front()), role_name(role)));
-        }
-        return best.front();
-    }
-
-    [[noreturn]] void refuse_tie(Role role, const std::vector<std::size_t>& best) const {
-        std::vector<std::string> labels, choices;
-        for (const std::size_t c : best) {
-            labels.push_back(column_label(facts_.names, c));
-            const bool repeated = std::count(facts_.names.begin(), facts_.names.end(), facts_.names[c]) > 1;
-            choices.push_back(fmt::format("--columns {}={}", role_name(role),
-                                          repeated ? std::to_string(c + 1) : facts_.names[c]));
-        }
-        raise<DataError>("{}: {} could each be the {}; say {}", source_, fmt::join(labels, " and "),
-                         role_name(role), fmt::join(choices, " or "));
     }
 
     void choose_joint() {
@@ -210,11 +103,16 @@ class Decision {
         if (options_.needs_torque) require_torque_and_velocity();
     }
 
+    layout_detail::KnownColumns known() const { return {source_, facts_, forced_, names_}; }
+
     JointColumns columns_of(const JointGroup& group) {
+        const auto choose = [&](Role role) {
+            return layout_detail::choose_column(known(), group, role, layout_.warnings);
+        };
         JointColumns columns{group.name, layout_.chosen.time, {}, {}, {}};
-        columns.velocity = choose(group, Role::velocity);
-        columns.torque = choose(group, Role::torque);
-        columns.position = choose(group, Role::position);
+        columns.velocity = choose(Role::velocity);
+        columns.torque = choose(Role::torque);
+        columns.position = choose(Role::position);
         return columns;
     }
 
