@@ -107,12 +107,12 @@ def yardsticks(rows):
     for study, group in groups([r for r in rows if "yardsticks" in r and "named" in r], lambda r: r["study"]):
         lines.append([study, str(len(group)), "diagnose", percent(group, lambda r: r["exact"]),
                       percent(group, lambda r: r["false"]), f"{sum(len(r['false']) for r in group) / len(group):.2f}",
-                      median_percent(r["gap"]["closed"] for r in group)])
+                      median_percent(None if study == "null" else r["gap"]["closed"] for r in group)])
         for method in group[0]["yardsticks"]:
             own = [r["yardsticks"][method] for r in group]
             lines.append([study, str(len(group)), method, percent(own, lambda r: r["exact"]),
                           percent(own, lambda r: r["false"]), f"{sum(r['false'] for r in own) / len(own):.2f}",
-                          median_percent(r["closed"] for r in own)])
+                          median_percent(None if study == "null" else r["closed"] for r in own)])
     return markdown(head, lines)
 
 
@@ -124,13 +124,17 @@ FORMS = {"single": by_label, "rarer": by_label, "pair": several, "triple": sever
 def failure(row):
     if "error" in row:
         return f"{row['case']}: {row['error']}"
-    more = ", but in the set" if row["in_set"] else ""
+    more = ", but in the set" if row["in_set"] and not row["exact"] else ""
     if row["study"].startswith("outside"):
         more += f", place {'right' if row['place'] else 'wrong'}"
     elif row["study"] == "without":
         return f"{row['case']}: {100 * row['told']:.0f} % told, named {', '.join(row['named']) or 'nothing'}; {row['verdict']}"
     elif row["gap"]["as_said"] is False:
         more += f", residual said {row['gap']['said_after_nm']:.4f} Nm and is {row['gap']['after_nm']:.4f} Nm"
+    if row["lowers"] is False:
+        more += ", a name raised the residual"
+    if row["reopens"] is False:
+        more += ", a name taken out did not open its share again"
     return f"{row['case']}: named {', '.join(row['named']) or 'nothing'}{more}; {row['verdict']}"
 
 
