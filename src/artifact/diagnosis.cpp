@@ -2,6 +2,7 @@
 #include "ripplenotch/artifact/diagnosis.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "artifact/json.hpp"
 #include "artifact/model_json.hpp"
@@ -148,6 +149,7 @@ std::string write_diagnosis(const Diagnosis& diagnosis, const Provenance& proven
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;
     json["position_in_log"] = diagnosis.has_position;
+    json["search"] = {{"evaluations", std::round(diagnosis.evaluations)}, {"ended", diagnosis.search_ended}};
     json["noise_color"] = numbers_json(diagnosis.noise_color);
     json["false_alarm"] = diagnosis.false_alarm;
     json["model"] = {{"schema", "ripplenotch/model/1"}};

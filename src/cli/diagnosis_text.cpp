@@ -157,6 +157,10 @@ std::string diagnosis_story(const Diagnosis& diagnosis) {
             text += fmt::format(", {:.1f} % of it closed", *gap.validation_closed_percent);
         text += "\n";
     }
+    if (diagnosis.search_ended)
+        text += fmt::format(
+            "the search was ended after {:.0f} evaluations of the model; what is left is unexplained\n",
+            diagnosis.evaluations);
     text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
     return text + fmt::format("verdict: {}\n", closing(diagnosis));
 }

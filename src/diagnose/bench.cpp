@@ -15,8 +15,8 @@ constexpr double stretch_s = 0.25;
 
 double Candidate::criterion() const { return gain_left + std::accumulate(prices.begin(), prices.end(), 0.0); }
 
-Bench::Bench(const Case& looked_at, const NoiseFloor& noise)
-    : case_(looked_at), noise_(noise), weighing_(looked_at.size(), looked_at.use, noise.color) {}
+Bench::Bench(const Case& looked_at, const NoiseFloor& noise, Work& work)
+    : case_(looked_at), noise_(noise), work_(work), weighing_(looked_at.size(), looked_at.use, noise.color) {}
 
 void Bench::settle_on(const Model& model) {
     screened_.clear();
@@ -24,12 +24,21 @@ void Bench::settle_on(const Model& model) {
 }
 
 Candidate Bench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
-                        int most_iterations) const {
+                        int most_iterations, double settled) const {
     return fitted(open, std::move(prices),
                   {.first_guess = &first_guess,
                    .most_iterations = most_iterations,
-                   .settled = 1e-7,
+                   .settled = settled,
+                   .errors = false,
                    .weighing = &weighing_});
+}
+
+Candidate Bench::with_errors(Candidate model) const {
+    const Fit there = fit(model.open, case_.motion, case_.torque_nm,
+                          {.first_guess = &model.stated, .most_iterations = 0, .weighing = &weighing_});
+    work_.add(there.applied, case_.size());
+    model.values = there.values;
+    return model;
 }
 
 Candidate Bench::settled(const Candidate& model) const {
@@ -43,6 +52,7 @@ Candidate Bench::settled(const Candidate& model) const {
 
 Candidate Bench::fitted(const Model& open, std::vector<double> prices, const FitOptions& options) const {
     const Fit found = fit(open, case_.motion, case_.torque_nm, options);
+    work_.add(found.applied, case_.size());
     const double squares = found.residual_rms_nm * found.residual_rms_nm * static_cast<double>(found.samples);
     return {open,
             found.model,

@@ -8,6 +8,7 @@
 
 #include "diagnose/case.hpp"
 #include "diagnose/noise_floor.hpp"
+#include "diagnose/work.hpp"
 #include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {
@@ -34,13 +35,15 @@ struct Trial {
 
 class Bench {
   public:
-    Bench(const Case& looked_at, const NoiseFloor& noise);
+    Bench(const Case& looked_at, const NoiseFloor& noise, Work& work);
 
     /// Takes up the motion errors of this model: what can be blamed on them is no gap.
     void settle_on(const Model& model);
 
     [[nodiscard]] Candidate fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
-                                   int most_iterations = 8) const;
+                                   int most_iterations = 8, double settled = 1e-7) const;
+    /// The same model with the errors of its values, which a search does not ask for.
+    [[nodiscard]] Candidate with_errors(Candidate model) const;
     /// The same model at its very best, with errors that do not take the noise for white.
     [[nodiscard]] Candidate settled(const Candidate& model) const;
     /// Weighed measured less predicted torque, in units of the noise, a number per row().
@@ -55,6 +58,7 @@ class Bench {
     [[nodiscard]] double floor_nm(const Model& stated) const;
 
     [[nodiscard]] const Case& looked_at() const { return case_; }
+    [[nodiscard]] Work& work() const { return work_; }
     [[nodiscard]] const NoiseFloor& noise() const { return noise_; }
     [[nodiscard]] const std::vector<std::size_t>& rows() const { return weighing_.rows(); }
     [[nodiscard]] double samples() const { return static_cast<double>(weighing_.rows().size()); }
@@ -72,6 +76,7 @@ class Bench {
     mutable std::vector<Screened> screened_;
     const Case& case_;
     NoiseFloor noise_;
+    Work& work_;
     Weighing weighing_;
 };
 

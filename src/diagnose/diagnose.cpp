@@ -23,6 +23,8 @@ namespace {
 // The noise is looked at again when a model leaves less than this part of it.
 constexpr double noise_was_too_large = 0.985;
 constexpr int most_looks = 3;
+// Beyond it a search adds nothing more. One to three hidden effects take up to a third of it.
+constexpr double most_evaluations = 5000.0;
 
 bool is_among(std::span<const std::string> names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -53,16 +55,16 @@ struct Searched {
     Candidate first, last;
 };
 
-Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects) {
+Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work) {
     const std::size_t own = model.terms.size();
     // The first fit knows nothing of the noise.
-    Bench rough(c, {1.0, 1.0, {}});
+    Bench rough(c, {1.0, 1.0, {}}, work);
     Searched found;
     found.first = baseline(rough, model);
     found.last = found.first;
     for (int look = 0; look < most_looks; ++look) {
         found.noise = noise_floor(c, found.last.stated, found.last.open);
-        found.bench = std::make_unique<Bench>(c, found.noise);
+        found.bench = std::make_unique<Bench>(c, found.noise, work);
         Bench& bench = *found.bench;
         bench.settle_on(found.last.stated);
         const Candidate start = bench.fitted(found.last.open, found.last.stated, found.last.prices);
@@ -70,6 +72,7 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
         found.last = search(bench, start, own, effects);
         const double left = std::sqrt(found.last.gain_left / bench.samples());
         if (look > 0 && found.last.stated.terms.size() == start.stated.terms.size()) break;
+        if (work.is_over()) break;
         if (left > noise_was_too_large && found.last.stated.terms.size() == own) break;
     }
     return found;
@@ -172,20 +175,21 @@ std::vector<Undecidable> undecidable(const Bench& bench, const Candidate& model,
 // A disturbance of short duration bends everything that is fitted to it. It is told, set aside, and the rest
 // of the log is diagnosed without it.
 Searched search_rest(Case& part, const Model& model, std::span<const Effect* const> effects,
-                     Diagnosis& diagnosis, std::vector<Leftover>& aside) {
-    Searched found = search_case(part, model, effects);
+                     Diagnosis& diagnosis, std::vector<Leftover>& aside, Work& work) {
+    Searched found = search_case(part, model, effects, work);
     {
-        Bench bench(part, found.noise);
+        Bench bench(part, found.noise, work);
         bench.settle_on(found.first.stated);
         diagnosis.disagreement = leftovers(bench, found.first.stated);
     }
     for (int look = 0; look < 2; ++look) {
         const auto left = leftovers(*found.bench, found.last.stated);
-        if (confined_part(part, left) > 0.15 || !set_aside(part, left)) break;
+        // What is set aside has to be searched once more from the start.
+        if (confined_part(part, left) > 0.15 || work.is_over() || !set_aside(part, left)) break;
         for (const Leftover& leftover : left) {
             if (leftover.kind == "time") aside.push_back(leftover);
         }
-        found = search_case(part, model, effects);
+        found = search_case(part, model, effects, work);
     }
     return found;
 }
@@ -197,11 +201,15 @@ Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
     diagnosis.unexplained = leftovers(bench, found.last.stated);
     diagnosis.rounds = judge(bench, found.last, own, effects, diagnosis.unexplained);
     diagnosis.baseline = found.first.stated;
+    diagnosis.evaluations =
+        bench.work().spent() * search_samples / static_cast<double>(bench.looked_at().size());
+    diagnosis.search_ended = bench.work().ended();
     diagnosis.gap.noise_floor_nm = bench.floor_nm(found.last.stated);
     diagnosis.noise_color = found.noise.color;
     tell_rounds(diagnosis, bench, found.last, own);
     Candidate last = believed(bench, found.last, own, diagnosis.rounds);
-    if (other != nullptr) last = reproduced(bench, found.last, last, *other, own, diagnosis.rounds);
+    if (other != nullptr)
+        last = reproduced(bench, found.last, last, diagnosis.baseline, *other, own, diagnosis.rounds);
     // What a doubtful finding would explain is not explained.
     if (last.stated.terms.size() < found.last.stated.terms.size())
         diagnosis.unexplained = leftovers(bench, last.stated);
@@ -221,13 +229,14 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
         other = whole_case(*validation, options.smoothing);
         (void)find_faults(*other);
     }
+    Work work(most_evaluations);
     Diagnosis diagnosis;
     diagnosis.has_position = log.has_position();
     diagnosis.samples = whole.size();
     diagnosis.faults = find_faults(whole);
     std::vector<Leftover> spoiled = nameless(diagnosis.faults, options.without), aside;
     Case part = excerpt(whole);
-    const Searched found = search_rest(part, model, effects, diagnosis, aside);
+    const Searched found = search_rest(part, model, effects, diagnosis, aside, work);
     Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr);
     if (!log.has_position())
         diagnosis.undecidable = undecidable(*found.bench, last, effects, options.without);
@@ -237,12 +246,12 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     // The excerpt chose; the whole log gives the values.
     if (part.size() < whole.size()) {
         (void)set_aside(whole, aside);
-        Bench all(whole, found.noise);
+        Bench all(whole, found.noise, work);
         all.settle_on(last.stated);
         last = all.fitted(last.open, last.stated, last.prices, 4);
         diagnosis.baseline = all.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;
     }
-    last = told_values(part.size() < whole.size() ? whole : part, found.noise, last, diagnosis.faults);
+    last = told_values(part.size() < whole.size() ? whole : part, found.noise, last, diagnosis.faults, work);
     diagnosis.model = last.stated;
     diagnosis.values = last.values;
     std::size_t place = own;

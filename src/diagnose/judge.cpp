@@ -227,9 +227,10 @@ void doubt_for_size(Finding& finding, const std::vector<Finding>& findings) {
 
 }  // namespace
 
-std::vector<Finding> judge(const Bench& bench, const Candidate& model, std::size_t own_terms,
+std::vector<Finding> judge(const Bench& bench, const Candidate& found, std::size_t own_terms,
                            std::span<const Effect* const> effects, const std::vector<Leftover>& unexplained) {
     std::vector<Finding> findings;
+    const Candidate model = bench.with_errors(found);
     for (std::size_t term = own_terms; term < model.stated.terms.size(); ++term) {
         const Candidate fewer = without_term(bench, model, term);
         Model removed = model.stated;

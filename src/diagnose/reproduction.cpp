@@ -69,10 +69,43 @@ void note_doubtful(const Bench& bench, const Candidate& all, const Candidate& mo
     }
 }
 
+double rms_left(const Case& other, Model stated) {
+    for (std::size_t term = 0; term < stated.terms.size(); ++term)
+        stated = with_own_phase(other, stated, term);
+    return rms_used(other, residual_nm(other, stated));
+}
+
+// Each finding may mend what the one before has spoiled: the newest go until the whole does no worse than
+// the model as given.
+void withdraw_newest(const Bench& bench, Candidate& kept, const Model& given, const Case& other,
+                     std::size_t own_terms, std::vector<Finding>& findings) {
+    const double given_nm = rms_left(other, given);
+    while (true) {
+        std::size_t term = own_terms, place = 0;
+        Finding* newest = nullptr;
+        for (Finding& finding : findings) {
+            if (is_doubtful(finding)) continue;
+            if (is_trusted(finding)) {
+                newest = &finding;
+                place = term;
+            }
+            ++term;
+        }
+        if (newest == nullptr) return;
+        const double kept_nm = rms_left(other, kept.stated);
+        if (kept_nm <= given_nm) return;
+        newest->status = FindingStatus::not_reproduced;
+        newest->reason = fmt::format(
+            "the improved model leaves {:.3g} Nm of the validation log with it, the model as given {:.3g} Nm",
+            kept_nm, given_nm);
+        kept = without_term(bench, kept, place);
+    }
+}
+
 }  // namespace
 
-Candidate reproduced(const Bench& bench, const Candidate& all, const Candidate& model, const Case& other,
-                     std::size_t own_terms, std::vector<Finding>& findings) {
+Candidate reproduced(const Bench& bench, const Candidate& all, const Candidate& model, const Model& given,
+                     const Case& other, std::size_t own_terms, std::vector<Finding>& findings) {
     Candidate kept = model;
     while (true) {
         Finding* worst = nullptr;
@@ -98,6 +131,7 @@ Candidate reproduced(const Bench& bench, const Candidate& all, const Candidate& 
                         *worst->validation_after_nm, *worst->validation_before_nm);
         kept = std::move(without_worst);
     }
+    withdraw_newest(bench, kept, given, other, own_terms, findings);
     note_doubtful(bench, all, kept, other, own_terms, findings);
     return kept;
 }

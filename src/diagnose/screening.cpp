@@ -92,6 +92,7 @@ class Screening {
           case_(std::move(some)),
           prediction_(model.stated, case_.motion),
           samples_(bench.samples()),
+          work_(bench.work()),
           hints_(hints) {
         counts_.resize(static_cast<Index>(case_.size()));
         for (std::size_t k = 0; k < case_.size(); ++k)
@@ -275,6 +276,7 @@ class Screening {
         const Prediction changed(with, case_.motion);
         const MatrixXd basis = orthonormal(columns_of(open, changed, true), torque_.size());
         const VectorXd left = counted(torque_ - to_vector(changed.torque_nm()));
+        work_.add(changed.applied(), case_.size());
         return left_.squaredNorm() - (left - basis * (basis.transpose() * left)).squaredNorm();
     }
 
@@ -282,6 +284,7 @@ class Screening {
     Case case_;
     Prediction prediction_;
     double samples_, unit_ = 1.0;
+    Work& work_;
     VectorXd counts_, torque_, residual_, left_;
     MatrixXd basis_;
     const Hints& hints_;

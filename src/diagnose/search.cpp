@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t most_names = 7;
 constexpr int most_additions = 9;
 constexpr std::size_t finalists = 4;
+// Relative improvement at which a trial has shown what it is worth.
+constexpr double finalist_settled = 1e-5;
 // A finalist's foreseen gain, against that of the best.
 constexpr double within_reach = 0.4;
 // As long as more than this part of the sum of squares is unexplained, a step has to close a fair part of it:
@@ -80,6 +82,7 @@ void drop_needless(const Bench& bench, Candidate& now, std::size_t own_terms, st
 bool swap_once(const Bench& bench, Candidate& now, std::size_t own_terms,
                std::span<const Effect* const> effects) {
     for (std::size_t term = own_terms; term < now.stated.terms.size(); ++term) {
+        if (bench.work().is_over()) return false;
         const Candidate fewer = without_term(bench, now, term);
         const double gain = fewer.gain_left - now.gain_left;
         std::size_t tried = 0;
@@ -108,7 +111,7 @@ Candidate with_trial(const Bench& bench, const Candidate& model, const Trial& tr
     guess.terms.push_back(trial.start);
     std::vector<double> prices = model.prices;
     prices.push_back(trial.price);
-    return bench.fitted(open, guess, std::move(prices), 12);
+    return bench.fitted(open, guess, std::move(prices), 12, finalist_settled);
 }
 
 Candidate without_term(const Bench& bench, const Candidate& model, std::size_t term) {
@@ -128,6 +131,7 @@ Candidate search(Bench& bench, const Candidate& start, std::size_t own_terms,
         // An addition may make an earlier one needless, and that one come back.
         for (int added = 0; added < most_additions && now.stated.terms.size() < own_terms + most_names;
              ++added) {
+            if (bench.work().is_over()) return;
             const auto next = best_addition(bench, now, screen(bench, now, effects));
             if (!next || !worth_it(bench, now, *next)) return;
             now = *next;

@@ -42,6 +42,7 @@ class Problem {
 
     [[nodiscard]] Place at(std::vector<double> point) const {
         Prediction prediction(coordinates.at(point), motion_);
+        applied_ += prediction.applied();
         std::vector<double> left = prediction.torque_nm();
         for (std::size_t k = 0; k < left.size(); ++k) left[k] = torque_nm_[k] - left[k];
         return {std::move(point), std::move(prediction), weighed(left)};
@@ -50,12 +51,16 @@ class Problem {
     // Change of the residual with each coordinate: exact for linear ones, central differences for the others.
     [[nodiscard]] MatrixXd slopes(const Place& place, const std::vector<std::size_t>& moving) const {
         MatrixXd columns(place.residual.size(), static_cast<Index>(moving.size()));
+        const std::size_t before = place.prediction.applied();
         for (std::size_t m = 0; m < moving.size(); ++m) {
             columns.col(static_cast<Index>(m)) =
                 weighed(slope_nm(place.prediction, coordinates, place.point, moving[m]));
         }
+        applied_ += place.prediction.applied() - before;
         return columns;
     }
+
+    [[nodiscard]] std::size_t applied() const { return applied_; }
 
     Coordinates coordinates;
 
@@ -67,6 +72,7 @@ class Problem {
     const Motion& motion_;
     std::span<const double> torque_nm_;
     const Weighing& weighing_;
+    mutable std::size_t applied_ = 0;
 };
 
 // The triangle of an orthogonal factorisation of the slopes, with each column scaled to length 1.
@@ -203,9 +209,10 @@ VectorXd inflation(const MatrixXd& slopes, const Place& place, const VectorXd& s
 
 // Row by row; -1 for what the log does not tell.
 std::vector<double> covariance_at(const Problem& problem, const Search& search, const Weighing& weighing,
-                                  std::size_t stretch) {
+                                  const FitOptions& options) {
     const std::size_t n = problem.coordinates.list().size();
     std::vector<double> covariance(n * n, -1.0);
+    if (!options.errors) return covariance;
     const auto moving = free_to_move(problem, search.place, false);
     if (moving.empty()) return covariance;
     const MatrixXd slopes = problem.slopes(search.place, moving);
@@ -228,8 +235,9 @@ std::vector<double> covariance_at(const Problem& problem, const Search& search, 
         }
     }
     VectorXd larger = VectorXd::Ones(m);
-    if (stretch > 0) {
-        larger = inflation(slopes, search.place, factored.scale, inverse, variance, weighing, stretch);
+    if (options.error_stretch > 0) {
+        larger = inflation(slopes, search.place, factored.scale, inverse, variance, weighing,
+                           options.error_stretch);
     }
     for (Index a = 0; a < m; ++a) {
         for (Index b = 0; b < m; ++b) {
@@ -283,11 +291,12 @@ Fit fit(const Model& model, const Motion& motion, std::span<const double> torque
         if (model.terms[i].effect->chance) found.model.terms[i] = model.terms[i];
     }
     found.samples = weighing.rows().size();
-    found.values = problem.coordinates.values(
-        search.place.point, covariance_at(problem, search, weighing, options.error_stretch));
+    found.values =
+        problem.coordinates.values(search.place.point, covariance_at(problem, search, weighing, options));
     found.residual_rms_nm =
         std::sqrt(search.place.residual.squaredNorm() / static_cast<double>(found.samples));
     found.iterations = search.iterations;
+    found.applied = problem.applied();
     found.converged = search.converged;
     return found;
 }

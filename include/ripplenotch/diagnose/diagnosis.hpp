@@ -129,6 +129,9 @@ struct Diagnosis {
     DiagnosisGap gap;
     std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
+    /// Evaluations of a model along the samples searched, and whether the search was ended for their number.
+    double evaluations = 0.0;
+    bool search_ended = false;
     bool has_position = false;
     std::vector<double> noise_color;  ///< a1 ... ap of FitOptions::noise_color
     double false_alarm = 0.01;        ///< chance that a log with nothing hidden gets a name, by design

@@ -32,6 +32,7 @@ struct Fit {
     double residual_rms_nm = 0.0;     ///< of the samples used, after whitening
     std::size_t samples = 0;          ///< used
     int iterations = 0;
+    std::size_t applied = 0;  ///< how often an effect was run along the motion: what the fit has cost
     bool converged = false;
 };
 
@@ -49,6 +50,8 @@ struct FitOptions {
     /// Samples in a stretch of the log, for errors that look at how the residual pulls in each stretch: what
     /// the noise remembers, and what the model lacks here and there, widens them. 0: the noise is white.
     std::size_t error_stretch = 0;
+    /// Whether standard errors are computed, which takes about one more iteration.
+    bool errors = true;
     /// In place of noise_color and use; it must be made for torques of the same length.
     const Weighing* weighing = nullptr;
 };

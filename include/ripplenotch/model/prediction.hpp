@@ -27,6 +27,9 @@ class Prediction {
     /// predict_nm with term `place` replaced by `term`, of the same effect, less torque_nm().
     [[nodiscard]] std::vector<double> changed(std::size_t place, const Term& term) const;
 
+    /// How often an effect was run along the motion so far: what this has cost.
+    [[nodiscard]] std::size_t applied() const;
+
   private:
     struct State;
     std::unique_ptr<State> state_;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the terms of a model bring along a motion, before they are summed: shared by a whole evaluation and by
+// Prediction, which asks for parts of one.
+
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/model/model.hpp"
+
+namespace ripplenotch {
+
+using Gain = std::vector<std::complex<double>>;
+
+template <class Action>
+void each(const Model& model, Side side, const Action& action) {
+    for (const Term& term : model.terms) {
+        if (term.effect->side == side) action(*term.effect, values_of(term));
+    }
+}
+
+/// Throws UsageError that lists the values which the model does not state.
+void refuse_missing_values(const Model& model);
+
+/// Torque of what bears load; nothing when no effect asks for it.
+[[nodiscard]] std::vector<double> load_nm(const Model& model, const Situation& situation);
+
+/// Of a ripple term of the order given; empty when nothing changes the model's ripple.
+[[nodiscard]] Gain gain_of(const Model& model, const Situation& situation, double order);
+/// Of this term; empty when it is no ripple.
+[[nodiscard]] Gain gain_for(const Model& model, const Term& term, const Situation& situation);
+
+/// Adds the torque of one joint effect.
+void add_torque(const Term& term, const Situation& situation, const Gain& gain, std::span<double> torque_nm);
+/// Adds the torques of all of them.
+void add_joint_torque(const Model& model, const Situation& situation, std::span<double> torque_nm);
+
+}  // namespace ripplenotch
