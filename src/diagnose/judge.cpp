@@ -88,10 +88,11 @@ bool within_a_sample(const Term& term, const Case& looked_at) {
 
 void find_rivals(const Bench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
                  std::span<const Effect* const> effects, Finding& finding) {
+    const std::size_t most = bench.work().ended() ? 1 : 3;
     std::size_t tried = 0;
     for (const Trial& trial : screen(bench, fewer, effects)) {
         if (trial.start.effect == model.stated.terms[term].effect) continue;
-        if (trial.gain < 0.85 * finding.evidence.gain - 100.0 || tried++ >= 3) break;
+        if (trial.gain < 0.85 * finding.evidence.gain - 100.0 || tried++ >= most) break;
         const Candidate other = with_trial(bench, fewer, trial);
         const double margin = other.criterion() - model.criterion();
         finding.alternatives.push_back({trial.start.effect->name, margin});

@@ -45,6 +45,7 @@ std::optional<Candidate> best_addition(const Bench& bench, const Candidate& now,
     const double worth = trials.empty() ? 0.0 : std::max(within_reach * trials[0].score(), 0.0);
     for (const Trial& trial : trials) {
         if (tried.size() >= finalists || trial.score() <= worth) break;
+        if (!tried.empty() && bench.work().is_over()) break;
         tried.push_back(with_trial(bench, now, trial));
     }
     if (tried.empty()) return std::nullopt;
@@ -71,6 +72,7 @@ void drop_needless(const Bench& bench, Candidate& now, std::size_t own_terms, st
     while (now.stated.terms.size() > own_terms + spared) {
         std::optional<Candidate> best;
         for (std::size_t term = own_terms; term + spared < now.stated.terms.size(); ++term) {
+            if (bench.work().is_over()) return;
             Candidate fewer = without_term(bench, now, term);
             if (!best || fewer.criterion() < best->criterion()) best = std::move(fewer);
         }
@@ -111,7 +113,7 @@ Candidate with_trial(const Bench& bench, const Candidate& model, const Trial& tr
     guess.terms.push_back(trial.start);
     std::vector<double> prices = model.prices;
     prices.push_back(trial.price);
-    return bench.fitted(open, guess, std::move(prices), 12, finalist_settled);
+    return bench.fitted(open, guess, std::move(prices), bench.work().ended() ? 4 : 12, finalist_settled);
 }
 
 Candidate without_term(const Bench& bench, const Candidate& model, std::size_t term) {
@@ -121,6 +123,8 @@ Candidate without_term(const Bench& bench, const Candidate& model, std::size_t t
     open.terms.erase(open.terms.begin() + at);
     guess.terms.erase(guess.terms.begin() + at);
     prices.erase(prices.begin() + at);
+    // After the end only a size is wanted.
+    if (bench.work().ended()) return bench.fitted(open, guess, std::move(prices), 3, finalist_settled);
     return bench.fitted(open, guess, std::move(prices));
 }
 

@@ -11,6 +11,13 @@
 
 namespace ripplenotch {
 
+namespace {
+
+// A change of a ripple, a complex number a sample, takes as long as so many torques.
+constexpr std::size_t cost_of_change = 2;
+
+}  // namespace
+
 struct Prediction::State {
     // Torques of a ripple of gain 1, and of gain i: any gain makes a sum of them.
     struct Phasor {
@@ -55,7 +62,7 @@ struct Prediction::State {
 
     [[nodiscard]] std::size_t cost_of_whole() const {
         std::size_t cost = model.terms.size();
-        for (const Term& term : model.terms) cost += term.effect->ripple_order ? changes : 0;
+        for (const Term& term : model.terms) cost += term.effect->ripple_order ? cost_of_change * changes : 0;
         return cost;
     }
 
@@ -93,7 +100,7 @@ struct Prediction::State {
         const auto [entry, is_new] = gains.try_emplace(order);
         if (is_new) {
             entry->second = gain_of(model, situation(load), order);
-            applied += changes;
+            applied += cost_of_change * changes;
         }
         return entry->second;
     }
@@ -117,7 +124,7 @@ struct Prediction::State {
             const Effect& effect = *model.terms[i].effect;
             if (effect.side != Side::ripple || i == place) continue;
             effect.change_ripple(situation(load), Order(order), values_of(model.terms[i]), entry->second);
-            ++applied;
+            applied += cost_of_change;
         }
         return entry->second;
     }
@@ -133,7 +140,7 @@ struct Prediction::State {
             const double order = values_of(term)[*term.effect->ripple_order];
             Gain now = rest_of_gain(place, order);
             changing.effect->change_ripple(situation(with_load), Order(order), values_of(changing), now);
-            ++applied;
+            applied += cost_of_change;
             const Gain& before = gain(term);
             const bool plain = before.empty();
             bool turns = false;

@@ -50,8 +50,10 @@ Motion smooth_strokes() {
 Candidate told(const Trace& log, const Model& open, const Model& near,
                const std::vector<Fault>& faults = {}) {
     const Case looked_at = whole_case(log.view(), default_smoothing);
+    Work work(1e9);
     return told_values(looked_at, {noise_nm, noise_nm, {}},
-                       {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults);
+                       {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults,
+                       work);
 }
 
 struct Errors {
@@ -112,9 +114,10 @@ TEST_CASE("a torque that the converter cuts on one side does not pull the values
         Case looked_at = whole_case(log.view(), default_smoothing);
         const auto faults = find_faults(looked_at);
         REQUIRE(faults.size() == 1);
-        const Candidate found =
-            told_values(looked_at, {noise_nm, noise_nm, {}},
-                        {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults);
+        Work work(1e9);
+        const Candidate found = told_values(
+            looked_at, {noise_nm, noise_nm, {}},
+            {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults, work);
         offset.look_at(found, truth, 3, 0);
         ripple.look_at(found, truth, 1, 1);
     }
