@@ -23,8 +23,6 @@ namespace {
 // The noise is looked at again when a model leaves less than this part of it.
 constexpr double noise_was_too_large = 0.985;
 constexpr int most_looks = 3;
-// Beyond it a search adds nothing more. One to three hidden effects take up to a third of it.
-constexpr double most_evaluations = 5000.0;
 
 bool is_among(std::span<const std::string> names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -229,7 +227,7 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
         other = whole_case(*validation, options.smoothing);
         (void)find_faults(*other);
     }
-    Work work(most_evaluations);
+    Work work(options.most_evaluations);
     Diagnosis diagnosis;
     diagnosis.has_position = log.has_position();
     diagnosis.samples = whole.size();

@@ -105,6 +105,41 @@ TEST_CASE("a name that the validation log contradicts is withdrawn, with the fig
     CHECK(!withdrawn.unexplained.empty());
 }
 
+TEST_CASE(
+    "with a validation log that none of the names fits, the improved model does no worse there than the one "
+    "given") {
+    // An offset of the other sign and no friction: nothing that one teaches helps the other.
+    const Trace log = logged(
+        joint_with({"offset,torque_nm=0.4", "coulomb-friction,torque_nm=0.6,width_deg_s=0.3"}), tour(), 41);
+    const Trace other = logged(joint_with({"offset,torque_nm=-0.4"}), tour(), 42);
+    const TraceView other_view = other.view();
+    const Diagnosis found = diagnose(opened(joint()), log.view(), &other_view);
+    tell(found);
+    CHECK(found.named.empty());
+    REQUIRE(found.gap.validation_after_nm);
+    CHECK(*found.gap.validation_after_nm <= *found.gap.validation_before_nm * (1.0 + 1e-9));
+}
+
+TEST_CASE(
+    "a search that has spent its evaluations ends, says so, and names nothing that it did not look at "
+    "twice") {
+    const Trace log = logged(
+        joint_with({"offset,torque_nm=0.4", "viscous-friction,coefficient_nm_per_deg_s=0.005"}), tour(), 37);
+    const Diagnosis whole = diagnose(opened(joint()), log.view(), nullptr);
+    CHECK(!whole.search_ended);
+    CHECK(whole.evaluations > 10.0);
+    CHECK(sorted(whole.named) == Names{"offset", "viscous-friction"});
+    const Diagnosis ended = diagnose(opened(joint()), log.view(), nullptr, {.most_evaluations = 1.0});
+    tell(ended);
+    CHECK(ended.search_ended);
+    CHECK(ended.evaluations < whole.evaluations);
+    CHECK(ended.verdict != DiagnosisVerdict::matches);
+    for (const std::string& name : ended.named)
+        CHECK(std::count(whole.named.begin(), whole.named.end(), name) == 1);
+    // Counted, not timed: the same again.
+    CHECK(diagnose(opened(joint()), log.view(), nullptr).evaluations == whole.evaluations);
+}
+
 TEST_CASE("without position, what depends on where the joint is cannot be decided, and is not named") {
     Names needing;
     for (const Effect* effect : catalogue()) {

@@ -140,6 +140,9 @@ struct Diagnosis {
 struct DiagnosisOptions {
     Seconds smoothing = default_smoothing;
     std::span<const std::string> without = {};  ///< names of effects that are not tried
+    /// The search ends after so many; Diagnosis::evaluations are counted alike. One to three hidden effects
+    /// take up to a third of it.
+    double most_evaluations = 5000.0;
 };
 
 /// Diagnoses a log of at least 200 samples. `validation` is another log that nothing is fitted to; it may be
