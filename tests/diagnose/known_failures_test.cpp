@@ -104,3 +104,43 @@ TEST_CASE("a touch many times the noise is no match") {
     CHECK(found.named.empty());
     CHECK(found.verdict == DiagnosisVerdict::unexplained);
 }
+
+TEST_CASE("on one stroke in one direction no two findings cancel each other") {
+    // Offset, friction, drift and gravity are nearly one column there: tens of newton-metres could be given
+    // to one and taken by another.
+    const std::vector<std::string> specs = {"rest,duration=0.5s,from=-50deg", "poly6,to=60deg,duration=8s",
+                                            "rest,duration=0.5s"};
+    const Motion motion = make_motion(specs, Hertz(500.0));
+    Model truth = joint();
+    truth.terms.push_back(parse_term("coulomb-friction,torque_nm=0.5,width_deg_s=0.3"));
+    truth.terms.push_back(parse_term("viscous-friction,coefficient_nm_per_deg_s=0.01"));
+    const Trace log = logged(truth, motion, 46);
+    const Diagnosis found = diagnosed(log);
+    double largest_nm = 0.0;
+    for (const double torque : log.torque_nm) largest_nm = std::max(largest_nm, std::abs(torque));
+    for (const Finding& finding : found.rounds) {
+        const Parameter* const parameters = finding.term.effect->parameters.data();
+        for (std::size_t p = 0; p < finding.term.values.size(); ++p) {
+            if (parameters[p].unit != "Nm" || !finding.term.values[p]) continue;
+            CAPTURE(finding.term.effect->name, parameters[p].name, *finding.term.values[p]);
+            CHECK(std::abs(*finding.term.values[p]) < 2.0 * largest_nm);
+        }
+    }
+}
+
+TEST_CASE("modulation seen over half a turn is no ripple of orders beside") {
+    const std::vector<std::string> specs = {"rest,duration=0.5s,from=0deg", "poly6,to=170deg,duration=2.5s",
+                                            "rest,duration=0.5s",           "poly6,to=10deg,duration=4s",
+                                            "rest,duration=0.5s",           "poly6,to=160deg,duration=6s",
+                                            "rest,duration=0.5s",           "poly6,to=0deg,duration=3s"};
+    Model truth = joint();
+    truth.terms.push_back(parse_term("ripple-modulation,output_order=1,depth_percent=50,phase_deg=20"));
+    const Diagnosis found = diagnosed(logged(truth, make_motion(specs, Hertz(500.0)), 47));
+    // On half a turn it may look like another ratio or another order of modulation; lines of their own it has
+    // not.
+    for (const std::string& name : found.named) CHECK((name == "ripple-modulation" || name == "gear-ratio"));
+    CHECK(found.verdict != DiagnosisVerdict::matches);
+    CHECK(std::none_of(found.rounds.begin(), found.rounds.end(), [](const Finding& finding) {
+        return finding.status == FindingStatus::confirmed && finding.term.effect->name == "ripple";
+    }));
+}
