@@ -184,11 +184,6 @@ class Stretch {
 
 }  // namespace
 
-bool has_avx2() {
-    static const bool has = __builtin_cpu_supports("avx2") != 0;
-    return has;
-}
-
 std::size_t take_rows_avx2(RowBlock& block, std::size_t begin, double time_before, const RowPlan& plan,
                            const RowParser& parser) {
     const std::string_view bytes = block.bytes;
@@ -204,7 +199,6 @@ std::size_t take_rows_avx2(RowBlock& block, std::size_t begin, double time_befor
 
 #else
 
-bool has_avx2() { return false; }
 std::size_t take_rows_avx2(RowBlock&, std::size_t begin, double, const RowPlan&, const RowParser&) {
     return begin;
 }

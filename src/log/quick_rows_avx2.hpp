@@ -4,12 +4,10 @@
 
 #include <cstddef>
 
+#include "core/processor.hpp"
 #include "log/quick_rows.hpp"
 
 namespace ripplenotch {
-
-/// True on processors that can run it.
-[[nodiscard]] bool has_avx2();
 
 /// As QuickRows::take, for rows whose delimiter is one character. `parser` reads rows with cells that the
 /// vectors cannot: longer than 16 characters, with an exponent, padded with blanks.

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/processor.hpp"
 #include "filter/kernels/block_groups.hpp"
-#include "log/quick_rows_avx2.hpp"
 
 namespace ripplenotch {
 

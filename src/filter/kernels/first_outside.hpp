@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <span>
 
-#include "log/quick_rows_avx2.hpp"
+#include "core/processor.hpp"
 
 namespace ripplenotch {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/processor.hpp"
 #include "filter/kernels/bank_sections.hpp"
 #include "filter/transitions/transition.hpp"
-#include "log/quick_rows_avx2.hpp"
 
 namespace ripplenotch {
 
