@@ -6,45 +6,15 @@
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 
-#include <array>
 #include <bit>
 
+#include "log/cell_masks.hpp"
 #include "ripplenotch/core/number.hpp"
 
 #define WITH_AVX2 __attribute__((target("avx2")))
 
 namespace ripplenotch {
 namespace {
-
-constexpr std::size_t lane_bytes = 16;
-constexpr std::uint64_t most_lane_digits = 10000000000000000U;  // 1e16
-
-/// Byte masks by the length of a number: its last bytes; by the place of its mark: the gap that the mark
-/// leaves, closed.
-struct Masks {
-    alignas(16) std::array<std::array<std::uint8_t, lane_bytes>, 17> keep{};
-    alignas(16) std::array<std::array<std::uint8_t, lane_bytes>, 17> close{};
-    alignas(32) std::array<std::array<std::uint8_t, 32>, 33> keep_long{};
-    constexpr Masks() {
-        for (std::size_t length = 0; length <= 32; ++length) {
-            for (std::size_t i = 0; i < 32; ++i) keep_long[length][i] = i >= 32 - length ? 0xFF : 0;
-        }
-        for (std::size_t length = 0; length <= lane_bytes; ++length) {
-            for (std::size_t i = 0; i < lane_bytes; ++i)
-                keep[length][i] = i >= lane_bytes - length ? 0xFF : 0;
-        }
-        for (std::size_t mark = 0; mark <= lane_bytes; ++mark) {
-            for (std::size_t i = 0; i < lane_bytes; ++i) {
-                const auto from = static_cast<std::uint8_t>(i == 0 ? 0x80 : i - 1);  // 0x80 gives a zero
-                close[mark][i] = mark < lane_bytes && i <= mark ? from : static_cast<std::uint8_t>(i);
-            }
-        }
-    }
-};
-constexpr Masks masks;
-
-constexpr std::array<double, 17> powers_of_ten = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7, 1e8,
-                                                  1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16};
 
 WITH_AVX2 inline __m128i half(const std::uint8_t* bytes) {
     return _mm_load_si128(reinterpret_cast<const __m128i*>(bytes));
@@ -65,120 +35,130 @@ WITH_AVX2 inline __m256i whole_load(const void* bytes) {
     return _mm256_loadu_si256(static_cast<const __m256i*>(bytes));
 }
 
-/// Of each lane's sixteen digits, the most significant first: the two whole numbers of eight digits, by sums
-/// of neighbours (10, 100, 10000).
-WITH_AVX2 inline __m256i eights(__m256i digits) {
+/// Of each lane's sixteen digits, the most significant first: the whole number, twice in the lane. By sums of
+/// neighbours (10, 100, 10000, 100000000).
+WITH_AVX2 inline __m256i sixteens(__m256i digits) {
     __m256i sums = _mm256_maddubs_epi16(digits, _mm256_set1_epi16(0x010A));
     sums = _mm256_madd_epi16(sums, _mm256_set1_epi32(0x00010064));
     sums = _mm256_packus_epi32(sums, sums);
-    return _mm256_madd_epi16(sums, _mm256_set1_epi32(0x00012710));
+    sums = _mm256_madd_epi16(sums, _mm256_set1_epi32(0x00012710));
+    return _mm256_add_epi64(_mm256_mul_epu32(sums, _mm256_set1_epi64x(100000000)),
+                            _mm256_srli_epi64(sums, 32));
 }
 
-/// The whole number of each lane, twice in it.
-WITH_AVX2 inline __m256i sixteens(__m256i digits) {
-    const __m256i pair = eights(digits);
-    return _mm256_add_epi64(_mm256_mul_epu32(pair, _mm256_set1_epi64x(100000000)),
-                            _mm256_srli_epi64(pair, 32));
-}
-
-struct DigitBytes {
-    __m256i digits, marks;
-    bool junk = false;
-};
-
-WITH_AVX2 inline DigitBytes digit_bytes(__m256i text, __m256i keep, __m256i mark) {
-    const __m256i is_mark = _mm256_cmpeq_epi8(text, mark);
-    const __m256i digits = _mm256_sub_epi8(text, _mm256_set1_epi8('0'));
-    const __m256i is_digit = _mm256_cmpeq_epi8(_mm256_min_epu8(digits, _mm256_set1_epi8(9)), digits);
-    const __m256i known = _mm256_or_si256(is_digit, is_mark);
-    return {_mm256_and_si256(digits, keep), _mm256_and_si256(is_mark, keep),
-            _mm256_testc_si256(known, keep) == 0};
-}
-
-/// One cell without its sign.
-struct Number {
-    const char *begin, *end;
-    bool negative;
-    [[nodiscard]] std::size_t length() const { return static_cast<std::size_t>(end - begin); }
-};
-
-inline Number number_at(const CellColumn& column, std::size_t row) {
-    const std::int32_t* const edge = column.edges + row * column.stride;
-    const char* begin = column.text + edge[0] + 1;
-    const char* end = column.text + edge[1];
-    if (column.last) end -= end[-1] == '\r' && end > begin ? 1 : 0;
-    const bool negative = *begin == '-';
-    return {begin + (negative ? 1 : 0), end, negative};
-}
-
-/// Where the marks of two numbers were: most columns have them in the same place all the way down.
+/// Where the marks of two numbers are: most columns have them in the same place all the way down.
 struct Places {
-    std::uint32_t marks = ~0U;  ///< a bit for each byte
-    __m256i close;
+    __m256i offset, most, apart, close;
     __m128d powers;
 };
 
-/// False when a number has more than one mark, or a mark and nothing else.
-WITH_AVX2 bool find_places(std::uint32_t marks, const Number& low, const Number& high, Places& places) {
-    const std::uint32_t first = marks & 0xFFFFU, second = marks >> 16;
-    if ((first & (first - 1)) != 0 || (second & (second - 1)) != 0) return false;
-    if ((first != 0 && low.length() == 1) || (second != 0 && high.length() == 1)) return false;
-    const auto a = static_cast<std::size_t>(std::countr_zero(first | 0x10000U));
-    const auto b = static_cast<std::size_t>(std::countr_zero(second | 0x10000U));
-    const auto power = [](std::size_t place) {
-        return powers_of_ten[place == lane_bytes ? 0 : lane_bytes - 1 - place];
-    };
-    places.close = halves(masks.close[a].data(), masks.close[b].data());
-    places.powers = _mm_set_pd(power(b), power(a));
-    // A trailing mark could stand alone in the next cell: that one is looked at again.
-    const bool trailing = a == lane_bytes - 1 || b == lane_bytes - 1;
-    places.marks = trailing ? ~0U : marks;
+WITH_AVX2 inline Places places_of(std::size_t low, std::size_t high, __m256i mark) {
+    Places places;
+    places.apart = halves(cell_masks.apart[low].data(), cell_masks.apart[high].data());
+    places.most = halves(cell_masks.most[low].data(), cell_masks.most[high].data());
+    places.close = halves(cell_masks.close[low].data(), cell_masks.close[high].data());
+    places.offset = _mm256_blendv_epi8(mark, _mm256_set1_epi8('0'), places.apart);
+    places.powers = _mm_set_pd(cell_masks.power[high], cell_masks.power[low]);
+    return places;
+}
+
+/// What is before the cells of two rows, what they have of digits, and their places in memory.
+struct Pair {
+    __m256i text, keep;
+    std::size_t low_minus, high_minus;
+};
+
+/// False where one of two cells is empty or longer than a lane.
+WITH_AVX2 inline bool load_pair(const CellCursor& at, Pair& pair) {
+    const std::int64_t low_before = at.before[0], high_before = at.before[at.before_stride];
+    const std::int64_t low_end = at.end[0], high_end = at.end[at.end_stride];
+    pair.low_minus = at.text[low_before + 1] == '-' ? 1 : 0;
+    pair.high_minus = at.text[high_before + 1] == '-' ? 1 : 0;
+    const auto low = static_cast<std::size_t>(low_end - low_before) - pair.low_minus;
+    const auto high = static_cast<std::size_t>(high_end - high_before) - pair.high_minus;
+    if (((low - 2) | (high - 2)) >= lane_bytes) return false;
+    pair.keep = halves(cell_masks.keep[low - 1].data(), cell_masks.keep[high - 1].data());
+    pair.text = ends(at.text + low_end, at.text + high_end);
     return true;
 }
 
-/// Mantissas below 2^52 and powers of ten up to 1e15 are exact doubles, so one division rounds correctly
-/// (W. D. Clinger, How to read floating point numbers accurately, 1990).
-WITH_AVX2 inline bool read_two(const Number& low, const Number& high, __m256i mark, Places& places,
-                               double* into) {
-    const __m256i keep = halves(masks.keep[low.length()].data(), masks.keep[high.length()].data());
-    const DigitBytes bytes = digit_bytes(ends(low.end, high.end), keep, mark);
-    if (bytes.junk) return false;
-    const auto marks = static_cast<std::uint32_t>(_mm256_movemask_epi8(bytes.marks));
-    if (marks != places.marks && !find_places(marks, low, high, places)) return false;
-    const __m256i whole = sixteens(_mm256_shuffle_epi8(bytes.digits, places.close));
-    const __m128i both =
-        _mm_unpacklo_epi64(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1));
-    constexpr std::int64_t two_to_52 = 0x4330000000000000;  // as a double's bits
-    if (_mm_testz_si128(both, _mm_set1_epi64x(static_cast<std::int64_t>(~0ULL << 52))) == 0) return false;
-    const __m128i magic = _mm_set1_epi64x(two_to_52);
-    const __m128d mantissas =
-        _mm_sub_pd(_mm_castsi128_pd(_mm_or_si128(both, magic)), _mm_castsi128_pd(magic));
-    const __m128i signs = _mm_slli_epi64(_mm_set_epi64x(high.negative ? 1 : 0, low.negative ? 1 : 0), 63);
-    _mm_storeu_pd(into, _mm_xor_pd(_mm_div_pd(mantissas, places.powers), _mm_castsi128_pd(signs)));
-    return true;
+/// True where every byte that belongs to a number is a digit or the mark in its place, which is one of them.
+/// Leaves the values of the digits.
+WITH_AVX2 inline bool all_known(const Pair& pair, const Places& places, __m256i& values) {
+    const __m256i rest = _mm256_sub_epi8(pair.text, places.offset);
+    const __m256i known = _mm256_cmpeq_epi8(_mm256_min_epu8(rest, places.most), rest);
+    values = _mm256_and_si256(rest, pair.keep);
+    const __m256i right = _mm256_blendv_epi8(places.apart, known, pair.keep);
+    return _mm256_testc_si256(right, _mm256_set1_epi8(-1)) != 0;
+}
+
+/// The places of the marks in the cells of two rows; false where these have junk, more than one mark, or
+/// nothing behind it: it could then stand alone in the next cell.
+WITH_AVX2 bool find_places(const CellColumn& column, std::size_t row, Places& places) {
+    Pair pair;
+    if (row + 1 >= column.rows || !load_pair(CellCursor(column, row), pair)) return false;
+    const __m256i mark = _mm256_set1_epi8(column.decimal_mark);
+    const __m256i marks = _mm256_and_si256(_mm256_cmpeq_epi8(pair.text, mark), pair.keep);
+    const auto bits = static_cast<std::uint32_t>(_mm256_movemask_epi8(marks));
+    const auto low = static_cast<std::size_t>(std::countr_zero((bits & 0xFFFFU) | 0x10000U));
+    const auto high = static_cast<std::size_t>(std::countr_zero((bits >> 16) | 0x10000U));
+    if (low == lane_bytes - 1 || high == lane_bytes - 1) return false;
+    places = places_of(low, high, mark);
+    __m256i values;
+    return all_known(pair, places, values);
+}
+
+/// Reads rows two by two as long as their marks are in these places; returns where that ends. A function of
+/// its own: all that it needs of vectors stays in registers. Mantissas below 2^52 and powers of ten up to
+/// 1e15 are exact doubles, so one division rounds correctly (W. D. Clinger, How to read floating point
+/// numbers accurately, 1990).
+WITH_AVX2 [[gnu::noinline]] std::size_t read_pairs(const CellColumn& column, std::size_t row,
+                                                   const Places& in_memory, double* numbers) {
+    const Places places = in_memory;
+    const __m128i magic = _mm_set1_epi64x(0x4330000000000000);  // 2^52 as a double's bits
+    CellCursor at(column, row);
+    for (const std::size_t rows = column.rows; row + 1 < rows; row += 2, at.advance(2)) {
+        Pair pair;
+        __m256i values;
+        if (!load_pair(at, pair) || !all_known(pair, places, values)) break;
+        const __m256i whole = sixteens(_mm256_shuffle_epi8(values, places.close));
+        const __m128i both =
+            _mm_unpacklo_epi64(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1));
+        const __m128d mantissas =
+            _mm_sub_pd(_mm_castsi128_pd(_mm_or_si128(both, magic)), _mm_castsi128_pd(magic));
+        const __m128d signs = _mm_load_pd(cell_masks.signs[2 * pair.high_minus + pair.low_minus].data());
+        _mm_storeu_pd(numbers + row, _mm_xor_pd(_mm_div_pd(mantissas, places.powers), signs));
+    }
+    return row;
 }
 
 /// A number of up to 32 characters and 19 digits.
-WITH_AVX2 bool read_long(const Number& number, __m256i mark, double& value) {
-    if (number.length() - 1 >= 32) return false;
-    const DigitBytes bytes =
-        digit_bytes(whole_load(number.end - 32), whole_load(masks.keep_long[number.length()].data()), mark);
-    const auto marks = static_cast<std::uint32_t>(_mm256_movemask_epi8(bytes.marks));
-    if (bytes.junk || (marks & (marks - 1)) != 0 || (marks != 0 && number.length() == 1)) return false;
+WITH_AVX2 bool read_long(const CellCursor& at, __m256i mark, double& value) {
+    const char* const begin = at.text + at.before[0] + 1;
+    const char* const end = at.text + at.end[0];
+    const bool negative = *begin == '-';
+    const std::size_t length = static_cast<std::size_t>(end - begin) - (negative ? 1 : 0);
+    if (length - 1 >= 32) return false;
+    const __m256i keep = whole_load(cell_masks.keep_long[length].data());
+    const __m256i text = whole_load(end - 32), zero = _mm256_set1_epi8('0');
+    const __m256i is_mark = _mm256_cmpeq_epi8(text, mark), digits = _mm256_sub_epi8(text, zero);
+    const __m256i is_digit = _mm256_cmpeq_epi8(_mm256_min_epu8(digits, _mm256_set1_epi8(9)), digits);
+    const auto marks = static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_and_si256(is_mark, keep)));
+    if (_mm256_testc_si256(_mm256_or_si256(is_digit, is_mark), keep) == 0) return false;
+    if ((marks & (marks - 1)) != 0 || (marks != 0 && length == 1)) return false;
     // What stands before the mark moves up by one: taken from a load one byte earlier.
     const std::size_t decimals = marks == 0 ? 0 : 31 - static_cast<std::size_t>(std::countr_zero(marks));
-    const __m256i behind = whole_load(masks.keep_long[marks == 0 ? 32 : decimals].data());
-    const __m256i before =
-        _mm256_andnot_si256(behind, whole_load(masks.keep_long[number.length() - 1].data()));
-    const __m256i moved =
-        _mm256_and_si256(_mm256_sub_epi8(whole_load(number.end - 33), _mm256_set1_epi8('0')), before);
-    const __m256i whole = sixteens(_mm256_or_si256(_mm256_and_si256(bytes.digits, behind), moved));
+    const __m256i behind = whole_load(cell_masks.keep_long[marks == 0 ? 32 : decimals].data());
+    const __m256i before = _mm256_andnot_si256(behind, whole_load(cell_masks.keep_long[length - 1].data()));
+    const __m256i moved = _mm256_and_si256(_mm256_sub_epi8(whole_load(end - 33), zero), before);
+    const __m256i kept = _mm256_and_si256(_mm256_and_si256(digits, keep), behind);
+    const __m256i whole = sixteens(_mm256_or_si256(kept, moved));
     const auto high = static_cast<std::uint64_t>(_mm256_extract_epi64(whole, 0));
     const auto low = static_cast<std::uint64_t>(_mm256_extract_epi64(whole, 2));
     if (high > 999) return false;  // more than 19 digits may not fit
     const auto magnitude = decimal_number(high * most_lane_digits + low, -static_cast<int>(decimals));
     if (!magnitude) return false;
-    value = number.negative ? -*magnitude : *magnitude;
+    value = negative ? -*magnitude : *magnitude;
     return true;
 }
 
@@ -186,22 +166,23 @@ WITH_AVX2 bool read_long(const Number& number, __m256i mark, double& value) {
 
 WITH_AVX2 bool read_cells_avx2(const CellColumn& column, double* numbers, std::uint8_t* odd) {
     const __m256i mark = _mm256_set1_epi8(column.decimal_mark);
-    Places places{};
+    Places places = places_of(lane_bytes, lane_bytes, mark);
     bool any_odd = false;
-    const auto alone = [&](const Number& number, std::size_t row) WITH_AVX2 {
-        if (read_long(number, mark, numbers[row])) return;
-        odd[row] = 1;
-        any_odd = true;
-    };
     std::size_t row = 0;
-    for (; row + 1 < column.rows; row += 2) {
-        const Number low = number_at(column, row), high = number_at(column, row + 1);
-        const bool short_ones = low.length() - 1 < lane_bytes && high.length() - 1 < lane_bytes;
-        if (short_ones && read_two(low, high, mark, places, numbers + row)) continue;
-        alone(low, row);
-        alone(high, row + 1);
+    while (row < column.rows) {
+        row = read_pairs(column, row, places, numbers);
+        if (find_places(column, row, places)) continue;
+        // Numbers that are too long for pairs seldom come alone.
+        CellCursor at(column, row);
+        for (std::size_t alone = 0; row < column.rows && (alone < 2 || at.length() > lane_bytes); ++alone) {
+            if (!read_long(at, mark, numbers[row])) {
+                odd[row] = 1;
+                any_odd = true;
+            }
+            ++row;
+            at.advance(1);
+        }
     }
-    if (row < column.rows) alone(number_at(column, row), row);
     return any_odd;
 }
 

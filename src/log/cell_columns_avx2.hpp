@@ -7,14 +7,34 @@
 
 namespace ripplenotch {
 
-/// The cells of one column: cell r lies between the separators edges[r * stride] and edges[r * stride + 1]
-/// (offsets into `text` of the characters just before and just after it).
+/// The cells of one column: cell r lies between before[r * before_stride] and end[r * end_stride] (offsets
+/// into `text` of the character just before and of the one just after it).
 struct CellColumn {
     const char* text = nullptr;
-    const std::int32_t* edges = nullptr;
-    std::size_t stride = 1, rows = 0;
-    bool last = false;  ///< of its line: a carriage return at its end is not part of it
+    const std::int32_t *before = nullptr, *end = nullptr;
+    std::size_t before_stride = 1, end_stride = 1, rows = 0;
     char decimal_mark = '.';
+};
+
+/// On its way down a column.
+struct CellCursor {
+    CellCursor(const CellColumn& column, std::size_t row)
+        : text(column.text),
+          before(column.before + row * column.before_stride),
+          end(column.end + row * column.end_stride),
+          before_stride(column.before_stride),
+          end_stride(column.end_stride) {}
+
+    void advance(std::size_t rows) {
+        before += rows * before_stride;
+        end += rows * end_stride;
+    }
+    /// Of the cell, with its sign.
+    [[nodiscard]] std::size_t length() const { return static_cast<std::size_t>(*end - *before - 1); }
+
+    const char* text;
+    const std::int32_t *before, *end;
+    std::size_t before_stride, end_stride;
 };
 
 /// Writes the number of each cell of the form [-]digits[mark digits] into `numbers`, correctly rounded. Sets

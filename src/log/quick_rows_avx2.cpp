@@ -5,6 +5,7 @@
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define RIPPLENOTCH_AVX2 1
+#define WITH_AVX2 __attribute__((target("avx2")))
 #include <immintrin.h>
 #endif
 
@@ -29,25 +30,53 @@ constexpr std::size_t bytes_before = 33;  // of a cell's end that the vectors lo
 struct Edges {
     alignas(64) std::array<std::int32_t, stretch_bytes + 64> place;
     std::size_t count = 0;  ///< without the first
+    std::size_t line_ends = 0;
+    bool quotes = false, returns = false;  ///< there are some: quotes, carriage returns that end no line
 };
 
-__attribute__((target("avx2"))) void find_edges(const char* text, std::size_t size, char delimiter,
-                                                char line_end, Edges& found) {
-    const __m256i delimiters = _mm256_set1_epi8(delimiter), ends = _mm256_set1_epi8(line_end),
-                  quotes = _mm256_set1_epi8('"');
-    const auto hits = [&](const char* at) __attribute__((target("avx2"))) {
-        const __m256i bytes = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(at));
-        const __m256i any = _mm256_or_si256(
-            _mm256_cmpeq_epi8(bytes, quotes),
-            _mm256_or_si256(_mm256_cmpeq_epi8(bytes, delimiters), _mm256_cmpeq_epi8(bytes, ends)));
-        return static_cast<std::uint32_t>(_mm256_movemask_epi8(any));
-    };
+/// One bit for each of 64 bytes.
+struct EdgeBits {
+    std::uint64_t any, line_ends;
+};
+
+class EdgeFinder {
+  public:
+    WITH_AVX2 EdgeFinder(char delimiter, char line_end)
+        : delimiters_(_mm256_set1_epi8(delimiter)), line_ends_(_mm256_set1_epi8(line_end)) {}
+
+    WITH_AVX2 EdgeBits look_at(const char* text) {
+        const EdgeBits low = look_at_half(text), high = look_at_half(text + 32);
+        return {low.any | high.any << 32, low.line_ends | high.line_ends << 32};
+    }
+    WITH_AVX2 [[nodiscard]] bool quotes() const { return _mm256_testz_si256(quotes_, quotes_) == 0; }
+    WITH_AVX2 [[nodiscard]] bool returns() const { return _mm256_testz_si256(returns_, returns_) == 0; }
+
+  private:
+    WITH_AVX2 EdgeBits look_at_half(const char* text) {
+        const __m256i bytes = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(text));
+        const __m256i quote = _mm256_cmpeq_epi8(bytes, _mm256_set1_epi8('"'));
+        const __m256i line_end = _mm256_cmpeq_epi8(bytes, line_ends_);
+        const __m256i delimiter = _mm256_cmpeq_epi8(bytes, delimiters_);
+        quotes_ = _mm256_or_si256(quotes_, quote);
+        returns_ = _mm256_or_si256(returns_, _mm256_cmpeq_epi8(bytes, _mm256_set1_epi8('\r')));
+        const auto bits = [](__m256i mask)
+                              WITH_AVX2 { return static_cast<std::uint32_t>(_mm256_movemask_epi8(mask)); };
+        return {bits(_mm256_or_si256(quote, _mm256_or_si256(delimiter, line_end))), bits(line_end)};
+    }
+
+    __m256i delimiters_, line_ends_, quotes_ = _mm256_setzero_si256(), returns_ = _mm256_setzero_si256();
+};
+
+WITH_AVX2 void find_edges(const char* text, std::size_t size, char delimiter, char line_end, Edges& found) {
+    EdgeFinder finder(delimiter, line_end);
     found.place[0] = -1;
     std::int32_t* const first = found.place.data() + 1;
     std::int32_t* into = first;
     std::size_t at = 0;
+    int line_ends = 0;
     for (; at + 64 <= size; at += 64) {
-        std::uint64_t bits = hits(text + at) | static_cast<std::uint64_t>(hits(text + at + 32)) << 32;
+        auto [bits, ends] = finder.look_at(text + at);
+        line_ends += std::popcount(ends);
         const int count = std::popcount(bits);
         // Eight places without a branch, most often all there are.
         for (int i = 0; i < 8; ++i, bits &= bits - 1)
@@ -56,24 +85,42 @@ __attribute__((target("avx2"))) void find_edges(const char* text, std::size_t si
             into[i] = static_cast<std::int32_t>(at) + std::countr_zero(bits);
         into += count;
     }
+    found.quotes = finder.quotes();
+    found.returns = finder.returns();
     for (; at < size; ++at) {
         if (text[at] == delimiter || text[at] == line_end || text[at] == '"')
             *into++ = static_cast<std::int32_t>(at);
+        line_ends += text[at] == line_end ? 1 : 0;
+        found.quotes |= text[at] == '"';
+        found.returns |= text[at] == '\r';
     }
+    found.returns &= line_end != '\r';
     found.count = static_cast<std::size_t>(into - first);
+    found.line_ends = static_cast<std::size_t>(line_ends);
+}
+
+/// How many rows from the first on end where they should.
+std::size_t ended_rows(const char* text, const Edges& edges, const RowPlan& plan) {
+    const std::size_t most = edges.count / plan.columns;
+    const std::int32_t* edge = edges.place.data() + plan.columns;
+    for (std::size_t row = 0; row < most; ++row, edge += plan.columns) {
+        if (text[*edge] != plan.line_end) return row;
+    }
+    return most;
 }
 
 /// How many rows from the first on have each separator where it belongs.
 std::size_t regular_rows(const char* text, const Edges& edges, const RowPlan& plan) {
-    const std::size_t most = edges.count / plan.columns;
+    const std::size_t ended = ended_rows(text, edges, plan);
+    // Then there is no line end but the last of each row.
+    if (!edges.quotes && ended == edges.line_ends) return ended;
     const std::int32_t* edge = edges.place.data() + 1;
-    for (std::size_t row = 0; row < most; ++row) {
-        bool regular = text[edge[plan.columns - 1]] == plan.line_end;
-        for (std::size_t c = 0; c + 1 < plan.columns; ++c) regular &= text[edge[c]] == plan.rules.delimiter;
-        if (!regular) return row;
-        edge += plan.columns;
+    for (std::size_t row = 0; row < ended; ++row, edge += plan.columns) {
+        for (std::size_t c = 0; c + 1 < plan.columns; ++c) {
+            if (text[edge[c]] != plan.rules.delimiter) return row;
+        }
     }
-    return most;
+    return ended;
 }
 
 /// One stretch on its way into a block.
@@ -97,7 +144,9 @@ class Stretch {
         if (regular == 0) return begin;
         sink_.make_room(regular);
         std::fill_n(odd_.begin(), regular, std::uint8_t{0});
+        find_row_ends(regular);
         read_columns(regular);
+        note_places(regular);
         std::size_t rows = any_odd_ ? mend(regular) : regular;
         if (plan_.column_of(time_slot)) rows = forward_rows(rows, time_before);
         sink_.commit(rows);
@@ -109,9 +158,16 @@ class Stretch {
     [[nodiscard]] std::size_t row_begin(std::size_t row) const {
         return static_cast<std::size_t>(edge(row * plan_.columns) + 1);
     }
-    [[nodiscard]] std::size_t row_end(std::size_t row) const {
-        const auto end = static_cast<std::size_t>(edge((row + 1) * plan_.columns));
-        return end > row_begin(row) && text_[end - 1] == '\r' ? end - 1 : end;
+    /// Without a carriage return before it.
+    void find_row_ends(std::size_t rows) {
+        const std::int32_t* edge = edges_.place.data() + plan_.columns;
+        for (std::size_t row = 0; row < rows; ++row, edge += plan_.columns) row_ends_[row] = *edge;
+        if (!edges_.returns) return;
+        for (std::size_t row = 0; row < rows; ++row) {
+            const std::int32_t end = row_ends_[row];
+            const bool has_return = end > static_cast<std::int32_t>(row_begin(row)) && text_[end - 1] == '\r';
+            row_ends_[row] = end - (has_return ? 1 : 0);
+        }
     }
 
     void read_columns(std::size_t rows) {
@@ -123,31 +179,35 @@ class Stretch {
             any_odd_ = true;
         }
         for (const WantedColumn& wanted : plan_.wanted) {
+            const bool last = wanted.column + 1 == plan_.columns;
+            const std::int32_t* const before = edges_.place.data() + unread * plan_.columns + wanted.column;
             const CellColumn cells{text_,
-                                   edges_.place.data() + unread * plan_.columns + wanted.column,
+                                   before,
+                                   last ? row_ends_.data() + unread : before + 1,
                                    plan_.columns,
+                                   last ? 1 : plan_.columns,
                                    rows - unread,
-                                   wanted.column + 1 == plan_.columns,
                                    plan_.rules.decimal_mark};
             double* const numbers = sink_.numbers(wanted.slot) + unread;
             if (read_cells_avx2(cells, numbers, odd_.data() + unread)) any_odd_ = true;
         }
-        note_places(rows);
     }
 
     void note_places(std::size_t rows) {
-        for (std::size_t row = 0; row < rows; ++row) sink_.place_end(row, begin_ + row_end(row));
+        const auto shift = static_cast<std::uint32_t>(begin_);
+        std::uint32_t* const ends = sink_.row_ends();
+        for (std::size_t row = 0; row < rows; ++row)
+            ends[row] = shift + static_cast<std::uint32_t>(row_ends_[row]);
         for (std::size_t joint = 0; joint < plan_.joints(); ++joint) {
             const auto torque = plan_.column_of(slot_of(torque_slot, joint));
+            const std::int32_t* before = edges_.place.data() + torque.value_or(0);
             const bool last = torque && *torque + 1 == plan_.columns;
-            for (std::size_t row = 0; row < rows; ++row) {
-                const std::size_t at = row * plan_.columns + torque.value_or(0);
-                const auto from = static_cast<std::size_t>(edge(at) + 1);
-                const std::size_t to = last     ? row_end(row)
-                                       : torque ? static_cast<std::size_t>(edge(at + 1))
-                                                : from;
-                sink_.place_torque(row, joint, begin_ + from, begin_ + to);
+            std::uint32_t *const from = sink_.torque_begins(joint), *const to = sink_.torque_ends(joint);
+            for (std::size_t row = 0; row < rows; ++row, before += plan_.columns) {
+                from[row] = shift + static_cast<std::uint32_t>(before[0] + 1);
+                if (!last) to[row] = torque ? shift + static_cast<std::uint32_t>(before[1]) : from[row];
             }
+            if (last) std::copy_n(ends, rows, to);
         }
     }
 
@@ -156,7 +216,7 @@ class Stretch {
     std::size_t mend(std::size_t rows) {
         for (std::size_t row = 0; row < rows; ++row) {
             if (odd_[row] == 0) continue;
-            if (!parser_.parse(text_ + row_begin(row), text_ + row_end(row), parsed_)) return row;
+            if (!parser_.parse(text_ + row_begin(row), text_ + row_ends_[row], parsed_)) return row;
             sink_.set(row, parsed_, begin_ + row_begin(row), text_ - begin_);
         }
         return rows;
@@ -179,6 +239,7 @@ class Stretch {
     std::size_t begin_ = 0, reach_ = first_bytes;
     bool any_odd_ = false;
     Edges edges_;
+    std::array<std::int32_t, stretch_bytes + 64> row_ends_;  ///< offsets from text_
     std::array<std::uint8_t, stretch_bytes + 64> odd_;
 };
 

@@ -32,24 +32,22 @@ class RowSink {
     }
     /// Of the rows in the making; as in the file.
     [[nodiscard]] double* numbers(std::size_t slot) { return numbers_[slot].data(); }
-    /// Offsets are from the block's first byte.
-    void place_torque(std::size_t row, std::size_t joint, std::size_t begin, std::size_t end) {
-        places_[2 * joint][row] = static_cast<std::uint32_t>(begin);
-        places_[2 * joint + 1][row] = static_cast<std::uint32_t>(end);
-    }
-    void place_end(std::size_t row, std::size_t end) {
-        places_.back()[row] = static_cast<std::uint32_t>(end);
-    }
+    /// Offsets from the block's first byte.
+    [[nodiscard]] std::uint32_t* torque_begins(std::size_t joint) { return places_[2 * joint].data(); }
+    [[nodiscard]] std::uint32_t* torque_ends(std::size_t joint) { return places_[2 * joint + 1].data(); }
+    [[nodiscard]] std::uint32_t* row_ends() { return places_.back().data(); }
     /// A whole row, whose line begins at offset `begin` of the block's bytes, which begin at `text`.
     void set(std::size_t row, const ParsedRow& parsed, std::size_t begin, const char* text) {
         for (const WantedColumn& wanted : plan_.wanted)
             numbers(wanted.slot)[row] = parsed.values[wanted.slot];
         const auto offset = [&](const char* at) {
-            return at == nullptr ? begin : static_cast<std::size_t>(at - text);
+            return static_cast<std::uint32_t>(at == nullptr ? begin : static_cast<std::size_t>(at - text));
         };
-        for (std::size_t joint = 0; joint < parsed.torques.size(); ++joint)
-            place_torque(row, joint, offset(parsed.torques[joint].begin), offset(parsed.torques[joint].end));
-        place_end(row, offset(parsed.content_end));
+        for (std::size_t joint = 0; joint < parsed.torques.size(); ++joint) {
+            torque_begins(joint)[row] = offset(parsed.torques[joint].begin);
+            torque_ends(joint)[row] = offset(parsed.torques[joint].end);
+        }
+        row_ends()[row] = offset(parsed.content_end);
     }
     /// Turns the numbers of the first `rows` into the tool's units and appends them.
     void commit(std::size_t rows) {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the log room: what the vectors that read numbers need to know of each length and each place of
+// a decimal mark, made when this is compiled.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace ripplenotch {
+
+inline constexpr std::size_t lane_bytes = 16;
+inline constexpr std::uint64_t most_lane_digits = 10000000000000000U;  // 1e16
+
+/// Masks of a lane's bytes, in which a number is at the end. `keep` goes by the length of the number; the
+/// others by the place of its mark, which is 16 where it has none.
+struct CellMasks {
+    using Lane = std::array<std::uint8_t, lane_bytes>;
+    alignas(64) std::array<Lane, 17> keep{};   ///< the number
+    alignas(16) std::array<Lane, 17> most{};   ///< the greatest value of a byte
+    alignas(16) std::array<Lane, 17> apart{};  ///< all but the mark
+    alignas(16) std::array<Lane, 17> close{};  ///< a shuffle that closes the gap which the mark leaves
+    alignas(32) std::array<std::array<std::uint8_t, 32>, 33> keep_long{};  ///< a number in 32 bytes
+    alignas(16) std::array<std::array<double, 2>, 4> signs{
+        {{0.0, 0.0}, {-0.0, 0.0}, {0.0, -0.0}, {-0.0, -0.0}}};
+    std::array<double, 17> power{};  ///< of ten, for the digits behind the mark
+
+    constexpr CellMasks() {
+        for (std::size_t length = 0; length <= 32; ++length) {
+            for (std::size_t i = 0; i < 32; ++i) keep_long[length][i] = i >= 32 - length ? 0xFF : 0;
+        }
+        double ten_to = 1.0;
+        for (std::size_t at = lane_bytes; at-- > 0; ten_to *= 10.0) power[at] = ten_to;
+        power[lane_bytes] = 1.0;
+        for (std::size_t at = 0; at <= lane_bytes; ++at) {
+            for (std::size_t i = 0; i < lane_bytes; ++i) {
+                const auto from = static_cast<std::uint8_t>(i == 0 ? 0x80 : i - 1);  // 0x80 gives a zero
+                keep[at][i] = i >= lane_bytes - at ? 0xFF : 0;
+                most[at][i] = i == at ? 0 : 9;
+                apart[at][i] = i == at ? 0 : 0xFF;
+                close[at][i] = at < lane_bytes && i <= at ? from : static_cast<std::uint8_t>(i);
+            }
+        }
+        most[lane_bytes][0] = 0;  // sixteen digits may not fit into a double
+    }
+};
+inline constexpr CellMasks cell_masks;
+
+}  // namespace ripplenotch
