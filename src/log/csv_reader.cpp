@@ -88,28 +88,30 @@ bool CsvReader::next(RowBlock& block) {
     return true;
 }
 
-// Whole lines into block.bytes, the rest into carry_.
+// Whole lines into block.bytes, the rest into carry_. The block's own bytes, of lines long gone, are read
+// over: a string that is made longer is filled first.
 bool CsvReader::fetch(RowBlock& block) {
+    std::string bytes = std::move(block.bytes);
     block.clear();
     block.joints.resize(1 + layout_.others.size());
-    std::string& bytes = block.bytes;
-    bytes.swap(carry_);
+    std::size_t have = carry_.size();
+    if (bytes.size() < have) bytes.resize(have);
+    std::copy(carry_.begin(), carry_.end(), bytes.begin());
     carry_.clear();
-    while (true) {
-        const std::size_t end = bytes.rfind(dialect_.line_end);
-        if (end != std::string::npos) {
-            carry_.assign(bytes, end + 1);
-            bytes.resize(end + 1);
-            return true;
-        }
-        if (at_end_) return !bytes.empty();
-        if (bytes.size() > longest_line) return true;  // accept() has the line's number
-        const std::size_t have = bytes.size();
-        bytes.resize(have + piece_size);
+    const auto whole_lines = [&] {
+        return std::string_view(bytes.data(), have).rfind(dialect_.line_end) + 1;  // npos + 1 is 0
+    };
+    std::size_t lines = whole_lines();
+    for (; lines == 0 && !at_end_ && have <= longest_line; lines = whole_lines()) {
+        if (bytes.size() < have + piece_size) bytes.resize(have + piece_size);
         const std::size_t got = source_->read(bytes.data() + have, piece_size);
         at_end_ = got == 0;
-        bytes.resize(have + got);
+        have += got;
     }
+    if (lines > 0) carry_.assign(bytes, lines, have - lines);
+    bytes.resize(lines > 0 ? lines : have);
+    block.bytes = std::move(bytes);
+    return !block.bytes.empty();  // a line that is too long is accept()'s, which has its number
 }
 
 void CsvReader::parse(RowBlock& block) const { block.parsed_bytes = quick_->take(block, 0, not_a_number); }

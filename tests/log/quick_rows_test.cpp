@@ -101,6 +101,36 @@ TEST_CASE("thirty million numbers at once are those of the careful reader, bit f
     for (std::uint64_t seed = 100; seed < 200; ++seed) CHECK(misread(seed, 100000) == 0);
 }
 
+TEST_CASE("a byte that is not as it was is read as the careful way reads it, wherever it stands", "[log]") {
+    std::mt19937_64 random(11);
+    const std::string_view junk = "0123456789.,-+eE \r\n\"x;:/\t";
+    std::size_t stopped = 0;
+    for (int trial = 0; trial < 20000; ++trial) {
+        RowBlock vectors, scalars;
+        const auto decimals = static_cast<int>(random() % 7);
+        for (int i = 0; i < 24; ++i) {
+            const double angle = static_cast<double>(random() % 1000000) * 1e-3 - 500.0;
+            vectors.bytes += fmt::format("{:.4f},{:.{}f},{:.6f}\n", i * 0.0005, angle, decimals, -angle);
+        }
+        vectors.bytes[random() % vectors.bytes.size()] = junk[random() % junk.size()];
+        scalars.bytes = vectors.bytes;
+        QuickRows quick = three_columns();
+        const std::size_t end = quick.take(vectors, 0, no_time);
+        quick.use_scalar_way();
+        CAPTURE(vectors.bytes);
+        REQUIRE(quick.take(scalars, 0, no_time) == end);
+        stopped += end < vectors.bytes.size() ? 1 : 0;
+        REQUIRE(vectors.joints[0].velocity_deg_s == scalars.joints[0].velocity_deg_s);
+        REQUIRE(vectors.joints[0].torque_nm == scalars.joints[0].torque_nm);
+        REQUIRE(vectors.joints[0].position_deg == scalars.joints[0].position_deg);
+        REQUIRE(vectors.row_end == scalars.row_end);
+        REQUIRE(vectors.joints[0].torque_begin == scalars.joints[0].torque_begin);
+        REQUIRE(vectors.joints[0].torque_end == scalars.joints[0].torque_end);
+    }
+    CHECK(stopped > 5000);  // and many were read
+    CHECK(stopped < 15000);
+}
+
 TEST_CASE("rows are taken at once up to the first that is not certainly right, wherever it stands", "[log]") {
     const std::string good = "1.5,-2.25,300\n";
     for (const std::string bad :
