@@ -5,21 +5,8 @@
 
 #include "log/unit_text.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
-namespace {
-
-int decimals_of(std::string_view number, char decimal_mark) {
-    const std::size_t mark = number.find(decimal_mark);
-    if (mark == std::string_view::npos) return 0;
-    std::size_t at = mark + 1;
-    while (at < number.size() && number[at] >= '0' && number[at] <= '9') ++at;
-    return static_cast<int>(std::min<std::size_t>(at - mark - 1, 17));
-}
-
-}  // namespace
-
 std::string appended_name(const std::string& wanted, const std::string& torque_name) {
     const NameAndUnit parts = split_unit(torque_name);
     if (parts.unit.empty()) return wanted;
@@ -39,26 +26,30 @@ std::vector<std::string> appended_names(const Layout& layout, const WriteOptions
 }
 
 CsvWriter::CsvWriter(std::unique_ptr<ByteSink> sink, const CsvReader& reader, const WriteOptions& options)
-    : sink_(std::move(sink)), options_(options), rules_(reader.dialect().rules) {
+    : sink_(std::move(sink)), options_(options) {
+    plan_.rules = reader.dialect().rules;
+    plan_.decimals = options.fixed_decimals;
     std::vector<std::size_t> columns;
     for (const JointColumns& joint : reader.layout().all_chosen()) {
         if (!joint.torque)
             raise<UsageError>("{}: there is no torque column to write", reader.layout().source);
-        joints_.push_back(columns.size());
+        plan_.joints.push_back(columns.size());
         columns.push_back(*joint.torque);
-        factors_.push_back(reader.layout().columns[*joint.torque].factor);
+        plan_.factors.push_back(reader.layout().columns[*joint.torque].factor);
     }
-    std::sort(joints_.begin(), joints_.end(),
-              [&](std::size_t a, std::size_t b) { return columns[a] < columns[b]; });
+    // Appended columns stand in the order of the joints.
+    if (!options.append)
+        std::sort(plan_.joints.begin(), plan_.joints.end(),
+                  [&](std::size_t a, std::size_t b) { return columns[a] < columns[b]; });
     write_head(reader);
 }
 
 std::string CsvWriter::names_appended(const CsvReader& reader) const {
     std::string text;
     for (std::string& name : appended_names(reader.layout(), options_)) {
-        if (reader.dialect().quoted_names || name.find(rules_.delimiter) != std::string::npos)
+        if (reader.dialect().quoted_names || name.find(plan_.rules.delimiter) != std::string::npos)
             name = '"' + name + '"';
-        text += rules_.delimiter + name;
+        text += plan_.rules.delimiter + name;
     }
     return text;
 }
@@ -73,7 +64,7 @@ std::string CsvWriter::units_appended(const CsvReader& reader) const {
         const std::size_t at = head.find(unit, dialect.header_end);
         if (at != std::string::npos && at > 0 && (head[at - 1] == '[' || head[at - 1] == '('))
             unit = head[at - 1] + unit + (head[at - 1] == '[' ? ']' : ')');
-        text += rules_.delimiter + unit;
+        text += plan_.rules.delimiter + unit;
     }
     return text;
 }
@@ -97,91 +88,26 @@ void CsvWriter::write_head(const CsvReader& reader) {
     sink_->write(changed);
 }
 
-// `write` takes where to write to, the number and the cell that it replaces; it is known when this is
-// compiled, for there is one call a row.
 std::string_view CsvWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
-    TextRoom text(room, block.bytes.size() + 16 * block.size() * joints_.size());
+    TextRoom text(room, block.bytes.size() + 16 * block.size() * plan_.joints.size());
+    const auto rewrite = [&](auto&& rows) {
+        if (options_.append)
+            rows.append();
+        else
+            rows.replace();
+    };
     switch (options_.decimals) {
         case WriteOptions::Decimals::shortest:
-            write_rows(block, torque_nm, text,
-                       [](char* into, double value, std::string_view) { return put_shortest(into, value); });
+            rewrite(RowRewriter<ShortestCells>(plan_, block, torque_nm, text));
             break;
         case WriteOptions::Decimals::input:
-            write_rows(block, torque_nm, text, [this](char* into, double value, std::string_view cell) {
-                return put_fixed(into, value, decimals_of(cell, rules_.decimal_mark));
-            });
+            rewrite(RowRewriter<CellsAsBefore>(plan_, block, torque_nm, text));
             break;
         case WriteOptions::Decimals::fixed:
-            write_rows(block, torque_nm, text,
-                       [decimals = options_.fixed_decimals](char* into, double value, std::string_view) {
-                           return put_fixed(into, value, decimals);
-                       });
+            rewrite(RowRewriter<FixedCells>(plan_, block, torque_nm, text));
             break;
     }
     return text.text();
-}
-
-template <typename Write>
-void CsvWriter::write_rows(const RowBlock& block, Torques torque_nm, TextRoom& text,
-                           const Write& write) const {
-    if (options_.append) {
-        append(block, torque_nm, text, write);
-    } else if (rules_.decimal_mark == '.') {
-        replace(block, torque_nm, text, write);
-    } else {
-        replace(block, torque_nm, text, [&](char* into, double value, std::string_view cell) {
-            char* const end = write(into, value, cell);
-            std::replace(into, end, '.', rules_.decimal_mark);
-            return end;
-        });
-    }
-}
-
-template <typename Write>
-void CsvWriter::replace(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const {
-    const std::string_view bytes = block.bytes;
-    // Cells whose bad values were replaced do not hold what the block's torque says.
-    const bool as_written = options_.decimals != WriteOptions::Decimals::fixed && block.held_bad_values == 0;
-    std::size_t done = 0;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-        for (const std::size_t j : joints_) {
-            const JointRows& joint = block.joints[j];
-            const double torque = torque_nm[j][i];
-            if (as_written && torque == joint.torque_nm[i]) continue;  // unchanged, it keeps its text
-            const std::size_t begin = joint.torque_begin[i], end = joint.torque_end[i];
-            text.copy(bytes, done, begin);
-            text.number([&](char* into) {
-                return write(into, torque / factors_[j], bytes.substr(begin, end - begin));
-            });
-            done = end;
-        }
-    }
-    text.copy(bytes, done, bytes.size());
-}
-
-template <typename Write>
-void CsvWriter::append(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const {
-    const std::string_view bytes = block.bytes;
-    const bool quoted = rules_.delimiter == ',' && rules_.decimal_mark == ',';
-    std::size_t done = 0;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-        text.copy(bytes, done, block.row_end[i]);
-        done = block.row_end[i];
-        for (std::size_t j = 0; j < block.joints.size(); ++j) {
-            const JointRows& joint = block.joints[j];
-            const std::string_view cell =
-                bytes.substr(joint.torque_begin[i], joint.torque_end[i] - joint.torque_begin[i]);
-            text.put(rules_.delimiter);
-            if (quoted) text.put('"');
-            text.number([&](char* into) {
-                char* const end = write(into, torque_nm[j][i] / factors_[j], cell);
-                if (rules_.decimal_mark != '.') std::replace(into, end, '.', rules_.decimal_mark);
-                return end;
-            });
-            if (quoted) text.put('"');
-        }
-    }
-    text.copy(bytes, done, bytes.size());
 }
 
 void CsvWriter::put(const RowBlock& /*block*/, Torques /*torque_nm*/, std::string_view bytes) {

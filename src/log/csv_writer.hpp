@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "log/csv_reader.hpp"
-#include "log/text_room.hpp"
+#include "log/row_rewriter.hpp"
 
 namespace ripplenotch {
 
@@ -22,18 +22,10 @@ class CsvWriter : public LogWriter {
     void write_head(const CsvReader& reader);
     [[nodiscard]] std::string names_appended(const CsvReader& reader) const;
     [[nodiscard]] std::string units_appended(const CsvReader& reader) const;
-    template <typename Write>
-    void write_rows(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const;
-    template <typename Write>
-    void replace(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const;
-    template <typename Write>
-    void append(const RowBlock& block, Torques torque_nm, TextRoom& text, const Write& write) const;
 
     std::unique_ptr<ByteSink> sink_;
     WriteOptions options_;
-    CellRules rules_;
-    std::vector<std::size_t> joints_;  ///< in the order of their torque columns
-    std::vector<double> factors_;      ///< by joint: newton-metres in one unit of its torque column
+    RewritePlan plan_;
 };
 
 /// "torque_filtered [Nm]" beside "tau [Nm]", "torque_filtered_Nm" beside "torque_Nm": a new column's name in

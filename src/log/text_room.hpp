@@ -2,57 +2,61 @@
 #pragma once
 // Internal to the log room: text put together piece by piece in a string that is used again and again.
 
-#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <string>
 #include <string_view>
 
-#include "ripplenotch/core/number.hpp"
-
 namespace ripplenotch {
 
-/// Behind what is there, there is always room for a number and a little more.
+/// Text is written at end(), where ensure() has seen to it that there is room.
 class TextRoom {
   public:
     /// Keeps what `room` holds of size: making a string longer fills it, which takes as long as the text.
     TextRoom(std::string& room, std::size_t expected) : room_(room) {
-        if (room_.size() < expected + slack) room_.resize(expected + slack);
+        if (room_.size() < expected) room_.resize(expected);
     }
 
-    /// text[from, to)
-    void copy(std::string_view text, std::size_t from, std::size_t to) {
-        const std::size_t size = to - from;
-        make_room(size);
-        // Most pieces are short, and copying a fixed number of bytes is one instruction or two.
-        if (size <= piece && from + piece <= text.size())
-            std::memcpy(end(), text.data() + from, piece);
-        else
-            std::memcpy(end(), text.data() + from, size);
-        used_ += size;
+    /// Room for so many bytes at what it returns, the end of what has been written.
+    [[nodiscard]] char* ensure(std::size_t size) {
+        if (used_ + size > room_.size()) room_.resize(2 * (used_ + size));
+        return room_.data() + used_;
     }
-    void put(char one) {
-        make_room(1);
-        *end() = one;
-        ++used_;
-    }
-    /// `write` takes where to write to, which has room for number_room bytes, and returns its end.
-    template <typename Write>
-    void number(const Write& write) {
-        make_room(0);
-        used_ += static_cast<std::size_t>(write(end()) - end());
-    }
+    /// What has been written ends here.
+    void written_until(const char* end) { used_ = static_cast<std::size_t>(end - room_.data()); }
     [[nodiscard]] std::string_view text() const { return {room_.data(), used_}; }
 
   private:
-    static constexpr std::size_t piece = 32, slack = number_room + 2 * piece;
-    [[nodiscard]] char* end() { return room_.data() + used_; }
-    void make_room(std::size_t size) {
-        if (used_ + size + slack > room_.size()) room_.resize(2 * (used_ + size + slack));
-    }
-
     std::string& room_;
     std::size_t used_ = 0;
+};
+
+/// Copies of pieces of one text, one behind the other. Most pieces are short, and copying a fixed number of
+/// bytes is one instruction or two, so where it can it copies more than a piece: there must be room for
+/// `over` bytes behind it.
+class PieceCopier {
+  public:
+    static constexpr std::size_t over = 32;
+
+    explicit PieceCopier(std::string_view text) : text_(text) {}
+    /// The bytes from where it is, until `to`; returns the end of the copy.
+    char* copy_until(std::size_t to, char* into) {
+        const std::size_t size = to - done_;
+        const char* const from = text_.data() + done_;
+        if (size <= over && done_ + over <= text_.size()) [[likely]]
+            std::memcpy(into, from, over);
+        else
+            std::memcpy(into, from, size);
+        done_ = to;
+        return into + size;
+    }
+    /// Goes on behind what stands before `to`.
+    void skip_until(std::size_t to) { done_ = to; }
+    [[nodiscard]] std::size_t done() const { return done_; }
+
+  private:
+    std::string_view text_;
+    std::size_t done_ = 0;
 };
 
 }  // namespace ripplenotch

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include "core/fixed_texts.hpp"
+
+#include <algorithm>
+
+#include "core/fixed_texts_avx2.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+
+void FixedTexts::prepare(std::span<const double> values, double divisor, int decimals) {
+    values_ = values;
+    decimals_ = decimals;
+    if (divisor != 1.0) {
+        std::transform(values.begin(), values.end(), quotients_.begin(),
+                       [divisor](double value) { return value / divisor; });
+        values_ = {quotients_.data(), values.size()};
+    }
+    if (avx2_ && decimals >= 0 && decimals <= most_decimals_avx2)
+        print_fixed_avx2(values_, decimals, mark_, slots_.data(), lengths_.data());
+    else
+        std::fill_n(lengths_.begin(), values.size(), 0);
+}
+
+char* FixedTexts::put_alone(char* into, std::size_t i, int decimals) const {
+    char* const end = put_fixed(into, values_[i], decimals);
+    if (mark_ != '.') std::replace(into, end, '.', mark_);
+    return end;
+}
+
+}  // namespace ripplenotch
