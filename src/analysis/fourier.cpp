@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <numbers>
+#include <optional>
+#include <utility>
 
+#include "analysis/power_kernel.hpp"
 #include "analysis/spreading_kernel.hpp"
 
 namespace ripplenotch {
@@ -26,25 +30,36 @@ using FftwArray = std::unique_ptr<T, decltype(&fftw_free)>;
 FftwArray<double> real_array(std::size_t n) { return {fftw_alloc_real(n), fftw_free}; }
 FftwArray<fftw_complex> complex_array(std::size_t n) { return {fftw_alloc_complex(n), fftw_free}; }
 
+/// A real signal of even length may be transformed as a complex one of half the length. Plans are estimated,
+/// and among powers of two up to here those of complex signals are the better ones: measured, 10 to 30 % with
+/// untangling, where longer ones gain nothing and other factors lose as often as they win.
+constexpr std::size_t longest_by_half = 4096;
+bool goes_by_half(std::size_t n) { return n >= 64 && n <= longest_by_half && std::has_single_bit(n); }
+
+enum class PlanKind { whole, half };
+
 struct Plan {
     fftw_plan plan = nullptr;
-    explicit Plan(std::size_t n) {
+    Plan(std::size_t n, PlanKind kind) {
         // The arrays only shape the plan: it is always executed on others, of the same alignment.
         const auto in = real_array(n);
         const auto out = complex_array(n / 2 + 1);
-        plan = fftw_plan_dft_r2c_1d(static_cast<int>(n), in.get(), out.get(), FFTW_ESTIMATE);
+        plan = kind == PlanKind::whole
+                   ? fftw_plan_dft_r2c_1d(static_cast<int>(n), in.get(), out.get(), FFTW_ESTIMATE)
+                   : fftw_plan_dft_1d(static_cast<int>(n / 2), reinterpret_cast<fftw_complex*>(in.get()),
+                                      out.get(), FFTW_FORWARD, FFTW_ESTIMATE);
     }
     ~Plan() { fftw_destroy_plan(plan); }
     Plan(const Plan&) = delete;
     Plan& operator=(const Plan&) = delete;
 };
 
-fftw_plan plan_for(std::size_t n) {
+fftw_plan plan_for(std::size_t n, PlanKind kind) {
     static std::mutex mutex;
-    static std::map<std::size_t, std::unique_ptr<Plan>> plans;
+    static std::map<std::pair<std::size_t, PlanKind>, std::unique_ptr<Plan>> plans;
     const std::lock_guard lock(mutex);
-    auto& entry = plans[n];
-    if (!entry) entry = std::make_unique<Plan>(n);
+    auto& entry = plans[{n, kind}];
+    if (!entry) entry = std::make_unique<Plan>(n, kind);
     return entry->plan;
 }
 
@@ -133,7 +148,13 @@ struct RealTransform::Arrays {
     std::size_t length;
     FftwArray<double> in = real_array(length);
     FftwArray<fftw_complex> out = complex_array(length / 2 + 1);
-    fftw_plan plan = plan_for(length);
+    fftw_plan whole = nullptr, half = nullptr;  // when first needed
+    std::optional<HalfPower> untangle = std::nullopt;
+
+    /// A std::complex<double> is laid out as two doubles, the real part first; so says the standard.
+    [[nodiscard]] std::span<const std::complex<double>> sums(std::size_t count) const {
+        return {reinterpret_cast<const std::complex<double>*>(out.get()), count};
+    }
 };
 
 RealTransform::RealTransform(std::size_t length) : arrays_(new Arrays{length}) {}
@@ -143,9 +164,24 @@ RealTransform::RealTransform(RealTransform&&) noexcept = default;
 std::span<double> RealTransform::in() { return {arrays_->in.get(), arrays_->length}; }
 
 std::span<const std::complex<double>> RealTransform::run() {
-    fftw_execute_dft_r2c(arrays_->plan, arrays_->in.get(), arrays_->out.get());
-    // A std::complex<double> is laid out as two doubles, the real part first; so says the standard.
-    return {reinterpret_cast<const std::complex<double>*>(arrays_->out.get()), arrays_->length / 2 + 1};
+    Arrays& arrays = *arrays_;
+    if (arrays.whole == nullptr) arrays.whole = plan_for(arrays.length, PlanKind::whole);
+    fftw_execute_dft_r2c(arrays.whole, arrays.in.get(), arrays.out.get());
+    return arrays.sums(arrays.length / 2 + 1);
+}
+
+void RealTransform::add_power(double scale, std::span<double> power) {
+    Arrays& arrays = *arrays_;
+    if (!goes_by_half(arrays.length)) {
+        ripplenotch::add_power(run(), scale, power);
+        return;
+    }
+    if (arrays.half == nullptr) {
+        arrays.half = plan_for(arrays.length, PlanKind::half);
+        arrays.untangle.emplace(arrays.length);
+    }
+    fftw_execute_dft(arrays.half, reinterpret_cast<fftw_complex*>(arrays.in.get()), arrays.out.get());
+    arrays.untangle->add(arrays.sums(arrays.length / 2), scale, power);
 }
 
 std::vector<std::complex<double>> real_fourier(std::span<const double> x) {

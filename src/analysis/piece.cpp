@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/piece.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
-#include "analysis/piece_kernel.hpp"
+#include "analysis/power_kernel.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 /// A clock counts as even when no sample is off it by more than this share of a step: then the plain
 /// transform is the same sum.
 constexpr double even_share = 1e-3;
+constexpr std::size_t most_ahead = 8;  // pieces; those of usual lengths stay in the processor's cache
 
 double hann(double time_s, double length_s) {
     return 0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * time_s / length_s);
@@ -34,7 +36,11 @@ void remove_line(std::span<const double> t, std::vector<double>& x) {
 }  // namespace
 
 PieceMaker::PieceMaker(std::size_t length, Hertz rate)
-    : rate_(rate.value()), step_s_(1.0 / rate.value()), transform_(length) {
+    : length_(length),
+      hop_(std::max<std::size_t>(1, length / 2)),
+      rate_(rate.value()),
+      step_s_(1.0 / rate.value()),
+      transform_(length) {
     const double middle = 0.5 * (static_cast<double>(length) - 1.0);
     for (std::size_t k = 0; k < length; ++k) {
         even_time_s_.push_back((static_cast<double>(k) - middle) * step_s_);
@@ -44,21 +50,42 @@ PieceMaker::PieceMaker(std::size_t length, Hertz rate)
     }
 }
 
-const Piece& PieceMaker::make(std::span<const double> time_s, std::span<const double> torque_nm,
-                              std::size_t repeated) {
+const Piece& PieceMaker::make(std::span<const double> time_s, std::span<const double> torque_nm) {
+    const EvenPart both = look_at(time_s, torque_nm);
     piece_.middle_s = 0.5 * (time_s.front() + time_s.back());
-    // What an even piece has seen is not looked at again; its own beginning may be as far off as that, no
-    // more.
-    piece_.even = off_even_grid(time_s, step_s_, piece_.even ? repeated : 0) <= even_share * step_s_;
-    if (piece_.even)
-        make_even(torque_nm);
-    else
+    piece_.even = both.worst <= even_share * step_s_;
+    if (piece_.even) {
+        make_even(torque_nm, even_line(both));
+    } else {
+        late_.reset();
         make_uneven(time_s, torque_nm);
+    }
     return piece_;
 }
 
-void PieceMaker::make_even(std::span<const double> torque_nm) {
-    take_line_and_window(torque_nm, even_line(torque_nm), even_window_, transform_.in());
+// Samples are read from memory much faster in one long go than between transforms.
+void PieceMaker::look_ahead(std::span<const double> time_s, std::span<const double> torque_nm) {
+    const std::size_t pieces = std::min(most_ahead, (time_s.size() - length_) / hop_ + 1);
+    ahead_.resize(pieces);
+    for (std::size_t k = 0; k < pieces; ++k) {
+        ahead_[pieces - 1 - k] = look_at_even(time_s.subspan(k * hop_, length_),
+                                              torque_nm.subspan(k * hop_, length_), step_s_, length_ / 2);
+    }
+}
+
+EvenPart PieceMaker::look_at(std::span<const double> time_s, std::span<const double> torque_nm) {
+    const std::size_t half = length_ / 2;
+    // What an even piece has seen is not looked at again; its own beginning may be as far off as that, no
+    // more.
+    const bool seen = late_ && late_->count == half;
+    const EvenPart early = seen ? *late_ : look_at_even(time_s.first(half), torque_nm.first(half), step_s_);
+    late_ = ahead_.back();
+    ahead_.pop_back();
+    return together(early, *late_);
+}
+
+void PieceMaker::make_even(std::span<const double> torque_nm, const EvenLine& line) {
+    take_line_and_window(torque_nm, line, even_window_, transform_.in());
     piece_.time_s = even_time_s_;
     piece_.value = transform_.in();
     piece_.window_sum = even_sum_;
@@ -83,12 +110,14 @@ void PieceMaker::make_uneven(std::span<const double> time_s, std::span<const dou
     piece_.value = value_;
 }
 
-std::span<const std::complex<double>> PieceMaker::transform() {
-    if (piece_.even) return transform_.run();
-    const std::size_t length = piece_.value.size();
-    uneven_sums_ =
-        nonuniform_fourier(piece_.time_s, piece_.value, rate_ / static_cast<double>(length), length / 2 + 1);
-    return uneven_sums_;
+void PieceMaker::add_power(double scale, std::span<double> power) {
+    if (piece_.even) {
+        transform_.add_power(scale, power);
+        return;
+    }
+    const auto sums = nonuniform_fourier(piece_.time_s, piece_.value, rate_ / static_cast<double>(length_),
+                                         length_ / 2 + 1);
+    ripplenotch::add_power(sums, scale, power);
 }
 
 }  // namespace ripplenotch

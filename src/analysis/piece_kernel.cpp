@@ -19,56 +19,57 @@ constexpr double next_groups = groups * lanes;
 }  // namespace
 
 RIPPLENOTCH_FOR_AVX2_TOO
-double off_even_grid(std::span<const double> time, double step, std::size_t from) {
-    const double* const t = time.data();
+EvenPart look_at_even(std::span<const double> time, std::span<const double> values, double step,
+                      std::size_t from) {
+    const double *const t = time.data(), *const x = values.data();
     const std::size_t n = time.size(), even = n - (n - from) % (groups * lanes);
-    const double begin = n > 0 ? t[0] : 0.0;
-    Four place = {0.0, 1.0, 2.0, 3.0}, now, most[groups] = {}, least[groups] = {};
+    const double begin = n > from ? t[0] : 0.0;
+    const double middle = 0.5 * (static_cast<double>(n + from) - 1.0);
+    Four place = {0.0, 1.0, 2.0, 3.0}, now, value;
+    Four most[groups] = {}, least[groups] = {}, sums[groups] = {}, tilts[groups] = {};
     place += static_cast<double>(from);
     for (std::size_t k = from; k < even; k += groups * lanes, place += next_groups) {
 #pragma GCC unroll 4
         for (std::size_t g = 0; g < groups; ++g) {
+            const Four at = place + static_cast<double>(g * lanes);
             load(now, t + k + g * lanes);
-            const Four off = now - begin - (place + static_cast<double>(g * lanes)) * step;
+            const Four off = now - begin - at * step;
             most[g] = off > most[g] ? off : most[g];
             least[g] = off < least[g] ? off : least[g];
-        }
-    }
-    double worst = 0.0;
-    for (std::size_t i = 0; i < groups * lanes; ++i)
-        worst = std::max({worst, most[i / lanes][i % lanes], -least[i / lanes][i % lanes]});
-    for (std::size_t k = even; k < n; ++k)
-        worst = std::max(worst, std::abs(t[k] - begin - static_cast<double>(k) * step));
-    return worst;
-}
-
-RIPPLENOTCH_FOR_AVX2_TOO
-EvenLine even_line(std::span<const double> values) {
-    const double* const x = values.data();
-    const std::size_t n = values.size(), even = n - n % (groups * lanes);
-    const double middle = 0.5 * (static_cast<double>(n) - 1.0);
-    Four place = {0.0, 1.0, 2.0, 3.0}, value, sums[groups] = {}, tilts[groups] = {};
-    place -= middle;
-    for (std::size_t k = 0; k < even; k += groups * lanes, place += next_groups) {
-#pragma GCC unroll 4
-        for (std::size_t g = 0; g < groups; ++g) {
             load(value, x + k + g * lanes);
             sums[g] += value;
-            tilts[g] += (place + static_cast<double>(g * lanes)) * value;
+            tilts[g] += (at - middle) * value;
         }
     }
-    double total = 0.0, tilt = 0.0;
+    EvenPart part;
+    part.count = n - from;
+    for (std::size_t i = 0; i < groups * lanes; ++i)
+        part.worst = std::max({part.worst, most[i / lanes][i % lanes], -least[i / lanes][i % lanes]});
     for (std::size_t g = 0; g < groups; ++g) {
-        total += sum(sums[g]);
-        tilt += sum(tilts[g]);
+        part.sum += sum(sums[g]);
+        part.tilt += sum(tilts[g]);
     }
     for (std::size_t k = even; k < n; ++k) {
-        total += x[k];
-        tilt += (static_cast<double>(k) - middle) * x[k];
+        const auto at = static_cast<double>(k);
+        part.worst = std::max(part.worst, std::abs(t[k] - begin - at * step));
+        part.sum += x[k];
+        part.tilt += (at - middle) * x[k];
     }
-    const auto count = static_cast<double>(n);
+    return part;
+}
+
+EvenPart together(const EvenPart& early, const EvenPart& late) {
+    const auto before = static_cast<double>(early.count), behind = static_cast<double>(late.count);
+    // Each part's middle lies half the other part away from the middle of both.
+    return {std::max(early.worst, late.worst), early.sum + late.sum,
+            early.tilt - 0.5 * behind * early.sum + late.tilt + 0.5 * before * late.sum,
+            early.count + late.count};
+}
+
+EvenLine even_line(const EvenPart& values) {
+    const auto count = static_cast<double>(values.count);
     const double squares = count * (count * count - 1.0) / 12.0;
-    return {total / count, squares > 0.0 ? tilt / squares : 0.0};
+    return {values.sum / count, squares > 0.0 ? values.tilt / squares : 0.0};
 }
 
 RIPPLENOTCH_FOR_AVX2_TOO
@@ -92,23 +93,6 @@ void take_line_and_window(std::span<const double> values, const EvenLine& line,
         const double at = static_cast<double>(k) - middle;
         to[k] = (values[k] - (at * line.slope + line.mean)) * window[k];
     }
-}
-
-RIPPLENOTCH_FOR_AVX2_TOO
-void add_power(std::span<const std::complex<double>> sums, double scale, std::span<double> power) {
-    const auto* const parts = reinterpret_cast<const double*>(sums.data());
-    const std::size_t n = sums.size(), even = n - n % lanes;
-    Four low, high, there;
-    for (std::size_t k = 0; k < even; k += lanes) {
-        load(low, parts + 2 * k);
-        load(high, parts + 2 * k + lanes);
-        load(there, power.data() + k);
-        const Four real = __builtin_shufflevector(low, high, 0, 2, 4, 6);
-        const Four imaginary = __builtin_shufflevector(low, high, 1, 3, 5, 7);
-        store(power.data() + k, there + (real * real + imaginary * imaginary) * scale);
-    }
-    for (std::size_t k = even; k < n; ++k)
-        power[k] += (parts[2 * k] * parts[2 * k] + parts[2 * k + 1] * parts[2 * k + 1]) * scale;
 }
 
 RIPPLENOTCH_FOR_AVX2_TOO

@@ -25,26 +25,13 @@ std::size_t length_of_pieces(const TraceView& trace, const SpectrumOptions& opti
     return length;
 }
 
-/// Half-overlapping pieces, handed out as times and torques, with the number of samples that the piece before
-/// had too.
-template <class Take>
-void for_each_piece(const TraceView& trace, std::size_t length, Take take) {
-    const std::size_t hop = std::max<std::size_t>(1, length / 2);
-    for (std::size_t first = 0; first + length <= trace.size(); first += hop) {
-        take(trace.time_s.subspan(first, length), trace.torque_nm.subspan(first, length),
-             first > 0 ? length - hop : 0);
-    }
-}
-
 }  // namespace
 
 Spectrum torque_spectrum(const TraceView& trace, const SpectrumOptions& options) {
     const std::size_t length = length_of_pieces(trace, options);
     Welch welch(length, trace.sample_rate);
-    for_each_piece(trace, length, [&](auto... piece) { welch.add(piece...); });
-    if (welch.find_lines(options.false_alarm)) {
-        for_each_piece(trace, length, [&](auto... piece) { welch.measure(piece...); });
-    }
+    welch.add(trace.time_s, trace.torque_nm);
+    if (welch.find_lines(options.false_alarm)) welch.measure(trace.time_s, trace.torque_nm);
     return welch.spectrum();
 }
 

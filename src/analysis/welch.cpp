@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/piece_kernel.hpp"
-
 namespace ripplenotch {
 namespace {
 
@@ -56,11 +54,12 @@ std::vector<SignificantPeak> without_skirts(std::vector<SignificantPeak> found,
 Welch::Welch(std::size_t length, Hertz rate)
     : length_(length), rate_(rate.value()), maker_(length, rate), power_(length / 2 + 1, 0.0) {}
 
-void Welch::add(std::span<const double> time_s, std::span<const double> torque_nm, std::size_t repeated) {
-    const Piece& piece = maker_.make(time_s, torque_nm, repeated);
-    add_power(maker_.transform(), 4.0 / (piece.window_sum * piece.window_sum), power_);
-    gain_ += 0.5 * piece.window_sum * piece.window_sum / (piece.window_square_sum * rate_);
-    ++pieces_;
+std::size_t Welch::add(std::span<const double> time_s, std::span<const double> torque_nm) {
+    return maker_.for_each(time_s, torque_nm, [this](const Piece& piece) {
+        maker_.add_power(4.0 / (piece.window_sum * piece.window_sum), power_);
+        gain_ += 0.5 * piece.window_sum * piece.window_sum / (piece.window_square_sum * rate_);
+        ++pieces_;
+    });
 }
 
 PowerSpectrum Welch::tested() const {
@@ -70,6 +69,7 @@ PowerSpectrum Welch::tested() const {
 }
 
 bool Welch::find_lines(double false_alarm) {
+    maker_.begin_again();
     const double share = 1.0 / static_cast<double>(pieces_);
     for (double& power : power_) power *= share;
     gain_ *= share;
@@ -84,9 +84,10 @@ bool Welch::find_lines(double false_alarm) {
     return !found_.empty();
 }
 
-void Welch::measure(std::span<const double> time_s, std::span<const double> torque_nm, std::size_t repeated) {
-    const Piece& piece = maker_.make(time_s, torque_nm, repeated);
-    for (LineMeter& meter : meters_) meter.add(piece);
+std::size_t Welch::measure(std::span<const double> time_s, std::span<const double> torque_nm) {
+    return maker_.for_each(time_s, torque_nm, [this](const Piece& piece) {
+        for (LineMeter& meter : meters_) meter.add(piece);
+    });
 }
 
 SpectralPeak Welch::peak(std::size_t line) const {

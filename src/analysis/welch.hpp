@@ -18,12 +18,13 @@ class Welch {
     /// `length` samples a piece.
     Welch(std::size_t length, Hertz rate);
 
-    /// First pass: seconds and Nm of one piece, `repeated` as in PieceMaker.
-    void add(std::span<const double> time_s, std::span<const double> torque_nm, std::size_t repeated);
+    /// First pass: consecutive samples, seconds and Nm. Returns how many are done with: the others are to
+    /// come again, in front of those that follow them.
+    std::size_t add(std::span<const double> time_s, std::span<const double> torque_nm);
     /// Between the passes. False when there is no line, and so no need of a second pass.
     bool find_lines(double false_alarm);
-    /// Second pass, the same pieces.
-    void measure(std::span<const double> time_s, std::span<const double> torque_nm, std::size_t repeated);
+    /// Second pass, the same samples in the same way.
+    std::size_t measure(std::span<const double> time_s, std::span<const double> torque_nm);
 
     [[nodiscard]] Spectrum spectrum() const;
 

@@ -5,6 +5,7 @@
 
 #include "analysis/line_meter.hpp"
 #include "analysis/piece_kernel.hpp"
+#include "analysis/power_kernel.hpp"
 #include "analysis/traces.hpp"
 
 using namespace ripplenotch;
@@ -27,7 +28,8 @@ TEST_CASE("the line through a piece leaves neither a mean nor a slope, whatever 
     const std::size_t n = GENERATE(1U, 2U, 15U, 16U, 17U, 64U, 95U);
     std::vector<double> values = noise_of(n, 3), window(n, 1.0), left(n);
     for (std::size_t k = 0; k < n; ++k) values[k] += 7.0 - 0.3 * static_cast<double>(k);
-    take_line_and_window(values, even_line(values), window, left);
+    const std::span<const double> all(values);
+    take_line_and_window(values, even_line(look_at_even(all, all, 1.0)), window, left);
     double sum = 0.0, tilt = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
         sum += left[k];
@@ -45,7 +47,23 @@ TEST_CASE("the distance from an even grid is that of the worst sample, early or 
     for (std::size_t k = 0; k < n; ++k) time[k] = 5.0 + 0.5 * static_cast<double>(k);
     if (worst == 0) return;  // the first sample is where the grid begins
     time[worst] += by;
-    CHECK(off_even_grid(time, 0.5) == std::abs(by));
+    CHECK(look_at_even(time, time, 0.5).worst == std::abs(by));
+}
+
+TEST_CASE("two parts of a piece tell together what a look at all of it tells") {
+    const std::size_t n = GENERATE(2U, 33U, 64U, 95U), cut = GENERATE(1U, 16U, 20U) * n / 33;
+    const std::vector<double> values = noise_of(n, 4);
+    std::vector<double> time(n);
+    for (std::size_t k = 0; k < n; ++k) time[k] = 5.0 + 0.5 * static_cast<double>(k);
+    time[n - 1] += 0.125;
+    const std::span<const double> t(time), x(values);
+    const EvenPart whole = look_at_even(t, x, 0.5);
+    const EvenPart both =
+        together(look_at_even(t.first(cut), x.first(cut), 0.5), look_at_even(t, x, 0.5, cut));
+    CHECK(both.count == n);
+    CHECK(both.worst == 0.125);
+    CHECK_THAT(both.sum, WithinAbs(whole.sum, 1e-12));
+    CHECK_THAT(both.tilt, WithinAbs(whole.tilt, 1e-10));
 }
 
 TEST_CASE("power and moments are sums over all samples, the last few included") {
@@ -67,6 +85,41 @@ TEST_CASE("power and moments are sums over all samples, the last few included") 
         CHECK_THAT(power[k], WithinAbs(1.0 + 2.0 * std::norm(sums[k]), 1e-12));
 }
 
+TEST_CASE("powers are those of the sums, at the lengths that go by half and at others") {
+    const std::size_t n = GENERATE(2U, 31U, 64U, 96U, 128U, 512U, 4096U, 8192U);
+    RealTransform transform(n);
+    const std::vector<double> values = noise_of(n, 6);
+    std::copy(values.begin(), values.end(), transform.in().begin());
+    std::vector<double> power(n / 2 + 1, 1.0);
+    transform.add_power(0.5, power);
+    const auto sums = transform.run();
+    for (std::size_t k = 0; k < sums.size(); ++k)
+        CHECK_THAT(power[k], WithinAbs(1.0 + 0.5 * std::norm(sums[k]), 1e-13 * static_cast<double>(n)));
+}
+
+TEST_CASE("powers by half are right at every even length, the last few sums included") {
+    const std::size_t n = GENERATE(4U, 6U, 8U, 10U, 12U, 14U, 16U, 18U, 30U, 32U, 34U);
+    const std::vector<double> x = noise_of(n, 8);
+    const auto sum = [&](std::size_t k, std::size_t count, auto value) {
+        std::complex<double> total;
+        for (std::size_t j = 0; j < count; ++j)
+            total +=
+                value(j) * std::polar(1.0, -tau * static_cast<double>(k * j) / static_cast<double>(count));
+        return total;
+    };
+    std::vector<std::complex<double>> half;
+    for (std::size_t k = 0; k < n / 2; ++k) {
+        half.push_back(
+            sum(k, n / 2, [&](std::size_t j) { return std::complex<double>(x[2 * j], x[2 * j + 1]); }));
+    }
+    std::vector<double> power(n / 2 + 1, 3.0);
+    HalfPower(n).add(half, 2.0, power);
+    for (std::size_t k = 0; k <= n / 2; ++k) {
+        const double expected = 3.0 + 2.0 * std::norm(sum(k, n, [&](std::size_t j) { return x[j]; }));
+        CHECK_THAT(power[k], WithinAbs(expected, 1e-11));
+    }
+}
+
 TEST_CASE("an even piece is detrended, windowed and transformed as an uneven one") {
     const std::size_t n = GENERATE(256U, 255U);
     const double rate = 1000.0;
@@ -79,16 +132,41 @@ TEST_CASE("an even piece is detrended, windowed and transformed as an uneven one
     std::vector<double> uneven = even;
     uneven[n / 2] += 2e-3 / rate;
     PieceMaker maker(n, Hertz(rate)), other(n, Hertz(rate));
-    const Piece& a = maker.make(even, torque);
-    const Piece& b = other.make(uneven, torque);
+    Piece a, b;
+    std::vector<double> power(n / 2 + 1, 0.0), likewise(n / 2 + 1, 0.0);
+    CHECK(maker.for_each(even, torque, [&](const Piece& piece) { a = piece; }) == n / 2);
+    CHECK(other.for_each(uneven, torque, [&](const Piece& piece) { b = piece; }) == n / 2);
     REQUIRE(a.even);
     REQUIRE_FALSE(b.even);
     CHECK_THAT(a.window_sum, WithinAbs(b.window_sum, 1e-4));
-    const auto sums = maker.transform(), likewise = other.transform();
-    REQUIRE(sums.size() == likewise.size());
-    // Both are sums of 256 values, the one from the first sample on and the other from the middle.
-    for (std::size_t k = 0; k < sums.size(); ++k)
-        CHECK_THAT(std::abs(sums[k]), WithinAbs(std::abs(likewise[k]), 0.02));
+    maker.add_power(1.0, power);
+    other.add_power(1.0, likewise);
+    for (std::size_t k = 0; k < power.size(); ++k)
+        CHECK_THAT(std::sqrt(power[k]), WithinAbs(std::sqrt(likewise[k]), 0.02));
+}
+
+TEST_CASE("pieces have the same bits however many samples are handed over at once") {
+    const std::size_t n = GENERATE(64U, 65U), part = GENERATE(1U, 70U, 333U);
+    std::vector<double> time(2000), torque = noise_of(2000, 12);
+    for (std::size_t k = 0; k < time.size(); ++k) time[k] = 0.001 * static_cast<double>(k);
+    time[900] += 1e-4;  // one piece or two are uneven
+    const auto pieces_of = [&](std::size_t at_once) {
+        PieceMaker maker(n, Hertz(1000.0));
+        std::vector<double> values;
+        std::size_t first = 0;
+        for (std::size_t end = 0; end < time.size();) {
+            end = std::min(end + at_once, time.size());
+            first += maker.for_each(std::span(time).subspan(first, end - first),
+                                    std::span(torque).subspan(first, end - first), [&](const Piece& piece) {
+                                        values.insert(values.end(), piece.value.begin(), piece.value.end());
+                                        values.push_back(piece.middle_s);
+                                    });
+        }
+        return values;
+    };
+    const std::vector<double> whole = pieces_of(time.size());
+    CHECK(whole.size() > 50 * n);
+    CHECK(pieces_of(part) == whole);
 }
 
 TEST_CASE("a sample off the clock makes every piece that holds it uneven, and no other") {
@@ -98,11 +176,12 @@ TEST_CASE("a sample off the clock makes every piece that holds it uneven, and no
     for (std::size_t k = 0; k < time.size(); ++k) time[k] = 0.001 * static_cast<double>(k);
     time[off] += 1e-4;
     PieceMaker maker(n, Hertz(1000.0));
-    for (std::size_t first = 0; first + n <= time.size(); first += hop) {
-        const Piece& piece = maker.make(std::span(time).subspan(first, n),
-                                        std::span(torque).subspan(first, n), first > 0 ? n - hop : 0);
+    std::size_t first = 0;
+    maker.for_each(time, torque, [&](const Piece& piece) {
         CHECK(piece.even == (off < first || off >= first + n));
-    }
+        first += hop;
+    });
+    CHECK(first == 4 * hop);
 }
 
 TEST_CASE("a line's maximum from moments is the one that Newton's method finds on the samples") {
@@ -119,9 +198,11 @@ TEST_CASE("a line's maximum from moments is the one that Newton's method finds o
             time[k] = piece + static_cast<double>(k) / rate;
             torque[k] = 0.1 * torque[k] + std::cos(tau * (start + offset * bin) * time[k] + piece);
         }
-        const Piece& made = maker.make(time, torque);
-        by_moments.add(made);
-        by_samples.add(made);
+        maker.for_each(time, torque, [&](const Piece& made) {
+            by_moments.add(made);
+            by_samples.add(made);
+        });
+        maker.begin_again();
     }
     CHECK_THAT(by_moments.hz(), WithinAbs(by_samples.hz(), 1e-5 * bin));
     CHECK_THAT(by_moments.amplitude_nm(), WithinAbs(by_samples.amplitude_nm(), 1e-5));
