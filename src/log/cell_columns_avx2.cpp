@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Two cells at a time, each from one load that ends where the cell ends: no step waits for the length of the
 // number before it.
-#include "log/cell_columns_avx2.hpp"
+#include "log/cell_groups.hpp"
+#include "log/x86_vectors.hpp"
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#include <immintrin.h>
-
+#if defined(RIPPLENOTCH_X86_VECTORS)
 #include <bit>
 
 #include "log/cell_masks.hpp"
 #include "ripplenotch/core/number.hpp"
-
-#define WITH_AVX2 __attribute__((target("avx2")))
 
 namespace ripplenotch {
 namespace {
@@ -46,37 +43,41 @@ WITH_AVX2 inline __m256i sixteens(__m256i digits) {
                             _mm256_srli_epi64(sums, 32));
 }
 
-/// Where the marks of two numbers are: most columns have them in the same place all the way down.
+/// Where the marks of two numbers are.
 struct Places {
     __m256i offset, most, apart, close;
     __m128d powers;
 };
 
-WITH_AVX2 inline Places places_of(std::size_t low, std::size_t high, __m256i mark) {
+WITH_AVX2 inline Places places_of(std::size_t low, std::size_t high, char decimal_mark) {
     Places places;
     places.apart = halves(cell_masks.apart[low].data(), cell_masks.apart[high].data());
     places.most = halves(cell_masks.most[low].data(), cell_masks.most[high].data());
     places.close = halves(cell_masks.close[low].data(), cell_masks.close[high].data());
-    places.offset = _mm256_blendv_epi8(mark, _mm256_set1_epi8('0'), places.apart);
+    places.offset = _mm256_blendv_epi8(_mm256_set1_epi8(decimal_mark), _mm256_set1_epi8('0'), places.apart);
     places.powers = _mm_set_pd(cell_masks.power[high], cell_masks.power[low]);
     return places;
 }
 
-/// What is before the cells of two rows, what they have of digits, and their places in memory.
+/// The cells of two rows, and which of their bytes belong to the numbers.
 struct Pair {
     __m256i text, keep;
     std::size_t low_minus, high_minus;
 };
 
-/// False where one of two cells is empty or longer than a lane.
+/// False where one of two numbers is empty or longer than a lane.
+template <bool plain>
 WITH_AVX2 inline bool load_pair(const CellCursor& at, Pair& pair) {
+    const std::int32_t* const end = plain ? at.before + 1 : at.end;
+    const std::size_t end_stride = plain ? at.before_stride : at.end_stride;
     const std::int64_t low_before = at.before[0], high_before = at.before[at.before_stride];
-    const std::int64_t low_end = at.end[0], high_end = at.end[at.end_stride];
+    const std::int64_t low_end = end[0], high_end = end[end_stride];
     pair.low_minus = at.text[low_before + 1] == '-' ? 1 : 0;
     pair.high_minus = at.text[high_before + 1] == '-' ? 1 : 0;
+    // With the separator before it.
     const auto low = static_cast<std::size_t>(low_end - low_before) - pair.low_minus;
     const auto high = static_cast<std::size_t>(high_end - high_before) - pair.high_minus;
-    if (((low - 2) | (high - 2)) >= lane_bytes) return false;
+    if (!plain && ((low - 2) | (high - 2)) >= lane_bytes) return false;
     pair.keep = halves(cell_masks.keep[low - 1].data(), cell_masks.keep[high - 1].data());
     pair.text = ends(at.text + low_end, at.text + high_end);
     return true;
@@ -92,48 +93,60 @@ WITH_AVX2 inline bool all_known(const Pair& pair, const Places& places, __m256i&
     return _mm256_testc_si256(right, _mm256_set1_epi8(-1)) != 0;
 }
 
-/// The places of the marks in the cells of two rows; false where these have junk, more than one mark, or
-/// nothing behind it: it could then stand alone in the next cell.
-WITH_AVX2 bool find_places(const CellColumn& column, std::size_t row, Places& places) {
-    Pair pair;
-    if (row + 1 >= column.rows || !load_pair(CellCursor(column, row), pair)) return false;
-    const __m256i mark = _mm256_set1_epi8(column.decimal_mark);
-    const __m256i marks = _mm256_and_si256(_mm256_cmpeq_epi8(pair.text, mark), pair.keep);
-    const auto bits = static_cast<std::uint32_t>(_mm256_movemask_epi8(marks));
-    const auto low = static_cast<std::size_t>(std::countr_zero((bits & 0xFFFFU) | 0x10000U));
-    const auto high = static_cast<std::size_t>(std::countr_zero((bits >> 16) | 0x10000U));
-    if (low == lane_bytes - 1 || high == lane_bytes - 1) return false;
-    places = places_of(low, high, mark);
-    __m256i values;
-    return all_known(pair, places, values);
-}
+class Pairs {
+  public:
+    static constexpr std::size_t rows = 2;
+    explicit Pairs(char decimal_mark)
+        : decimal_mark_(decimal_mark), places_(places_of(lane_bytes, lane_bytes, decimal_mark)) {}
 
-/// Reads rows two by two as long as their marks are in these places; returns where that ends. A function of
-/// its own: all that it needs of vectors stays in registers. Mantissas below 2^52 and powers of ten up to
-/// 1e15 are exact doubles, so one division rounds correctly (W. D. Clinger, How to read floating point
-/// numbers accurately, 1990).
-WITH_AVX2 [[gnu::noinline]] std::size_t read_pairs(const CellColumn& column, std::size_t row,
-                                                   const Places& in_memory, double* numbers) {
-    const Places places = in_memory;
-    const __m128i magic = _mm_set1_epi64x(0x4330000000000000);  // 2^52 as a double's bits
-    CellCursor at(column, row);
-    for (const std::size_t rows = column.rows; row + 1 < rows; row += 2, at.advance(2)) {
+    WITH_AVX2 bool find_places(const CellColumn& column, std::size_t row) {
         Pair pair;
+        if (!load_pair<false>(CellCursor(column, row), pair)) return false;
+        const __m256i is_mark = _mm256_cmpeq_epi8(pair.text, _mm256_set1_epi8(decimal_mark_));
+        const auto marks =
+            static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_and_si256(is_mark, pair.keep)));
+        const auto low = static_cast<std::size_t>(std::countr_zero((marks & 0xFFFFU) | 0x10000U));
+        const auto high = static_cast<std::size_t>(std::countr_zero((marks >> 16) | 0x10000U));
+        if (low == lane_bytes - 1 || high == lane_bytes - 1) return false;
+        places_ = places_of(low, high, decimal_mark_);
         __m256i values;
-        if (!load_pair(at, pair) || !all_known(pair, places, values)) break;
-        const __m256i whole = sixteens(_mm256_shuffle_epi8(values, places.close));
-        const __m128i both =
-            _mm_unpacklo_epi64(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1));
-        const __m128d mantissas =
-            _mm_sub_pd(_mm_castsi128_pd(_mm_or_si128(both, magic)), _mm_castsi128_pd(magic));
-        const __m128d signs = _mm_load_pd(cell_masks.signs[2 * pair.high_minus + pair.low_minus].data());
-        _mm_storeu_pd(numbers + row, _mm_xor_pd(_mm_div_pd(mantissas, places.powers), signs));
+        return all_known(pair, places_, values);
     }
-    return row;
-}
 
-/// A number of up to 32 characters and 19 digits.
-WITH_AVX2 bool read_long(const CellCursor& at, __m256i mark, double& value) {
+    std::size_t read(const CellColumn& column, std::size_t row, double* numbers) const {
+        return column.plain ? read_as<true>(column, row, numbers) : read_as<false>(column, row, numbers);
+    }
+
+  private:
+    // Not inlined: all that it needs of vectors stays in registers.
+    template <bool plain>
+    WITH_AVX2 [[gnu::noinline]] std::size_t read_as(const CellColumn& column, std::size_t row,
+                                                    double* numbers) const {
+        const Places places = places_;
+        const __m128i magic = _mm_set1_epi64x(0x4330000000000000);  // 2^52 as a double's bits
+        CellCursor at(column, row);
+        for (const std::size_t end = column.rows; row + 1 < end; row += rows, at.advance(rows)) {
+            Pair pair;
+            __m256i values;
+            if (!load_pair<plain>(at, pair) || !all_known(pair, places, values)) break;
+            const __m256i whole = sixteens(_mm256_shuffle_epi8(values, places.close));
+            const __m128i both =
+                _mm_unpacklo_epi64(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1));
+            const __m128d mantissas =
+                _mm_sub_pd(_mm_castsi128_pd(_mm_or_si128(both, magic)), _mm_castsi128_pd(magic));
+            const __m128d signs = _mm_load_pd(cell_masks.signs[2 * pair.high_minus + pair.low_minus].data());
+            _mm_storeu_pd(numbers + row, _mm_xor_pd(_mm_div_pd(mantissas, places.powers), signs));
+        }
+        return row;
+    }
+
+    char decimal_mark_;
+    Places places_;
+};
+
+}  // namespace
+
+WITH_AVX2 bool read_long_cell(const CellCursor& at, char decimal_mark, double& value) {
     const char* const begin = at.text + at.before[0] + 1;
     const char* const end = at.text + at.end[0];
     const bool negative = *begin == '-';
@@ -141,7 +154,8 @@ WITH_AVX2 bool read_long(const CellCursor& at, __m256i mark, double& value) {
     if (length - 1 >= 32) return false;
     const __m256i keep = whole_load(cell_masks.keep_long[length].data());
     const __m256i text = whole_load(end - 32), zero = _mm256_set1_epi8('0');
-    const __m256i is_mark = _mm256_cmpeq_epi8(text, mark), digits = _mm256_sub_epi8(text, zero);
+    const __m256i digits = _mm256_sub_epi8(text, zero);
+    const __m256i is_mark = _mm256_cmpeq_epi8(text, _mm256_set1_epi8(decimal_mark));
     const __m256i is_digit = _mm256_cmpeq_epi8(_mm256_min_epu8(digits, _mm256_set1_epi8(9)), digits);
     const auto marks = static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_and_si256(is_mark, keep)));
     if (_mm256_testc_si256(_mm256_or_si256(is_digit, is_mark), keep) == 0) return false;
@@ -162,28 +176,9 @@ WITH_AVX2 bool read_long(const CellCursor& at, __m256i mark, double& value) {
     return true;
 }
 
-}  // namespace
-
-WITH_AVX2 bool read_cells_avx2(const CellColumn& column, double* numbers, std::uint8_t* odd) {
-    const __m256i mark = _mm256_set1_epi8(column.decimal_mark);
-    Places places = places_of(lane_bytes, lane_bytes, mark);
-    bool any_odd = false;
-    std::size_t row = 0;
-    while (row < column.rows) {
-        row = read_pairs(column, row, places, numbers);
-        if (find_places(column, row, places)) continue;
-        // Numbers that are too long for pairs seldom come alone.
-        CellCursor at(column, row);
-        for (std::size_t alone = 0; row < column.rows && (alone < 2 || at.length() > lane_bytes); ++alone) {
-            if (!read_long(at, mark, numbers[row])) {
-                odd[row] = 1;
-                any_odd = true;
-            }
-            ++row;
-            at.advance(1);
-        }
-    }
-    return any_odd;
+bool read_cells_avx2(const CellColumn& column, double* numbers, std::uint8_t* odd) {
+    Pairs group(column.decimal_mark);
+    return read_groups(group, column, numbers, odd);
 }
 
 }  // namespace ripplenotch

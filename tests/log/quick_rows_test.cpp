@@ -55,37 +55,66 @@ std::string written(std::mt19937_64& random) {
     }
 }
 
-/// Numbers, of 3 * rows, that the vectors or the scalar way read otherwise than parse_number does.
+/// Those that this processor has.
+std::vector<RowWay> ways() {
+    std::vector<RowWay> found;
+    for (const RowWay way : {RowWay::parser, RowWay::avx2, RowWay::avx512}) {
+        if (QuickRows::has(way)) found.push_back(way);
+    }
+    return found;
+}
+
+/// What one way takes of a text with three columns.
+struct Taken {
+    std::size_t end = 0;
+    RowBlock block;
+};
+
+Taken taken(const std::string& text, RowWay way) {
+    QuickRows quick = three_columns();
+    quick.use(way);
+    Taken result;
+    result.block.bytes = text;
+    result.end = quick.take(result.block, 0, no_time);
+    return result;
+}
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_bits);
+}
+
+bool same(const Taken& a, const Taken& b) {
+    const JointRows &first = a.block.joints[0], &second = b.block.joints[0];
+    return a.end == b.end && same(first.velocity_deg_s, second.velocity_deg_s) &&
+           same(first.torque_nm, second.torque_nm) && same(first.position_deg, second.position_deg) &&
+           first.torque_begin == second.torque_begin && first.torque_end == second.torque_end &&
+           a.block.row_end == b.block.row_end;
+}
+
+/// Numbers, of 3 * rows, that some way reads otherwise than parse_number does.
 std::size_t misread(std::uint64_t seed, std::size_t rows) {
     std::mt19937_64 random(seed);
     std::vector<std::string> cells;
-    RowBlock vectors, scalars;
+    std::string text;
     for (std::size_t i = 0; i < 3 * rows; ++i) {
         cells.push_back(written(random));
-        vectors.bytes += cells.back() + (i % 3 < 2 ? "," : i % 7 == 0 ? "\r\n" : "\n");
+        text += cells.back() + (i % 3 < 2 ? "," : i % 7 == 0 ? "\r\n" : "\n");
     }
-    scalars.bytes = vectors.bytes;
-    QuickRows quick = three_columns();
-    REQUIRE(quick.take(vectors, 0, no_time) == vectors.bytes.size());
-    quick.use_scalar_way();
-    REQUIRE(quick.take(scalars, 0, no_time) == scalars.bytes.size());
-    REQUIRE(vectors.size() == rows);
-    REQUIRE(scalars.size() == rows);
-    REQUIRE(vectors.joints[0].torque_begin == scalars.joints[0].torque_begin);
-    REQUIRE(vectors.joints[0].torque_end == scalars.joints[0].torque_end);
-    REQUIRE(vectors.row_end == scalars.row_end);
+    const Taken careful = taken(text, RowWay::parser);
+    REQUIRE(careful.end == text.size());
+    REQUIRE(careful.block.size() == rows);
+    for (const RowWay way : ways()) REQUIRE(same(taken(text, way), careful));
     std::size_t different = 0;
+    const JointRows& joint = careful.block.joints[0];
     for (std::size_t i = 0; i < rows; ++i) {
-        const auto expect = [&](std::size_t column, double got, double other) {
-            const double want = *parse_number(cells[3 * i + column]);
-            different += same_bits(got, want) && same_bits(other, want) ? 0 : 1;
+        const auto expect = [&](std::size_t column, double got) {
+            different += same_bits(got, *parse_number(cells[3 * i + column])) ? 0 : 1;
         };
-        expect(0, vectors.joints[0].velocity_deg_s[i], scalars.joints[0].velocity_deg_s[i]);
-        expect(1, vectors.joints[0].torque_nm[i], scalars.joints[0].torque_nm[i]);
-        expect(2, vectors.joints[0].position_deg[i], scalars.joints[0].position_deg[i]);
-        const std::size_t begin = vectors.joints[0].torque_begin[i],
-                          size = vectors.joints[0].torque_end[i] - begin;
-        different += vectors.bytes.compare(begin, size, cells[3 * i + 1]) == 0 ? 0 : 1;
+        expect(0, joint.velocity_deg_s[i]);
+        expect(1, joint.torque_nm[i]);
+        expect(2, joint.position_deg[i]);
+        const std::size_t begin = joint.torque_begin[i], size = joint.torque_end[i] - begin;
+        different += text.compare(begin, size, cells[3 * i + 1]) == 0 ? 0 : 1;
     }
     return different;
 }
@@ -106,26 +135,17 @@ TEST_CASE("a byte that is not as it was is read as the careful way reads it, whe
     const std::string_view junk = "0123456789.,-+eE \r\n\"x;:/\t";
     std::size_t stopped = 0;
     for (int trial = 0; trial < 20000; ++trial) {
-        RowBlock vectors, scalars;
+        std::string text;
         const auto decimals = static_cast<int>(random() % 7);
         for (int i = 0; i < 24; ++i) {
             const double angle = static_cast<double>(random() % 1000000) * 1e-3 - 500.0;
-            vectors.bytes += fmt::format("{:.4f},{:.{}f},{:.6f}\n", i * 0.0005, angle, decimals, -angle);
+            text += fmt::format("{:.4f},{:.{}f},{:.6f}\n", i * 0.0005, angle, decimals, -angle);
         }
-        vectors.bytes[random() % vectors.bytes.size()] = junk[random() % junk.size()];
-        scalars.bytes = vectors.bytes;
-        QuickRows quick = three_columns();
-        const std::size_t end = quick.take(vectors, 0, no_time);
-        quick.use_scalar_way();
-        CAPTURE(vectors.bytes);
-        REQUIRE(quick.take(scalars, 0, no_time) == end);
-        stopped += end < vectors.bytes.size() ? 1 : 0;
-        REQUIRE(vectors.joints[0].velocity_deg_s == scalars.joints[0].velocity_deg_s);
-        REQUIRE(vectors.joints[0].torque_nm == scalars.joints[0].torque_nm);
-        REQUIRE(vectors.joints[0].position_deg == scalars.joints[0].position_deg);
-        REQUIRE(vectors.row_end == scalars.row_end);
-        REQUIRE(vectors.joints[0].torque_begin == scalars.joints[0].torque_begin);
-        REQUIRE(vectors.joints[0].torque_end == scalars.joints[0].torque_end);
+        text[random() % text.size()] = junk[random() % junk.size()];
+        CAPTURE(text);
+        const Taken careful = taken(text, RowWay::parser);
+        for (const RowWay way : ways()) REQUIRE(same(taken(text, way), careful));
+        stopped += careful.end < text.size() ? 1 : 0;
     }
     CHECK(stopped > 5000);  // and many were read
     CHECK(stopped < 15000);
@@ -138,13 +158,13 @@ TEST_CASE("rows are taken at once up to the first that is not certainly right, w
           "1.5,.,3\n", "1.5,-,3\n", "1.5,--2,3\n", "1.5,1.2.3,3\n", "1.5,nan,3\n", "1.5,1e999,3\n", "EOF\n",
           "1.5,2;3,4\n", "1.5,2,3", "1,2,\n", "1,2,0x10\n", "1,2,3\r\r\n"}) {
         for (const int before : {0, 1, 2, 5, 600, 2000}) {
-            for (const bool scalar : {false, true}) {
-                CAPTURE(bad, before, scalar);
+            for (const RowWay way : ways()) {
+                CAPTURE(bad, before, way);
                 RowBlock block;
                 for (int i = 0; i < before; ++i) block.bytes += good;
                 block.bytes += bad + good;
                 QuickRows quick = three_columns();
-                if (scalar) quick.use_scalar_way();
+                quick.use(way);
                 CHECK(quick.take(block, 0, no_time) == static_cast<std::size_t>(before) * good.size());
                 CHECK(block.size() == static_cast<std::size_t>(before));
             }
@@ -163,10 +183,10 @@ TEST_CASE("taking goes on behind a row that was taken otherwise, and keeps what 
 }
 
 TEST_CASE("time that runs backward ends what is taken at once", "[log]") {
-    for (const bool scalar : {false, true}) {
+    for (const RowWay way : ways()) {
         QuickRows quick(
             {{',', '.'}, '\n', 2, {{0, time_slot}, {1, torque_slot}}, std::vector<double>(4, 1.0)});
-        if (scalar) quick.use_scalar_way();
+        quick.use(way);
         RowBlock block;
         block.bytes = "1,5\n2,5\n2,6\n1.999,7\n3,8\n";
         CHECK(quick.take(block, 0, no_time) == 12);
@@ -191,7 +211,7 @@ TEST_CASE("decimal commas, semicolons, lone carriage returns and wide rows are t
     }
     const std::size_t taken = wide.take(rows, 0, no_time);
     CHECK((taken == 0 || taken == rows.bytes.size()));
-    wide.use_scalar_way();
+    wide.use(RowWay::parser);
     CHECK(wide.take(rows, taken, no_time) == rows.bytes.size());
     CHECK(rows.joints[0].torque_nm == std::vector<double>{7.5, 7.5, 7.5});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the log room: one column of cells into numbers, by AVX2.
+// Internal to the log room: one column of cells into numbers, by vector instructions.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,12 +8,14 @@
 namespace ripplenotch {
 
 /// The cells of one column: cell r lies between before[r * before_stride] and end[r * end_stride] (offsets
-/// into `text` of the character just before and of the one just after it).
+/// into `text` of the character just before and of the one just after it). In a plain column these are
+/// neighbours, end = before + 1 with one stride, and no cell is longer than a lane of the vectors.
 struct CellColumn {
     const char* text = nullptr;
     const std::int32_t *before = nullptr, *end = nullptr;
     std::size_t before_stride = 1, end_stride = 1, rows = 0;
     char decimal_mark = '.';
+    bool plain = false;
 };
 
 /// On its way down a column.
@@ -41,5 +43,9 @@ struct CellCursor {
 /// odd[r] for the others and where it is not sure, and returns whether there was one. 33 bytes before the end
 /// of each cell must be readable.
 bool read_cells_avx2(const CellColumn& column, double* numbers, std::uint8_t* odd);
+bool read_cells_avx512(const CellColumn& column, double* numbers, std::uint8_t* odd);
+
+/// Of one cell with up to 32 characters and 19 digits; false where it is not sure. For processors with AVX2.
+bool read_long_cell(const CellCursor& at, char decimal_mark, double& value);
 
 }  // namespace ripplenotch
