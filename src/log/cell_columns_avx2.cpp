@@ -45,16 +45,17 @@ WITH_AVX2 inline __m256i sixteens(__m256i digits) {
 
 /// Where the marks of two numbers are.
 struct Places {
-    __m256i offset, most, apart, close;
+    __m256i offset, most, spare, close;
     __m128d powers;
 };
 
 WITH_AVX2 inline Places places_of(std::size_t low, std::size_t high, char decimal_mark) {
     Places places;
-    places.apart = halves(cell_masks.apart[low].data(), cell_masks.apart[high].data());
+    const __m256i apart = halves(cell_masks.apart[low].data(), cell_masks.apart[high].data());
+    places.spare = halves(cell_masks.spare[low].data(), cell_masks.spare[high].data());
     places.most = halves(cell_masks.most[low].data(), cell_masks.most[high].data());
     places.close = halves(cell_masks.close[low].data(), cell_masks.close[high].data());
-    places.offset = _mm256_blendv_epi8(_mm256_set1_epi8(decimal_mark), _mm256_set1_epi8('0'), places.apart);
+    places.offset = _mm256_blendv_epi8(_mm256_set1_epi8(decimal_mark), _mm256_set1_epi8('0'), apart);
     places.powers = _mm_set_pd(cell_masks.power[high], cell_masks.power[low]);
     return places;
 }
@@ -83,13 +84,13 @@ WITH_AVX2 inline bool load_pair(const CellCursor& at, Pair& pair) {
     return true;
 }
 
-/// True where every byte that belongs to a number is a digit or the mark in its place, which is one of them.
-/// Leaves the values of the digits.
+/// True where every byte that belongs to a number is a digit, or the mark in its place, and it has what it
+/// needs. Leaves the values of the digits.
 WITH_AVX2 inline bool all_known(const Pair& pair, const Places& places, __m256i& values) {
     const __m256i rest = _mm256_sub_epi8(pair.text, places.offset);
     const __m256i known = _mm256_cmpeq_epi8(_mm256_min_epu8(rest, places.most), rest);
     values = _mm256_and_si256(rest, pair.keep);
-    const __m256i right = _mm256_blendv_epi8(places.apart, known, pair.keep);
+    const __m256i right = _mm256_blendv_epi8(places.spare, known, pair.keep);
     return _mm256_testc_si256(right, _mm256_set1_epi8(-1)) != 0;
 }
 

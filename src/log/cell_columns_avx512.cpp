@@ -73,7 +73,7 @@ WITH_AVX512 inline bool load_quartet(const CellCursor& at, Quartet& quartet) {
     // The first byte of each, so that their sum taken from the ends of the lanes leaves all of them; the last
     // lane's end is bit 64.
     const std::uint64_t first = ((one << 17) >> length_0) + ((one << 33) >> length_1) +
-                                ((one << 49) >> length_2) + ((one << 63) >> (length_3 - 2));
+                                ((one << 49) >> length_2) + ((one << 63) >> ((length_3 - 2) & 63));
     constexpr std::uint64_t lane_ends = (one << 16) + (one << 32) + (one << 48);
     const char* const text = at.text - lane_bytes;
     quartet.text = lanes(text + end_0, text + end_1, text + end_2, text + end_3);

@@ -3,6 +3,7 @@
 // Internal to the log room: what the vectors that read numbers need to know of each length and each place of
 // a decimal mark, made when this is compiled.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +20,8 @@ struct CellMasks {
     alignas(64) std::array<Lane, 17> keep{};   ///< the number
     alignas(16) std::array<Lane, 17> most{};   ///< the greatest value of a byte
     alignas(16) std::array<Lane, 17> apart{};  ///< all but the mark
+    alignas(
+        16) std::array<Lane, 17> spare{};  ///< all that a number may do without: not its mark or last digit
     alignas(16) std::array<Lane, 17> close{};  ///< a shuffle that closes the gap which the mark leaves
     alignas(32) std::array<std::array<std::uint8_t, 32>, 33> keep_long{};  ///< a number in 32 bytes
     alignas(16) std::array<std::array<double, 2>, 4> signs{
@@ -38,6 +41,7 @@ struct CellMasks {
                 keep[at][i] = i >= lane_bytes - at ? 0xFF : 0;
                 most[at][i] = i == at ? 0 : 9;
                 apart[at][i] = i == at ? 0 : 0xFF;
+                spare[at][i] = i == std::min(at, lane_bytes - 1) ? 0 : 0xFF;
                 close[at][i] = at < lane_bytes && i <= at ? from : static_cast<std::uint8_t>(i);
             }
         }
