@@ -10,6 +10,7 @@
 
 #include "log/column_name.hpp"
 #include "log/joint_groups.hpp"
+#include "log/stated_units.hpp"
 #include "log/unit_text.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -38,7 +39,7 @@ class Decision {
         groups_ = layout_detail::group_joints(known(), options_.joint.has_value());
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
         choose_joint();
-        state_units();
+        layout_detail::state_units(layout_, facts_, options_);
         report_repeated_names();
         layout_.options = layout_detail::options_line(layout_, facts_, options_);
         return std::move(layout_);
@@ -176,11 +177,11 @@ class Decision {
         column.role = role;
         column.joint = joint;
         std::string written = names_[c].unit;
-        if (const auto asked = asked_unit(column.name, role)) {
+        if (const auto asked = layout_detail::asked_unit(options_, column.name, role)) {
             const auto usual = usual_unit(*asked, role);
             if (!usual || !role_factor(role, *usual, 1.0)) {
                 raise<UsageError>("--unit: '{}' is no unit of {}; write one of {}", *asked, role_name(role),
-                                  unit_list(role));
+                                  layout_detail::unit_list(role));
             }
             written = *usual;
         }
@@ -198,8 +199,8 @@ class Decision {
         } else if (is_chosen(c)) {
             raise<DataError>(
                 "{}: read {} in '{}', expected a {} in {}; if the header is wrong, say --unit {}={}", source_,
-                column_label(facts_.names, c), written, role_name(role), unit_list(role), role_name(role),
-                base_unit(dimension_of(role)));
+                column_label(facts_.names, c), written, role_name(role), layout_detail::unit_list(role),
+                role_name(role), base_unit(dimension_of(role)));
         } else {
             column.role = Role::other;
             column.joint.clear();
@@ -211,65 +212,6 @@ class Decision {
         return std::any_of(all.begin(), all.end(), [c](const JointColumns& chosen) {
             return chosen.time == c || chosen.velocity == c || chosen.torque == c || chosen.position == c;
         });
-    }
-
-    std::optional<std::string> asked_unit(const std::string& name, Role role) const {
-        for (const std::string& key : {name, std::string(role_name(role))}) {
-            if (const auto found = options_.units.find(key); found != options_.units.end())
-                return found->second;
-        }
-        return std::nullopt;
-    }
-
-    static std::string unit_list(Role role) {
-        std::string list = fmt::format("{}", fmt::join(unit_names(dimension_of(role)), ", "));
-        return role == Role::torque ? list + ", A, mA" : list;
-    }
-
-    // One sentence for all units that nobody stated.
-    void state_units() {
-        std::vector<std::string> taken, asked;
-        std::vector<std::optional<std::size_t>> columns = {layout_.chosen.time};
-        for (const JointColumns& joint : layout_.all_chosen())
-            columns.insert(columns.end(), {joint.velocity, joint.torque, joint.position});
-        for (const auto& column : columns) {
-            if (!column || !layout_.columns[*column].unit_assumed) continue;
-            const Column& c = layout_.columns[*column];
-            taken.push_back(fmt::format("{} as {}", column_label(facts_.names, *column), c.unit));
-            asked.push_back(fmt::format("--unit {}={}", role_name(c.role), c.unit));
-        }
-        if (!taken.empty()) {
-            layout_.warnings.push_back(
-                fmt::format("no unit is stated for what is read: took {}; {} settles it",
-                            fmt::join(taken, ", "), fmt::join(asked, " ")));
-        }
-        for (const auto& [key, unit] : options_.units) require_used_unit(key);
-        const auto torque = layout_.chosen.torque;
-        if (!torque) return;
-        const bool current = is_current_unit(layout_.columns[*torque].unit);
-        if (current && !options_.nm_per_ampere) {
-            layout_.warnings.push_back(
-                fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
-                            "amperes; --kt gives the joint's torque constant in Nm/A",
-                            column_label(facts_.names, *torque)));
-        }
-        if (!current && options_.nm_per_ampere) {
-            layout_.warnings.push_back(fmt::format("--kt has no effect: {} is in {}",
-                                                   column_label(facts_.names, *torque),
-                                                   layout_.columns[*torque].unit));
-        }
-    }
-
-    void require_used_unit(const std::string& key) const {
-        for (const Role role : {Role::time, Role::velocity, Role::torque, Role::position}) {
-            if (key == role_name(role)) return;
-        }
-        for (const Column& column : layout_.columns) {
-            if (column.name == key) return;
-        }
-        raise<UsageError>(
-            "--unit: '{}' is neither a role (time, velocity, torque, position) nor a column of {}", key,
-            source_);
     }
 
     void report_repeated_names() {

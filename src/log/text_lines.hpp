@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The opening of a text log as lines: comments apart from content, what is no text refused.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace ripplenotch {
+
+struct TextLine {
+    std::size_t begin = 0, end = 0;  ///< content, without line end
+    std::size_t next = 0;            ///< offset of the next line
+    std::size_t number = 1;
+    [[nodiscard]] std::string_view of(std::string_view bytes) const {
+        return bytes.substr(begin, end - begin);
+    }
+};
+
+struct TextLines {
+    char line_end = '\n';            ///< '\r' for files of old Macintoshes
+    std::vector<TextLine> comments;  ///< before the first content
+    std::vector<TextLine> content;   ///< neither blank nor comment; never empty
+};
+
+/// `bytes` is the opening of a file, all of it when `whole`. Throws DataError that begins with `source`: for
+/// an empty file, bytes that no text has, UTF-16, a line longer than longest_line, nothing but comments.
+[[nodiscard]] TextLines opening_lines(std::string_view bytes, bool whole, const std::string& source);
+
+}  // namespace ripplenotch
