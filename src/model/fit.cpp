@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/fit_coordinates.hpp"
+#include "model/fit_errors.hpp"
 #include "model/weighing.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -16,9 +17,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-// A column of the scaled Jacobian with less than this of its length outside the others is not told from them.
-constexpr double not_told = 1e-7;
 
 // A point with what has been computed there.
 struct Place {
@@ -177,36 +175,6 @@ void descend(const Problem& problem, Search& search, bool only_linear, const Fit
     }
 }
 
-// By how much each coordinate's error is larger than that of white noise, from the pull of the residual on it
-// in each stretch of the log: stretches that pull the same way again and again are no white noise (the
-// sandwich estimate of Huber and White, over blocks as of Kuensch, 1989). Never below 1. `inverse` belongs to
-// slopes of length 1.
-VectorXd inflation(const MatrixXd& slopes, const Place& place, const VectorXd& scale, const MatrixXd& inverse,
-                   double variance, const Weighing& weighing, std::size_t stretch) {
-    const Index m = slopes.cols();
-    const std::vector<std::size_t>& rows = weighing.rows();
-    MatrixXd spread = MatrixXd::Zero(m, m);
-    Index stretches = 0;
-    for (std::size_t r = 0; r < rows.size();) {
-        VectorXd pull = VectorXd::Zero(m);
-        for (const std::size_t here = rows[r] / stretch; r < rows.size() && rows[r] / stretch == here; ++r)
-            pull += slopes.row(static_cast<Index>(r)).transpose() * place.residual[static_cast<Index>(r)];
-        for (Index c = 0; c < m; ++c) pull[c] = scale[c] > 0.0 ? pull[c] / scale[c] : 0.0;
-        spread += pull * pull.transpose();
-        ++stretches;
-    }
-    VectorXd factor = VectorXd::Ones(m);
-    // The pulls sum to nothing: fewer stretches than this tell little of their spread.
-    if (stretches < 3 * m) return factor;
-    spread *= static_cast<double>(stretches) / static_cast<double>(stretches - m);
-    const MatrixXd robust = inverse * spread * inverse;
-    for (Index c = 0; c < m; ++c) {
-        const double white = variance * inverse(c, c);
-        if (white > 0.0) factor[c] = std::sqrt(std::max(1.0, robust(c, c) / white));
-    }
-    return factor;
-}
-
 // Row by row; -1 for what the log does not tell.
 std::vector<double> covariance_at(const Problem& problem, const Search& search, const Weighing& weighing,
                                   const FitOptions& options) {
@@ -216,35 +184,13 @@ std::vector<double> covariance_at(const Problem& problem, const Search& search, 
     const auto moving = free_to_move(problem, search.place, false);
     if (moving.empty()) return covariance;
     const MatrixXd slopes = problem.slopes(search.place, moving);
-    const Factored factored = factor(slopes, search.place.residual);
-    const double samples = static_cast<double>(weighing.rows().size() - weighing.taken());
-    const Index m = static_cast<Index>(moving.size());
-    const double variance = search.place.residual.squaredNorm() / (samples - static_cast<double>(m));
-    // Small singular values belong to combinations that the log does not tell; what takes part in one is
-    // unknown.
-    const Eigen::JacobiSVD<MatrixXd> svd(factored.triangle, Eigen::ComputeFullV);
-    MatrixXd inverse = MatrixXd::Zero(m, m);
-    VectorXd unknown = VectorXd::Zero(m);
-    for (Index i = 0; i < m; ++i) {
-        const VectorXd direction = svd.matrixV().col(i);
-        const double length = svd.singularValues()[i];
-        if (length < not_told) {
-            unknown += direction.cwiseAbs2();
-        } else {
-            inverse += direction * direction.transpose() / (length * length);
-        }
-    }
-    VectorXd larger = VectorXd::Ones(m);
-    if (options.error_stretch > 0) {
-        larger = inflation(slopes, search.place, factored.scale, inverse, variance, weighing,
-                           options.error_stretch);
-    }
-    for (Index a = 0; a < m; ++a) {
-        for (Index b = 0; b < m; ++b) {
-            if (unknown[a] > 1e-6 || unknown[b] > 1e-6) continue;
-            covariance[moving[static_cast<std::size_t>(a)] * n + moving[static_cast<std::size_t>(b)]] =
-                variance * larger[a] * larger[b] * inverse(a, b) / (factored.scale[a] * factored.scale[b]);
-        }
+    const VectorXd& residual = search.place.residual;
+    const std::size_t m = moving.size();
+    const auto of_moving = covariance_of({slopes.data(), static_cast<std::size_t>(slopes.size())},
+                                         {residual.data(), static_cast<std::size_t>(residual.size())},
+                                         weighing, options.error_stretch);
+    for (std::size_t a = 0; a < m; ++a) {
+        for (std::size_t b = 0; b < m; ++b) covariance[moving[a] * n + moving[b]] = of_moving[a * m + b];
     }
     return covariance;
 }
