@@ -28,6 +28,9 @@ struct Case {
     [[nodiscard]] std::size_t used() const;
 };
 
+/// Root mean square; 0 of no values.
+[[nodiscard]] double rms(const std::vector<double>& values);
+
 [[nodiscard]] Case whole_case(const TraceView& log, Seconds smoothing);
 
 /// The case itself up to this many samples; beyond, stretches spread over it that have about as many.

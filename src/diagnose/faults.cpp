@@ -7,14 +7,11 @@
 #include <cmath>
 #include <map>
 
-#include "ripplenotch/core/number.hpp"
+#include "diagnose/spikes.hpp"
 
 namespace ripplenotch {
 namespace {
 
-// A spike stands this many times the typical deviation about it from its neighbours, and alone.
-constexpr double spike_deviations = 9.0;
-constexpr std::size_t fewest_spikes = 3;
 constexpr std::size_t fewest_clipped = 8;
 constexpr double chance_run = 1e-4;  ///< of a run of equal values in the whole log
 
@@ -27,13 +24,6 @@ Term term_of(std::string_view name, std::initializer_list<std::pair<std::string_
         term.values[*place] = std::clamp(value, described.lower, described.upper);
     }
     return term;
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 // Step of a log that holds few distinct values at equal distances; 0 when it is as good as continuous.
@@ -116,19 +106,7 @@ class Detector {
     }
 
     void dropout(std::vector<Fault>& faults) {
-        const std::size_t n = torque_nm_.size();
-        std::size_t equal = 0, moving = 0;
-        for (std::size_t k = 1; k < n; ++k) {
-            if (std::abs(case_.motion.velocity_deg_s[k]) < 2.0 || case_.use[k] == 0) continue;
-            ++moving;
-            if (torque_nm_[k] == torque_nm_[k - 1]) ++equal;
-        }
-        const double often = std::clamp(
-            static_cast<double>(equal) / static_cast<double>(std::max<std::size_t>(moving, 1)), 1e-3, 0.95);
-        auto run = static_cast<std::size_t>(
-            std::ceil(std::log(chance_run / static_cast<double>(n)) / std::log(often)));
-        // On whole steps a slow torque stays on one: what is held must be long against that.
-        run = std::max<std::size_t>(run, step_nm_ > 0.0 ? 30 : 4);
+        const std::size_t n = torque_nm_.size(), run = unlikely_run();
         std::vector<std::size_t> held;
         std::vector<double> lengths;
         const double usual_deg = step_nm_ > 0.0 ? usual_turn_deg() : 0.0;
@@ -158,32 +136,16 @@ class Detector {
     }
 
     void spikes(std::vector<Fault>& faults) {
-        const auto off = from_neighbours();
-        const auto typical = typical_about(off);
-        const std::size_t n = torque_nm_.size();
+        const std::vector<Spike> found = find_spikes(case_, std::max(usual_nm_, 0.3 * step_nm_));
+        if (found.empty()) return;
         std::vector<std::size_t> hit;
         std::vector<double> sizes;
-        std::size_t far = 0;
-        for (std::size_t k = 2; k + 2 < n; ++k) {
-            // Beside what is held or clipped the torque jumps by nature.
-            const auto spoiled = [&](std::size_t i) { return case_.use[i] == 0; };
-            if (spoiled(k - 2) || spoiled(k - 1) || spoiled(k) || spoiled(k + 1) || spoiled(k + 2)) continue;
-            if (!stands_out(off, typical, k)) continue;
-            // Up to two together; a burst or a ringing has its neighbours out as well.
-            std::size_t out = 0;
-            for (std::size_t i = k >= 8 ? k - 8 : 0; i < std::min(k + 9, n); ++i)
-                out += stands_out(off, typical, i) ? 1U : 0U;
-            if (out > 4) continue;
-            if (!returns(off, k)) continue;
-            hit.push_back(k);
-            sizes.push_back(std::abs(off[k]));
-            far += std::abs(off[k]) > 2.0 * threshold(typical, k) ? 1U : 0U;
+        for (const Spike& spike : found) {
+            hit.push_back(spike.sample);
+            sizes.push_back(spike.size_nm);
         }
-        // Spikes stand apart from the noise; heavy tails go on from it.
-        if (hit.size() < fewest_spikes || 2 * far < hit.size()) return;
-        Fault fault{term_of("spikes", {{"rate_percent",
-                                        100.0 * static_cast<double>(hit.size()) / static_cast<double>(n)},
-                                       {"size_nm", median(sizes)}}),
+        const double per_sample = static_cast<double>(hit.size()) / static_cast<double>(torque_nm_.size());
+        Fault fault{term_of("spikes", {{"rate_percent", 100.0 * per_sample}, {"size_nm", median(sizes)}}),
                     hit.size(),
                     {},
                     {}};
@@ -194,6 +156,23 @@ class Detector {
     }
 
   private:
+    // Repeats in a row that chance hardly makes while the joint moves.
+    [[nodiscard]] std::size_t unlikely_run() const {
+        const std::size_t n = torque_nm_.size();
+        std::size_t equal = 0, moving = 0;
+        for (std::size_t k = 1; k < n; ++k) {
+            if (std::abs(case_.motion.velocity_deg_s[k]) < 2.0 || case_.use[k] == 0) continue;
+            ++moving;
+            if (torque_nm_[k] == torque_nm_[k - 1]) ++equal;
+        }
+        const double often = std::clamp(
+            static_cast<double>(equal) / static_cast<double>(std::max<std::size_t>(moving, 1)), 1e-3, 0.95);
+        const auto run = static_cast<std::size_t>(
+            std::ceil(std::log(chance_run / static_cast<double>(n)) / std::log(often)));
+        // On whole steps a slow torque stays on one: what is held must be long against that.
+        return std::max<std::size_t>(run, step_nm_ > 0.0 ? 30 : 4);
+    }
+
     // First sample from k on that differs from the one before it.
     [[nodiscard]] std::size_t end_of_run(std::size_t k) const {
         while (k < torque_nm_.size() && torque_nm_[k] == torque_nm_[k - 1] && case_.use[k] != 0) ++k;
@@ -220,62 +199,6 @@ class Detector {
     }
 
     static std::string rounded(double value) { return fmt::format("{:.3g}", value); }
-
-    [[nodiscard]] double threshold(const std::vector<double>& typical, std::size_t k) const {
-        return spike_deviations * std::max({typical[k], usual_nm_, 0.3 * step_nm_});
-    }
-    [[nodiscard]] bool stands_out(const std::vector<double>& off, const std::vector<double>& typical,
-                                  std::size_t k) const {
-        return std::abs(off[k]) > threshold(typical, k);
-    }
-
-    // After a spike the torque is where it was; after a step it is not. Of two samples to either side one may
-    // be a spike itself.
-    [[nodiscard]] bool returns(const std::vector<double>& off, std::size_t k) const {
-        const double size = std::abs(off[k]);
-        for (const std::size_t before : {k - 1, k - 2}) {
-            for (const std::size_t after : {k + 1, k + 2}) {
-                if (std::abs(torque_nm_[before] - torque_nm_[after]) < 0.4 * size &&
-                    std::abs(torque_nm_[k] - torque_nm_[before]) > 0.7 * size)
-                    return true;
-            }
-        }
-        return false;
-    }
-
-    // Each sample less what its two neighbours to either side let expect: their median, or the cubic through
-    // them, whichever it is nearer to. A step is near the one, a fast swing near the other.
-    [[nodiscard]] std::vector<double> from_neighbours() const {
-        std::vector<double> off(torque_nm_.size(), 0.0);
-        for (std::size_t k = 2; k + 2 < torque_nm_.size(); ++k) {
-            double four[] = {torque_nm_[k - 2], torque_nm_[k - 1], torque_nm_[k + 1], torque_nm_[k + 2]};
-            const double cubic = torque_nm_[k] - (4.0 * (four[1] + four[2]) - four[0] - four[3]) / 6.0;
-            std::sort(std::begin(four), std::end(four));
-            const double median_off = torque_nm_[k] - 0.5 * (four[1] + four[2]);
-            off[k] = std::abs(cubic) < std::abs(median_off) ? cubic : median_off;
-        }
-        return off;
-    }
-
-    // Typical size over a fifth of a second about each sample.
-    [[nodiscard]] std::vector<double> typical_about(const std::vector<double>& off) const {
-        const auto block =
-            std::max<std::size_t>(20, static_cast<std::size_t>(0.1 * case_.motion.sample_rate.value()));
-        std::vector<double> blocks;
-        for (std::size_t first = 0; first < off.size(); first += block) {
-            std::vector<double> part;
-            for (std::size_t k = first; k < std::min(first + block, off.size()); ++k)
-                if (case_.use[k] != 0) part.push_back(std::abs(off[k]));
-            blocks.push_back(1.4826 * median(part));
-        }
-        std::vector<double> typical(off.size());
-        for (std::size_t k = 0; k < off.size(); ++k) {
-            const std::size_t b = k / block;
-            typical[k] =
-                std::max({blocks[b], blocks[b > 0 ? b - 1 : 0], blocks[std::min(b + 1, blocks.size() - 1)]});
-        }
-        return typical;
-    }
 
     void spoil(Fault& fault, const std::vector<std::size_t>& samples) {
         const auto& time_s = case_.motion.time_s;

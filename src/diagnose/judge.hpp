@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "diagnose/doubt.hpp"
 #include "diagnose/screening.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
@@ -15,11 +16,6 @@ namespace ripplenotch {
 [[nodiscard]] std::vector<Finding> judge(const Bench& bench, const Candidate& model, std::size_t own_terms,
                                          std::span<const Effect* const> effects,
                                          const std::vector<Leftover>& unexplained);
-
-/// True for findings that are named, alone or as one side of a tie.
-[[nodiscard]] bool is_trusted(const Finding& finding);
-/// True for findings that are told and not believed: they are not in the improved model.
-[[nodiscard]] bool is_doubtful(const Finding& finding);
 
 /// The model without findings that are in doubt. Those that stay are looked at once more without these:
 /// beside a surrogate of its own domain a finding may look right that does not by itself.

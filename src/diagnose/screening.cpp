@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "diagnose/lines.hpp"
+#include "diagnose/search_starts.hpp"
 #include "model/fit_coordinates.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
@@ -38,31 +38,6 @@ MatrixXd orthonormal(const std::vector<VectorXd>& columns, Index rows) {
         if (column.norm() > 1e-7 * length) basis.col(kept++) = column.normalized();
     }
     return basis.leftCols(kept);
-}
-
-// What the whole residual shows: lines finer than a thinned log resolves.
-struct Hints {
-    std::vector<double> tones_hz, orders;
-    GearRatio ratio;
-    RatioCandidates ratios;
-};
-
-Hints hints_of(const Bench& bench, const Model& stated) {
-    Hints hints;
-    hints.tones_hz = strongest_tones_hz(bench.looked_at(), bench.raw_residual(stated), 3);
-    hints.ratio = stated.gear_ratio;
-    Motion scratch;
-    Model without_ripple = stated;
-    for (const Term& term : stated.terms) {
-        if (term.effect->ripple_order) hints.orders.push_back(values_of(term)[*term.effect->ripple_order]);
-        if (term.effect->change_motion != nullptr)
-            term.effect->change_motion(values_of(term), scratch, hints.ratio);
-    }
-    std::erase_if(without_ripple.terms,
-                  [](const Term& term) { return term.effect->ripple_order.has_value(); });
-    hints.ratios = likely_ratios(bench.looked_at(), bench.raw_residual(without_ripple), hints.orders,
-                                 hints.ratio.value(), 3);
-    return hints;
 }
 
 // A joint has one delay, one lag, one gear ratio, and ripple grows with the speed in one way: what a second
@@ -107,7 +82,7 @@ class Screening {
 
     [[nodiscard]] std::optional<Trial> best(const Effect& effect, std::size_t effects) const {
         double cells = 1.0;
-        const auto starts = starts_of(effect, cells);
+        const auto starts = starts_of(effect, hints_, samples_, cells);
         std::optional<Trial> best;
         for (const Term& start : starts) {
             if (is_there_already(start, model_)) continue;
@@ -162,62 +137,6 @@ class Screening {
     }
 
     [[nodiscard]] VectorXd counted(const VectorXd& column) const { return column.cwiseProduct(counts_); }
-
-    [[nodiscard]] std::vector<double> tried(const Effect& effect, std::size_t p, double& cells) const {
-        const Parameter& parameter = effect.parameters[p];
-        std::vector<double> values(parameter.tried.begin(), parameter.tried.end());
-        if (values.empty() && parameter.hint != Hint::tones) values.push_back(parameter.start);
-        cells *= static_cast<double>(std::max<std::size_t>(values.size(), 1));
-        if (parameter.hint == Hint::ripple_orders && hints_.orders.size() > 1) {
-            values.insert(values.end(), hints_.orders.begin(), hints_.orders.end());
-            cells *= static_cast<double>(values.size());
-        }
-        if (parameter.hint == Hint::tones) {
-            values = hints_.tones_hz;
-            cells *= samples_ / 2.0;
-        }
-        if (parameter.hint == Hint::gear_ratios && !hints_.ratios.ratios.empty()) {
-            cells += hints_.ratios.compared;
-            for (const double ratio : hints_.ratios.ratios)
-                values.push_back(value_for_ratio(effect, p, ratio));
-        }
-        std::erase_if(values, [&](double value) { return !allows(parameter, value); });
-        return values;
-    }
-
-    // The value of the parameter that makes the ratio: the ratio is affine in it.
-    [[nodiscard]] double value_for_ratio(const Effect& effect, std::size_t p, double wanted) const {
-        std::vector<double> values;
-        for (const Parameter& parameter : effect.parameters) values.push_back(parameter.neutral);
-        Motion scratch;
-        GearRatio at_neutral = hints_.ratio, at_next = hints_.ratio;
-        effect.change_motion(values, scratch, at_neutral);
-        values[p] += 1.0;
-        effect.change_motion(values, scratch, at_next);
-        const double slope = at_next.value() - at_neutral.value();
-        return effect.parameters[p].neutral + (wanted - at_neutral.value()) / slope;
-    }
-
-    [[nodiscard]] std::vector<Term> starts_of(const Effect& effect, double& cells) const {
-        std::vector<Term> starts{{&effect, {}}};
-        for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
-            const Parameter& parameter = effect.parameters[p];
-            const bool phase = effect.polar && p == effect.polar->phase;
-            std::vector<double> values{parameter.linear || phase ? parameter.start : parameter.neutral};
-            if (!parameter.linear && !phase) values = tried(effect, p, cells);
-            std::vector<Term> more;
-            for (const Term& start : starts) {
-                for (const double value : values) {
-                    more.push_back(start);
-                    more.back().values.emplace_back(value);
-                }
-            }
-            starts = std::move(more);
-        }
-        // A ripple effect of the very order that the model has already tells nothing new, but a screening
-        // finds that out by itself.
-        return starts;
-    }
 
     // Fall of the sum of squares, in Nm^2, of the thinned log.
     [[nodiscard]] double gain_of(const Term& start) const {
