@@ -8,6 +8,7 @@
 
 #include "analysis/envelope_kernel.hpp"
 #include "analysis/envelope_solver.hpp"
+#include "analysis/line_separation.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -20,10 +21,8 @@ constexpr double rows_per_width = 8.0;
 constexpr double shortest_run = 1.5;   ///< in 1/bandwidth
 constexpr double widest_share = 0.25;  ///< of the sample rate
 constexpr double worst_condition = 1e13;
-constexpr double trend_widths = 4.0;    ///< the trend's bandwidth over a line's
-constexpr double fewest_cycles = 1.0;   ///< of a line within 1/bandwidth, or it is one with its mirror image
-constexpr double near_share = 0.5;      ///< lines closer than this share of the bandwidth ...
-constexpr std::size_t near_widths = 8;  ///< ... for most of so many times 1/bandwidth are one
+constexpr double trend_widths = 4.0;   ///< the trend's bandwidth over a line's
+constexpr double fewest_cycles = 1.0;  ///< of a line within 1/bandwidth, or it is one with its mirror image
 constexpr double gap_steps = 10.0;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -53,39 +52,6 @@ std::vector<double> cycles_at_points(const EnvelopeGrid& grid, std::span<const d
         at[j] = cycles[k] + share * (cycles[k + 1] - cycles[k]);
     }
     return at;
-}
-
-/// True at the points around which a line turns by fewer than `fewest` cycles within `width` points.
-std::vector<bool> stands(const std::vector<double>& cycles, std::size_t width, double fewest) {
-    std::vector<double> travelled(cycles.size(), 0.0);
-    for (std::size_t j = 1; j < cycles.size(); ++j) {
-        travelled[j] = travelled[j - 1] + std::abs(cycles[j] - cycles[j - 1]);
-    }
-    std::vector<bool> still(cycles.size());
-    for (std::size_t j = 0; j < cycles.size(); ++j) {
-        const std::size_t from = std::min(j > width / 2 ? j - width / 2 : 0, cycles.size() - 1 - width);
-        still[j] = travelled[from + width] - travelled[from] < fewest;
-    }
-    return still;
-}
-
-/// True at the points around which two lines stay together. They may cross: what each is before and after
-/// tells them apart while they do.
-std::vector<bool> stay_together(const std::vector<double>& apart_cycles, std::size_t width) {
-    const std::size_t n = apart_cycles.size(), reach = std::max<std::size_t>(1, width / 16);
-    std::vector<std::size_t> near(n + 1, 0);  // how many points before this one are near
-    for (std::size_t j = 0; j < n; ++j) {
-        const std::size_t from = j > reach ? j - reach : 0, to = std::min(j + reach, n - 1);
-        const double rate = std::abs(apart_cycles[to] - apart_cycles[from]) / static_cast<double>(to - from);
-        near[j + 1] = near[j] + (rate * static_cast<double>(width) < near_share ? 1 : 0);
-    }
-    const std::size_t window = std::min(near_widths * width, n);
-    std::vector<bool> together(n);
-    for (std::size_t j = 0; j < n; ++j) {
-        const std::size_t from = std::min(j > window / 2 ? j - window / 2 : 0, n - window);
-        together[j] = 2 * (near[from + window] - near[from]) > window;
-    }
-    return together;
 }
 
 /// One run: solved, written into the per-sample results, its rows appended.
@@ -126,7 +92,7 @@ class RunTracker {
         const std::size_t lines = signal_.lines.size();
         std::vector<std::vector<double>> cycles(lines);
         for (std::size_t i = 0; i < lines; ++i) cycles[i] = line_cycles(signal_.lines[i]);
-        const auto unknown = unseparated(cycles, width, settings_.trend ? trend_widths : fewest_cycles);
+        const auto unknown = not_separable(cycles, width, settings_.trend ? trend_widths : fewest_cycles);
         const double end = time_s_.back();
         for (std::size_t j = 0; j < grid_.points; j += stride) {
             const double t = grid_.start_s + grid_.step_s * static_cast<double>(j);
@@ -153,26 +119,6 @@ class RunTracker {
         std::vector<double> turned(run_.size());
         for (std::size_t k = 0; k < run_.size(); ++k) turned[k] = line.order * line.turns[run_.first + k];
         return cycles_at_points(grid_, time_s_, turned);
-    }
-
-    /// Per line and point: cannot be told from the trend or from another line there.
-    [[nodiscard]] static std::vector<std::vector<bool>> unseparated(
-        const std::vector<std::vector<double>>& cycles, std::size_t width, double fewest) {
-        std::vector<std::vector<bool>> unknown;
-        for (const auto& line : cycles) unknown.push_back(stands(line, width, fewest));
-        for (std::size_t i = 0; i < cycles.size(); ++i) {
-            for (std::size_t other = 0; other < i; ++other) {
-                for (const double sign : {-1.0, 1.0}) {  // a real line is a pair of turning ones
-                    std::vector<double> between(cycles[i]);
-                    for (std::size_t j = 0; j < between.size(); ++j) between[j] += sign * cycles[other][j];
-                    const auto still = stay_together(between, width);
-                    for (std::size_t j = 0; j < still.size(); ++j) {
-                        if (still[j]) unknown[i][j] = unknown[other][j] = true;
-                    }
-                }
-            }
-        }
-        return unknown;
     }
 
     [[nodiscard]] double rate_at(const std::vector<double>& cycles, std::size_t j, std::size_t width) const {

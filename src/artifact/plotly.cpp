@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "artifact/plotly_lines.hpp"
 #include "artifact/plotly_traces.hpp"
 #include "figure/gnuplot_script.hpp"
 #include "figure/page_layout.hpp"
@@ -11,9 +12,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double plot_px = 780.0;  // a page's width less the margins; narrower screens scale it
 constexpr double left_margin_px = 84.0, tool_bar_px = 34.0;
-constexpr double panel_px = 240.0, axis_px = 56.0, row_px = 24.0;
+constexpr double axis_px = 56.0, row_px = 24.0;
 
 // One panel of the figure; axes are numbered from 1, and 1 is written without its number.
 class PlotlyPanel {
@@ -23,6 +23,7 @@ class PlotlyPanel {
           suffix_(number == 1 ? "" : std::to_string(number)),
           x_(x_range(panel)),
           y_(y_range(panel)),
+          lines_(panel, suffix_),
           data_(data),
           layout_(layout) {}
 
@@ -46,7 +47,7 @@ class PlotlyPanel {
         }
         for (const Curve& curve : panel_.curves)
             data_.push_back(curve_trace(trace("scatter", curve.name), panel_, curve));
-        lines();
+        lines_.write(layout_);
         if (!panel_.title.empty()) {
             layout_["annotations"].push_back({{"text", title_text()},
                                               {"xref", "paper"},
@@ -54,7 +55,7 @@ class PlotlyPanel {
                                               {"x", 0},
                                               {"xshift", 12.0 - left_margin_px},
                                               {"align", "left"},
-                                              {"y", top + (names_px(true) + 6.0) / total_px},
+                                              {"y", top + (lines_.names_px(true) + 6.0) / total_px},
                                               {"xanchor", "left"},
                                               {"yanchor", "bottom"},
                                               {"showarrow", false},
@@ -66,22 +67,13 @@ class PlotlyPanel {
     }
 
     /// Space for the names of lines above the panel, or right of it.
-    [[nodiscard]] double names_px(bool on_top) const {
-        double longest = 0.0;
-        for (const NamedLine& line : panel_.lines) {
-            Segment s{};
-            if (line.name.empty() || !segment_of(line, x_, y_, s) || on_top != leaves_on_top(line, s))
-                continue;
-            longest = std::max(longest, small_letter_px * static_cast<double>(text_width(shown_name(line))));
-        }
-        return longest > 0.0 ? longest + 22.0 : 0.0;
-    }
+    [[nodiscard]] double names_px(bool on_top) const { return lines_.names_px(on_top); }
     [[nodiscard]] double height_px() const {
         const double rows = panel_.legend ? static_cast<double>(legend_rows()) : 0.0;
-        return names_px(true) + panel_px * panel_.height + axis_px + row_px * rows + 46.0;
+        return lines_.names_px(true) + panel_px * panel_.height + axis_px + row_px * rows + 46.0;
     }
     [[nodiscard]] double above_px() const {
-        return names_px(true) + 12.0 + 18.0 * static_cast<double>(title_lines().size());
+        return lines_.names_px(true) + 12.0 + 18.0 * static_cast<double>(title_lines().size());
     }
 
   private:
@@ -99,12 +91,6 @@ class PlotlyPanel {
         std::string text;
         for (const std::string& line : lines) text += (text.empty() ? "" : "<br>") + plotly_shown(line);
         return text;
-    }
-    static std::string shown_name(const NamedLine& line) { return cut_to(visible_text(line.name), 44); }
-    [[nodiscard]] bool leaves_on_top(const NamedLine& line, const Segment& s) const {
-        if (line.run == NamedLine::Run::at_x) return true;
-        return line.run == NamedLine::Run::ray && s.y1 >= y_.to - 1e-9 * (y_.to - y_.from) &&
-               s.x1 < x_.to - 1e-9 * (x_.to - x_.from);
     }
     [[nodiscard]] std::size_t legend_rows() const {
         double px = 0.0;
@@ -167,86 +153,10 @@ class PlotlyPanel {
                                           {"font", {{"size", 11}, {"color", "#444"}}}});
     }
 
-    // The lines themselves, and their names pushed off each other at the edge where they leave.
-    void lines() {
-        for (const bool on_top : {true, false}) {
-            std::vector<const NamedLine*> named;
-            std::vector<Segment> segments;
-            std::vector<double> wanted;
-            for (const NamedLine& line : panel_.lines) {
-                Segment s{};
-                if (!segment_of(line, x_, y_, s) || on_top != leaves_on_top(line, s)) continue;
-                draw(line, s);
-                if (line.name.empty()) continue;
-                named.push_back(&line);
-                segments.push_back(s);
-                wanted.push_back(on_top ? plot_px * share_along(x_, panel_.x.scale, s.x1)
-                                        : panel_px * panel_.height *
-                                              (1.0 - share_along(y_, panel_.y.scale, s.y1)));
-            }
-            const auto placed = pushed_apart(wanted, 16.0, 0.0, on_top ? plot_px : panel_px * panel_.height);
-            for (std::size_t i = 0; i < named.size(); ++i)
-                label(*named[i], segments[i], on_top, placed[i] - wanted[i]);
-        }
-    }
-
-    void draw(const NamedLine& line, const Segment& s) {
-        layout_["shapes"].push_back({{"type", "line"},
-                                     {"layer", panel_.map ? "above" : "below"},
-                                     {"xref", "x" + suffix_},
-                                     {"yref", "y" + suffix_},
-                                     {"x0", plotly_number(s.x0)},
-                                     {"y0", plotly_number(s.y0)},
-                                     {"x1", plotly_number(s.x1)},
-                                     {"y1", plotly_number(s.y1)},
-                                     {"line",
-                                      {{"color", panel_.map ? "#ffffffb0" : ink_rgb(line.ink)},
-                                       {"width", 1},
-                                       {"dash", line.dashed && !panel_.map ? "dash" : "solid"}}}});
-    }
-
-    // The name stands off its line's end by `push_px`; a leader ties them together.
-    void label(const NamedLine& line, const Segment& s, bool on_top, double push_px) {
-        const std::string x = "x" + suffix_, y = "y" + suffix_;
-        const bool log = (on_top ? panel_.x : panel_.y).scale == PlotScale::logarithmic;
-        const double where = on_top ? s.x1 : s.y1;
-        const bool inside = panel_.map && !on_top;
-        Json note{{"text", plotly_shown(shown_name(line))},
-                  {"showarrow", false},
-                  {"font", {{"size", 11}, {"color", inside ? "#ffffff" : "#1b1b1b"}}},
-                  {"xref", on_top ? x : x + " domain"},
-                  {"yref", on_top ? y + " domain" : y},
-                  {"x", on_top ? plotly_number(log ? std::log10(where) : where) : Json(1)},
-                  {"y", on_top ? Json(1) : plotly_number(log ? std::log10(where) : where)},
-                  {"xanchor", on_top   ? "center"
-                              : inside ? "right"
-                                       : "left"},
-                  {"yanchor", on_top || inside ? "bottom" : "middle"},
-                  {"xshift", on_top   ? push_px
-                             : inside ? -2.0
-                                      : 14.0},
-                  {"yshift", on_top ? 12.0 : -push_px},
-                  {"textangle", on_top ? -90 : 0}};
-        if (inside) note["bgcolor"] = "#08112fb0";
-        layout_["annotations"].push_back(std::move(note));
-        if (inside) return;
-        layout_["shapes"].push_back({{"type", "line"},
-                                     {"xref", on_top ? x : x + " domain"},
-                                     {"yref", on_top ? y + " domain" : y},
-                                     {"xsizemode", "pixel"},
-                                     {"ysizemode", "pixel"},
-                                     {"xanchor", on_top ? plotly_number(where) : Json(1)},
-                                     {"yanchor", on_top ? Json(1) : plotly_number(where)},
-                                     {"x0", 0},
-                                     {"y0", 0},
-                                     {"x1", on_top ? push_px : 11.0},
-                                     {"y1", on_top ? 11.0 : -push_px},
-                                     {"line", {{"color", "#888"}, {"width", 0.7}}}});
-    }
-
     const Panel& panel_;
     std::string suffix_;
     PlotRange x_, y_;
+    PlotlyLines lines_;
     Json& data_;
     Json& layout_;
 };

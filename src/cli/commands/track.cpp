@@ -10,6 +10,7 @@
 #include "cli/command.hpp"
 #include "cli/joint_facts.hpp"
 #include "cli/plot_request.hpp"
+#include "cli/track_words.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/vold_kalman.hpp"
 #include "ripplenotch/artifact/track.hpp"
@@ -148,49 +149,6 @@ void track_by_vold_kalman(const Request& request, const Prepared& prepared, Trac
     report.tracks = std::move(found.tracks);
 }
 
-std::vector<std::string> warnings_of(const TrackReport& report) {
-    const OrderTracks& tracks = report.tracks;
-    std::vector<std::string> warnings;
-    if (!report.angle_from_position) {
-        warnings.emplace_back(
-            "no usable position: the angle is integrated velocity, and phases count from the first sample");
-    }
-    if (tracks.windows_too_slow > 0) {
-        warnings.push_back(
-            fmt::format("{} windows left out: slower than {} turns in 2 s; --window gives them in seconds",
-                        tracks.windows_too_slow, shortest(report.window_turns.value_or(0.0))));
-    }
-    if (tracks.windows_too_few_samples > 0) {
-        warnings.push_back(
-            fmt::format("{} windows left out: too few samples for so many lines; use a longer window",
-                        tracks.windows_too_few_samples));
-    }
-    if (tracks.rows_not_separable > 0) {
-        warnings.push_back(
-            fmt::format("{} rows where lines cannot be told apart from each other or from the trend are {}",
-                        tracks.rows_not_separable, report.method == "ls" ? "left out" : "nan or left out"));
-    }
-    if (tracks.rows_folded > 0) {
-        warnings.push_back(
-            fmt::format("in {} rows a line lies above half the sample rate: its amplitude is what a "
-                        "low-pass before the sampling left of it",
-                        tracks.rows_folded));
-    }
-    return warnings;
-}
-
-std::string why_none(const TrackReport& report) {
-    if (report.bandwidth) {
-        return fmt::format(
-            "no line anywhere turns faster than four times the bandwidth of {} Hz, apart from the others",
-            shortest(report.bandwidth->value()));
-    }
-    const std::string window = report.window ? shortest(report.window->value()) + " s"
-                                             : shortest(report.window_turns.value_or(0.0)) + " turns";
-    return fmt::format("the joint nowhere moves in one direction for a window of {}, or for half of one",
-                       window);
-}
-
 void write_columns(const Request& request, const LogFormat& format, const TrackReport& report) {
     std::vector<NumberColumn> columns;
     for (TrackColumn& column : track_columns(report))
@@ -214,6 +172,24 @@ Figure figure_of(const Request& request, const TrackReport& report) {
     return figure;
 }
 
+TrackReport report_of(const Request& request, const Prepared& prepared, const std::string& joint) {
+    TrackReport report;
+    report.joint = joint;
+    report.method = request.method;
+    report.kind = request.amplitude == "rms"            ? AmplitudeKind::rms
+                  : request.amplitude == "peak-to-peak" ? AmplitudeKind::peak_to_peak
+                                                        : AmplitudeKind::peak;
+    if (request.gear_ratio) report.gear_ratio = GearRatio(*request.gear_ratio);
+    report.angle_from_position = prepared.angle.absolute;
+    report.labels = prepared.labels;
+    try {
+        (by_vold_kalman(request) ? track_by_vold_kalman : track_by_least_squares)(request, prepared, report);
+    } catch (const DataError& error) {  // the library knows no file
+        raise<DataError>("{}: {}", request.path, error.what());
+    }
+    return report;
+}
+
 ExitCode run(Request& request, const std::string& command_line) {
     check(request);
     check_plot(request.plot, request.common);
@@ -227,24 +203,10 @@ ExitCode run(Request& request, const std::string& command_line) {
     provenance.inputs.back().rows = log.trace.size();
 
     const auto prepared = prepare(request, log.trace.view());
-    TrackReport report;
-    report.joint = log.trace.joint;
-    report.method = request.method;
-    report.kind = request.amplitude == "rms"            ? AmplitudeKind::rms
-                  : request.amplitude == "peak-to-peak" ? AmplitudeKind::peak_to_peak
-                                                        : AmplitudeKind::peak;
-    if (request.gear_ratio) report.gear_ratio = GearRatio(*request.gear_ratio);
-    report.angle_from_position = prepared->angle.absolute;
-    report.labels = prepared->labels;
-    try {
-        (by_vold_kalman(request) ? track_by_vold_kalman : track_by_least_squares)(request, *prepared, report);
-    } catch (const DataError& error) {  // the library knows no file
-        raise<DataError>("{}: {}", request.path, error.what());
-    }
-    const auto warnings = warnings_of(report);
-    say_warnings(request.common, warnings);
+    TrackReport report = report_of(request, *prepared, log.trace.joint);
+    say_warnings(request.common, track_warnings(report));
     if (report.tracks.time_s.empty())
-        raise<DataError>("{}: no row could be measured: {}", request.path, why_none(report));
+        raise<DataError>("{}: no row could be measured: {}", request.path, why_nothing_tracked(report));
     if (request.against == "speed")
         report.by_speed = gather_by_speed(report.tracks, request.speed_step.value_or(DegPerSec(0.0)));
     if (request.common.json) {
