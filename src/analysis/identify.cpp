@@ -49,11 +49,8 @@ bool has_order(const std::vector<Reported>& reported) {
     });
 }
 
-}  // namespace
-
-Identification identify(std::span<const TraceView> logs, const IdentifyOptions& options) {
-    Identification result;
-    Looked looked;
+/// Mean over the logs, weighed by their durations. Throws DataError for a log with too few samples.
+Hertz mean_sample_rate(std::span<const TraceView> logs) {
     double seconds = 0.0, samples = 0.0;
     for (const TraceView& log : logs) {
         if (log.size() < fewest_identify_samples) {
@@ -63,8 +60,50 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
         seconds += static_cast<double>(log.size()) / log.sample_rate.value();
         samples += static_cast<double>(log.size());
     }
-    result.sample_rate = Hertz(seconds > 0.0 ? samples / seconds : 0.0);
+    return Hertz(seconds > 0.0 ? samples / seconds : 0.0);
+}
 
+MotionLines motion_lines_of(std::span<const TraceView> logs, const IdentifyOptions& options,
+                            double false_alarm, bool nothing_steady_moves) {
+    MotionLinesOptions motion;
+    motion.false_alarm = false_alarm;
+    MotionLines found = find_motion_lines(logs, motion);
+    if (found.sweeps > 0 || !nothing_steady_moves) return found;
+    motion = short_log_options();
+    motion.false_alarm = options.false_alarm;  // nothing else has been asked yet
+    return find_motion_lines(logs, motion);
+}
+
+/// Where the motion cannot tell either, the stretches' own figures are the sharper ones.
+bool motion_tells_more(const MotionLines& motion, const std::vector<Reported>& reported) {
+    const bool motion_tells =
+        std::any_of(motion.lines.begin(), motion.lines.end(),
+                    [](const MotionLine& line) { return line.kind == LineKind::order; });
+    const bool any_unknown = std::any_of(reported.begin(), reported.end(),
+                                         [](const Reported& r) { return r.line.kind == LineKind::unknown; });
+    return motion.sweeps > 0 && (motion_tells || !any_unknown);
+}
+
+/// Tones of the steady stretches stay; what was unknown there is what the motion now explains.
+void add_motion_lines(const MotionLines& motion, const IdentifyOptions& options, Hertz sample_rate,
+                      std::vector<Reported>& reported) {
+    std::erase_if(reported, [](const Reported& r) { return r.line.kind != LineKind::tone; });
+    for (std::size_t i = 0; i < motion.lines.size(); ++i) {
+        const MotionLine& line = motion.lines[i];
+        const bool known = line.kind == LineKind::tone &&
+                           std::any_of(reported.begin(), reported.end(), [&](const Reported& r) {
+                               return std::abs(*r.line.hz - line.hz) < 4.0 * line.hz_stderr + 0.5;
+                           });
+        if (!known) reported.push_back(from_motion(motion, i, options, sample_rate.value()));
+    }
+}
+
+}  // namespace
+
+Identification identify(std::span<const TraceView> logs, const IdentifyOptions& options) {
+    Identification result;
+    Looked looked;
+    result.sample_rate = mean_sample_rate(logs);
     std::vector<Reported> reported;
     using Evidence = IdentifyOptions::Evidence;
     // Automatic asks twice, so each way has half of the false alarms allowed.
@@ -76,38 +115,12 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
             reported.push_back(from_steady(logs, *looked.steady, line, options));
         result.evidence = "steady stretches";
     }
-    const bool steady_suffices = has_order(reported);
-    if (options.evidence != Evidence::steady && !steady_suffices) {
-        MotionLinesOptions motion;
-        motion.false_alarm = false_alarm;
-        looked.motion = find_motion_lines(logs, motion);
-        if (looked.motion->sweeps == 0 && (!looked.steady || looked.steady->moving == 0)) {
-            motion = short_log_options();
-            motion.false_alarm = options.false_alarm;  // nothing else has been asked yet
-            looked.motion = find_motion_lines(logs, motion);
-        }
-        // Where the motion cannot tell either, the stretches' own figures are the sharper ones.
-        const bool motion_tells =
-            std::any_of(looked.motion->lines.begin(), looked.motion->lines.end(),
-                        [](const MotionLine& line) { return line.kind == LineKind::order; });
-        const bool any_unknown = std::any_of(reported.begin(), reported.end(), [](const Reported& r) {
-            return r.line.kind == LineKind::unknown;
-        });
-        if (looked.motion->sweeps > 0 && (motion_tells || !any_unknown)) {
-            // Tones of the steady stretches stay; what was unknown there is what the motion now explains.
-            std::erase_if(reported, [](const Reported& r) { return r.line.kind != LineKind::tone; });
-            for (std::size_t i = 0; i < looked.motion->lines.size(); ++i) {
-                const MotionLine& line = looked.motion->lines[i];
-                const bool known = line.kind == LineKind::tone &&
-                                   std::any_of(reported.begin(), reported.end(), [&](const Reported& r) {
-                                       return std::abs(*r.line.hz - line.hz) < 4.0 * line.hz_stderr + 0.5;
-                                   });
-                if (!known)
-                    reported.push_back(from_motion(*looked.motion, i, options, result.sample_rate.value()));
-            }
-            result.evidence = result.evidence.empty() || looked.steady->moving == 0
-                                  ? "order spectrum"
-                                  : "steady stretches and order spectrum";
+    if (options.evidence != Evidence::steady && !has_order(reported)) {
+        const bool nothing_steady_moves = !looked.steady || looked.steady->moving == 0;
+        looked.motion = motion_lines_of(logs, options, false_alarm, nothing_steady_moves);
+        if (motion_tells_more(*looked.motion, reported)) {
+            add_motion_lines(*looked.motion, options, result.sample_rate, reported);
+            result.evidence = nothing_steady_moves ? "order spectrum" : "steady stretches and order spectrum";
         }
     }
     const bool clock_in_doubt =

@@ -142,6 +142,80 @@ LineKind judged(const std::vector<Sweep>& sweeps, const Stack& angle, const Stac
     return by_angle ? LineKind::order : LineKind::tone;
 }
 
+// The sweeps in both domains, after what has been found so far was taken out of them.
+struct Stacks {
+    Stack angle, time;
+};
+
+Stacks stacked(const std::vector<Sweep>& sweeps, const MotionLinesOptions& options) {
+    return {stack_sweeps(sweeps, Axis::angle, options.stack),
+            stack_sweeps(sweeps, Axis::time, options.stack)};
+}
+
+// One line looked for: where it stands in both domains, as far as it stands there.
+struct Sought {
+    MotionLine line;
+    Rivals rivals;
+    bool by_angle = false;  ///< the domain in which it was seen first
+    double seen_at = 0.0;   ///< in that domain
+};
+
+std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stacks, const SpeedRange& range,
+                           const std::vector<double>& taken_orders, const std::vector<double>& taken_hz,
+                           const MotionLinesOptions& options) {
+    const auto& [angle, time] = stacks;
+    const double false_alarm = 0.5 * options.false_alarm;  // two domains are asked
+    const auto order = clearest(sweeps, angle, taken_orders, 0.0, false_alarm);
+    const auto tone = clearest(sweeps, time, taken_hz, options.lowest_tone_hz, false_alarm);
+    if (!order && !tone) return std::nullopt;
+    Sought sought;
+    sought.by_angle = order && (!tone || order->gain >= tone->gain);
+    std::size_t order_bin = 0, hz_bin = 0;
+    if (sought.by_angle) {
+        order_bin = order->peak.bin;
+        sought.seen_at = static_cast<double>(order_bin) * angle.spacing;
+        hz_bin = best_between(time, sought.seen_at * range.slow / 360.0, sought.seen_at * range.fast / 360.0)
+                     .peak.bin;
+        sought.line.false_alarm = order->peak.false_alarm;
+    } else {
+        hz_bin = tone->peak.bin;
+        sought.seen_at = static_cast<double>(hz_bin) * time.spacing;
+        order_bin =
+            best_between(angle, sought.seen_at * 360.0 / range.fast, sought.seen_at * 360.0 / range.slow)
+                .peak.bin;
+        sought.line.false_alarm = tone->peak.false_alarm;
+    }
+    Rivals& rivals = sought.rivals;
+    rivals.has_order = order_bin > 0;
+    rivals.has_hz = hz_bin > 0;
+    if (rivals.has_order) rivals.order = refined(sweeps, angle, order_bin);
+    if (rivals.has_hz) rivals.hz = refined(sweeps, time, hz_bin);
+    rivals.gain_angle = rivals.has_order ? gain_of(sweeps, angle, rivals.order) : 0.0;
+    rivals.gain_time = rivals.has_hz ? gain_of(sweeps, time, rivals.hz) : 0.0;
+    sought.line.gain_angle = rivals.gain_angle;
+    sought.line.gain_time = rivals.gain_time;
+    sought.line.kind = judged(sweeps, angle, time, rivals, sought.by_angle, false_alarm);
+    return sought;
+}
+
+// What else the domains tell of a line that stays.
+void complete(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Rivals& rivals, bool as_order,
+              const MotionLinesOptions& options, MotionLine& line) {
+    if (line.kind == LineKind::unknown && as_order) {
+        line.hz = rivals.hz;
+        line.hz_stderr = stacks.time.resolution;
+    }
+    line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, stacks.angle, rivals.hz);
+    line.folds = folds_of(sweeps, stacks.angle, line.order_seen, options.stack.highest_order);
+}
+
+void state_resolution(const Stack& angle, double least_amplitude, double false_alarm, MotionLines& found) {
+    found.resolution_orders = angle.resolution;
+    found.lowest_order = static_cast<double>(angle.first) * angle.spacing;
+    found.detectable_nm = std::max(least_amplitude, detectable(angle, 0.5 * false_alarm));
+    found.highest_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
+}
+
 }  // namespace
 
 MotionLinesOptions short_log_options() {
@@ -166,69 +240,32 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
     for (const Sweep& sweep : sweeps) found.turns += sweep.length_turns;
 
     std::vector<double> taken_orders, taken_hz;
-    Stack angle, time;
-    bool changed = true;
     const double least_amplitude = least_amplitude_of(logs, options.least_share);
+    Stacks stacks = stacked(sweeps, options);
+    if (options.most_lines > 0) state_resolution(stacks.angle, least_amplitude, options.false_alarm, found);
     for (std::size_t round = 0; round < 2 * options.most_lines && found.lines.size() < options.most_lines;
          ++round) {
-        if (changed) {
-            angle = stack_sweeps(sweeps, Axis::angle, options.stack);
-            time = stack_sweeps(sweeps, Axis::time, options.stack);
-            changed = false;
-        }
-        if (round == 0) {
-            found.resolution_orders = angle.resolution;
-            found.lowest_order = static_cast<double>(angle.first) * angle.spacing;
-            found.detectable_nm = std::max(least_amplitude, detectable(angle, 0.5 * options.false_alarm));
-            found.highest_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
-        }
-        const auto order = clearest(sweeps, angle, taken_orders, 0.0, 0.5 * options.false_alarm);
-        const auto tone = clearest(sweeps, time, taken_hz, options.lowest_tone_hz, 0.5 * options.false_alarm);
-        if (!order && !tone) break;
-        MotionLine line;
-        const bool by_angle = order && (!tone || order->gain >= tone->gain);
-        Rivals rivals;
-        std::size_t order_bin = by_angle ? order->peak.bin : 0, hz_bin = by_angle ? 0 : tone->peak.bin;
-        if (by_angle) {
-            const double place = static_cast<double>(order_bin) * angle.spacing;
-            hz_bin = best_between(time, place * range.slow / 360.0, place * range.fast / 360.0).peak.bin;
-            line.false_alarm = order->peak.false_alarm;
-        } else {
-            const double place = static_cast<double>(hz_bin) * time.spacing;
-            order_bin = best_between(angle, place * 360.0 / range.fast, place * 360.0 / range.slow).peak.bin;
-            line.false_alarm = tone->peak.false_alarm;
-        }
-        rivals.has_order = order_bin > 0;
-        rivals.has_hz = hz_bin > 0;
-        if (rivals.has_order) rivals.order = refined(sweeps, angle, order_bin);
-        if (rivals.has_hz) rivals.hz = refined(sweeps, time, hz_bin);
-        rivals.gain_angle = line.gain_angle = rivals.has_order ? gain_of(sweeps, angle, rivals.order) : 0.0;
-        rivals.gain_time = line.gain_time = rivals.has_hz ? gain_of(sweeps, time, rivals.hz) : 0.0;
-        line.kind = judged(sweeps, angle, time, rivals, by_angle, 0.5 * options.false_alarm);
+        auto sought = seek(sweeps, stacks, range, taken_orders, taken_hz, options);
+        if (!sought) break;
+        MotionLine& line = sought->line;
+        const Rivals& rivals = sought->rivals;
         const bool as_order =
             line.kind == LineKind::order || (line.kind == LineKind::unknown && rivals.has_order);
-        const Stack& stack = as_order ? angle : time;
+        const Stack& stack = as_order ? stacks.angle : stacks.time;
         auto& taken = as_order ? taken_orders : taken_hz;
         const double place = as_order ? rivals.order : rivals.hz;
         // What a line leaves beside itself, because its amplitude changes within a sweep, is no line.
         const bool rest_of_known = near_any(taken, place, line_cells * stack.resolution);
         measure(sweeps, stack, place, line);
         if (!cut.absolute_angle) line.phase_deg.reset();
-        (by_angle ? taken_orders : taken_hz)
-            .push_back(by_angle ? static_cast<double>(order_bin) * angle.spacing
-                                : static_cast<double>(hz_bin) * time.spacing);
+        (sought->by_angle ? taken_orders : taken_hz).push_back(sought->seen_at);
         const bool of_the_motion = !as_order && place < options.lowest_tone_hz;
         if (rest_of_known || of_the_motion || line.amplitude_nm < least_amplitude) continue;
         taken.push_back(place);
-        if (line.kind == LineKind::unknown && as_order) {
-            line.hz = rivals.hz;
-            line.hz_stderr = time.resolution;
-        }
-        line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, angle, rivals.hz);
-        line.folds = folds_of(sweeps, angle, line.order_seen, options.stack.highest_order);
+        complete(sweeps, stacks, rivals, as_order, options, line);
         subtract(sweeps, stack.axis, place);
-        changed = true;
         found.lines.push_back(std::move(line));
+        if (found.lines.size() < options.most_lines) stacks = stacked(sweeps, options);
     }
     return found;
 }
