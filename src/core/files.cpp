@@ -4,9 +4,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
@@ -22,6 +24,10 @@ namespace {
 
 constexpr std::size_t piece_size = std::size_t{1} << 20;
 
+constexpr std::size_t page_group = std::size_t{1} << 16;
+constexpr std::uint64_t least_reserved = std::uint64_t{4}
+                                         << 20;  // what is written in a few pieces needs none
+
 std::string reason() { return std::strerror(errno); }
 
 bool exists(const std::string& path) { return ::access(path.c_str(), F_OK) == 0; }
@@ -32,14 +38,22 @@ bool is_special(const std::string& path) {
     return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
 }
 
-void write_fully(int descriptor, std::string_view bytes, const std::string& path) {
-    while (!bytes.empty()) {
-        const ssize_t taken = ::write(descriptor, bytes.data(), bytes.size());
-        if (taken < 0) {
+using Parts = std::array<std::string_view, 2>;
+
+// One part behind the other.
+void write_fully(int descriptor, Parts parts, const std::string& path) {
+    while (!parts[0].empty() || !parts[1].empty()) {
+        std::array<iovec, 2> vectors;
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            vectors[i] = {const_cast<char*>(parts[i].data()), parts[i].size()};
+        const ssize_t done = ::writev(descriptor, vectors.data(), static_cast<int>(vectors.size()));
+        if (done < 0) {
             if (errno == EINTR) continue;
             raise<FileError>("{}: cannot write: {}", path, reason());
         }
-        bytes.remove_prefix(static_cast<std::size_t>(taken));
+        const auto taken = static_cast<std::size_t>(done), of_first = std::min(taken, parts[0].size());
+        parts[0].remove_prefix(of_first);
+        parts[1].remove_prefix(taken - of_first);
     }
 }
 
@@ -80,8 +94,8 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
         ::close(descriptor_);
         raise<FileError>("{}: is a directory; name a log file in it", path);
     }
-    const bool sized = S_ISREG(status.st_mode) && status.st_size > 0;
-    Progress::current().begin("reading", "B", sized ? static_cast<std::uint64_t>(status.st_size) : 0);
+    if (S_ISREG(status.st_mode) && status.st_size > 0) size_ = static_cast<std::uint64_t>(status.st_size);
+    Progress::current().begin("reading", "B", size_);
 }
 
 ByteSource::ByteSource(const std::string& path, std::string name) : ByteSource(path) {
@@ -89,7 +103,7 @@ ByteSource::ByteSource(const std::string& path, std::string name) : ByteSource(p
 }
 
 ByteSource::ByteSource(std::string name, std::shared_ptr<const std::string> bytes, std::size_t piece_size)
-    : name_(std::move(name)), bytes_(std::move(bytes)), piece_size_(piece_size) {}
+    : name_(std::move(name)), bytes_(std::move(bytes)), piece_size_(piece_size), size_(bytes_->size()) {}
 
 ByteSource::~ByteSource() {
     if (owns_) ::close(descriptor_);
@@ -155,10 +169,40 @@ ByteSink::~ByteSink() {
 void ByteSink::write(std::string_view bytes) {
     static const bool to_terminal = ::isatty(STDOUT_FILENO) == 1;
     if (to_terminal && descriptor_ == STDOUT_FILENO) Progress::current().step_aside();
-    write_fully(descriptor_, bytes, path_ == "-" ? "standard output" : path_);
+    if (temporary_.empty())  // somebody may be waiting for it
+        write_fully(descriptor_, {bytes, {}}, path_ == "-" ? "standard output" : path_);
+    else
+        write_pages(bytes);
+}
+
+// The page cache takes large aligned pieces best: each is few of its own units, and none is touched twice.
+void ByteSink::write_pages(std::string_view bytes) {
+    const std::size_t whole = (waiting_.size() + bytes.size()) / page_group * page_group;
+    if (whole > 0) {
+        const std::size_t of_bytes = whole - waiting_.size();
+        write_fully(descriptor_, {waiting_, bytes.substr(0, of_bytes)}, path_);
+        written_ += whole;
+        waiting_.clear();
+        bytes.remove_prefix(of_bytes);
+    }
+    waiting_ += bytes;
+}
+
+void ByteSink::write_waiting() {
+    write_fully(descriptor_, {waiting_, {}}, path_);
+    written_ += waiting_.size();
+    waiting_.clear();
+}
+
+void ByteSink::expect(std::uint64_t bytes) {
+    if (temporary_.empty() || bytes < least_reserved) return;
+#if defined(FALLOC_FL_KEEP_SIZE)
+    if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) == 0) reserved_ = bytes;
+#endif
 }
 
 void ByteSink::rewrite(std::size_t offset, std::string_view bytes) {
+    write_waiting();
     if (::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset)) !=
         static_cast<ssize_t>(bytes.size())) {
         raise<FileError>("{}: cannot write: {}", path_, reason());
@@ -166,9 +210,12 @@ void ByteSink::rewrite(std::size_t offset, std::string_view bytes) {
 }
 
 void ByteSink::finish() {
+    if (!temporary_.empty()) write_waiting();
     finished_ = true;
     if (temporary_.empty()) return;
-    if (::close(descriptor_) != 0) {
+    const bool returned =
+        reserved_ <= written_ || ::ftruncate(descriptor_, static_cast<off_t>(written_)) == 0;
+    if (::close(descriptor_) != 0 || !returned) {
         descriptor_ = -1;
         ::unlink(temporary_.c_str());
         raise<FileError>("{}: cannot write: {}", path_, reason());

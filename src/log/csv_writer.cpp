@@ -41,6 +41,7 @@ CsvWriter::CsvWriter(std::unique_ptr<ByteSink> sink, const CsvReader& reader, co
     if (!options.append)
         std::sort(plan_.joints.begin(), plan_.joints.end(),
                   [&](std::size_t a, std::size_t b) { return columns[a] < columns[b]; });
+    sink_->expect(reader.source_bytes());
     write_head(reader);
 }
 

@@ -43,6 +43,7 @@ NpyWriter::NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, co
             "NAME.csv{}",
             layout.source, header.structured ? ", or add a column with --append" : "");
     }
+    sink_->expect(reader.source_bytes());
     if (append_)
         append_head(reader, options);
     else

@@ -2,8 +2,11 @@
 
 #include <unistd.h>
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <random>
 
 #include "ripplenotch/core/error.hpp"
 
@@ -59,6 +62,40 @@ TEST_CASE("bytes of an unfinished file can be rewritten") {
     sink.rewrite(0, "1234");
     sink.finish();
     CHECK(read_all(folder.file("a")) == "1234 rows");
+}
+
+TEST_CASE("pieces of any size follow one another in a file, rewritten or not") {
+    const Folder folder;
+    std::mt19937_64 random(3);
+    std::string all;
+    ByteSink sink(folder.file("a"), ByteSink::Overwrite::no);
+    sink.expect(1 << 20);
+    for (int i = 0; i < 60; ++i) {
+        const std::size_t sizes[] = {0, 1, 4095, 65535, 65536, 65537, 131072, random() % 300000};
+        const std::string piece(sizes[random() % 8], static_cast<char>('a' + i % 26));
+        sink.write(piece);
+        all += piece;
+        if (i % 20 != 10) continue;
+        sink.rewrite(all.size() / 2, "HERE");
+        all.replace(all.size() / 2, 4, "HERE");
+    }
+    sink.finish();
+    CHECK(read_all(folder.file("a")) == all);
+}
+
+TEST_CASE("room that was reserved and not needed is given back") {
+    const Folder folder;
+    for (const std::uint64_t expected : {std::uint64_t{0}, std::uint64_t{64} << 20}) {
+        const std::string path = folder.file(expected == 0 ? "plain" : "reserved");
+        ByteSink sink(path, ByteSink::Overwrite::no);
+        sink.expect(expected);
+        sink.write(std::string(100000, 'x'));
+        sink.finish();
+        struct stat status {};
+        REQUIRE(::stat(path.c_str(), &status) == 0);
+        CHECK(status.st_size == 100000);
+        CHECK(status.st_blocks * 512 < 1000000);
+    }
 }
 
 TEST_CASE("a missing file and a folder are named with the reason") {
