@@ -42,12 +42,15 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes
 }
 
 void NpyReader::read_up_to(std::string& bytes, std::size_t size) {
-    std::size_t have = bytes.size();
-    if (have >= size) return;
-    bytes.resize(size);
+    bytes.resize(read_behind(bytes, bytes.size(), size));
+}
+
+// Behind the first `have` bytes, until there are `size`; returns how many there are.
+std::size_t NpyReader::read_behind(std::string& bytes, std::size_t have, std::size_t size) {
+    if (bytes.size() < size) bytes.resize(size);
     for (std::size_t got = 1; have < size && got > 0; have += got)
         got = source_->read(bytes.data() + have, size - have);
-    bytes.resize(have);
+    return have;
 }
 
 void NpyReader::decide(const ReadOptions& options) {
@@ -103,34 +106,38 @@ bool NpyReader::next(RowBlock& block) {
     return true;
 }
 
-// Whole records into block.bytes, the rest into carry_.
+// Whole records into block.bytes, the rest into carry_. The block's old bytes and numbers are read over: what
+// is made longer is filled first.
 bool NpyReader::fetch(RowBlock& block) {
-    block.clear();
+    block.forget_verdict();
     block.joints.resize(1 + layout_.others.size());
-    const std::size_t size = header_.record_size;
-    const std::size_t left = header_.rows - fetched_;
-    block.bytes.swap(carry_);
+    std::string& bytes = block.bytes;
+    const std::size_t size = header_.record_size, left = header_.rows - fetched_;
+    std::size_t have = carry_.size();
+    if (bytes.size() < have) bytes.resize(have);
+    std::copy(carry_.begin(), carry_.end(), bytes.begin());
     carry_.clear();
     if (left == 0) {
-        if (block.bytes.empty()) read_up_to(block.bytes, 1);
-        if (!block.bytes.empty()) {
+        if (have == 0) have = read_behind(bytes, have, 1);
+        if (have > 0) {
             raise<DataError>(
                 "{}: read more bytes after the {} rows of the array, expected the end; save one array a file",
                 source_->name(), header_.rows);
         }
+        block.clear();
         return false;
     }
-    const std::size_t rows = std::min(left, std::max<std::size_t>(1, piece_size / size));
-    if (block.bytes.size() < size) read_up_to(block.bytes, rows * size);
-    const std::size_t have = std::min(left, block.bytes.size() / size);
-    if (have == 0) {
+    const std::size_t wanted = std::min(left, std::max<std::size_t>(1, piece_size / size));
+    if (have < size) have = read_behind(bytes, have, wanted * size);
+    const std::size_t rows = std::min(left, have / size);
+    if (rows == 0) {
         raise<DataError>(
             "{}: read {} rows and a part of one, expected {} rows; the file is cut off, save the array again",
             source_->name(), fetched_, header_.rows);
     }
-    carry_.assign(block.bytes, have * size);
-    block.bytes.resize(have * size);
-    fetched_ += have;
+    carry_.assign(bytes, rows * size, have - rows * size);
+    bytes.resize(rows * size);
+    fetched_ += rows;
     return true;
 }
 
@@ -172,8 +179,9 @@ bool NpyReader::take_columns(RowBlock& block) const {
     }
     // Columns that the log has not.
     for (std::size_t slot = 0; slot < factors_.size(); ++slot) {
-        std::vector<double>& numbers = numbers_of(block, slot);
-        if (numbers.empty() && !is_position(slot)) numbers.assign(rows, not_a_number);
+        const bool wanted =
+            std::any_of(wanted_.begin(), wanted_.end(), [slot](const auto& one) { return one.slot == slot; });
+        if (!wanted && !is_position(slot)) numbers_of(block, slot).resize(rows, not_a_number);
     }
     return true;
 }

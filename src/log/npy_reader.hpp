@@ -30,6 +30,7 @@ class NpyReader : public LogReader {
   private:
     void decide(const ReadOptions& options);
     void read_up_to(std::string& bytes, std::size_t size);
+    std::size_t read_behind(std::string& bytes, std::size_t have, std::size_t size);
     void plan_columns(const std::vector<std::string>& names);
     bool take_columns(RowBlock& block) const;
     [[nodiscard]] bool continues(const RowBlock& block) const;
