@@ -13,6 +13,9 @@
 #include <cstring>
 #include <iterator>
 
+#include "core/eight_digits.hpp"
+#include "core/shortest_digits.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -32,26 +35,6 @@ bool scaled_surely(double magnitude, int decimals, std::uint64_t& scaled) {
     return std::abs(short_of_half) > 4e-16 * product;
 }
 
-/// From numbers side by side, each split into quotient (in its lower half) and remainder (in its upper half)
-/// by `divisor`: parts << half | quotients, less divisor times the quotients in the upper half.
-constexpr std::uint64_t split(std::uint64_t parts, std::uint64_t quotients, std::uint64_t divisor, int half) {
-    return (parts << half) - quotients * ((divisor << half) - 1);
-}
-
-/// The eight digits of a number below 1e8, one a byte, the first in the lowest: halves of it side by side,
-/// then halves of these, each division by 10000, 100 and 10 a multiplication.
-std::uint64_t eight_digits(std::uint32_t value) {
-    const std::uint64_t fours = split(value, value / 10000, 10000, 32);
-    const std::uint64_t twos = split(fours, ((fours * 10486) >> 20) & 0x0000007F0000007FU, 100, 16);
-    return split(twos, ((twos * 103) >> 10) & 0x000F000F000F000FU, 10, 8);
-}
-
-/// Eight characters, the first in the lowest byte.
-void put_eight(char* into, std::uint64_t text) {
-    if constexpr (std::endian::native == std::endian::big) text = __builtin_bswap64(text);
-    std::memcpy(into, &text, sizeof text);
-}
-
 /// Exact decimal printing, for what lies too near a tie, is large, or has many decimals.
 [[gnu::noinline]] char* put_exactly(char* into, double value, int decimals) {
     return fmt::format_to(into, FMT_COMPILE("{:.{}f}"), value, decimals);
@@ -62,7 +45,7 @@ void put_eight(char* into, std::uint64_t text) {
 char* put_short(char* into, std::uint32_t scaled, int decimals) {
     const std::uint64_t digits = eight_digits(scaled);
     const int leading = std::min(std::countr_zero(digits) / 8, 7 - decimals);
-    const std::uint64_t text = digits + 0x3030303030303030U;
+    const std::uint64_t text = digits + eight_zeros;
     put_eight(into, text >> (8 * leading));
     into += 8 - decimals - leading;
     *into++ = '.';
@@ -73,10 +56,8 @@ char* put_short(char* into, std::uint32_t scaled, int decimals) {
 /// Any other of up to sixteen digits. Not inline, nor is the exact way: the usual way needs no stack then.
 [[gnu::noinline]] char* put_long(char* into, std::uint64_t scaled, int decimals) {
     std::array<char, 17> text;
-    put_eight(text.data(),
-              eight_digits(static_cast<std::uint32_t>(scaled / 100000000)) + 0x3030303030303030U);
-    put_eight(text.data() + 8,
-              eight_digits(static_cast<std::uint32_t>(scaled % 100000000)) + 0x3030303030303030U);
+    put_eight(text.data(), eight_digits(static_cast<std::uint32_t>(scaled / 100000000)) + eight_zeros);
+    put_eight(text.data() + 8, eight_digits(static_cast<std::uint32_t>(scaled % 100000000)) + eight_zeros);
     const auto mark = text.begin() + 16 - decimals;
     const auto first = std::find_if(text.begin(), mark - 1, [](char digit) { return digit != '0'; });
     into = std::copy(first, mark, into);
@@ -113,7 +94,10 @@ std::optional<double> decimal_number(std::uint64_t mantissa, int exponent) {
 
 std::string shortest(double value) { return fmt::format(FMT_COMPILE("{}"), value); }
 
-char* put_shortest(char* into, double value) { return fmt::format_to(into, FMT_COMPILE("{}"), value); }
+char* put_shortest(char* into, double value) {
+    char* const end = put_usual_shortest(into, value);
+    return end != nullptr ? end : fmt::format_to(into, FMT_COMPILE("{}"), value);
+}
 
 // Printing a whole number and setting the mark takes a tenth of the time of exact decimal printing, which is
 // left for what lies too near a tie, is large, or has many decimals.
