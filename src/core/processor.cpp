@@ -12,16 +12,4 @@ bool has_avx2() {
 #endif
 }
 
-bool has_avx512() {
-#if defined(__x86_64__) && defined(__GNUC__)
-    static const bool has =
-        __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
-        __builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
-        __builtin_cpu_supports("avx512vbmi2") != 0 && __builtin_cpu_supports("bmi2") != 0;
-    return has;
-#else
-    return false;
-#endif
-}
-
 }  // namespace ripplenotch

@@ -7,8 +7,4 @@ namespace ripplenotch {
 /// True on x86-64 processors that can run code for AVX2.
 [[nodiscard]] bool has_avx2();
 
-/// True where there is also AVX-512 with its instructions for bytes and the second part of VBMI: Ice Lake,
-/// Zen 4 and later.
-[[nodiscard]] bool has_avx512();
-
 }  // namespace ripplenotch

@@ -43,9 +43,5 @@ struct CellCursor {
 /// odd[r] for the others and where it is not sure, and returns whether there was one. 33 bytes before the end
 /// of each cell must be readable.
 bool read_cells_avx2(const CellColumn& column, double* numbers, std::uint8_t* odd);
-bool read_cells_avx512(const CellColumn& column, double* numbers, std::uint8_t* odd);
-
-/// Of one cell with up to 32 characters and 19 digits; false where it is not sure. For processors with AVX2.
-bool read_long_cell(const CellCursor& at, char decimal_mark, double& value);
 
 }  // namespace ripplenotch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Two cells at a time, each from one load that ends where the cell ends: no step waits for the length of the
 // number before it.
-#include "log/cell_groups.hpp"
+#include "log/cell_columns.hpp"
 #include "log/x86_vectors.hpp"
 
 #if defined(RIPPLENOTCH_X86_VECTORS)
@@ -94,12 +94,15 @@ WITH_AVX2 inline bool all_known(const Pair& pair, const Places& places, __m256i&
     return _mm256_testc_si256(right, _mm256_set1_epi8(-1)) != 0;
 }
 
+/// Most columns have the decimal mark in the same place, counted from the end, all the way down: pairs of
+/// rows are read as long as it is there.
 class Pairs {
   public:
-    static constexpr std::size_t rows = 2;
     explicit Pairs(char decimal_mark)
         : decimal_mark_(decimal_mark), places_(places_of(lane_bytes, lane_bytes, decimal_mark)) {}
 
+    /// For the marks of two rows; false where these cannot be read: junk, more than one mark, long numbers,
+    /// or nothing behind a mark, which could stand alone in the next cell.
     WITH_AVX2 bool find_places(const CellColumn& column, std::size_t row) {
         Pair pair;
         if (!load_pair<false>(CellCursor(column, row), pair)) return false;
@@ -114,6 +117,7 @@ class Pairs {
         return all_known(pair, places_, values);
     }
 
+    /// From `row` on; returns where the marks are elsewhere, or where it is not sure.
     std::size_t read(const CellColumn& column, std::size_t row, double* numbers) const {
         return column.plain ? read_as<true>(column, row, numbers) : read_as<false>(column, row, numbers);
     }
@@ -126,7 +130,7 @@ class Pairs {
         const Places places = places_;
         const __m128i magic = _mm_set1_epi64x(0x4330000000000000);  // 2^52 as a double's bits
         CellCursor at(column, row);
-        for (const std::size_t end = column.rows; row + 1 < end; row += rows, at.advance(rows)) {
+        for (const std::size_t end = column.rows; row + 1 < end; row += 2, at.advance(2)) {
             Pair pair;
             __m256i values;
             if (!load_pair<plain>(at, pair) || !all_known(pair, places, values)) break;
@@ -145,8 +149,7 @@ class Pairs {
     Places places_;
 };
 
-}  // namespace
-
+/// Of one cell with up to 32 characters and 19 digits; false where it is not sure.
 WITH_AVX2 bool read_long_cell(const CellCursor& at, char decimal_mark, double& value) {
     const char* const begin = at.text + at.before[0] + 1;
     const char* const end = at.text + at.end[0];
@@ -177,9 +180,27 @@ WITH_AVX2 bool read_long_cell(const CellCursor& at, char decimal_mark, double& v
     return true;
 }
 
+}  // namespace
+
 bool read_cells_avx2(const CellColumn& column, double* numbers, std::uint8_t* odd) {
-    Pairs group(column.decimal_mark);
-    return read_groups(group, column, numbers, odd);
+    Pairs pairs(column.decimal_mark);
+    bool any_odd = false;
+    std::size_t row = 0;
+    while (row < column.rows) {
+        row = pairs.read(column, row, numbers);
+        if (row + 1 < column.rows && pairs.find_places(column, row)) continue;
+        // Numbers that are too long for pairs seldom come alone.
+        CellCursor at(column, row);
+        for (int alone = 0; row < column.rows && (alone < 2 || at.length() > lane_bytes); ++alone) {
+            if (!read_long_cell(at, column.decimal_mark, numbers[row])) {
+                odd[row] = 1;
+                any_odd = true;
+            }
+            ++row;
+            at.advance(1);
+        }
+    }
+    return any_odd;
 }
 
 }  // namespace ripplenotch

@@ -4,40 +4,20 @@
 #include <cstring>
 #include <utility>
 
+#include "core/processor.hpp"
 #include "log/row_sink.hpp"
 #include "log/vector_rows.hpp"
 
 namespace ripplenotch {
 
-namespace {
-
-const VectorKernels* kernels_of(RowWay way) {
-    switch (way) {
-        case RowWay::parser:
-            return nullptr;
-        case RowWay::avx2:
-            return avx2_kernels();
-        case RowWay::avx512:
-            return avx512_kernels();
-    }
-    return nullptr;
-}
-
-}  // namespace
-
-bool QuickRows::has(RowWay way) { return way == RowWay::parser || kernels_of(way) != nullptr; }
-
 QuickRows::QuickRows(RowPlan plan)
-    : plan_(std::move(plan)), parser_(plan_.rules, plan_.columns, plan_.wanted) {
-    const bool by_one_character = plan_.rules.delimiter != ' ' && plan_.columns > 0;
-    if (by_one_character) use(has(RowWay::avx512) ? RowWay::avx512 : RowWay::avx2);
-}
-
-void QuickRows::use(RowWay way) { kernels_ = kernels_of(way); }
+    : plan_(std::move(plan)),
+      parser_(plan_.rules, plan_.columns, plan_.wanted),
+      vectorised_(has_avx2() && plan_.rules.delimiter != ' ' && plan_.columns > 0) {}
 
 std::size_t QuickRows::take(RowBlock& block, std::size_t begin, double time_before) const {
-    return kernels_ != nullptr ? take_rows_by_vectors(block, begin, time_before, plan_, parser_, *kernels_)
-                               : take_by_parser(block, begin, time_before);
+    return vectorised_ ? take_rows_by_vectors(block, begin, time_before, plan_, parser_)
+                       : take_by_parser(block, begin, time_before);
 }
 
 std::size_t QuickRows::take_by_parser(RowBlock& block, std::size_t begin, double time_before) const {

@@ -31,11 +31,6 @@ struct RowPlan {
     }
 };
 
-struct VectorKernels;
-
-/// By which instructions rows are read: row after row by RowParser, or by vectors. The numbers are the same.
-enum class RowWay { parser, avx2, avx512 };
-
 class QuickRows {
   public:
     explicit QuickRows(RowPlan plan);
@@ -49,17 +44,15 @@ class QuickRows {
     [[nodiscard]] bool parse(std::string_view line, ParsedRow& row) const {
         return parser_.parse(line.data(), line.data() + line.size(), row);
     }
-    /// False where this processor cannot.
-    [[nodiscard]] static bool has(RowWay way);
-    /// Another way than the fastest there is. Rows whose cells runs of blanks part are the parser's.
-    void use(RowWay way);
+    /// Row after row from now on, as on processors without AVX2; the numbers are the same.
+    void use_scalar_way() { vectorised_ = false; }
 
   private:
     std::size_t take_by_parser(RowBlock& block, std::size_t begin, double time_before) const;
 
     RowPlan plan_;
     RowParser parser_;
-    const VectorKernels* kernels_ = nullptr;  ///< null: row after row
+    bool vectorised_ = false;
 };
 
 }  // namespace ripplenotch

@@ -5,12 +5,15 @@
 #include <array>
 #include <cstdint>
 
-#include "core/processor.hpp"
+#include "log/cell_columns.hpp"
 #include "log/cell_masks.hpp"
+#include "log/row_edges.hpp"
 #include "log/row_sink.hpp"
 #include "log/x86_vectors.hpp"
 
 namespace ripplenotch {
+
+#if defined(RIPPLENOTCH_X86_VECTORS)
 namespace {
 
 constexpr std::size_t first_bytes = 512;
@@ -19,8 +22,8 @@ constexpr std::size_t bytes_before = 33;  // of a cell's end that the vectors lo
 /// One stretch on its way into a block.
 class Stretch {
   public:
-    Stretch(RowSink& sink, const RowPlan& plan, const RowParser& parser, const VectorKernels& kernels)
-        : sink_(sink), plan_(plan), parser_(parser), kernels_(kernels), parsed_(plan.joints()) {}
+    Stretch(RowSink& sink, const RowPlan& plan, const RowParser& parser)
+        : sink_(sink), plan_(plan), parser_(parser), parsed_(plan.joints()) {}
 
     /// Takes the rows of bytes[begin, ...) and returns where it stopped; `begin` itself when it took none.
     std::size_t take(std::string_view bytes, std::size_t begin, double& time_before) {
@@ -29,7 +32,7 @@ class Stretch {
         std::size_t regular = 0;
         // A little at first: where every other row needs care, there is a stretch for each of them.
         for (; regular == 0 && reach_ <= stretch_bytes; reach_ *= 4) {
-            kernels_.find_edges(text_, std::min(reach_, bytes.size() - begin), separators(), edges_);
+            find_edges_avx2(text_, std::min(reach_, bytes.size() - begin), separators(), edges_);
             regular = regular_rows(text_, edges_, separators(), plan_.columns);
         }
         reach_ = std::min(reach_, stretch_bytes);
@@ -85,7 +88,7 @@ class Stretch {
                                    plan_.rules.decimal_mark,
                                    lanes_hold_all && !apart};
             double* const numbers = sink_.numbers(wanted.slot) + unread;
-            if (kernels_.read_cells(cells, numbers, odd_.data() + unread)) any_odd_ = true;
+            if (read_cells_avx2(cells, numbers, odd_.data() + unread)) any_odd_ = true;
         }
     }
 
@@ -131,7 +134,6 @@ class Stretch {
     RowSink& sink_;
     const RowPlan& plan_;
     const RowParser& parser_;
-    const VectorKernels& kernels_;
     ParsedRow parsed_;
     const char* text_ = nullptr;
     std::size_t begin_ = 0, reach_ = first_bytes;
@@ -143,27 +145,11 @@ class Stretch {
 
 }  // namespace
 
-const VectorKernels* avx2_kernels() {
-#if defined(RIPPLENOTCH_X86_VECTORS)
-    static constexpr VectorKernels kernels{find_edges_avx2, read_cells_avx2};
-    if (has_avx2()) return &kernels;
-#endif
-    return nullptr;
-}
-
-const VectorKernels* avx512_kernels() {
-#if defined(RIPPLENOTCH_X86_VECTORS)
-    static constexpr VectorKernels kernels{find_edges_avx512, read_cells_avx512};
-    if (has_avx512()) return &kernels;
-#endif
-    return nullptr;
-}
-
 std::size_t take_rows_by_vectors(RowBlock& block, std::size_t begin, double time_before, const RowPlan& plan,
-                                 const RowParser& parser, const VectorKernels& kernels) {
+                                 const RowParser& parser) {
     const std::string_view bytes = block.bytes;
     RowSink sink(block, begin, plan);
-    Stretch stretch(sink, plan, parser, kernels);
+    Stretch stretch(sink, plan, parser);
     while (begin < bytes.size()) {
         const std::size_t from = begin;
         begin = stretch.take(bytes, begin, time_before);
@@ -171,5 +157,13 @@ std::size_t take_rows_by_vectors(RowBlock& block, std::size_t begin, double time
     }
     return begin;
 }
+
+#else
+
+std::size_t take_rows_by_vectors(RowBlock&, std::size_t begin, double, const RowPlan&, const RowParser&) {
+    return begin;
+}
+
+#endif
 
 }  // namespace ripplenotch

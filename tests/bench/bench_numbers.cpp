@@ -52,7 +52,7 @@ Benchmark::Pass parse_rows(Digits digits, bool vectors) {
     auto block = std::make_shared<RowBlock>();
     block->bytes = text_of(BenchLog(rows), digits);
     auto quick = std::make_shared<QuickRows>(three_columns());
-    if (!vectors) quick->use(RowWay::parser);
+    if (!vectors) quick->use_scalar_way();
     return [block, quick] {
         block->drop_rows();
         if (quick->take(*block, 0, -1.0) != block->bytes.size())
