@@ -38,6 +38,16 @@ bool is_special(const std::string& path) {
     return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
 }
 
+// A pipe holds 64 KiB: who writes and who reads it take turns every few microseconds. No more than the system
+// lets everybody have; where it does not, all goes on as it is.
+void widen_pipe(int descriptor) {
+#if defined(F_SETPIPE_SZ)
+    static_cast<void>(::fcntl(descriptor, F_SETPIPE_SZ, 1 << 20));
+#else
+    static_cast<void>(descriptor);
+#endif
+}
+
 using Parts = std::array<std::string_view, 2>;
 
 // One part behind the other.
@@ -83,6 +93,7 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
             raise<UsageError>(
                 "standard input is a terminal; name a file, or pipe one in: cat log.csv | ripplenotch ...");
         }
+        widen_pipe(descriptor_);
         Progress::current().begin("reading", "B", 0);
         return;
     }
@@ -94,6 +105,7 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
         ::close(descriptor_);
         raise<FileError>("{}: is a directory; name a log file in it", path);
     }
+    if (S_ISFIFO(status.st_mode)) widen_pipe(descriptor_);
     if (S_ISREG(status.st_mode) && status.st_size > 0) size_ = static_cast<std::uint64_t>(status.st_size);
     Progress::current().begin("reading", "B", size_);
 }
@@ -141,11 +153,13 @@ ByteSink::ByteSink(const std::string& path, Overwrite overwrite, bool binary)
         if (binary && ::isatty(STDOUT_FILENO) == 1) {
             raise<UsageError>("binary output would go to the terminal; name a file with -o, or pipe it on");
         }
+        widen_pipe(descriptor_);
         return;
     }
     if (is_special(path)) {
         descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
         if (descriptor_ < 0) raise<FileError>("{}: cannot write: {}", path, reason());
+        widen_pipe(descriptor_);
         return;
     }
     if (overwrite == Overwrite::no && exists(path)) {
