@@ -31,8 +31,6 @@ class RowRewriter {
   public:
     RowRewriter(const RewritePlan& plan, const RowBlock& block, Torques torque_nm, TextRoom& room)
         : plan_(plan), block_(block), room_(room), pieces_(block.bytes) {
-        // Cells whose bad values were replaced do not hold what the block's torque says.
-        keeps_unchanged_ = Cells::keeps_unchanged && block.held_bad_values == 0;
         cells_.reserve(plan.joints.size());
         for (const std::size_t j : plan.joints) {
             const JointRows& joint = block.joints[j];
@@ -90,9 +88,11 @@ class RowRewriter {
         // What is written could be anything in memory, for all the compiler knows: local copies, for which it
         // does not have to fear.
         PieceCopier pieces = pieces_;
-        const bool keeps_unchanged = keeps_unchanged_;
+        // Cells whose bad values were replaced do not hold what the block's torque says.
+        const bool as_written = block_.held_bad_values == 0;
         const auto replace_one = [&](const Column& column, std::size_t row) {
-            if (keeps_unchanged && column.torque_nm[row] == column.torque_before_nm[row]) return;
+            if constexpr (Cells::keeps_unchanged)
+                if (as_written && column.torque_nm[row] == column.torque_before_nm[row]) return;
             into = pieces.copy_until(column.begin[row], into);
             into = column.cells->put(into, row - rows.first, cell(column, row));
             pieces.skip_until(column.end[row]);
@@ -127,7 +127,6 @@ class RowRewriter {
     const RowBlock& block_;
     TextRoom& room_;
     PieceCopier pieces_;
-    bool keeps_unchanged_;
     std::vector<Cells> cells_;
     std::vector<Column> columns_;
 };

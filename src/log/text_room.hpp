@@ -38,12 +38,13 @@ class PieceCopier {
   public:
     static constexpr std::size_t over = 32;
 
-    explicit PieceCopier(std::string_view text) : text_(text) {}
+    explicit PieceCopier(std::string_view text)
+        : text_(text.data()), short_until_(text.size() < over ? 0 : text.size() - over + 1) {}
     /// The bytes from where it is, until `to`; returns the end of the copy.
     char* copy_until(std::size_t to, char* into) {
         const std::size_t size = to - done_;
-        const char* const from = text_.data() + done_;
-        if (size <= over && done_ + over <= text_.size()) [[likely]]
+        const char* const from = text_ + done_;
+        if (size <= over && done_ < short_until_) [[likely]]
             std::memcpy(into, from, over);
         else
             std::memcpy(into, from, size);
@@ -55,7 +56,8 @@ class PieceCopier {
     [[nodiscard]] std::size_t done() const { return done_; }
 
   private:
-    std::string_view text_;
+    const char* text_;
+    std::size_t short_until_;  ///< from there on a short piece would reach behind the text
     std::size_t done_ = 0;
 };
 
