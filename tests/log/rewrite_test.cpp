@@ -5,6 +5,7 @@
 
 #include "log_support.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::test;
@@ -110,4 +111,33 @@ TEST_CASE("a log converted to another format keeps its numbers", "[log]") {
     CHECK_THAT(rewritten(array, same, {}, {}, "csv"),
                Contains("time_s,velocity_deg_s,torque_nm,position_deg\n0,") && Contains("\n0.01,"));
     CHECK_THAT(rewritten(array, same, append(), {}, "csv"), Contains("position_deg,torque_filtered_nm\n"));
+}
+
+TEST_CASE("many rows, with any length of text between their numbers, are put together as one row is",
+          "[log]") {
+    WriteOptions options;
+    options.decimals = WriteOptions::Decimals::fixed;
+    options.fixed_decimals = 3;
+    std::string text = "time_s,velocity_deg_s,torque_nm,note\n", expected = text;
+    for (int row = 0; row < 1500; ++row) {
+        const double torque = (row * 37 % 2001 - 1000) * (row % 50 == 0 ? 1e9 : 0.0625);
+        const std::string before = std::to_string(row) + "," + std::to_string(row % 7) + ",";
+        const std::string behind = "," + std::string(static_cast<std::size_t>(row * row % 97), 'x') + "\n";
+        std::string doubled_torque;
+        append_fixed(doubled_torque, 2.0 * torque, 3);
+        text += before + shortest(torque) + behind;
+        expected += before + doubled_torque + behind;
+    }
+    CHECK(rewritten(text, doubled, options) == expected);
+    CHECK(rewritten(text, doubled, options, {}, "", 333) == expected);
+}
+
+TEST_CASE("a converted log has the decimals that were asked for", "[log]") {
+    WriteOptions options;
+    options.decimals = WriteOptions::Decimals::fixed;
+    options.fixed_decimals = 2;
+    const std::string array =
+        rewritten("time_s,velocity_deg_s,torque_nm\n0,1,2.5\n0.5,-0.125,1e12\n", same, {}, {}, "npy");
+    CHECK(rewritten(array, doubled, options, {}, "csv") ==
+          "time_s,velocity_deg_s,torque_nm\n0.00,1.00,5.00\n0.50,-0.12,2000000000000.00\n");
 }

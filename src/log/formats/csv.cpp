@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Text logs: comma, semicolon, tab or blanks between cells, in every dialect that docs/formats/csv.md lists.
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include "log/csv_reader.hpp"
 #include "log/csv_writer.hpp"
 #include "log/formats.hpp"
+#include "log/printed_cells.hpp"
 #include "log/table_writer.hpp"
+#include "log/text_room.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -22,18 +26,26 @@ bool sniff(std::string_view first_bytes) {
            static_cast<unsigned char>(first_bytes[0]) != 0x89;
 }
 
-void append_rows(std::string& text, std::span<const std::span<const double>> columns, std::size_t first,
-                 std::size_t last, const WriteOptions& options) {
-    for (std::size_t row = first; row < last; ++row) {
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-            if (c > 0) text += ',';
-            if (options.decimals == WriteOptions::Decimals::fixed) {
-                append_fixed(text, columns[c][row], options.fixed_decimals);
-            } else {
-                append_shortest(text, columns[c][row]);
+/// Some rows at a time: first all their numbers, then the text.
+template <typename Cells>
+void write_cells(TextRoom& room, std::span<const std::span<const double>> columns, int decimals) {
+    std::vector<Cells> cells(columns.size(), Cells('.', decimals));
+    const std::size_t rows = columns.empty() ? 0 : columns[0].size();
+    const std::size_t at_once =
+        std::max<std::size_t>(FixedTexts::most / std::max<std::size_t>(columns.size(), 1), 1);
+    for (std::size_t first = 0; first < rows; first += at_once) {
+        const std::size_t count = std::min(at_once, rows - first);
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            cells[c].prepare({columns[c].subspan(first, count), 1.0, {}});
+        char* into = room.ensure(count * columns.size() * (number_room + 1));
+        for (std::size_t row = 0; row < count; ++row) {
+            for (const Cells& column : cells) {
+                into = column.put(into, row, {});
+                *into++ = ',';
             }
+            into[-1] = '\n';
         }
-        text += '\n';
+        room.written_until(into);
     }
 }
 
@@ -46,9 +58,12 @@ class CsvTableWriter : public TableWriter {
         sink_.write(text + '\n');
     }
     void rows(std::span<const std::span<const double>> columns) override {
-        text_.clear();
-        append_rows(text_, columns, 0, columns.empty() ? 0 : columns[0].size(), options_);
-        sink_.write(text_);
+        TextRoom room(text_, 0);
+        if (options_.decimals == WriteOptions::Decimals::fixed)
+            write_cells<FixedCells>(room, columns, options_.fixed_decimals);
+        else
+            write_cells<ShortestCells>(room, columns, options_.fixed_decimals);
+        sink_.write(room.text());
     }
     void end() override {}
 
