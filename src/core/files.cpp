@@ -22,7 +22,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t piece_size = std::size_t{1} << 20;
+constexpr std::size_t first_room = std::size_t{1} << 14;  // for a whole file: most are tables and models
 
 constexpr std::size_t page_group = std::size_t{1} << 16;
 constexpr std::uint64_t least_reserved = std::uint64_t{4}
@@ -140,9 +140,13 @@ std::size_t ByteSource::read(char* into, std::size_t size) {
 std::string read_all(const std::string& path) {
     ByteSource source(path);
     std::string bytes;
-    std::vector<char> buffer(piece_size);
-    while (const std::size_t size = source.read(buffer.data(), buffer.size()))
-        bytes.append(buffer.data(), size);
+    std::size_t have = 0, got = 1;
+    for (std::size_t room = first_room; got > 0; room = 2 * have) {
+        if (bytes.size() < room) bytes.resize(room);
+        got = source.read(bytes.data() + have, bytes.size() - have);
+        have += got;
+    }
+    bytes.resize(have);
     return bytes;
 }
 
