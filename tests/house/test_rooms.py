@@ -33,7 +33,6 @@ DOORS = {
     r"CLI/": {"src/cli/options_implementation.hpp"},
     r"fast_float/": {"src/core/number.cpp"},
     r"nettle/": {"src/core/sha256.cpp"},
-    r"tbb/": {"src/filter/block_pipeline.cpp"},
 }
 
 
