@@ -14,6 +14,7 @@ TABLE_WORDS = ["--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz",
                "--width", "digital", "--above", "pass"]
 COLUMNS = ["--columns", "time,velocity,torque"]
 TOOL = "ripplenotch"
+PIECES = ("--segment", "4.096s")
 MODEL = pathlib.Path(__file__).resolve().parents[2] / "data" / "paper_model.json"
 
 
@@ -105,23 +106,27 @@ class Bench:
         """The commands that look for lines, the tool alone, on a log at one speed and on one of moves of four seconds."""
         found = {}
         for motion, log in self.simulated(rows).items():
-            for words in (["spectrum", log, "--segment", "4.096s"], ["spectrum", log], ["spectrum", log, "--domain", "order"],
-                          ["identify", log]):
+            for words in (["spectrum", log, *PIECES], ["spectrum", log], ["spectrum", log, "--domain", "order"], ["identify", log]):
                 if motion == "moves" or "order" not in words:
-                    out = self.out("analysis", log)
-                    name = " ".join([words[0], *words[2:]])
-                    runs, failed = measure.in_turn(self.run_once, [Side(name, [self.tool, *words, "-q", "-o", out], out)],
-                                                   self.rounds, self.say)
-                    found[f"{name}, {motion}"] = {"rows": rows, "failed": failed,
-                                                  "runs": [asdict(one) for one in runs.get(name, [])]}
+                    self.analyse(found, words, motion, rows)
+        # In pieces a log is not held, however long: ten times the rows, the same memory.
+        for motion, log in self.simulated(10 * rows, ["one speed"]).items():
+            self.analyse(found, ["spectrum", log, *PIECES], motion, 10 * rows)
+            log.unlink()
         return found
 
-    def simulated(self, rows):
+    def analyse(self, found, words, motion, rows):
+        out = self.out("analysis", words[1])
+        name = " ".join([words[0], *words[2:]])
+        runs, failed = measure.in_turn(self.run_once, [Side(name, [self.tool, *words, "-q", "-o", out], out)], self.rounds, self.say)
+        found[f"{name}, {motion}, {rows} rows"] = {"rows": rows, "failed": failed, "runs": [asdict(one) for one in runs.get(name, [])]}
+
+    def simulated(self, rows, wanted=("one speed", "moves")):
         seconds = rows / 1000
         motions = {"one speed": ["--motion", f"constant,speed=60deg/s,duration={seconds}s"],
                    "moves": [word for k in range(int(seconds / 4)) for word in
                              ("--motion", f"poly6,to={-90 if k % 2 == 0 else 90}deg,duration=4s" + (",from=90deg" if k == 0 else ""))]}
-        logs = {name: self.folder / f"{name.replace(' ', '_')}_{rows}.npy" for name in motions}
+        logs = {name: self.folder / f"{name.replace(' ', '_')}_{rows}.npy" for name in wanted}
         for name, log in logs.items():
             subprocess.run([self.tool, "simulate", "--model", MODEL, *motions[name], "--sample-rate", "1kHz", "--noise", "0.05Nm",
                             "--seed", "1", "-o", log, "--force", "-q"], check=True)

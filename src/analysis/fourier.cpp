@@ -160,6 +160,7 @@ struct RealTransform::Arrays {
 RealTransform::RealTransform(std::size_t length) : arrays_(new Arrays{length}) {}
 RealTransform::~RealTransform() = default;
 RealTransform::RealTransform(RealTransform&&) noexcept = default;
+RealTransform& RealTransform::operator=(RealTransform&&) noexcept = default;
 
 std::span<double> RealTransform::in() { return {arrays_->in.get(), arrays_->length}; }
 

@@ -16,8 +16,9 @@ namespace {
 constexpr double even_share = 1e-3;
 constexpr std::size_t most_ahead = 8;  // pieces; those of usual lengths stay in the processor's cache
 
-double hann(double time_s, double length_s) {
-    return 0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * time_s / length_s);
+/// At a place and for a length in the same unit.
+double hann(double place, double length) {
+    return 0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * place / length);
 }
 
 void remove_line(std::span<const double> t, std::vector<double>& x) {
@@ -43,8 +44,9 @@ PieceMaker::PieceMaker(std::size_t length, Hertz rate)
       transform_(length) {
     const double middle = 0.5 * (static_cast<double>(length) - 1.0);
     for (std::size_t k = 0; k < length; ++k) {
-        even_time_s_.push_back((static_cast<double>(k) - middle) * step_s_);
-        even_window_.push_back(hann(even_time_s_.back(), static_cast<double>(length) * step_s_));
+        const double place = static_cast<double>(k) - middle;
+        even_time_s_.push_back(place * step_s_);
+        even_window_.push_back(hann(place, static_cast<double>(length)));
         even_sum_ += even_window_.back();
         even_square_sum_ += even_window_.back() * even_window_.back();
     }
@@ -53,6 +55,7 @@ PieceMaker::PieceMaker(std::size_t length, Hertz rate)
 const Piece& PieceMaker::make(std::span<const double> time_s, std::span<const double> torque_nm) {
     const EvenPart both = look_at(time_s, torque_nm);
     piece_.middle_s = 0.5 * (time_s.front() + time_s.back());
+    worst_s_ = std::max(worst_s_, both.worst);
     piece_.even = both.worst <= even_share * step_s_;
     if (piece_.even) {
         make_even(torque_nm, even_line(both));
@@ -108,6 +111,12 @@ void PieceMaker::make_uneven(std::span<const double> time_s, std::span<const dou
     }
     piece_.time_s = time_s_;
     piece_.value = value_;
+}
+
+bool PieceMaker::even_at(Hertz rate) const {
+    // A grid with other steps is off by so much more at the end of a piece.
+    const double step = 1.0 / rate.value(), drift = std::abs(step - step_s_) * static_cast<double>(length_);
+    return (worst_s_ + drift) * (1.0 + 1e-9) <= even_share * std::min(step, step_s_);
 }
 
 void PieceMaker::add_power(double scale, std::span<double> power) {

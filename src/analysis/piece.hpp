@@ -46,6 +46,9 @@ class PieceMaker {
     /// 0 Hz to half the rate.
     void add_power(double scale, std::span<double> power);
 
+    /// Whether all pieces were even, and surely would have been if the rate had been this one.
+    [[nodiscard]] bool even_at(Hertz rate) const;
+
     [[nodiscard]] std::span<const double> even_time_s() const { return even_time_s_; }
 
   private:
@@ -63,6 +66,7 @@ class PieceMaker {
     std::vector<double> time_s_, value_;
     std::optional<EvenPart> late_;  // the last piece's second half, if that piece was even
     std::vector<EvenPart> ahead_;   // those of the next pieces, last one first
+    double worst_s_ = 0.0;          // largest distance from its place of any sample
     Piece piece_;
 };
 

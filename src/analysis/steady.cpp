@@ -108,65 +108,16 @@ std::vector<Window> longest_apart(const std::vector<Window>& windows, const Trac
     return result;
 }
 
-/// Slope of position over time by least squares, with its standard error.
-void speed_from_position(const TraceView& part, Stretch& stretch) {
-    const auto n = static_cast<double>(part.size());
-    const double t_mean = std::accumulate(part.time_s.begin(), part.time_s.end(), 0.0) / n;
-    const double p_mean = std::accumulate(part.position_deg.begin(), part.position_deg.end(), 0.0) / n;
-    double tt = 0.0, tp = 0.0, pp = 0.0;
-    for (std::size_t k = 0; k < part.size(); ++k) {
-        const double t = part.time_s[k] - t_mean;
-        const double p = part.position_deg[k] - p_mean;
-        tt += t * t;
-        tp += t * p;
-        pp += p * p;
-    }
-    if (!(tt > 0.0)) return;
-    stretch.speed = DegPerSec(tp / tt);
-    // What is left about a straight line is slow (control, encoder): ten independent pieces, not n.
-    const double left = std::max(0.0, pp - tp * tp / tt) / n;
-    stretch.speed_error_deg_s = std::sqrt(left / (tt / n) / 10.0);
-}
-
-/// Mean velocity; its error from the scatter of ten block means, since neighbouring samples are not
-/// independent.
-void speed_from_velocity(const TraceView& part, Stretch& stretch) {
-    constexpr std::size_t blocks = 10;
-    double sum = 0.0, square = 0.0;
-    for (std::size_t b = 0; b < blocks; ++b) {
-        const std::size_t from = part.size() * b / blocks;
-        const std::size_t to = part.size() * (b + 1) / blocks;
-        if (to == from) return;
-        const double mean =
-            std::accumulate(part.velocity_deg_s.begin() + static_cast<std::ptrdiff_t>(from),
-                            part.velocity_deg_s.begin() + static_cast<std::ptrdiff_t>(to), 0.0) /
-            static_cast<double>(to - from);
-        sum += mean;
-        square += mean * mean;
-    }
-    const double mean = sum / blocks;
-    const double variance = std::max(0.0, square / blocks - mean * mean) * blocks / (blocks - 1.0);
-    stretch.speed = DegPerSec(mean);
-    stretch.speed_error_deg_s = std::sqrt(variance / blocks);
+double mean_of(std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 Stretch measured(const TraceView& trace, std::size_t first, std::size_t count, const SteadyRule& rule) {
-    Stretch stretch;
-    stretch.first = first;
-    stretch.count = count;
     const TraceView part = trace.part(first, count);
-    const double step = 1.0 / trace.sample_rate.value();
-    stretch.duration = Seconds(count == 0 ? 0.0 : part.time_s.back() - part.time_s.front() + step);
-    speed_from_velocity(part, stretch);
-    if (part.has_position()) {
-        const DegPerSec from_velocity = stretch.speed;
-        speed_from_position(part, stretch);
-        // A position that wraps or resets inside the stretch contradicts the velocity; then velocity is
-        // trusted.
-        const double limit = std::max(rule.band_deg_s, 0.5 * std::abs(from_velocity.value()));
-        if (std::abs(stretch.speed.value() - from_velocity.value()) > limit)
-            speed_from_velocity(part, stretch);
-    }
+    StretchMeter meter(count, mean_of(part.time_s), part.has_position() ? mean_of(part.position_deg) : 0.0);
+    meter.take(part);
+    Stretch stretch = meter.stretch(trace.sample_rate, rule);
+    stretch.first = first;
     return stretch;
 }
 

@@ -57,7 +57,7 @@ Welch::Welch(std::size_t length, Hertz rate)
 std::size_t Welch::add(std::span<const double> time_s, std::span<const double> torque_nm) {
     return maker_.for_each(time_s, torque_nm, [this](const Piece& piece) {
         maker_.add_power(4.0 / (piece.window_sum * piece.window_sum), power_);
-        gain_ += 0.5 * piece.window_sum * piece.window_sum / (piece.window_square_sum * rate_);
+        gain_ += 0.5 * piece.window_sum * piece.window_sum / piece.window_square_sum;
         ++pieces_;
     });
 }
@@ -66,6 +66,15 @@ PowerSpectrum Welch::tested() const {
     // Half-overlapping Hann pieces: neighbours share a sixth of their power in correlation, (1 + 2/36)^-1.
     const double averages = std::max(1.0, static_cast<double>(pieces_) / (pieces_ > 1 ? 1.0556 : 1.0));
     return {power_, averages, hann_noise_bandwidth, std::min(trend_bins, power_.size()), {}};
+}
+
+std::optional<Welch> Welch::at(Hertz rate) const {
+    if (!maker_.even_at(rate)) return std::nullopt;
+    Welch other(length_, rate);
+    other.pieces_ = pieces_;
+    other.power_ = power_;
+    other.gain_ = gain_;
+    return other;
 }
 
 bool Welch::find_lines(double false_alarm) {
@@ -123,7 +132,7 @@ Spectrum Welch::spectrum() const {
         const double single = k == 0 || (even && k + 1 == bins) ? 0.5 : 1.0;
         spectrum.hz.push_back(static_cast<double>(k) * bin_hz());
         spectrum.amplitude_nm.push_back(std::sqrt(power_[k]) * single);
-        spectrum.psd_nm2_hz.push_back(power_[k] * gain_ * single);
+        spectrum.psd_nm2_hz.push_back(power_[k] * (gain_ / rate_) * single);
         spectrum.floor_nm.push_back(k < first ? 0.0 : std::sqrt(floor_[k]));
     }
     spectrum.trend_removed_to_hz = static_cast<double>(first) * bin_hz();

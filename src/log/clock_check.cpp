@@ -20,40 +20,7 @@ constexpr std::size_t shortest_piece = 4;  // rows
 constexpr double agreement = 0.02;         // a factor within 2 % of 1, or of a named one, is that one
 constexpr double widest_doubt = 0.05;      // a factor less certain than 5 % is not stated
 
-// A piece of the motion. The change of velocity is there because a filtered velocity lags: position =
-// integrated velocity + lag * velocity, which looks like a factor while the joint speeds up.
-struct Piece {
-    double position_change = 0.0, integrated_velocity = 0.0, velocity_change = 0.0;
-};
-
-std::vector<Piece> pieces_of(const TraceView& trace, std::span<const double> position,
-                             std::span<const std::size_t> breaks) {
-    const std::size_t rows = std::max(shortest_piece, trace.size() / most_pieces);
-    std::vector<Piece> pieces;
-    Piece piece;
-    std::size_t in_piece = 0;
-    auto next_break = breaks.begin();
-    for (std::size_t i = 0; i + 1 < trace.size(); ++i) {
-        if (next_break != breaks.end() && *next_break == i) {
-            ++next_break;
-            if (in_piece >= shortest_piece) pieces.push_back(piece);
-            piece = {};
-            in_piece = 0;
-            continue;
-        }
-        piece.position_change += position[i + 1] - position[i];
-        piece.velocity_change += trace.velocity_deg_s[i + 1] - trace.velocity_deg_s[i];
-        piece.integrated_velocity += 0.5 * (trace.velocity_deg_s[i] + trace.velocity_deg_s[i + 1]) *
-                                     (trace.time_s[i + 1] - trace.time_s[i]);
-        if (++in_piece == rows) {
-            pieces.push_back(piece);
-            piece = {};
-            in_piece = 0;
-        }
-    }
-    if (in_piece >= shortest_piece) pieces.push_back(piece);
-    return pieces;
-}
+using Piece = MotionPieces::Piece;
 
 double median_of(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -212,15 +179,41 @@ std::string explain(double factor, Hertz sample_rate) {
 
 }  // namespace
 
-ClockCheck check_clock(const TraceView& trace, std::span<const std::size_t> breaks, Hertz sample_rate) {
-    if (!trace.has_position() || trace.size() < 2 * shortest_piece) return {};
-    std::vector<double> position(trace.position_deg.begin(), trace.position_deg.end());
-    if (const auto period = wrap_period(position)) unwrap(position, *period);
-    const std::vector<Piece> pieces = pieces_of(trace, position, breaks);
+MotionPieces::MotionPieces(std::size_t rows, double gap_s)
+    : rows_(rows), rows_in_piece_(std::max(shortest_piece, rows / most_pieces)), gap_s_(gap_s) {}
 
-    if (pieces.size() < 3 || !(usual_motion(pieces) > 0.0)) return {};
-    const Fit fit = robust_fit(pieces);
-    const double doubt = std::max(fit.doubt, difference_of_halves(pieces));
+void MotionPieces::end_piece() {
+    if (in_piece_ >= shortest_piece) pieces_.push_back(piece_);
+    piece_ = {};
+    in_piece_ = 0;
+}
+
+void MotionPieces::take(const Row& row) {
+    const double step = row.time_s - before_->time_s;
+    if (gap_s_ > 0.0 && step > gap_s_) {
+        end_piece();
+        return;
+    }
+    piece_.position_change += row.position_deg - before_->position_deg;
+    piece_.velocity_change += row.velocity_deg_s - before_->velocity_deg_s;
+    piece_.integrated_velocity += 0.5 * (before_->velocity_deg_s + row.velocity_deg_s) * step;
+    if (++in_piece_ == rows_in_piece_) end_piece();
+}
+
+void MotionPieces::take(const TraceView& rows) {
+    if (!rows.has_position()) return;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Row row{rows.time_s[i], rows.velocity_deg_s[i], rows.position_deg[i]};
+        if (before_) take(row);
+        before_ = row;
+    }
+}
+
+ClockCheck MotionPieces::check(Hertz sample_rate) {
+    end_piece();
+    if (rows_ < 2 * shortest_piece || pieces_.size() < 3 || !(usual_motion(pieces_) > 0.0)) return {};
+    const Fit fit = robust_fit(pieces_);
+    const double doubt = std::max(fit.doubt, difference_of_halves(pieces_));
     // A log at rest, or one whose position is of something else: no factor is better than a wrong one.
     if (!std::isfinite(fit.factor) || fit.factor == 0.0 || !(doubt < widest_doubt * std::abs(fit.factor)))
         return {};
@@ -228,6 +221,19 @@ ClockCheck check_clock(const TraceView& trace, std::span<const std::size_t> brea
     if (std::abs(fit.factor - 1.0) > std::max(agreement, 3.0 * doubt))
         check.warning = explain(fit.factor, sample_rate);
     return check;
+}
+
+ClockCheck check_clock(const TraceView& trace, double gap_s, Hertz sample_rate) {
+    MotionPieces pieces(trace.size(), gap_s);
+    TraceView continuous = trace;
+    std::vector<double> position;
+    if (const auto period = wrap_period(trace.position_deg)) {
+        position.assign(trace.position_deg.begin(), trace.position_deg.end());
+        Unwrapper(*period).apply(position);
+        continuous.position_deg = position;
+    }
+    pieces.take(continuous);
+    return pieces.check(sample_rate);
 }
 
 }  // namespace ripplenotch

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
+#include <vector>
 
 #include "ripplenotch/core/trace.hpp"
 
@@ -18,9 +18,38 @@ struct ClockCheck {
         warning;  ///< one sentence when the factor is not 1, or position and velocity do not belong together
 };
 
-/// `breaks` are the rows after which a gap follows, ascending. A position that wraps is unwrapped on a copy
-/// first.
-[[nodiscard]] ClockCheck check_clock(const TraceView& trace, std::span<const std::size_t> breaks,
-                                     Hertz sample_rate);
+/// The motion of a log in pieces that are long enough to average noise, and many enough for a median.
+class MotionPieces {
+  public:
+    /// `rows` of the whole log. A longer step than `gap` ends a piece; 0 when there is no such limit.
+    MotionPieces(std::size_t rows, double gap_s);
+
+    /// Rows with a continuous position, one after another.
+    void take(const TraceView& rows);
+    [[nodiscard]] ClockCheck check(Hertz sample_rate);
+
+    // The change of velocity is there because a filtered velocity lags: position = integrated velocity + lag
+    // * velocity, which looks like a factor while the joint speeds up.
+    struct Piece {
+        double position_change = 0.0, integrated_velocity = 0.0, velocity_change = 0.0;
+    };
+
+  private:
+    struct Row {
+        double time_s, velocity_deg_s, position_deg;
+    };
+    void take(const Row& row);
+    void end_piece();
+
+    std::size_t rows_, rows_in_piece_;
+    double gap_s_;
+    std::optional<Row> before_;
+    std::size_t in_piece_ = 0;
+    Piece piece_;
+    std::vector<Piece> pieces_;
+};
+
+/// A position that wraps is unwrapped on a copy first. `gap_s` as in MotionPieces.
+[[nodiscard]] ClockCheck check_clock(const TraceView& trace, double gap_s, Hertz sample_rate);
 
 }  // namespace ripplenotch

@@ -3,64 +3,93 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <vector>
 
 namespace ripplenotch {
 namespace {
 
-// Steps of the torque are coarse when the usual change is only a few of the smallest: then equality is
-// chance.
-bool is_coarse(std::span<const double> values, std::span<const char> moving) {
-    std::vector<double> changes;
-    for (std::size_t i = 1; i < values.size(); ++i) {
-        const double change = std::abs(values[i] - values[i - 1]);
-        if (moving[i] != 0 && change > 0.0) changes.push_back(change);
-    }
-    if (changes.size() < 8) return true;
-    const double smallest = *std::min_element(changes.begin(), changes.end());
-    const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
-    std::nth_element(changes.begin(), middle, changes.end());
-    return *middle < 10.0 * smallest;
-}
+constexpr std::size_t fewest_changes = 8;
 
 }  // namespace
 
+void HeldCounter::Way::add(bool same) {
+    run = same ? run + 1 : 0;
+    held.count += same;
+    held.longest = std::max(held.longest, run);
+}
+
+bool HeldCounter::moves(const Row& row, const Row& before) const {
+    return std::min(std::abs(row.velocity), std::abs(before.velocity)) > moving_deg_s_;
+}
+
+void HeldCounter::take(const Row& row) {
+    const bool moving = moves(row, before_), torque = moving && row.torque == before_.torque;
+    const bool velocity = row.velocity == before_.velocity;
+    const bool position = has_position_ && row.position == before_.position;
+    if (moving) {
+        ++moving_rows_;
+        velocity_repeats_ += velocity;
+        position_repeats_ += position;
+        const double change = std::abs(row.torque - before_.torque);
+        if (change > 0.0) {
+            ++changes_;
+            smallest_change_ = std::min(smallest_change_, change);
+        }
+    }
+    ways_[0].add(torque);
+    ways_[1].add(torque && velocity);
+    ways_[2].add(torque && position);
+    ways_[3].add(torque && velocity && position);
+}
+
+void HeldCounter::take(const TraceView& rows) {
+    has_position_ = rows.has_position();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Row row{rows.velocity_deg_s[i], rows.torque_nm[i],
+                      has_position_ ? rows.position_deg[i] : Row().position};
+        if (rows_++ > 0)
+            take(row);
+        else
+            usable_ = std::isfinite(row.torque) && std::isfinite(row.velocity);
+        before_ = row;
+    }
+}
+
+const HeldCounter::Way& HeldCounter::way() const {
+    return ways_[(velocity_tells() ? 1U : 0U) + (position_tells() ? 2U : 0U)];
+}
+
+bool HeldCounter::needs_grain() const {
+    return usable_ && !velocity_tells() && !position_tells() && way().held.count > 0 &&
+           changes_ >= fewest_changes;
+}
+
+void HeldCounter::take_grain(const TraceView& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Row row{rows.velocity_deg_s[i], rows.torque_nm[i]};
+        if (grain_rows_++ > 0 && moves(row, grain_before_)) {
+            const double change = std::abs(row.torque - grain_before_.torque);
+            fine_changes_ += change > 0.0 && change < 10.0 * smallest_change_;
+        }
+        grain_before_ = row;
+    }
+}
+
+// Steps of the torque are coarse when the usual change is only a few of the smallest: then equality is
+// chance.
+HeldSamples HeldCounter::held() const {
+    if (!usable_) return {};
+    const bool told = velocity_tells() || position_tells();
+    const bool coarse = changes_ < fewest_changes || fine_changes_ > changes_ / 2;  // the median is below
+    return told || !coarse ? way().held : HeldSamples{};
+}
+
 HeldSamples count_held(const TraceView& trace) {
-    HeldSamples held;
-    const std::size_t rows = trace.size();
-    if (rows < 2 || !std::isfinite(trace.torque_nm[0]) || !std::isfinite(trace.velocity_deg_s[0]))
-        return held;
     double fastest = 0.0;
     for (const double speed : trace.velocity_deg_s) fastest = std::max(fastest, std::abs(speed));
-    std::vector<char> moving(rows, 0);
-    std::size_t moving_rows = 0, velocity_repeats = 0, position_repeats = 0;
-    const auto repeats = [](std::span<const double> values, std::size_t i) {
-        return values[i] == values[i - 1];
-    };
-    for (std::size_t i = 1; i < rows; ++i) {
-        const double slower =
-            std::min(std::abs(trace.velocity_deg_s[i]), std::abs(trace.velocity_deg_s[i - 1]));
-        if (!(slower > 0.02 * fastest)) continue;
-        moving[i] = 1;
-        ++moving_rows;
-        velocity_repeats += repeats(trace.velocity_deg_s, i);
-        position_repeats += trace.has_position() && repeats(trace.position_deg, i);
-    }
-    const bool velocity_tells = 2 * velocity_repeats < moving_rows;
-    const bool position_tells = trace.has_position() && 2 * position_repeats < moving_rows;
-    if (!velocity_tells && !position_tells && is_coarse(trace.torque_nm, moving)) return held;
-
-    std::size_t run = 0;
-    for (std::size_t i = 1; i < rows; ++i) {
-        const bool same = moving[i] != 0 && repeats(trace.torque_nm, i) &&
-                          (!velocity_tells || repeats(trace.velocity_deg_s, i)) &&
-                          (!position_tells || repeats(trace.position_deg, i));
-        run = same ? run + 1 : 0;
-        held.count += same;
-        held.longest = std::max(held.longest, run);
-    }
-    return held;
+    HeldCounter counter(fastest);
+    counter.take(trace);
+    if (counter.needs_grain()) counter.take_grain(trace);
+    return counter.held();
 }
 
 }  // namespace ripplenotch

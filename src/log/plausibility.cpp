@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ripplenotch/core/error.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -17,33 +19,49 @@ double largest(std::span<const double> values) {
 
 }  // namespace
 
-std::vector<std::string> plausibility_warnings(const Layout& layout, const TraceView& trace,
-                                               const Timebase& timebase) {
+LogExtremes extremes_of(const TraceView& trace) {
+    return {trace.size(), largest(trace.velocity_deg_s),
+            trace.has_position() ? std::optional<double>(largest(trace.position_deg)) : std::nullopt,
+            trace.sample_rate};
+}
+
+void require_rate(const Layout& layout, const LogExtremes& extremes, const ReadOptions& options) {
+    const bool timed = layout.chosen.time || layout.stated_rate;
+    if (!options.needs_torque || !timed || extremes.sample_rate.value() > 0.0) return;
+    raise<DataError>("{}: read {} over no time at all, expected a time that advances; say --sample-rate",
+                     layout.source, extremes.rows == 1 ? "one row" : fmt::format("{} rows", extremes.rows));
+}
+
+std::vector<std::string> doubts(const Layout& layout, std::optional<double> wrap_deg,
+                                const LogExtremes& extremes) {
     std::vector<std::string> warnings;
+    if (wrap_deg) {
+        warnings.push_back(
+            fmt::format("the position starts again at {:.4g} deg; it was made continuous", *wrap_deg));
+    }
     const JointColumns& chosen = layout.chosen;
     const auto assumed = [&](const std::optional<std::size_t>& column) {
         return column && layout.columns[*column].unit_assumed;
     };
     // Joints of robots turn at up to about 3.5 rad/s and 2 pi rad; in degrees such a log would hardly move.
-    if (assumed(chosen.velocity) && trace.size() > 1) {
-        const double speed = largest(trace.velocity_deg_s);
-        const bool small_angle = !trace.has_position() || largest(trace.position_deg) <= 6.6;
+    if (assumed(chosen.velocity) && extremes.rows > 1) {
+        const double speed = extremes.speed_deg_s;
+        const bool small_angle = !extremes.position_deg || *extremes.position_deg <= 6.6;
         if (speed > 0.0 && speed <= 4.0 && small_angle) {
-            warnings.push_back(
-                fmt::format("speed stays below {:.3g} deg/s{}: these may be radians; --unit velocity=rad/s{} "
-                            "would say so",
-                            speed,
-                            trace.has_position()
-                                ? fmt::format(" and position within {:.3g} deg", largest(trace.position_deg))
-                                : "",
-                            assumed(chosen.position) ? " --unit position=rad" : ""));
+            warnings.push_back(fmt::format(
+                "speed stays below {:.3g} deg/s{}: these may be radians; --unit velocity=rad/s{} "
+                "would say so",
+                speed,
+                extremes.position_deg ? fmt::format(" and position within {:.3g} deg", *extremes.position_deg)
+                                      : "",
+                assumed(chosen.position) ? " --unit position=rad" : ""));
         }
     }
-    if (assumed(chosen.time) && timebase.sample_rate.value() > 0.0 && timebase.sample_rate.value() < 5.0) {
+    if (assumed(chosen.time) && extremes.sample_rate.value() > 0.0 && extremes.sample_rate.value() < 5.0) {
         warnings.push_back(
             fmt::format("the time column gives {:.3g} samples a second: it may be in ms; --unit time=ms "
                         "would say so",
-                        timebase.sample_rate.value()));
+                        extremes.sample_rate.value()));
     }
     return warnings;
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Whole logs in memory, with their time base examined.
 
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "log/plausibility.hpp"
 #include "log/unwrap.hpp"
-#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
@@ -31,23 +28,15 @@ Log read_rows(LogReader& reader, const ReadOptions& options) {
     log.layout = reader.layout();
     log.trace.source = log.layout.source;
     log.trace.joint = log.layout.chosen.joint;
-    if (const auto period = wrap_period(log.trace.position_deg)) {
-        unwrap(log.trace.position_deg, *period);
-        log.layout.warnings.push_back(
-            fmt::format("the position starts again at {:.4g} deg; it was made continuous", *period));
-    }
+    const auto period = wrap_period(log.trace.position_deg);
+    if (period) Unwrapper(*period).apply(log.trace.position_deg);
     log.timebase = examine_timebase(log.trace.view());
     if (log.layout.stated_rate) log.timebase.sample_rate = *log.layout.stated_rate;
     log.trace.sample_rate = log.timebase.sample_rate;
-    const bool timed = log.layout.chosen.time || log.layout.stated_rate;
-    if (options.needs_torque && timed && !(log.trace.sample_rate.value() > 0.0)) {
-        raise<DataError>("{}: read {} over no time at all, expected a time that advances; say --sample-rate",
-                         log.layout.source,
-                         log.trace.size() == 1 ? "one row" : fmt::format("{} rows", log.trace.size()));
-    }
-    for (std::string& warning : plausibility_warnings(log.layout, log.trace.view(), log.timebase)) {
+    const LogExtremes extremes = extremes_of(log.trace.view());
+    require_rate(log.layout, extremes, options);
+    for (std::string& warning : doubts(log.layout, period, extremes))
         log.layout.warnings.push_back(std::move(warning));
-    }
     return log;
 }
 

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/log/timebase.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "log/clock_check.hpp"
-#include "log/held_samples.hpp"
+#include "log/timebase_warnings.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -29,7 +27,8 @@ double usual_step(const std::vector<double>& steps) {
     return advancing.empty() ? 0.0 : median_of(std::move(advancing));
 }
 
-void examine_steps(const TraceView& trace, double gap_steps, Timebase& timebase) {
+/// Returns the longest step that is no gap; 0 when there is no such limit.
+double examine_steps(const TraceView& trace, double gap_steps, Timebase& timebase) {
     const auto& time = trace.time_s;
     std::vector<double> steps(time.size() - 1);
     for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = time[i + 1] - time[i];
@@ -49,7 +48,7 @@ void examine_steps(const TraceView& trace, double gap_steps, Timebase& timebase)
         duration += steps[i];
         ++counted;
     }
-    if (!(duration > 0.0)) return;
+    if (!(duration > 0.0)) return limit;
     const double mean = duration / static_cast<double>(counted);
     timebase.sample_rate = Hertz(1.0 / mean);
     double square = 0.0;
@@ -57,32 +56,7 @@ void examine_steps(const TraceView& trace, double gap_steps, Timebase& timebase)
         if (!(limit > 0.0 && step > limit)) square += (step - mean) * (step - mean);
     }
     timebase.jitter = Seconds(std::sqrt(square / static_cast<double>(counted)));
-}
-
-void warn(const TraceView& trace, Timebase& timebase) {
-    const auto percent = [&](std::size_t count) {
-        return 100.0 * static_cast<double>(count) / static_cast<double>(trace.size());
-    };
-    if (!timebase.gaps.empty()) {
-        const auto longest = std::max_element(
-            timebase.gaps.begin(), timebase.gaps.end(),
-            [](const Gap& a, const Gap& b) { return a.to_s - a.from_s < b.to_s - b.from_s; });
-        timebase.warnings.push_back(
-            fmt::format("{} {} in the time, the longest of {:.4g} s after {:.9g} s; each starts a new run",
-                        timebase.gaps.size(), timebase.gaps.size() == 1 ? "gap" : "gaps",
-                        longest->to_s - longest->from_s, longest->from_s));
-    }
-    if (timebase.repeated_times > 0) {
-        timebase.warnings.push_back(
-            fmt::format("{} rows ({:.2g} %) repeat the time of the row before: the clock is coarser "
-                        "than the rows, or rows were doubled",
-                        timebase.repeated_times, percent(timebase.repeated_times)));
-    }
-    if (timebase.held_samples > 0 && percent(timebase.held_samples) >= 0.1) {
-        timebase.warnings.push_back(
-            fmt::format("{} rows ({:.2g} %) hold the sample before while the joint moves, up to {} in a row",
-                        timebase.held_samples, percent(timebase.held_samples), timebase.longest_hold));
-    }
+    return limit;
 }
 
 }  // namespace
@@ -91,15 +65,14 @@ Timebase examine_timebase(const TraceView& trace, double gap_steps) {
     Timebase timebase;
     if (trace.size() < 2) return timebase;
     const bool timed = std::isfinite(trace.time_s.front());
-    if (timed) examine_steps(trace, gap_steps, timebase);
-    const HeldSamples held = count_held(trace);
-    timebase.held_samples = held.count;
-    timebase.longest_hold = held.longest;
-    warn(trace, timebase);
+    const double limit = timed ? examine_steps(trace, gap_steps, timebase) : 0.0;
+    ClockTroubles troubles{trace.size(), 0, timebase.repeated_times, {}, count_held(trace)};
+    for (const Gap& gap : timebase.gaps) troubles.add_gap(gap);
+    timebase.held_samples = troubles.held.count;
+    timebase.longest_hold = troubles.held.longest;
+    timebase.warnings = timebase_warnings(troubles);
     if (timed && std::isfinite(trace.velocity_deg_s.front())) {
-        std::vector<std::size_t> breaks;
-        for (const Gap& gap : timebase.gaps) breaks.push_back(gap.row);
-        ClockCheck check = check_clock(trace, breaks, timebase.sample_rate);
+        ClockCheck check = check_clock(trace, limit, timebase.sample_rate);
         timebase.clock_factor = check.factor;
         if (!check.warning.empty()) timebase.warnings.push_back(std::move(check.warning));
     }

@@ -2,48 +2,73 @@
 #include "log/unwrap.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
-
-#include "ripplenotch/core/units.hpp"
 
 namespace ripplenotch {
-namespace {
 
-constexpr std::array full_turns = {360.0, 2.0 * std::numbers::pi, 360.0 * degrees_per_radian};
-
-}  // namespace
-
-std::optional<double> wrap_period(std::span<const double> position_deg) {
-    if (position_deg.size() < 3) return std::nullopt;
-    const auto [low, high] = std::minmax_element(position_deg.begin(), position_deg.end());
-    const double range = *high - *low;
-    for (const double period : full_turns) {
-        // A wrapped angle fills its turn nearly and never exceeds it, and steps over the seam in one row.
-        if (range < 0.9 * period || range > 1.0001 * period) continue;
-        double largest_other = 0.0;
-        bool seam = false;
-        for (std::size_t i = 1; i < position_deg.size(); ++i) {
-            const double step = std::abs(position_deg[i] - position_deg[i - 1]);
-            if (step > 0.5 * period) {
-                seam = true;
-            } else {
-                largest_other = std::max(largest_other, step);
-            }
-        }
-        if (seam && largest_other < 0.25 * period) return period;
-    }
-    return std::nullopt;
+double Unwrapper::next(double position_deg) {
+    if (before_) turns_ -= std::round((position_deg + turns_ * period_ - *before_) / period_);
+    before_ = position_deg + turns_ * period_;
+    return *before_;
 }
 
-void unwrap(std::span<double> position_deg, double period) {
-    double turns = 0.0;
-    for (std::size_t i = 1; i < position_deg.size(); ++i) {
-        const double step = position_deg[i] + turns * period - position_deg[i - 1];
-        turns -= std::round(step / period);
-        position_deg[i] += turns * period;
+void WrapWatch::Continuous::add(double angle) {
+    sum += angle;
+    largest = std::max(largest, std::abs(angle));
+}
+
+// A wrapped angle never exceeds its turn, and steps over the seam in one row: other steps are much smaller.
+void WrapWatch::look_at(double step, Turn& turn) const {
+    const double magnitude = std::abs(step);
+    if (magnitude > 0.5 * turn.period) {
+        if (turn.unwrapper) return;
+        turn.unwrapper.emplace(turn.period, before_);
+        turn.made = raw_;
+    } else if (magnitude >= 0.25 * turn.period) {
+        turn.ruled_out = true;
     }
+}
+
+void WrapWatch::take(std::span<const double> position_deg) {
+    constexpr double harmless = 0.25 * 2.0 * std::numbers::pi;  // no turn is ruled out by less, none begun
+    for (const double angle : position_deg) {
+        const double step = count_++ > 0 ? angle - before_ : 0.0;
+        low_ = std::min(low_, angle);
+        high_ = std::max(high_, angle);
+        if (jumped_ || std::abs(step) >= harmless) {
+            for (Turn& turn : turns_) {
+                turn.ruled_out = turn.ruled_out || high_ - low_ > 1.0001 * turn.period;
+                if (turn.ruled_out) continue;
+                look_at(step, turn);
+                if (!turn.unwrapper) continue;
+                jumped_ = true;
+                turn.made.add(turn.unwrapper->next(angle));
+            }
+        }
+        raw_.add(angle);
+        before_ = angle;
+    }
+}
+
+const WrapWatch::Turn* WrapWatch::found() const {
+    const double range = high_ - low_;
+    const auto fits = [&](const Turn& turn) {
+        // It fills its turn nearly.
+        return count_ >= 3 && !turn.ruled_out && turn.unwrapper && range >= 0.9 * turn.period &&
+               range <= 1.0001 * turn.period;
+    };
+    const auto turn = std::find_if(turns_.begin(), turns_.end(), fits);
+    return turn == turns_.end() ? nullptr : &*turn;
+}
+
+std::optional<double> WrapWatch::period() const {
+    return found() != nullptr ? std::optional<double>(found()->period) : std::nullopt;
+}
+
+std::optional<double> wrap_period(std::span<const double> position_deg) {
+    WrapWatch watch;
+    watch.take(position_deg);
+    return watch.period();
 }
 
 }  // namespace ripplenotch

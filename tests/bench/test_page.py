@@ -23,7 +23,9 @@ def record():
                "scipy": {"welch": {"work": 1e7, "cpu_s": [0.2, 0.3, 0.25]}}}
     return {"date": "2000-01-01", "version": "0", "commit": "0", "machine": "A machine.", "peers": {"SciPy": "1"}, "missing": {"Octave": "none"},
             "rows": 10, "fixed": fixed, "full": case, "npy": case, "short": case, "kernels": kernels,
-            "analysis": {"identify, moves": {"rows": 5, "failed": {}, "runs": runs((1, 1, 1))}},
+            "analysis": {"identify, moves, 5 rows": {"rows": 5, "failed": {}, "runs": runs((1, 1, 1))},
+                         "spectrum --segment 4.096s, one speed, 50 rows": {"rows": 50, "failed": {}, "runs": runs((1, 1, 14), (1, 1, 13), (1, 1, 12))},
+                         "spectrum, moves, 5 rows": {"rows": 5, "failed": {"spectrum": "no room"}, "runs": []}},
             "growth": [{"joints": 2, "rows": 100, "mb": 1.0, "failed": {}, "runs": runs((1, 2e-6, 3))},
                        {"joints": 7, "rows": 100, "mb": 1.0, "failed": {"ripplenotch": "no such option"}, "runs": []}]}
 
@@ -56,6 +58,12 @@ class Page(unittest.TestCase):
         told = page.tables(record())["growth"]
         self.assertIn("| 100 | 2 | 1 | 1 | 2e-06 | 3 | 10 |", told)
         self.assertIn("no such option", told)
+
+    def test_memory_stands_beside_the_rows_of_each_analysis(self):
+        told = page.tables(record())["analysis"]
+        self.assertIn("| `identify`, moves | 5 | 1 | 1 | 1 |", told)
+        self.assertIn("| `spectrum --segment 4.096s`, one speed | 50 | 1 | 1 | 13 |", told)
+        self.assertNotIn("`spectrum`, moves", told)
 
     def test_all_runs_are_kept(self):
         self.assertIn("ripplenotch: 1.000/2.000/30.0, 9.000/9.000/31.0, 1.500/3.000/29.0", page.tables(record())["raw"])

@@ -21,6 +21,7 @@ class RealTransform {
     explicit RealTransform(std::size_t length);
     ~RealTransform();
     RealTransform(RealTransform&&) noexcept;
+    RealTransform& operator=(RealTransform&&) noexcept;
 
     [[nodiscard]] std::span<double> in();
     /// length / 2 + 1 sums, valid until the next run; in() stays as it is.

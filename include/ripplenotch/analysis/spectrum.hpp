@@ -3,6 +3,7 @@
 // Amplitude of torque against frequency: the paper's windowed DFT, in newton-metres, with its lines and its
 // doubt.
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,12 @@ struct Spectrum {
     Seconds piece_duration;
     double trend_removed_to_hz = 0.0;  ///< below, amplitudes are those of what the straight line left
 };
+
+inline constexpr std::size_t fewest_spectrum_samples = 64;
+/// Samples that a piece has, of so many.
+[[nodiscard]] std::size_t piece_length(std::size_t samples, Hertz rate, const SpectrumOptions& options);
+/// Throws DataError for fewer.
+void require_piece_length(std::size_t length, const SpectrumOptions& options);
 
 /// Hann window, straight line removed per piece. Samples are taken at their own times, so that a jittered
 /// clock moves no line and makes none (regular clocks use a plain FFT). Throws DataError for fewer than 64

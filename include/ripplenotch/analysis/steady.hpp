@@ -35,6 +35,30 @@ struct Stretch {
 /// One stretch made of all samples, whatever the speed does.
 [[nodiscard]] Stretch whole_log(const TraceView& trace);
 
+/// The same, of rows that go by.
+class StretchMeter {
+  public:
+    /// So many rows will come, with these mean values; the position's is 0 where there is none.
+    StretchMeter(std::size_t count, double mean_s, double mean_position_deg)
+        : count_(count), mean_s_(mean_s), mean_position_deg_(mean_position_deg) {}
+    void take(const TraceView& rows);
+    [[nodiscard]] Stretch stretch(Hertz rate, const SteadyRule& rule = {}) const;
+
+  private:
+    static constexpr std::size_t blocks = 10;
+    [[nodiscard]] std::size_t end_of(std::size_t block) const { return count_ * (block + 1) / blocks; }
+    void end_block();
+    void speed_from_velocity(Stretch& stretch) const;
+    void speed_from_position(Stretch& stretch) const;
+
+    std::size_t count_;
+    double mean_s_, mean_position_deg_;
+    bool has_position_ = false;
+    std::size_t rows_ = 0, block_ = 0;
+    double first_s_ = 0.0, last_s_ = 0.0, block_sum_ = 0.0, sum_ = 0.0, square_ = 0.0;
+    double tt_ = 0.0, tp_ = 0.0, pp_ = 0.0;
+};
+
 /// True when one steady stretch covers at least nine tenths of the log.
 [[nodiscard]] bool whole_log_is_steady(const TraceView& trace, const std::vector<Stretch>& stretches);
 

@@ -10,8 +10,9 @@
 #include "cli/command.hpp"
 #include "cli/joint_facts.hpp"
 #include "cli/plot_request.hpp"
+#include "cli/spectrum_text.hpp"
 #include "cli/speed_map_request.hpp"
-#include "cli/text_table.hpp"
+#include "cli/streamed_spectrum.hpp"
 #include "ripplenotch/artifact/spectrum.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -33,6 +34,9 @@ struct Request {
     SpeedMapRequest map;
     PlotRequest plot;
     bool peaks = false;
+
+    /// Half-overlapping pieces of all of the log, which need no more of it at a time.
+    [[nodiscard]] bool in_pieces() const { return segment && !stretch && !map.map && domain == "frequency"; }
 };
 
 /// The parts of the log that are asked for: all of it, every steady stretch, or one of them by number.
@@ -57,89 +61,6 @@ std::vector<std::pair<std::optional<int>, Stretch>> parts_of(const Request& requ
                           parts.size(), parts.size() == 1 ? "" : "es");
     }
     return {parts[static_cast<std::size_t>(*number) - 1]};
-}
-
-std::string frequency_csv(const std::vector<StretchSpectrum>& spectra) {
-    const bool numbered = spectra.front().number.has_value();
-    std::string text = numbered ? "stretch,speed_deg_s,frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n"
-                                : "frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n";
-    for (const StretchSpectrum& one : spectra) {
-        for (std::size_t k = 0; k < one.spectrum.hz.size(); ++k) {
-            if (numbered) {
-                text += std::to_string(*one.number) + ",";
-                append_shortest(text, one.stretch.speed.value());
-                text += ",";
-            }
-            const std::array cells{one.spectrum.hz[k], one.spectrum.amplitude_nm[k],
-                                   one.spectrum.psd_nm2_hz[k], one.spectrum.floor_nm[k]};
-            for (std::size_t c = 0; c < cells.size(); ++c) {
-                if (c > 0) text += ",";
-                append_shortest(text, cells[c]);
-            }
-            text += "\n";
-        }
-    }
-    return text;
-}
-
-std::string order_csv(const Stack& stack) {
-    std::string text = "order_output,amplitude_nm,floor_nm,averages\n";
-    for (std::size_t k = stack.first; k < stack.ratio.size(); ++k) {
-        const std::array cells{static_cast<double>(k) * stack.spacing, stack.amplitude_nm[k],
-                               stack.floor_nm[k], stack.averages[k]};
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            if (c > 0) text += ",";
-            append_shortest(text, cells[c]);
-        }
-        text += "\n";
-    }
-    return text;
-}
-
-std::string frequency_peaks(const std::vector<StretchSpectrum>& spectra) {
-    std::string text;
-    for (const StretchSpectrum& one : spectra) {
-        const Spectrum& s = one.spectrum;
-        if (!text.empty()) text += "\n";
-        text += one.number ? fmt::format("Stretch {}, {:.4g} deg/s: ", *one.number, one.stretch.speed.value())
-                           : "";
-        text += fmt::format("{} in {:.4g} s (resolution {:.3g} Hz, floor {:.2g} Nm).\n",
-                            s.peaks.empty()
-                                ? "no line"
-                                : fmt::format("{} line{}", s.peaks.size(), s.peaks.size() == 1 ? "" : "s"),
-                            one.stretch.duration.value(), s.resolution.value(), median_floor(s.floor_nm));
-        if (s.peaks.empty()) continue;
-        std::vector<std::vector<std::string>> rows{{"Hz", "+/-", "amplitude, Nm", "phase, deg", "SNR"}};
-        for (const SpectralPeak& peak : s.peaks) {
-            rows.push_back({fmt::format("{:.4f}", peak.hz), fmt::format("{:.2g}", peak.hz_stderr),
-                            fmt::format("{:.4g}", peak.amplitude_nm), fmt::format("{:.1f}", peak.phase_deg),
-                            fmt::format("{:.1f}", peak.snr)});
-        }
-        text += text_table(rows, "r");
-    }
-    return text;
-}
-
-std::string order_peaks(const OrderSpectrum& spectrum) {
-    const MotionLines& found = spectrum.lines;
-    std::string text =
-        fmt::format("{} in {} over {:.3g} output turns (resolution {:.3g} orders, floor {:.2g} Nm).\n",
-                    found.lines.empty()
-                        ? "No line"
-                        : fmt::format("{} line{}", found.lines.size(), found.lines.size() == 1 ? "" : "s"),
-                    found.sweeps == 1 ? "1 sweep" : fmt::format("{} sweeps", found.sweeps), found.turns,
-                    found.resolution_orders, median_floor(spectrum.stack.floor_nm));
-    if (found.lines.empty()) return text;
-    std::vector<std::vector<std::string>> rows{{"kind", "output order", "+/-", "Hz", "amplitude, Nm", "SNR"}};
-    for (const MotionLine& line : found.lines) {
-        const bool tone = line.kind == LineKind::tone, order = line.kind == LineKind::order;
-        rows.push_back({std::string(line_kind_name(line.kind)),
-                        tone ? "-" : fmt::format("{:.3f}", line.order_output),
-                        fmt::format("{:.2g}", tone ? line.hz_stderr : line.order_stderr),
-                        order ? "-" : fmt::format("{:.3f}", line.hz),
-                        fmt::format("{:.4g}", line.amplitude_nm), fmt::format("{:.1f}", line.snr)});
-    }
-    return text + text_table(rows, "lr");
 }
 
 /// What goes to the output, and the figure of it.
@@ -181,14 +102,18 @@ Figure frequency_figure(const std::string& source, const std::vector<StretchSpec
     return spectrum_figure(source, shown);
 }
 
-Result frequency_result(const Request& request, const TraceView& trace, const std::string& joint,
-                        const Provenance& provenance) {
+std::vector<StretchSpectrum> frequency_spectra(const Request& request, const TraceView& trace) {
     std::vector<StretchSpectrum> spectra;
     for (const auto& [number, stretch] : parts_of(request, trace)) {
         spectra.push_back({number, stretch,
                            torque_spectrum(trace.part(stretch.first, stretch.count),
                                            {request.segment, request.false_alarm})});
     }
+    return spectra;
+}
+
+Result frequency_result(const Request& request, std::vector<StretchSpectrum> spectra,
+                        const std::string& joint, const Provenance& provenance) {
     if (!request.common.json && !request.peaks && request.common.verbose)
         say(request.common, frequency_peaks(spectra));
     std::string text = request.common.json ? spectra_text(joint, spectra, request.false_alarm, provenance)
@@ -211,6 +136,32 @@ Result map_result(const Request& request, const Trace& trace, const Provenance& 
             }};
 }
 
+using Made = std::pair<Result, Provenance>;
+
+/// The log goes by and is not held.
+Made piecewise_result(const Request& request, const std::string& command_line) {
+    LogPasses log(request.path, request.log.resolve());
+    const StretchSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
+        say_layout(request.common, log.layout());
+        say_warnings(request.common, log.warnings());
+    });
+    const Provenance provenance{{input_record(request.path)}, command_line};
+    return {frequency_result(request, {spectrum}, log.layout().chosen.joint, provenance), provenance};
+}
+
+Made whole_result(const Request& request, const std::string& command_line) {
+    const Log log = read_log(request.path, request.log.resolve());
+    say_layout(request.common, log.layout);
+    say_warnings(request.common, log.timebase.warnings);
+    const Provenance provenance{{input_record(request.path)}, command_line};
+    const TraceView trace = log.trace.view();
+    if (request.map.map) return {map_result(request, log.trace, provenance), provenance};
+    if (request.domain == "order")
+        return {order_result(request, trace, log.trace.joint, provenance), provenance};
+    return {frequency_result(request, frequency_spectra(request, trace), log.trace.joint, provenance),
+            provenance};
+}
+
 ExitCode run(Request& request, const std::string& command_line) {
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
@@ -223,15 +174,8 @@ ExitCode run(Request& request, const std::string& command_line) {
     if (request.map.map &&
         (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
         raise<UsageError>("--map goes with neither --domain, --stretch, --segment nor --peaks");
-    const Log log = read_log(request.path, request.log.resolve());
-    say_layout(request.common, log.layout);
-    say_warnings(request.common, log.timebase.warnings);
-    const Provenance provenance{{input_record(request.path)}, command_line};
-    const TraceView trace = log.trace.view();
-    const Result result = request.map.map ? map_result(request, log.trace, provenance)
-                          : request.domain == "order"
-                              ? order_result(request, trace, log.trace.joint, provenance)
-                              : frequency_result(request, trace, log.trace.joint, provenance);
+    const auto [result, provenance] =
+        request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
     if (request.peaks || !request.plot.instead_of(request.common.output))
         write_all(request.common.output, result.text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, result.figure);

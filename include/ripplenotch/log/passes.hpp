@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A log of any length, gone through several times instead of held: what read_log finds out about a log in
+// memory, found out in passing.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/log/layout.hpp"
+
+namespace ripplenotch {
+
+/// Of the joint that is read, known after the first pass.
+struct LogFacts {
+    std::size_t rows = 0;
+    Hertz sample_rate;  ///< stated, or measured as in Timebase
+    double first_s = 0.0, last_s = 0.0;
+    double mean_s = 0.0;             ///< of the times
+    double mean_position_deg = 0.0;  ///< of the continuous position; 0 where there is none
+};
+
+class LogPasses {
+  public:
+    /// Gets consecutive rows, of the joint that options choose.
+    using Take = std::function<void(const TraceView&)>;
+
+    /// A pipe is kept in a temporary file (Spool). Throws what open_log throws.
+    LogPasses(const std::string& path, const ReadOptions& options);
+    ~LogPasses();
+    LogPasses(const LogPasses&) = delete;
+    LogPasses& operator=(const LogPasses&) = delete;
+
+    /// Once, first: rows without a sample rate, their position as it stands in the file. Where the steps of
+    /// the clock are so unlike those of the first rows that their median has to be looked for, times alone go
+    /// by five times more. Throws DataError as read_log does.
+    void first(const Take& take);
+    [[nodiscard]] const LogFacts& facts() const;
+
+    /// Once, second: rows with a sample rate, and a continuous position. Then all is known that read_log
+    /// would warn of.
+    void second(const Take& take);
+    [[nodiscard]] const Layout& layout() const;                      ///< as Log::layout
+    [[nodiscard]] const std::vector<std::string>& warnings() const;  ///< as Timebase::warnings
+
+    /// Any number of times: as second.
+    void again(const Take& take);
+
+  private:
+    class Work;
+    std::unique_ptr<Work> work_;
+};
+
+}  // namespace ripplenotch
