@@ -10,20 +10,23 @@ namespace ripplenotch {
 
 void FixedTexts::prepare(std::span<const double> values, double divisor, int decimals) {
     values_ = values;
+    divisor_ = divisor;
     decimals_ = decimals;
-    if (divisor != 1.0) {
-        std::transform(values.begin(), values.end(), quotients_.begin(),
-                       [divisor](double value) { return value / divisor; });
-        values_ = {quotients_.data(), values.size()};
-    }
-    if (avx2_ && decimals >= 0 && decimals <= most_decimals_avx2)
-        print_fixed_avx2(values_, decimals, mark_, slots_.data(), lengths_.data());
-    else
+    if (!avx2_ || decimals < 0 || decimals > most_decimals_avx2) {
         std::fill_n(lengths_.begin(), values.size(), 0);
+        return;
+    }
+    std::array<double, most> quotients;
+    if (divisor != 1.0) {
+        std::transform(values.begin(), values.end(), quotients.begin(),
+                       [divisor](double value) { return value / divisor; });
+        values = {quotients.data(), values.size()};
+    }
+    print_fixed_avx2(values, decimals, mark_, slots_.data(), lengths_.data());
 }
 
 char* FixedTexts::put_alone(char* into, std::size_t i, int decimals) const {
-    char* const end = put_fixed(into, values_[i], decimals);
+    char* const end = put_fixed(into, values_[i] / divisor_, decimals);
     if (mark_ != '.') std::replace(into, end, '.', mark_);
     return end;
 }
