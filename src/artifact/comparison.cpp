@@ -48,6 +48,9 @@ Json method_to_json(const MethodFigures& figures) {
         figures.within_from ? Json(figures.within_from->value()) : Json(nullptr);
     json["ledger"] = Json::array();
     for (const LedgerEntry& entry : figures.ledger) json["ledger"].push_back(ledger_entry_to_json(entry));
+    json["switch_ledger"] = Json::array();
+    for (const SwitchEntry& entry : figures.switch_ledger)
+        json["switch_ledger"].push_back(switch_entry_to_json(entry));
     return json;
 }
 

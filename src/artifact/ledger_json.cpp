@@ -4,6 +4,36 @@
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
+namespace {
+
+Json milliseconds_or_null(const std::optional<Seconds>& time) {
+    return time ? Json(1e3 * time->value()) : Json(nullptr);
+}
+
+}  // namespace
+
+Json switch_to_json(const Switch& change, Seconds time) {
+    Json json;
+    json["time_s"] = finite_or_null(time.value());
+    json["sample"] = change.sample;
+    json["from_band"] = change.from_band;
+    json["to_band"] = change.to_band;
+    json["speed_deg_s"] = finite_or_null(change.speed_deg_s);
+    json["jump_nm"] = finite_or_null(change.jump_nm);
+    return json;
+}
+
+Json switch_entry_to_json(const SwitchEntry& entry) {
+    Json json = switch_to_json(entry.change, entry.time);
+    json["stretch_ms"] = 1e3 * entry.stretch.value();
+    json["error_before_nm"] = entry.error_before_nm ? Json(*entry.error_before_nm) : Json(nullptr);
+    json["peak_error_nm"] = entry.peak_error_nm ? Json(*entry.peak_error_nm) : Json(nullptr);
+    json["peak_after_ms"] = milliseconds_or_null(entry.peak_after);
+    json["settle_ms"] = Json::object();
+    for (std::size_t i = 0; i < settle_bands_percent.size(); ++i)
+        json["settle_ms"][shortest(settle_bands_percent[i])] = milliseconds_or_null(entry.settle[i]);
+    return json;
+}
 
 Json settling_to_json(const StepMeasurement& step) {
     Json json = Json::object();
@@ -21,7 +51,7 @@ Json ledger_entry_to_json(const LedgerEntry& entry) {
     }
     json["filter"] = entry.filter;
     json["dc_delay_ms"] = 1e3 * entry.dc_delay.value();
-    json["ramp_delay_ms"] = entry.ramp_delay ? Json(1e3 * entry.ramp_delay->value()) : Json(nullptr);
+    json["ramp_delay_ms"] = milliseconds_or_null(entry.ramp_delay);
     json["settle_ms"] = entry.step ? settling_to_json(*entry.step) : Json(nullptr);
     json["overshoot_percent"] = entry.step ? Json(entry.step->overshoot_percent) : Json(nullptr);
     json["phase_lag_deg"] = entry.phase_lag_deg ? Json(*entry.phase_lag_deg) : Json(nullptr);

@@ -55,17 +55,6 @@ void add_levels(Json& json, const FilterMetrics& metrics) {
                        {"too_few_samples", metrics.levels->windows_too_few_samples}};
 }
 
-Json switch_to_json(const TimedSwitch& entry) {
-    Json json;
-    json["time_s"] = finite_or_null(entry.time_s);
-    json["sample"] = entry.change.sample;
-    json["from_band"] = entry.change.from_band;
-    json["to_band"] = entry.change.to_band;
-    json["speed_deg_s"] = finite_or_null(entry.change.speed_deg_s);
-    json["jump_nm"] = finite_or_null(entry.change.jump_nm);
-    return json;
-}
-
 void add_stream(Json& json, const FilterMetrics& metrics) {
     const StreamReport& stream = metrics.stream;
     json["rows"] = stream.rows;
@@ -112,7 +101,7 @@ std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& prov
     json["switch_count"] = metrics.stream.switch_count;
     json["switches"] = Json::array();
     for (const TimedSwitch& entry : metrics.stream.switches)
-        json["switches"].push_back(switch_to_json(entry));
+        json["switches"].push_back(switch_to_json(entry.change, Seconds(entry.time_s)));
     return to_text(json);
 }
 

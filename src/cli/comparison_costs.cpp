@@ -8,7 +8,8 @@ namespace ripplenotch {
 void attach_costs(Options& options, CostRequest& request) {
     options.quantity("--crossover", request.crossover, Dimension::frequency,
                      "the control loop's: phase lag and gain there, e.g. 12Hz");
-    options.flag("--ledger", request.ledger, "delay, settling and phase lag of every band of every method");
+    options.flag("--ledger", request.ledger,
+                 "delay, settling and phase lag of every band of every method; on a log every switch");
     attach_gates(options, request.gates);
 }
 
@@ -33,6 +34,7 @@ void add_costs(Comparison& comparison, const CostRequest& request, const Field& 
         }
         if (request.ledger)
             figures.ledger = delay_ledger(contender, comparison.sample_rate, {request.crossover, true});
+        if (!request.ledger) figures.switch_ledger.clear();
         if (request.gates.max_delay_ms && (contender.table || contender.settings.has("gear-ratio"))) {
             figures.within_from =
                 within_from(contender, comparison.sample_rate, Seconds(1e-3 * *request.gates.max_delay_ms));

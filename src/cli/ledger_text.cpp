@@ -31,6 +31,37 @@ std::vector<std::string> row(const LedgerEntry& entry, bool crossover) {
     return cells;
 }
 
+std::string milliseconds(const std::optional<Seconds>& time) {
+    return time ? rounded(1e3 * time->value(), 0) : "-";
+}
+
+std::string band_name(int band) { return band > 0 ? std::to_string(band) : "none"; }
+
+// Errors are there where the true torque is known.
+std::string switches_text(const MethodFigures& figures) {
+    if (figures.switch_ledger.empty()) return "";
+    const bool truth = figures.switch_ledger.front().peak_error_nm.has_value();
+    std::vector<std::vector<std::string>> rows = {{"change", "from", "to", "speed", "jump"},
+                                                  {"at s", "band", "band", "deg/s", "Nm"}};
+    if (truth) {
+        rows[0].insert(rows[0].end(), {"error, Nm", "", "peak after", "settles, ms"});
+        rows[1].insert(rows[1].end(), {"before", "peak", "ms"});
+        for (const double percent : settle_bands_percent) rows[1].push_back(fmt::format("to {} %", percent));
+    }
+    for (const SwitchEntry& entry : figures.switch_ledger) {
+        rows.push_back({rounded(entry.time.value(), 3), band_name(entry.change.from_band),
+                        band_name(entry.change.to_band), rounded(entry.change.speed_deg_s, 1),
+                        rounded(entry.change.jump_nm, 3)});
+        if (!truth) continue;
+        auto& cells = rows.back();
+        cells.push_back(entry.error_before_nm ? rounded(*entry.error_before_nm, 3) : "-");
+        cells.push_back(rounded(entry.peak_error_nm.value_or(0.0), 3));
+        cells.push_back(milliseconds(entry.peak_after));
+        for (const auto& settle : entry.settle) cells.push_back(milliseconds(settle));
+    }
+    return "\n" + text_table(rows, "r");
+}
+
 }  // namespace
 
 std::string ledger_text(const Comparison& comparison) {
@@ -58,7 +89,7 @@ std::string ledger_text(const Comparison& comparison) {
         }
         for (const LedgerEntry& entry : figures.ledger)
             rows.push_back(row(entry, comparison.crossover.has_value()));
-        text += fmt::format("\n{}\n", figures.method) + text_table(rows, "r");
+        text += fmt::format("\n{}\n", figures.method) + text_table(rows, "r") + switches_text(figures);
     }
     if (comparison.no_notch_below)
         text += "\n" + slowest_sentence(*comparison.max_delay, *comparison.no_notch_below) + "\n";

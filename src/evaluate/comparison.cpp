@@ -17,6 +17,7 @@ struct Runner {
     std::unique_ptr<CausalFilter> filter;
     std::vector<double> out;
     double error_squares = 0.0;
+    std::optional<SwitchLedger> ledger = std::nullopt;  ///< of a method that switches
 };
 
 double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
@@ -56,6 +57,7 @@ void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView
     for (Runner& runner : runners) {
         runner.out.resize(block.size());
         runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, runner.out);
+        if (runner.ledger) runner.ledger->add(block.time_s, runner.out, runner.filter->switches());
         for (std::size_t k = 0; k < truth_nm.size(); ++k) {
             const double error = runner.out[k] - truth_nm[k];
             runner.error_squares += error * error;
@@ -146,7 +148,10 @@ DegPerSec median_moving_speed(const TraceView& trace) {
 LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
                          const RippleLines& lines) {
     std::vector<Runner> runners;
-    for (const Contender& contender : contenders) runners.push_back({filter_for(contender, log), {}});
+    for (const Contender& contender : contenders) {
+        runners.push_back({filter_for(contender, log), {}});
+        if (contender.method->needs_table) runners.back().ledger.emplace(log.truth_nm);
+    }
     RippleMeter meter(lines.gear_ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);
     std::size_t done = 0;
     for_each_block(
@@ -158,7 +163,10 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
         },
         [&] {
             meter.split();
-            for (Runner& runner : runners) runner.filter->restart();
+            for (Runner& runner : runners) {
+                runner.filter->restart();
+                if (runner.ledger) runner.ledger->split();
+            }
         });
     const RippleLevels levels = meter.levels();
     LogLevels result{{}, levels.windows, levels.measured_share, ""};
@@ -171,9 +179,10 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
         MethodFigures figures;
         figures.method = contenders[i].text;
         fill_levels(figures, levels, i + 1);
-        if (contenders[i].method->needs_table) {
+        if (runners[i].ledger) {
             figures.switches = runners[i].filter->switch_count();
             figures.largest_jump_nm = largest_jump_nm(*runners[i].filter);
+            figures.switch_ledger = runners[i].ledger->entries();
         }
         if (!log.truth_nm.empty()) {
             const auto rows = static_cast<double>(log.truth_nm.size());

@@ -72,7 +72,8 @@ class Signals(Case):
         self.assertEqual(list(rows[NOTCHES]), [
             "method", "settle_ms", "overshoot_percent", "ramp_delay_ms", "dc_delay_ms", "phase_lag_deg",
             "crossover_db", "attenuation_db", "ripple_rms_nm", "residual_rms_nm", "residual_peak_to_peak_nm", "switches",
-            "largest_jump_nm", "error_rms_nm", "note", "within_max_delay_from_deg_s", "ledger"])
+            "largest_jump_nm", "error_rms_nm", "note", "within_max_delay_from_deg_s", "ledger",
+            "switch_ledger"])
         for name in ("settle_ms", "overshoot_percent", "ripple_rms_nm", "residual_rms_nm", "switches"):
             self.assertIsNone(rows[NOTCHES][name])
         self.assertEqual(rows[NOTCHES]["attenuation_db"], [])
@@ -286,6 +287,41 @@ class Truth(Case):
             self.assertAlmostEqual(row["error_rms_nm"], expected, places=9)
             jumps = [abs(s["jump_nm"]) for s in json.loads(done.stdout)["switches"]]
             self.assertEqual(row["largest_jump_nm"], max(jumps) if method == reset else None)
+
+    def test_each_switch_has_its_own_peak_error_and_settling_in_the_ledger(self):
+        method = "switching,table=table.json,transition=keep"
+        words = ["log.csv", *RIPPLE, *methods(method)]
+        _, rows = self.compare(*words, "--truth", "true.csv", "--ledger", folder=self.folder)
+        done = run("filter", "--method", method, "log.csv", "-o", "out.csv", "--force", "--json", folder=self.folder)
+        out, truth = self.torque("out.csv"), self.torque("true.csv")
+        errors = [abs(a - b) for a, b in zip(out, truth)]
+        scale = max(truth) - min(truth)
+        ledger, switches = rows[method]["switch_ledger"], json.loads(done.stdout)["switches"]
+        self.assertGreater(len(switches), 5)
+        ends = [s["sample"] for s in switches[1:]] + [len(out)]
+        for entry, switch, end in zip(ledger, switches, ends, strict=True):
+            self.assertEqual({key: entry[key] for key in switch}, switch)
+            start = switch["sample"]
+            stretch = errors[start:end]
+            self.assertAlmostEqual(entry["stretch_ms"], len(stretch) - 1, places=6)
+            self.assertAlmostEqual(entry["error_before_nm"], errors[start - 1], places=9)
+            self.assertAlmostEqual(entry["peak_error_nm"], max(stretch), places=9)
+            self.assertAlmostEqual(entry["peak_after_ms"], stretch.index(max(stretch)), places=6)
+            for percent, settled in entry["settle_ms"].items():
+                outside = [k for k, error in enumerate(stretch) if error > 0.01 * float(percent) * scale]
+                after = outside[-1] + 1 if outside else 0
+                if after == len(stretch):
+                    self.assertIsNone(settled)
+                else:
+                    self.assertAlmostEqual(settled, after, places=6)
+        self.assertEqual(rows["none"]["switch_ledger"], [])
+        _, plain = self.compare(*words, "--truth", "true.csv", folder=self.folder)
+        self.assertEqual(plain[method]["switch_ledger"], [])
+        _, unknown = self.compare(*words, "--ledger", folder=self.folder)
+        for entry, switch in zip(unknown[method]["switch_ledger"], switches, strict=True):
+            self.assertEqual(entry["jump_nm"], switch["jump_nm"])
+            self.assertIsNone(entry["peak_error_nm"])
+            self.assertEqual(set(entry["settle_ms"].values()), {None})
 
     def test_a_truth_that_cannot_be_held_against_the_log_is_refused(self):
         words = ["compare", "log.csv", *methods("none")]

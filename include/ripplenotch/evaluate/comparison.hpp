@@ -12,6 +12,7 @@
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
+#include "ripplenotch/evaluate/switch_ledger.hpp"
 
 namespace ripplenotch {
 
@@ -37,7 +38,9 @@ struct MethodFigures {
         residual_peak_to_peak_nm;  ///< torque minus its trend, as RippleMeter does
     std::optional<std::size_t> switches;
     std::optional<double> largest_jump_nm;  ///< at a change of filter; empty for methods that do not switch
-    std::optional<double> error_rms_nm;     ///< against ComparedLog::truth_nm
+    std::vector<SwitchEntry>
+        switch_ledger;                   ///< on a log: its changes of filter; at most most_listed_switches
+    std::optional<double> error_rms_nm;  ///< against ComparedLog::truth_nm
 };
 
 /// The lines that a comparison looks at; `amplitude_nm` weighs them against each other where there is no log.
