@@ -19,7 +19,9 @@ Json numbers_json(const std::vector<double>& values) {
     return array;
 }
 
-const char* scale_name(PlotScale scale) { return scale == PlotScale::linear ? "linear" : "logarithmic"; }
+const char* scale_name(PlotScale scale) {
+    return scale == PlotScale::linear ? "linear" : scale == PlotScale::whole ? "whole" : "logarithmic";
+}
 
 Json axis_json(const PlotAxis& axis, const PlotRange& range) {
     return {{"label", axis.label},

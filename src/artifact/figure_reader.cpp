@@ -19,7 +19,7 @@ Enum word_of(Fields& fields, std::string_view name, const std::array<const char*
                      words.front());
 }
 
-constexpr std::array scales = {"linear", "logarithmic"};
+constexpr std::array scales = {"linear", "logarithmic", "whole"};
 constexpr std::array styles = {"line", "dashed", "steps", "points", "stems"};
 constexpr std::array runs = {"at-x", "at-y", "ray"};
 

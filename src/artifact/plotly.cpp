@@ -111,6 +111,7 @@ class PlotlyPanel {
                 {"zeroline", false},
                 {"ticks", "outside"}};
         if (!log) json["tickformat"] = ".6~g";
+        if (axis.scale == PlotScale::whole) json["dtick"] = whole_step(range);
     }
 
     Json trace(const std::string& type, const std::string& name) const {

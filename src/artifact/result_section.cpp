@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "artifact/json.hpp"
+#include "artifact/json_words.hpp"
 #include "ripplenotch/artifact/figure.hpp"
 #include "ripplenotch/artifact/identification.hpp"
 #include "ripplenotch/artifact/table.hpp"
@@ -16,77 +18,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_rows = 200, most_cell = 80;
-
-// Endings of names that are units, the longer first where one ends in the other.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> units = {{{"_nm2_hz", "Nm²/Hz"},
-                                                                                  {"_deg_s", "deg/s"},
-                                                                                  {"_nm_s", "Nm/s"},
-                                                                                  {"_percent", "%"},
-                                                                                  {"_bytes", "bytes"},
-                                                                                  {"_deg", "deg"},
-                                                                                  {"_hz", "Hz"},
-                                                                                  {"_nm", "Nm"},
-                                                                                  {"_db", "dB"},
-                                                                                  {"_ms", "ms"},
-                                                                                  {"_s", "s"},
-                                                                                  {"_rad", "rad"}}};
-
-// "dc_delay_ms" is "dc delay" in "ms".
-struct Spoken {
-    std::string name, unit;
-};
-Spoken spoken(std::string name) {
-    if (name == "hz") return {"frequency", "Hz"};
-    if (name == "db") return {"level", "dB"};
-    std::string unit;
-    for (const auto& [ending, means] : units) {
-        if (name.size() > ending.size() && name.ends_with(ending)) {
-            name.resize(name.size() - ending.size());
-            unit = means;
-            break;
-        }
-    }
-    std::replace(name.begin(), name.end(), '_', ' ');
-    return {name, unit};
-}
-
-bool is_span(const Json& json) {
-    return json.is_array() && json.size() == 2 && json[0].is_number() && json[1].is_number();
-}
-
-std::string value_text(const Json& json);
-
-// "0.5 to 2.25; 4 to 5": stretches of time, of speed.
-std::string spans_text(const Json& spans) {
-    constexpr std::size_t most = 4;
-    std::string joined;
-    for (std::size_t i = 0; i < std::min(spans.size(), most); ++i)
-        joined +=
-            fmt::format("{}{} to {}", i > 0 ? "; " : "", value_text(spans[i][0]), value_text(spans[i][1]));
-    return spans.size() > most ? fmt::format("{}; and {} more", joined, spans.size() - most) : joined;
-}
-
-std::string value_text(const Json& json) {
-    if (json.is_null()) return "-";
-    if (json.is_string()) return json.get<std::string>();
-    if (json.is_number_float()) return fmt::format("{:.7g}", json.get<double>() + 0.0);
-    if (json.is_array() && !json.empty() && std::all_of(json.begin(), json.end(), is_span))
-        return spans_text(json);
-    if (json.is_array()) {
-        std::string joined;
-        for (const Json& entry : json) joined += (joined.empty() ? "" : ", ") + value_text(entry);
-        return joined.size() > most_cell ? fmt::format("{} values", json.size()) : joined;
-    }
-    if (json.is_object()) {
-        std::string joined;
-        for (const auto& [name, entry] : json.items())
-            joined +=
-                fmt::format("{}{} {}", joined.empty() ? "" : "; ", spoken(name).name, value_text(entry));
-        return joined;
-    }
-    return json.is_boolean() ? (json.get<bool>() ? "yes" : "no") : json.dump();
-}
+constexpr std::size_t most_rows = 200;
 
 bool is_table(const Json& json) {
     return json.is_array() && !json.empty() &&
@@ -106,23 +38,6 @@ bool says_nothing(const std::string& cell) {
     return cell.empty() || cell == "-" || cell.ends_with(" values");
 }
 
-// What a parameter was fitted to: {"level_nm": {"value": 1, "ci95": [0.9, 1.1]}} is "level 1 (0.9 to 1.1)
-// Nm".
-std::string parameters_text(const Json& parameters) {
-    std::string joined;
-    for (const auto& [name, entry] : parameters.items()) {
-        const Spoken said = spoken(name);
-        const Json value = entry.is_object() ? entry.value("value", Json()) : entry;
-        const Json interval = entry.is_object() ? entry.value("ci95", Json()) : Json();
-        joined += fmt::format(
-            "{}{} {}{}{}", joined.empty() ? "" : "; ", said.name, value_text(value),
-            is_span(interval) ? fmt::format(" ({} to {})", value_text(interval[0]), value_text(interval[1]))
-                              : "",
-            said.unit.empty() ? "" : " " + said.unit);
-    }
-    return joined;
-}
-
 // A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms".
 void cells_of(const Json& row, const std::string& prefix, const std::string& unit,
               std::vector<std::pair<std::string, std::string>>& cells) {
@@ -132,13 +47,15 @@ void cells_of(const Json& row, const std::string& prefix, const std::string& uni
         const std::string in = said.unit.empty() ? unit : said.unit;
         if (name == "parameters" && entry.is_object()) {
             cells.emplace_back("parameters (95 % interval)", parameters_text(entry));
+        } else if (name == "where" && entry.is_object()) {
+            cells.emplace_back("where", where_text(entry));
         } else if (entry.is_object() && entry.size() <= 6) {
             cells_of(entry, full + " ", in, cells);
         } else if (is_short_list(entry)) {
             for (std::size_t i = 0; i < entry.size(); ++i)
                 cells_of(entry[i], fmt::format("{} {} ", full, i + 1), "", cells);
         } else {
-            cells.emplace_back(in.empty() ? full : full + ", " + in, value_text(entry));
+            cells.emplace_back(in.empty() ? full : full + ", " + in, field_text(row, name));
         }
     }
 }
@@ -175,8 +92,38 @@ PageTable table_of(const std::string& name, const Json& rows) {
     return table;
 }
 
-void add_field(PageSection& section, const std::string& name, const Json& json) {
-    if (is_table(json)) {
+// A round's gap as "0.435 to 0.0497" in one cell, and of its evidence what people ask for first: a page is
+// not as wide as the JSON is deep.
+Json rounds_for_people(const Json& rounds) {
+    constexpr std::array kept = {"effect", "status", "reason", "parameters", "where"};
+    Json shown = Json::array();
+    for (const Json& round : rounds) {
+        Json row;
+        for (const char* name : kept) {
+            if (round.contains(name)) row[name] = round[name];
+        }
+        const Json evidence = round.value("evidence", Json::object());
+        if (evidence.contains("share_nm")) row["explains_nm"] = evidence["share_nm"];
+        for (const auto& [as, before, after] :
+             {std::tuple{"gap_nm", "gap_before_nm", "gap_after_nm"},
+              {"validation_nm", "validation_before_nm", "validation_after_nm"}}) {
+            if (!round.contains(before) || !round.contains(after)) continue;
+            row[as] = fmt::format("{} to {}", field_text(round, before), field_text(round, after));
+        }
+        std::string rivals;
+        for (const Json& rival : round.value("alternatives", Json::array()))
+            rivals += (rivals.empty() ? "" : ", ") + rival.value("effect", "?");
+        if (!rivals.empty()) row["rivals"] = rivals;
+        shown.push_back(std::move(row));
+    }
+    return shown;
+}
+
+void add_field(PageSection& section, const std::string& name, const Json& whole) {
+    const Json& json = whole.at(name);
+    if (name == "rounds" && is_table(json)) {
+        section.tables.push_back(table_of(name, rounds_for_people(json)));
+    } else if (is_table(json)) {
         section.tables.push_back(table_of(name, json));
     } else if (json.is_object()) {
         for (const auto& [inner, entry] : json.items()) {
@@ -188,13 +135,13 @@ void add_field(PageSection& section, const std::string& name, const Json& json) 
                 const std::string unit = said.unit.empty() ? outer.unit : said.unit;
                 section.facts.push_back(
                     {fmt::format("{} {}{}{}", outer.name, said.name, unit.empty() ? "" : ", ", unit),
-                     value_text(entry)});
+                     field_text(json, inner)});
             }
         }
     } else if (!json.is_null() && !(json.is_array() && json.empty()) && json != "") {
         const Spoken said = spoken(name);
         section.facts.push_back(
-            {said.unit.empty() ? said.name : said.name + ", " + said.unit, value_text(json)});
+            {said.unit.empty() ? said.name : said.name + ", " + said.unit, field_text(whole, name)});
     }
 }
 
@@ -281,7 +228,7 @@ PageSection section_of_result(const std::string& text, const std::string& source
     constexpr std::array told = {"schema", "tool", "version", "command", "inputs", "verdict"};
     for (const auto& [name, entry] : json.items()) {
         const bool already = std::find(told.begin(), told.end(), name) != told.end();
-        if (!already) add_field(section, name, entry);
+        if (!already) add_field(section, name, json);
     }
     add_figures(section, kind, json, text, source);
     return section;

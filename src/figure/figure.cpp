@@ -95,14 +95,21 @@ PlotRange y_range(const Panel& panel) {
     return span.range(panel.y, panel.map ? 0.0 : 0.05);
 }
 
+double whole_step(const PlotRange& range) {
+    constexpr double most = 12.0;
+    double step = 1.0;
+    for (int i = 0; range.to - range.from > most * step; ++i) step *= i % 3 == 1 ? 2.5 : 2.0;
+    return step;
+}
+
 double share_along(const PlotRange& range, PlotScale scale, double value) {
-    if (scale == PlotScale::linear) return (value - range.from) / (range.to - range.from);
+    if (scale != PlotScale::logarithmic) return (value - range.from) / (range.to - range.from);
     if (!(value > 0.0)) return std::numeric_limits<double>::quiet_NaN();
     return std::log(value / range.from) / std::log(range.to / range.from);
 }
 
 double value_at(const PlotRange& range, PlotScale scale, double share) {
-    if (scale == PlotScale::linear) return range.from + share * (range.to - range.from);
+    if (scale != PlotScale::logarithmic) return range.from + share * (range.to - range.from);
     return range.from * std::pow(range.to / range.from, share);
 }
 

@@ -79,6 +79,7 @@ std::string GnuplotScript::matrix(const HeatMap& map) {
 
 std::string gnuplot_ticks(const PlotRange& range, PlotScale scale) {
     constexpr double few_decades = 2.3;
+    if (scale == PlotScale::whole) return fmt::format("{:g}", whole_step(range));
     if (scale == PlotScale::linear || std::log10(range.to / range.from) > few_decades) return "";
     std::string ticks;
     for (int decade = static_cast<int>(std::floor(std::log10(range.from))); decade <= std::log10(range.to);

@@ -38,8 +38,8 @@ class GnuplotScript {
     int blocks_ = 0;
 };
 
-/// "(0.1, 0.2, 0.5, 1)" for an axis of few decades, where powers of ten alone would be one or two numbers;
-/// empty for others.
+/// "(0.1, 0.2, 0.5, 1)" for a logarithmic axis of few decades, where powers of ten alone would be one or two
+/// numbers; the step of one that counts; empty for others.
 [[nodiscard]] std::string gnuplot_ticks(const PlotRange& range, PlotScale scale);
 
 /// A cell within the range of the map's colours; nan stays.

@@ -65,7 +65,7 @@ Curve course_of(std::string name, Ink ink, std::span<const double> x, std::span<
 
 Figure gap_figure(const std::string& title, const std::string& sentence, std::span<const GapRound> rounds,
                   double noise_floor_nm) {
-    Panel panel{.title = "", .x = {"round", ""}, .y = {"rms residual", "Nm"}};
+    Panel panel{.title = "", .x = {"round", "", PlotScale::whole}, .y = {"rms residual", "Nm"}};
     panel.x.from = -0.5;
     panel.x.to = static_cast<double>(rounds.size()) + 0.5;
     panel.y.from = 0.0;

@@ -32,7 +32,7 @@ figure img { width: 100%; height: auto; }
 table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .2rem .7rem; text-align: right; border-bottom: 1px solid #ddd; overflow-wrap: normal; }
 th:first-child, td:first-child, .words { text-align: left; }
-td.words { min-width: 8rem; }
+td.words { min-width: 6rem; }
 pre { background: #f3f3f3; padding: .6rem; overflow-x: auto; font-size: .85rem; white-space: pre-wrap; }
 details { margin: .6rem 0; }
 @media print { body { max-width: none; padding: 0; } details, .modebar { display: none; }

@@ -78,6 +78,17 @@ TEST_CASE("a logarithmic axis of a decade or two has more numbers than its power
     CHECK(gnuplot_ticks({3.0, 4.0}, PlotScale::logarithmic).empty());
 }
 
+TEST_CASE("an axis of counts has numbers at whole values alone, a dozen at most") {
+    CHECK(gnuplot_ticks({-0.5, 1.5}, PlotScale::whole) == "1");
+    CHECK(gnuplot_ticks({-0.5, 11.5}, PlotScale::whole) == "1");
+    CHECK(gnuplot_ticks({-0.5, 13.5}, PlotScale::whole) == "2");
+    CHECK(gnuplot_ticks({0.0, 25.0}, PlotScale::whole) == "5");
+    CHECK(gnuplot_ticks({0.0, 119.0}, PlotScale::whole) == "10");
+    CHECK(gnuplot_ticks({0.0, 121.0}, PlotScale::whole) == "20");
+    CHECK(share_along({0.0, 4.0}, PlotScale::whole, 1.0) == 0.25);
+    CHECK(value_at({0.0, 4.0}, PlotScale::whole, 0.25) == 1.0);
+}
+
 TEST_CASE("hostile names are drawn as text and run nothing") {
     const std::string svg = picture(hostile_figure(), PictureKind::svg);
     if (svg.empty()) return;

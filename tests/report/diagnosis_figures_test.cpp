@@ -15,6 +15,7 @@ TEST_CASE("the gap falls from round to round in the figure as it did, each round
     const Panel& panel = figure.panels.front();
     CHECK(panel.curves[0].x == std::vector<double>{0.0, 1.0, 2.0});
     CHECK(panel.curves[0].y == std::vector<double>{2.0, 1.1, 0.3});
+    CHECK(panel.x.scale == PlotScale::whole);  // there is no round 0.5
     REQUIRE(panel.lines.size() == 3);
     CHECK(panel.lines[0].name == "1: coulomb-friction");
     CHECK(panel.lines[1].value == 2.0);

@@ -9,7 +9,8 @@
 
 namespace ripplenotch {
 
-enum class PlotScale { linear, logarithmic };
+/// `whole`: linear, of things that are counted; numbers stand at whole values alone.
+enum class PlotScale { linear, logarithmic, whole };
 
 /// What an axis counts. A logarithmic axis leaves out what is not above 0.
 struct PlotAxis {
@@ -101,6 +102,8 @@ struct PlotRange {
 /// What an axis of the panel spans: as stated, else what is in the panel, a little wider along y.
 [[nodiscard]] PlotRange x_range(const Panel& panel);
 [[nodiscard]] PlotRange y_range(const Panel& panel);
+/// Distance of the numbers along an axis of PlotScale::whole, at most twelve of them: 1, 2, 5, 10, 20, ...
+[[nodiscard]] double whole_step(const PlotRange& range);
 /// 0 at range.from, 1 at range.to; may lie outside. nan for what a logarithmic axis cannot show.
 [[nodiscard]] double share_along(const PlotRange& range, PlotScale scale, double value);
 /// The inverse of share_along.
