@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/four_lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace ripplenotch {
 namespace {
 
-using namespace four_lanes;
+constexpr std::size_t lanes = lane_count;
 
 // Four groups of four lanes under way: an addition takes several steps of the processor, and the next need
 // not wait.

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/four_lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace ripplenotch {
 namespace {
 
-using namespace four_lanes;
+constexpr std::size_t lanes = lane_count;
 
 /// Twice the sums of the real signal at k and, conjugate, at its mirror: even samples' part and odd samples'.
 template <class Number>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/four_lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -46,7 +46,7 @@ SpreadingKernel::SpreadingKernel() {
 /// Even and odd powers apart, so that half as many steps wait for each other.
 RIPPLENOTCH_FOR_AVX2_TOO
 void SpreadingKernel::at(double offset, Row& row) const {
-    using namespace four_lanes;
+    constexpr std::size_t lanes = lane_count;
     constexpr std::size_t groups = padded / lanes;
     const double z = 2.0 * offset - 1.0, square = z * z;
     Four even[groups], odd[groups], term;

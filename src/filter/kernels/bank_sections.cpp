@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "filter/kernels/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace ripplenotch {
 namespace {

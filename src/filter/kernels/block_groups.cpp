@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "filter/kernels/block_groups.hpp"
 
-#include "filter/kernels/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace ripplenotch {
 namespace {

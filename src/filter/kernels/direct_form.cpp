@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "filter/kernels/direct_form.hpp"
 
+#include "core/lanes.hpp"
 #include "filter/kernels/in_series.hpp"
-#include "filter/kernels/lanes.hpp"
 
 namespace ripplenotch {
 namespace {

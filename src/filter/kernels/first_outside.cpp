@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "filter/kernels/lanes.hpp"
+#include "core/lanes.hpp"
 
 namespace ripplenotch {
 namespace {

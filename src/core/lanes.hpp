@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Four doubles side by side. Kernels are written once over a type of four lanes and built for two: one
-// register of AVX2, or two of what every x86-64 and ARM64 has. Each lane is an ordinary double with ordinary
-// rounding, and contraction is off for the whole build, so the bits do not depend on the type.
+// Four doubles side by side, for loops that are worth it. Each lane is an ordinary double with ordinary
+// rounding, and contraction is off for the whole build, so the bits do not depend on how lanes are held.
+//
+// Two ways from here. A kernel over a type of four lanes is built for two types, one register of AVX2 or two
+// of what every x86-64 and ARM64 has, and its caller chooses. A function over Four alone is marked
+// RIPPLENOTCH_FOR_AVX2_TOO, compiled twice, and the processor chooses at the start of the process.
 //
 // Everything is inlined and goes by reference: a value may not be handed to a function that has no register
 // for it.
@@ -15,10 +18,18 @@ namespace ripplenotch {
 #if defined(__x86_64__)
 #define RIPPLENOTCH_TARGET_AVX2 __attribute__((target("avx2")))
 #else
-#define RIPPLENOTCH_TARGET_AVX2  // compiled, never called: has_avx2() is false
+#define RIPPLENOTCH_TARGET_AVX2  // compiled, never called: has_avx2() is false (core/processor.hpp)
+#endif
+// Two copies of a function. The address sanitizer is not there yet when it is decided which one runs.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define RIPPLENOTCH_FOR_AVX2_TOO __attribute__((target_clones("avx2", "default")))
+#else
+#define RIPPLENOTCH_FOR_AVX2_TOO
 #endif
 
-/// One register of AVX2, for functions of that target only.
+inline constexpr std::size_t lane_count = 4;
+
+/// One register of AVX2, in functions of that target or in two copies.
 using Four = double __attribute__((vector_size(32)));
 using Two = double __attribute__((vector_size(16)));
 
@@ -56,6 +67,8 @@ RIPPLENOTCH_INLINED void store(double* to, const TwoAndTwo& lanes) {
     *reinterpret_cast<TwoInMemory*>(to) = lanes.low;
     *reinterpret_cast<TwoInMemory*>(to + 2) = lanes.high;
 }
+
+RIPPLENOTCH_INLINED double sum(const Four& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
 
 RIPPLENOTCH_INLINED void fill(Four& lanes, double value) { lanes = Four{value, value, value, value}; }
 RIPPLENOTCH_INLINED void fill(TwoAndTwo& lanes, double value) {
