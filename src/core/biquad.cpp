@@ -25,7 +25,7 @@ BiquadState settled_at(const Biquad& f, double x) noexcept {
     const double y = dc_gain(f) * x;
     BiquadState s;
     s.s2 = f.b2 * x - f.a2 * y;
-    s.s1 = f.b1 * x - f.a1 * y + s.s2;
+    s.s1 = f.b1 * x + s.s2 - f.a1 * y;
     return s;
 }
 

@@ -24,9 +24,10 @@ struct BiquadState {
     double s1 = 0.0, s2 = 0.0;
 };
 
+/// The new output is what the next sample waits for, so it comes last in each sum.
 inline double step(const Biquad& f, BiquadState& s, double x) noexcept {
     const double y = f.b0 * x + s.s1;
-    s.s1 = f.b1 * x - f.a1 * y + s.s2;
+    s.s1 = f.b1 * x + s.s2 - f.a1 * y;
     s.s2 = f.b2 * x - f.a2 * y;
     return y;
 }

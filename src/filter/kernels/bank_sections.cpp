@@ -28,7 +28,7 @@ RIPPLENOTCH_INLINED void advance(const BankSection& f, Memory<Lanes>& memory, La
     load(a2, f.a2.data());
     const Lanes x = value, first = b0 * x;
     value = first + memory.s1;
-    memory.s1 = b1 * x - a1 * value + memory.s2;
+    memory.s1 = b1 * x + memory.s2 - a1 * value;
     if constexpr (Mirrored) {
         memory.s2 = first - a2 * value;
     } else {

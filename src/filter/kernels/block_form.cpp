@@ -21,7 +21,7 @@ struct Course {
                 Wide& s1 = memory[2 * i];
                 Wide& s2 = memory[2 * i + 1];
                 const Wide y = f.b0 * signal + s1;
-                s1 = f.b1 * signal - f.a1 * y + s2;
+                s1 = f.b1 * signal + s2 - f.a1 * y;
                 s2 = f.b2 * signal - f.a2 * y;
                 signal = y;
             }

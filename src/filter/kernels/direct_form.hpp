@@ -13,8 +13,9 @@ struct Past {
     double x1 = 0.0, x2 = 0.0, y1 = 0.0, y2 = 0.0;
 };
 
+/// The latest output comes last in the sum: the next sample waits for it through two operations.
 inline double advance(const Biquad& f, Past& past, double x) noexcept {
-    const double y = f.b0 * x + f.b1 * past.x1 + f.b2 * past.x2 - f.a1 * past.y1 - f.a2 * past.y2;
+    const double y = f.b0 * x + f.b1 * past.x1 + f.b2 * past.x2 - f.a2 * past.y2 - f.a1 * past.y1;
     past = {x, past.x1, y, past.y1};
     return y;
 }
