@@ -5,9 +5,11 @@ from .cases import TOOL
 from .measure import Run, median
 
 FIXED, SWITCHING = "filter: fixed notch, one channel", "filter: switching bank, one channel"
+HYSTERESIS = "filter: switching bank, hysteresis of 1 deg/s"
 WARM = "filter: switching bank, all nine warm"
 WELCH = "spectra: Welch and its lines, segments of 4096"
-
+SCIPY = {"fixed": "sosfilt, two sections", "switching": "sosfilt by segments", "hysteresis": "sosfilt by segments, hysteresis of 1 deg/s",
+         "all nine": "sosfilt, all nine", "welch": "signal.welch, segments of 4096"}
 
 BROKEN = "**no**"
 
@@ -57,8 +59,8 @@ def peak(case):
 def promises(record):
     """Each line of what speed has to be, with what it is."""
     fixed, full, npy, kernels = record["fixed"], record["full"], record["npy"], record["kernels"]
-    ours = {name: rate(kernels, "ripplenotch", name) for name in (FIXED, SWITCHING, WARM, WELCH)}
-    theirs = {name: rate(kernels, "scipy", name) for name in ("fixed", "switching", "all nine", "welch")}
+    ours = {name: rate(kernels, "ripplenotch", name) for name in (FIXED, SWITCHING, HYSTERESIS, WARM, WELCH)}
+    theirs = {name: rate(kernels, "scipy", name) for name in ("fixed", "switching", "hysteresis", "all nine", "welch")}
 
     def beside(mine, other):
         return ours[mine] / theirs[other] if ours[mine] and theirs[other] else None
@@ -76,6 +78,7 @@ def promises(record):
         at_least("fixed notch, one channel", 444, "Msamples/s", ours[FIXED]),
         at_least("fixed notch, one channel: over SciPy's sosfilt", 4, "times", beside(FIXED, "fixed")),
         at_least("switching bank, one channel, `transition=keep`: over SciPy by segments", 10, "times", beside(SWITCHING, "switching")),
+        at_least("the same with a hysteresis of 1 deg/s", 10, "times", beside(HYSTERESIS, "hysteresis")),
         at_least("switching bank, one channel, all nine warm: over SciPy's all nine", 10, "times", beside(WARM, "all nine")),
         at_least("Welch, segments of 4096: over SciPy", 5, "times", beside(WELCH, "welch")),
     ]
@@ -96,9 +99,7 @@ def kernels(record):
     lines = []
     for side, found in record["kernels"].items():
         for name, one in found.items():
-            lines.append([name if side == "ripplenotch" else {"fixed": "sosfilt, two sections", "switching": "sosfilt by segments", "all nine": "sosfilt, all nine",
-                                                             "welch": "signal.welch, segments of 4096"}[name],
-                          side, figure(rate(record["kernels"], side, name)), str(len(one["cpu_s"]))])
+            lines.append([name if side == "ripplenotch" else SCIPY[name], side, figure(rate(record["kernels"], side, name)), str(len(one["cpu_s"]))])
     return table(["what", "by", "million a CPU second", "passes"], lines)
 
 

@@ -95,6 +95,8 @@ const Benchmark fixed_exact("filter: fixed notch, --exact", samples, method(notc
 const Benchmark low_pass("filter: low-pass of order 4", samples, method("lowpass,cutoff=60Hz,order=4"));
 const Benchmark switching("filter: switching bank, one channel", samples,
                           method("switching,table=nine,transition=keep"));
+const Benchmark hysteresis("filter: switching bank, hysteresis of 1 deg/s", samples,
+                           method("switching,table=nine,transition=keep,hysteresis=1deg/s"));
 const Benchmark keep_state("filter: switching bank, keep-state-variable", samples,
                            method("switching,table=nine,transition=keep-state-variable"));
 const Benchmark reset("filter: switching bank, reset", samples,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""LOG.npy ROUNDS: processor seconds of sosfilt, of switching by two ways and of Welch; JSON on standard output."""
+"""LOG.npy ROUNDS: processor seconds of sosfilt, of switching by three ways and of Welch; JSON on standard output."""
 import json
 import sys
 import time
@@ -15,6 +15,7 @@ TASKS = {
     "fixed": (torque[some], lambda: scipy.signal.sosfilt(sections(4), torque[some])),
     "all nine": (torque[some], lambda: all_warm(speed[some], torque[some])),
     "switching": (torque[some], lambda: by_segments(speed[some], torque[some])),
+    "hysteresis": (torque[some], lambda: by_segments(speed[some], torque[some], hysteresis=1.0)),
     "welch": (torque, lambda: scipy.signal.welch(torque, 2000.0, nperseg=4096)),
 }
 taken = {name: [] for name in TASKS}
