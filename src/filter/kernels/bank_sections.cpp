@@ -52,14 +52,10 @@ RIPPLENOTCH_INLINED void keep(BankSection& f, const Memory<Lanes>& memory) {
 
 /// Some sections of one group, from the signal or from what the sections before left in `output`.
 template <bool Mirrored, bool FromSignal, class Lanes, std::size_t... S>
-RIPPLENOTCH_INLINED void advance_group(const BankSection* f, Memory<Lanes>* memories, double x,
+RIPPLENOTCH_INLINED void advance_group(const BankSection* f, Memory<Lanes>* memories, const Lanes& signal,
                                        BankOutput& output, std::index_sequence<S...>) {
-    Lanes value;
-    if constexpr (FromSignal) {
-        fill(value, x);
-    } else {
-        load(value, output.lanes.data());
-    }
+    Lanes value = signal;
+    if constexpr (!FromSignal) load(value, output.lanes.data());
     (advance<Mirrored>(f[S], memories[S], value), ...);
     store(output.lanes.data(), value);
 }
@@ -78,8 +74,11 @@ RIPPLENOTCH_INLINED void run_part(const BankRun& bank, const Part& part, std::sp
     BankOutput* const outputs[] = {&bank.outputs[(part.group + G) * bank.stride]...};
     Memory<Lanes> memories[sizeof...(G)][Sections];
     for (std::size_t s = 0; s < Sections; ++s) (recall(memories[G][s], f[G][s]), ...);
-    for (std::size_t k = 0; k < in.size(); ++k)
-        (advance_group<Mirrored, FromSignal>(f[G], memories[G], in[k], outputs[G][k], sections), ...);
+    for (std::size_t k = 0; k < in.size(); ++k) {
+        Lanes signal;
+        fill(signal, in[k]);  // once for all groups: spreading and adding share a unit of the processor
+        (advance_group<Mirrored, FromSignal>(f[G], memories[G], signal, outputs[G][k], sections), ...);
+    }
     for (std::size_t s = 0; s < Sections; ++s) (keep(f[G][s], memories[G][s]), ...);
 }
 
