@@ -38,6 +38,10 @@ struct TwoAndTwo {
     Two low, high;
 };
 
+/// The lanes of a comparison: all bits, or none.
+using FourBits = long long __attribute__((vector_size(32)));
+using TwoBits = long long __attribute__((vector_size(16)));
+
 /// In memory, at any address of a double.
 using FourInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
 using TwoInMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
@@ -73,6 +77,14 @@ RIPPLENOTCH_INLINED double sum(const Four& lanes) { return (lanes[0] + lanes[1])
 RIPPLENOTCH_INLINED void fill(Four& lanes, double value) { lanes = Four{value, value, value, value}; }
 RIPPLENOTCH_INLINED void fill(TwoAndTwo& lanes, double value) {
     lanes = {Two{value, value}, Two{value, value}};
+}
+
+RIPPLENOTCH_INLINED void drop_signs(Four& lanes) {
+    lanes = reinterpret_cast<Four>(reinterpret_cast<FourBits>(lanes) & 0x7FFF'FFFF'FFFF'FFFF);
+}
+RIPPLENOTCH_INLINED void drop_signs(TwoAndTwo& lanes) {
+    lanes.low = reinterpret_cast<Two>(reinterpret_cast<TwoBits>(lanes.low) & 0x7FFF'FFFF'FFFF'FFFF);
+    lanes.high = reinterpret_cast<Two>(reinterpret_cast<TwoBits>(lanes.high) & 0x7FFF'FFFF'FFFF'FFFF);
 }
 
 /// The four lanes of `from`, each spread over one of `to`.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstddef>
 
+#include "filter/kernels/row_facts.hpp"
 #include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
@@ -21,20 +21,18 @@ class HeldRows {
     void add(const JointRows& rows, std::size_t first, std::size_t end, bool continues) {
         if (first == end) return;
         has_position_ = !rows.position_deg.empty();
-        const Row begin = row_of(rows, first);
-        if (continues) count_pair(last_, begin);
-        if (has_position_)
-            count_pairs<true>(rows, first, end);
-        else
-            count_pairs<false>(rows, first, end);
+        if (continues) count_across(rows, first);
+        counts_ += count_repeats({rows.velocity_deg_s.data() + first, rows.torque_nm.data() + first,
+                                  has_position_ ? rows.position_deg.data() + first : nullptr},
+                                 end - first - 1, moving_deg_s_);
         last_ = row_of(rows, end - 1);
     }
 
     [[nodiscard]] std::size_t count() const {
-        const bool velocity_tells = 2 * velocity_repeats_ < moving_;
-        const bool position_tells = has_position_ && 2 * position_repeats_ < moving_;
-        if (velocity_tells) return position_tells ? by_both_ : by_velocity_;
-        return position_tells ? by_position_ : 0;
+        const bool velocity_tells = 2 * counts_.velocity < counts_.moving;
+        const bool position_tells = has_position_ && 2 * counts_.position < counts_.moving;
+        if (velocity_tells) return position_tells ? counts_.all : counts_.velocity_and_torque;
+        return position_tells ? counts_.position_and_torque : 0;
     }
 
   private:
@@ -45,43 +43,17 @@ class HeldRows {
         return {rows.velocity_deg_s[k], rows.torque_nm[k],
                 rows.position_deg.empty() ? 0.0 : rows.position_deg[k]};
     }
-    // No branches: what repeats in a noisy log is as good as a coin's toss.
-    void count_pair(const Row& before, const Row& now) {
-        const unsigned moving =
-            std::min(std::abs(before.velocity), std::abs(now.velocity)) > moving_deg_s_ ? 1 : 0;
-        const unsigned velocity = before.velocity == now.velocity ? moving : 0;
-        const unsigned position = before.position == now.position ? moving : 0;
-        const unsigned torque = before.torque == now.torque ? 1 : 0;
-        moving_ += moving;
-        velocity_repeats_ += velocity;
-        position_repeats_ += position;
-        by_velocity_ += velocity & torque;
-        by_position_ += position & torque;
-        by_both_ += velocity & position & torque;
-    }
-    template <bool with_position>
-    void count_pairs(const JointRows& rows, std::size_t first, std::size_t end) {
-        const double* const velocity = rows.velocity_deg_s.data();
-        const double* const torque = rows.torque_nm.data();
-        const double* const position = rows.position_deg.data();
-        const auto row = [&](std::size_t k) {
-            return Row{velocity[k], torque[k], with_position ? position[k] : 0.0};
-        };
-        HeldRows counted(moving_deg_s_);
-        for (std::size_t k = first + 1; k < end; ++k) counted.count_pair(row(k - 1), row(k));
-        moving_ += counted.moving_;
-        velocity_repeats_ += counted.velocity_repeats_;
-        position_repeats_ += counted.position_repeats_;
-        by_velocity_ += counted.by_velocity_;
-        by_position_ += counted.by_position_;
-        by_both_ += counted.by_both_;
+    void count_across(const JointRows& rows, std::size_t first) {
+        const Row now = row_of(rows, first);
+        const std::array velocity = {last_.velocity, now.velocity}, torque = {last_.torque, now.torque},
+                         position = {last_.position, now.position};
+        counts_ += count_repeats({velocity.data(), torque.data(), position.data()}, 1, moving_deg_s_);
     }
 
     double moving_deg_s_;
     Row last_;
     bool has_position_ = false;
-    std::size_t moving_ = 0, velocity_repeats_ = 0, position_repeats_ = 0;
-    std::size_t by_velocity_ = 0, by_position_ = 0, by_both_ = 0;
+    RepeatCounts counts_;
 };
 
 }  // namespace ripplenotch

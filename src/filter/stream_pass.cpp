@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "filter/kernels/first_outside.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -38,8 +39,9 @@ bool StreamPass::step_is_gap(const RowBlock& block, std::size_t k, double step_s
 
 void StreamPass::find_stretches(const RowBlock& block) {
     stretches_.assign(1, {});
-    const std::vector<double>& time_s = block.time_s;
-    for (std::size_t k = 0; k < time_s.size(); ++k) {
+    const std::span<const double> time_s = block.time_s;
+    for (std::size_t k = 0; k < time_s.size(); k += first_step_outside(time_s.subspan(k), 0.0, gap_s_)) {
+        if (k > 0) last_time_s_ = time_s[k - 1];
         const double step_s = time_s[k] - last_time_s_;
         const bool first_of_all = clock_.rows + k == 0;
         const bool usual = step_s > 0.0 && step_s <= gap_s_;
@@ -52,8 +54,8 @@ void StreamPass::find_stretches(const RowBlock& block) {
             else
                 stretches_.back().begins_run = true;
         }
-        last_time_s_ = time_s[k];
     }
+    if (!time_s.empty()) last_time_s_ = time_s.back();
     stretches_.back().count = time_s.size() - stretches_.back().first;
 }
 
@@ -100,19 +102,14 @@ void StreamPass::meter_rows(const JointRows& rows, const Stretch& stretch, Rippl
 }
 
 void StreamPass::note_motion(const JointRows& rows, Lane& lane, const std::vector<Stretch>& stretches) {
-    double slowest = lane.report.slowest_deg_s, fastest = lane.report.fastest_deg_s;
+    SpeedRange range{lane.report.slowest_deg_s, lane.report.fastest_deg_s};
     if (lane.report.rows == 0 && !rows.velocity_deg_s.empty())
-        slowest = fastest = std::abs(rows.velocity_deg_s.front());
-    for (const Stretch& stretch : stretches) {
+        range.slowest_deg_s = range.fastest_deg_s = std::abs(rows.velocity_deg_s.front());
+    widen(range, rows.velocity_deg_s);
+    for (const Stretch& stretch : stretches)
         lane.held.add(rows, stretch.first, stretch.first + stretch.count, !stretch.begins_run);
-        for (std::size_t k = stretch.first; k < stretch.first + stretch.count; ++k) {
-            const double speed = std::abs(rows.velocity_deg_s[k]);
-            slowest = std::min(slowest, speed);
-            fastest = std::max(fastest, speed);
-        }
-    }
-    lane.report.slowest_deg_s = slowest;
-    lane.report.fastest_deg_s = fastest;
+    lane.report.slowest_deg_s = range.slowest_deg_s;
+    lane.report.fastest_deg_s = range.fastest_deg_s;
     lane.report.rows += rows.velocity_deg_s.size();
 }
 

@@ -9,60 +9,88 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t at_once = 16;
-constexpr long long all_but_sign = 0x7FFF'FFFF'FFFF'FFFF;
 
-using TwoBits = long long __attribute__((vector_size(16)));
-using FourBits = long long __attribute__((vector_size(32)));
+struct Magnitudes {
+    const double* values;
+
+    [[nodiscard]] double at(std::size_t k) const { return std::abs(values[k]); }
+    template <class Lanes>
+    RIPPLENOTCH_INLINED void load_at(Lanes& lanes, std::size_t k) const {
+        load(lanes, values + k);
+        drop_signs(lanes);
+    }
+};
+
+/// From each value to the next.
+struct Steps {
+    const double* values;
+
+    [[nodiscard]] double at(std::size_t k) const { return values[k + 1] - values[k]; }
+    template <class Lanes>
+    RIPPLENOTCH_INLINED void load_at(Lanes& lanes, std::size_t k) const {
+        Lanes before;
+        load(lanes, values + k + 1);
+        load(before, values + k);
+        lanes = lanes - before;
+    }
+};
 
 /// All bits of a lane stay where its value is inside, and become 0 where it is not.
-RIPPLENOTCH_INLINED void keep_inside(FourBits& all, const double* values, const Four& low, const Four& high) {
-    Four value;
-    load(value, values);
-    const Four magnitude = reinterpret_cast<Four>(reinterpret_cast<FourBits>(value) & all_but_sign);
-    all &= (magnitude > low) & (magnitude <= high);
+RIPPLENOTCH_INLINED void keep_inside(FourBits& all, const Four& values, const Four& low, const Four& high) {
+    all &= (values > low) & (values <= high);
 }
-RIPPLENOTCH_INLINED void keep_inside(TwoBits& all, const double* values, const TwoAndTwo& low,
+RIPPLENOTCH_INLINED void keep_inside(TwoBits& all, const TwoAndTwo& values, const TwoAndTwo& low,
                                      const TwoAndTwo& high) {
-    TwoAndTwo value;
-    load(value, values);
-    const Two a = reinterpret_cast<Two>(reinterpret_cast<TwoBits>(value.low) & all_but_sign);
-    const Two b = reinterpret_cast<Two>(reinterpret_cast<TwoBits>(value.high) & all_but_sign);
-    all &= ((a > low.low) & (a <= high.low)) & ((b > low.high) & (b <= high.high));
+    all &= ((values.low > low.low) & (values.low <= high.low)) &
+           ((values.high > low.high) & (values.high <= high.high));
 }
 
 RIPPLENOTCH_INLINED bool any_lost(const FourBits& all) { return (all[0] & all[1] & all[2] & all[3]) == 0; }
 RIPPLENOTCH_INLINED bool any_lost(const TwoBits& all) { return (all[0] & all[1]) == 0; }
 
 /// Where the sixteen begin among which the first outside is, or those that are left.
-template <class Lanes, class LaneBits>
-RIPPLENOTCH_INLINED std::size_t skip_inside(std::span<const double> values, double low, double high) {
-    Lanes lows, highs;
+template <class Lanes, class LaneBits, class What>
+RIPPLENOTCH_INLINED std::size_t skip_inside(const What& what, std::size_t count, double low, double high) {
+    Lanes lows, highs, values;
     fill(lows, low);
     fill(highs, high);
     std::size_t k = 0;
-    for (; k + at_once <= values.size(); k += at_once) {
+    for (; k + at_once <= count; k += at_once) {
         LaneBits all = ~LaneBits{};
-        for (std::size_t i = 0; i < at_once; i += 4) keep_inside(all, values.data() + k + i, lows, highs);
+        for (std::size_t i = 0; i < at_once; i += lane_count) {
+            what.load_at(values, k + i);
+            keep_inside(all, values, lows, highs);
+        }
         if (any_lost(all)) break;
     }
     return k;
 }
 
-RIPPLENOTCH_TARGET_AVX2 std::size_t skip_inside_avx2(std::span<const double> values, double low,
+RIPPLENOTCH_TARGET_AVX2 std::size_t skip_inside_avx2(const Magnitudes& what, std::size_t count, double low,
                                                      double high) {
-    return skip_inside<Four, FourBits>(values, low, high);
+    return skip_inside<Four, FourBits>(what, count, low, high);
+}
+RIPPLENOTCH_TARGET_AVX2 std::size_t skip_inside_avx2(const Steps& what, std::size_t count, double low,
+                                                     double high) {
+    return skip_inside<Four, FourBits>(what, count, low, high);
+}
+
+template <class What>
+std::size_t first(const What& what, std::size_t count, double low, double high, bool avx2) {
+    std::size_t k = avx2 ? skip_inside_avx2(what, count, low, high)
+                         : skip_inside<TwoAndTwo, TwoBits>(what, count, low, high);
+    while (k < count && what.at(k) > low && what.at(k) <= high) ++k;
+    return k;
 }
 
 }  // namespace
 
 std::size_t first_outside(std::span<const double> values, double low, double high, bool avx2) noexcept {
-    std::size_t k =
-        avx2 ? skip_inside_avx2(values, low, high) : skip_inside<TwoAndTwo, TwoBits>(values, low, high);
-    for (; k < values.size(); ++k) {
-        const double magnitude = std::abs(values[k]);
-        if (!(magnitude > low && magnitude <= high)) break;
-    }
-    return k;
+    return first(Magnitudes{values.data()}, values.size(), low, high, avx2);
+}
+
+std::size_t first_step_outside(std::span<const double> values, double low, double high, bool avx2) noexcept {
+    return values.empty() ? 0 : 1 + first(Steps{values.data()}, values.size() - 1, low, high, avx2);
 }
 
 }  // namespace ripplenotch

@@ -12,4 +12,9 @@ namespace ripplenotch {
 [[nodiscard]] std::size_t first_outside(std::span<const double> values, double low, double high,
                                         bool avx2 = has_avx2()) noexcept;
 
+/// The same for the first value whose step from the value before is not within low < step <= high. The first
+/// of all has no step.
+[[nodiscard]] std::size_t first_step_outside(std::span<const double> values, double low, double high,
+                                             bool avx2 = has_avx2()) noexcept;
+
 }  // namespace ripplenotch

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+// What is noted of rows four at a time is what a plain loop over the rows notes.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "filter/held_rows.hpp"
+#include "filter/kernels/first_outside.hpp"
+#include "filter/kernels/row_facts.hpp"
+
+using namespace ripplenotch;
+
+namespace {
+
+const double infinity = std::numeric_limits<double>::infinity(),
+             not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// Few values, so that neighbours are often equal.
+std::vector<double> coarse(std::size_t size, std::mt19937& engine) {
+    std::vector<double> values(size);
+    for (double& value : values) value = static_cast<double>(engine() % 5) - 2.0;
+    return values;
+}
+
+/// HeldRows' counts by the words of their description.
+RepeatCounts plainly(const JointRows& rows, std::size_t first, std::size_t end, double moving_deg_s) {
+    RepeatCounts counts;
+    for (std::size_t k = first + 1; k < end; ++k) {
+        const auto same = [k](const std::vector<double>& values) {
+            return !values.empty() && values[k - 1] == values[k];
+        };
+        const bool torque = same(rows.torque_nm);
+        if (!(std::abs(rows.velocity_deg_s[k - 1]) > moving_deg_s)) continue;
+        if (!(std::abs(rows.velocity_deg_s[k]) > moving_deg_s)) continue;
+        ++counts.moving;
+        if (same(rows.velocity_deg_s)) ++counts.velocity;
+        if (same(rows.position_deg)) ++counts.position;
+        if (same(rows.velocity_deg_s) && torque) ++counts.velocity_and_torque;
+        if (same(rows.position_deg) && torque) ++counts.position_and_torque;
+        if (same(rows.velocity_deg_s) && same(rows.position_deg) && torque) ++counts.all;
+    }
+    return counts;
+}
+
+bool equal(const RepeatCounts& a, const RepeatCounts& b) {
+    return a.moving == b.moving && a.velocity == b.velocity && a.position == b.position &&
+           a.velocity_and_torque == b.velocity_and_torque && a.position_and_torque == b.position_and_torque &&
+           a.all == b.all;
+}
+
+}  // namespace
+
+TEST_CASE("repeated rows are counted as a plain loop counts them, with and without positions") {
+    std::mt19937 engine(1);
+    for (const bool with_position : {false, true}) {
+        for (std::size_t size = 1; size < 60; ++size) {
+            JointRows rows;
+            rows.velocity_deg_s = coarse(size, engine);
+            rows.torque_nm = coarse(size, engine);
+            if (with_position) rows.position_deg = coarse(size, engine);
+            for (const double moving_deg_s : {0.0, 0.5, 1.0, 5.0}) {
+                const RepeatCounts found = count_repeats({rows.velocity_deg_s.data(), rows.torque_nm.data(),
+                                                          with_position ? rows.position_deg.data() : nullptr},
+                                                         size - 1, moving_deg_s);
+                CHECK(equal(found, plainly(rows, 0, size, moving_deg_s)));
+            }
+        }
+    }
+}
+
+TEST_CASE("held rows are the same however a log is cut into blocks") {
+    std::mt19937 engine(2);
+    constexpr std::size_t size = 500;
+    JointRows rows;
+    for (std::size_t k = 0; k < size; ++k) {  // every third row repeats the one before
+        const bool repeats = k > 0 && k % 3 == 0;
+        rows.velocity_deg_s.push_back(repeats ? rows.velocity_deg_s.back()
+                                              : 20.0 + 0.01 * static_cast<double>(k));
+        rows.torque_nm.push_back(repeats ? rows.torque_nm.back() : static_cast<double>(engine() % 1000));
+    }
+    for (std::size_t i = 0; i < 50; ++i) {
+        HeldRows held(1.0);
+        for (std::size_t first = 0; first < size;) {
+            const std::size_t end = std::min<std::size_t>(size, first + 1 + engine() % 40);
+            held.add(rows, first, end, first > 0);
+            first = end;
+        }
+        CHECK(held.count() == (size - 1) / 3);
+    }
+}
+
+TEST_CASE("the range of speeds is that of a plain loop, and what is no number widens nothing") {
+    std::mt19937 engine(3);
+    std::uniform_real_distribution<double> velocity(-90.0, 90.0);
+    for (std::size_t size = 0; size < 60; ++size) {
+        std::vector<double> values(size);
+        for (double& value : values) value = engine() % 7 == 0 ? not_a_number : velocity(engine);
+        SpeedRange range{30.0, 40.0}, expected = range;
+        widen(range, values);
+        for (const double value : values) {
+            if (std::abs(value) < expected.slowest_deg_s) expected.slowest_deg_s = std::abs(value);
+            if (std::abs(value) > expected.fastest_deg_s) expected.fastest_deg_s = std::abs(value);
+        }
+        CHECK(range.slowest_deg_s == expected.slowest_deg_s);
+        CHECK(range.fastest_deg_s == expected.fastest_deg_s);
+    }
+}
+
+TEST_CASE("the first step outside a range is found wherever it is, by every instruction set") {
+    for (const bool avx2 : has_avx2() ? std::vector{false, true} : std::vector{false}) {
+        CHECK(first_step_outside({}, 0.0, 1.0, avx2) == 0);
+        for (const std::size_t size : {1UL, 2UL, 16UL, 17UL, 18UL, 64UL, 100UL}) {
+            std::vector<double> times(size);
+            for (std::size_t k = 0; k < size; ++k) times[k] = 10.0 + 0.25 * static_cast<double>(k);
+            CHECK(first_step_outside(times, 0.0, 0.25, avx2) == size);
+            for (std::size_t at = 1; at < size; ++at) {
+                for (const double step : {0.0, -0.25, 0.5, not_a_number, infinity, -infinity}) {
+                    std::vector<double> changed = times;
+                    for (std::size_t k = at; k < size; ++k) changed[k] += step - 0.25;
+                    CHECK(first_step_outside(changed, 0.0, 0.25, avx2) == at);
+                }
+            }
+        }
+    }
+}
