@@ -3,6 +3,7 @@
 
 import json
 import pathlib
+import shlex
 import shutil
 import subprocess
 from dataclasses import asdict
@@ -132,27 +133,42 @@ class Bench:
                             "--seed", "1", "-o", log, "--force", "-q"], check=True)
         return logs
 
+    def pipes(self):
+        """From a pipe to a pipe; the copy is by the same two cats without the tool between them."""
+        log = self.log("6", self.rows)
+        sides = []
+        for name, between in ((TOOL, f"{quoted(self.tool)} filter - --table {quoted(self.table)} --decimals 6 -o - -q |"), ("cat", "")):
+            out = self.out(f"{name} of pipes", log)
+            sides.append(Side(name, ["sh", "-c", f"cat {quoted(log)} | {between} cat > {quoted(out)}"], out))
+        return self.compare("CSV through pipes", log, sides)
+
     def growth(self, row_counts, joint_counts):
-        """The tool alone: rows of one joint, then joints of one length; CSV with 6 decimals."""
+        """Rows of one joint, then joints of one length; CSV with 6 decimals; the tool, and cp, which meets the same pages."""
         cases = [(1, rows) for rows in row_counts] + [(joints, self.rows // 10) for joints in joint_counts]
         found = []
         for joints, rows in cases:
             if room_for(self.folder, joints, rows):
                 log = self.log("6", rows, joints)
                 side = self.filter(log, "--decimals", "6", *(["--joint", "all"] if joints > 1 else []))
-                runs, failed = measure.in_turn(self.run_once, [side], self.rounds if rows <= 10_000_000 else 1, self.say)
-                side.makes.unlink(missing_ok=True)
+                copy = self.peer("cp", ["cp", log, "OUT"], log)
+                runs, failed = measure.in_turn(self.run_once, [side, copy], self.rounds if rows <= 10_000_000 else 3, self.say)
+                for one in (side, copy):
+                    one.makes.unlink(missing_ok=True)
                 found.append({"joints": joints, "rows": rows, "mb": log.stat().st_size / 1e6, "failed": failed,
-                              "runs": [asdict(one) for one in runs.get(TOOL, [])]})
+                              "runs": [asdict(one) for one in runs.get(TOOL, [])], "copies": [asdict(one) for one in runs.get("cp", [])]})
                 if rows > 10_000_000:
                     log.unlink()
             else:
-                found.append({"joints": joints, "rows": rows, "mb": 0, "runs": [], "failed": {TOOL: "not enough room on disk"}})
+                found.append({"joints": joints, "rows": rows, "mb": 0, "runs": [], "copies": [], "failed": {TOOL: "not enough room on disk"}})
         return found
 
 
+def quoted(path):
+    return shlex.quote(str(path))
+
+
 def room_for(folder, joints, rows):
-    return shutil.disk_usage(folder).free > 2.2 * rows * (8 + 20 * joints)
+    return shutil.disk_usage(folder).free > 3.2 * rows * (8 + 20 * joints)
 
 
 def largest_difference(mine, theirs):
@@ -167,5 +183,5 @@ def largest_difference(mine, theirs):
 
 def all_cases(bench, row_counts, joint_counts):
     return {"rows": bench.rows, "fixed": bench.long_csv("6"), "full": bench.long_csv("shortest"), "npy": bench.long_npy(),
-            "short": bench.short_csv(), "kernels": bench.kernels(), "analysis": bench.analysis(bench.rows // 10),
+            "pipes": bench.pipes(), "short": bench.short_csv(), "kernels": bench.kernels(), "analysis": bench.analysis(bench.rows // 10),
             "growth": bench.growth(row_counts, joint_counts)}

@@ -86,7 +86,7 @@ def promises(record):
 
 def processes(record):
     lines = []
-    names = {"fixed": "CSV, 6 decimals", "full": "CSV, 17 digits", "npy": "npy", "short": "CSV, 6 decimals"}
+    names = {"fixed": "CSV, 6 decimals", "full": "CSV, 17 digits", "npy": "npy", "pipes": "CSV, 6 decimals, from pipe to pipe", "short": "CSV, 6 decimals"}
     for key, name in names.items():
         case, rows = record[key], 100_000 if key == "short" else record["rows"]
         for side, one in medians(case).items():
@@ -116,11 +116,12 @@ def analysis(record):
 def growth(record):
     lines = []
     for case in record["growth"]:
-        one = median([Run(**r) for r in case["runs"]]) if case["runs"] else None
+        one, copy = (median([Run(**r) for r in case[key]]) if case[key] else None for key in ("runs", "copies"))
         each = f"{1e9 * one.cpu_s / case['rows'] / case['joints']:.0f}" if one else ", ".join(case["failed"].values())
         lines.append([f"{case['rows']:,}", str(case["joints"]), f"{case['mb']:.0f}",
-                      *([figure(one.wall_s), figure(one.cpu_s), figure(one.peak_mib)] if one else ["-"] * 3), each])
-    return table(["rows", "joints", "MB", "wall, s", "CPU, s", "peak, MiB", "CPU, ns a row and joint"], lines)
+                      *([figure(one.wall_s), figure(one.cpu_s), figure(one.peak_mib)] if one else ["-"] * 3), each,
+                      figure(copy.cpu_s) if copy else "-"])
+    return table(["rows", "joints", "MB", "wall, s", "CPU, s", "peak, MiB", "CPU, ns a row and joint", "CPU of `cp`, s"], lines)
 
 
 def as_words(runs):
@@ -130,7 +131,7 @@ def as_words(runs):
 def raw(record):
     """All runs: wall seconds / CPU seconds / peak MiB, and CPU milliseconds of a pass."""
     lines = []
-    for key in ("fixed", "full", "npy", "short"):
+    for key in ("fixed", "full", "npy", "pipes", "short"):
         for side, runs in record[key]["runs"].items():
             lines.append(f"{key} · {side}: {as_words(runs)}")
     for side, found in record["kernels"].items():

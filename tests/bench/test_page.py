@@ -22,12 +22,12 @@ def record():
     kernels = {"ripplenotch": {page.WELCH: {"work": 1e7, "cpu_s": [0.04, 0.05, 9.0]}},
                "scipy": {"welch": {"work": 1e7, "cpu_s": [0.2, 0.3, 0.25]}}}
     return {"date": "2000-01-01", "version": "0", "commit": "0", "machine": "A machine.", "peers": {"SciPy": "1"}, "missing": {"Octave": "none"},
-            "rows": 10, "fixed": fixed, "full": case, "npy": case, "short": case, "kernels": kernels,
+            "rows": 10, "fixed": fixed, "full": case, "npy": case, "pipes": case, "short": case, "kernels": kernels,
             "analysis": {"identify, moves, 5 rows": {"rows": 5, "failed": {}, "runs": runs((1, 1, 1))},
                          "spectrum --segment 4.096s, one speed, 50 rows": {"rows": 50, "failed": {}, "runs": runs((1, 1, 14), (1, 1, 13), (1, 1, 12))},
                          "spectrum, moves, 5 rows": {"rows": 5, "failed": {"spectrum": "no room"}, "runs": []}},
-            "growth": [{"joints": 2, "rows": 100, "mb": 1.0, "failed": {}, "runs": runs((1, 2e-6, 3))},
-                       {"joints": 7, "rows": 100, "mb": 1.0, "failed": {"ripplenotch": "no such option"}, "runs": []}]}
+            "growth": [{"joints": 2, "rows": 100, "mb": 1.0, "failed": {}, "runs": runs((1, 2e-6, 3)), "copies": runs((1, 1e-6, 2))},
+                       {"joints": 7, "rows": 100, "mb": 1.0, "failed": {"ripplenotch": "no such option"}, "runs": [], "copies": []}]}
 
 
 class Page(unittest.TestCase):
@@ -56,7 +56,7 @@ class Page(unittest.TestCase):
 
     def test_growth_is_told_by_row_and_joint_and_a_failure_by_its_words(self):
         told = page.tables(record())["growth"]
-        self.assertIn("| 100 | 2 | 1 | 1 | 2e-06 | 3 | 10 |", told)
+        self.assertIn("| 100 | 2 | 1 | 1 | 2e-06 | 3 | 10 | 1e-06 |", told)
         self.assertIn("no such option", told)
 
     def test_memory_stands_beside_the_rows_of_each_analysis(self):
