@@ -10,9 +10,12 @@
 #include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
+#include "ripplenotch/figure/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
+
+constexpr std::size_t page_width = 110;
 
 struct ViewColumn {
     std::string title, unit;
@@ -79,6 +82,24 @@ std::string rows_of(const Comparison& comparison) {
     return text_table(rows, "lr");
 }
 
+// The band that switching methods have in force, said once where it is the same for all of them.
+std::string notes_in_force(const Comparison& comparison) {
+    std::vector<const MethodFigures*> switching;
+    for (const MethodFigures& figures : comparison.methods) {
+        if (figures.switches && !figures.note.empty()) switching.push_back(&figures);
+    }
+    const bool alike = std::all_of(switching.begin(), switching.end(), [&](const MethodFigures* figures) {
+        return figures->note == switching.front()->note;
+    });
+    if (switching.size() > 1 && alike)
+        return fmt::format("All {} switching methods at this speed: {}.\n", switching.size(),
+                           switching.front()->note);
+    std::string text;
+    for (const MethodFigures* figures : switching)
+        text += fmt::format("{} at this speed: {}.\n", figures->method, figures->note);
+    return text;
+}
+
 std::string conditions(const Comparison& comparison) {
     std::string text;
     if (comparison.on_log) {
@@ -98,18 +119,21 @@ std::string conditions(const Comparison& comparison) {
     if (comparison.step_nm && comparison.ramp_nm_s) text += " and";
     if (comparison.ramp_nm_s) text += fmt::format(" a ramp of {:.6g} Nm/s", *comparison.ramp_nm_s);
     text += ".\n";
-    for (const MethodFigures& figures : comparison.methods) {
-        if (figures.switches && !figures.note.empty()) {
-            text += fmt::format("{} at this speed: {}.\n", figures.method, figures.note);
-        }
-    }
+    return text + notes_in_force(comparison);
+}
+
+// A sentence wrapped to lines that a terminal shows whole.
+std::string paragraph(const std::string& sentence) {
+    std::string text;
+    for (const std::string& line : wrapped(sentence, page_width)) text += line + "\n";
     return text;
 }
 
 }  // namespace
 
 std::string comparison_view(const Comparison& comparison) {
-    std::string text = verdict(comparison) + "\n\n" + rows_of(comparison) + "\n" + conditions(comparison);
+    std::string text =
+        paragraph(verdict(comparison)) + "\n" + rows_of(comparison) + "\n" + conditions(comparison);
     if (comparison.match && !comparison.match->low_pass) {
         std::string sentence = comparison.match->clause;
         sentence.front() = 'N';  // all of them begin with "no low-pass"

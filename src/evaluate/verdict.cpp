@@ -15,28 +15,59 @@ bool is(const MethodFigures& figures, std::string_view method) {
     return figures.method == method || figures.method.rfind(std::string(method) + ",", 0) == 0;
 }
 
+std::vector<std::string> parts_of(const std::string& method) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at <= method.size();) {
+        const std::size_t end = std::min(method.find(',', at), method.size());
+        parts.push_back(method.substr(at, end - at));
+        at = end + 1;
+    }
+    return parts;
+}
+
+constexpr std::size_t short_enough = 36;  // letters of a method that is told as it was typed
+
+// A long method by its name where no other has it, else with the keys that tell it from those:
+// "switching,transition=reset". The table beside the verdict has it whole.
+std::string short_name(const MethodFigures& figures, const Comparison& comparison) {
+    if (figures.method.size() <= short_enough) return figures.method;
+    const std::vector<std::string> parts = parts_of(figures.method);
+    std::string name = parts.front();
+    std::vector<std::vector<std::string>> others;
+    for (const MethodFigures& other : comparison.methods) {
+        if (&other != &figures && is(other, parts.front())) others.push_back(parts_of(other.method));
+    }
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        const bool shared = std::all_of(others.begin(), others.end(), [&](const auto& other) {
+            return std::find(other.begin(), other.end(), parts[i]) != other.end();
+        });
+        if (!shared) name += "," + parts[i];
+    }
+    return name;
+}
+
 // "settles 2.8 times faster than B (147 against 408 ms to 0.5 %)"
-std::string settling(const MethodFigures& a, const MethodFigures& b) {
+std::string settling(const MethodFigures& a, const MethodFigures& b, const std::string& rival) {
     const double mine = (*a.settle_ms)[0], theirs = (*b.settle_ms)[0];
     const std::string figures =
         fmt::format("({:.0f} against {:.0f} ms to {} %)", mine, theirs, settle_bands_percent[0]);
-    if (mine == theirs) return fmt::format("settles as fast as {} {}", b.method, figures);
+    if (mine == theirs) return fmt::format("settles as fast as {} {}", rival, figures);
     if (mine == 0.0 || theirs == 0.0) {
         return fmt::format("settles {:.0f} ms {} than {} {}", std::abs(mine - theirs),
-                           mine < theirs ? "earlier" : "later", b.method, figures);
+                           mine < theirs ? "earlier" : "later", rival, figures);
     }
     const double ratio = std::max(mine, theirs) / std::min(mine, theirs);
-    if (ratio < 1.05) return fmt::format("settles about as fast as {} {}", b.method, figures);
+    if (ratio < 1.05) return fmt::format("settles about as fast as {} {}", rival, figures);
     return fmt::format("settles {:.1f} times {} than {} {}", ratio, mine < theirs ? "faster" : "slower",
-                       b.method, figures);
+                       rival, figures);
 }
 
 // "lags 38.9 ms less (38.0 against 76.9 ms)"; on a ramp where one was run, else by the DC group delay.
-std::string lag(const MethodFigures& a, const MethodFigures& b, bool names_rival) {
+std::string lag(const MethodFigures& a, const MethodFigures& b, const std::string& rival) {
     const auto of = [](const MethodFigures& f) { return f.ramp_delay_ms ? f.ramp_delay_ms : f.dc_delay_ms; };
     if (!of(a) || !of(b)) return "";
     const double mine = *of(a), theirs = *of(b);
-    const std::string than = names_rival ? fmt::format(" than {}", b.method) : "";
+    const std::string than = rival.empty() ? "" : " than " + rival;
     const std::string figures = fmt::format("({:.1f} against {:.1f} ms)", mine, theirs);
     if (std::abs(mine - theirs) < 0.05) return fmt::format("lags as much {}", figures);
     return fmt::format("lags {:.1f} ms {}{} {}", std::abs(mine - theirs), mine < theirs ? "less" : "more",
@@ -68,7 +99,7 @@ std::string ripple(const MethodFigures& a, const MethodFigures& b, const Compari
     return fmt::format("and takes {} off its weakest line against {}", decibels(*mine), decibels(*theirs));
 }
 
-std::string alone(const MethodFigures& a) {
+std::string alone(const MethodFigures& a, const std::string& name) {
     std::vector<std::string> parts;
     if (a.settle_ms)
         parts.push_back(
@@ -80,8 +111,8 @@ std::string alone(const MethodFigures& a) {
     } else if (const auto db = least_db(a)) {
         parts.push_back(fmt::format("takes {} off its weakest line", decibels(*db)));
     }
-    if (parts.empty()) return fmt::format("{}: nothing was asked for that could be measured.", a.method);
-    return fmt::format("{} {}.", a.method, fmt::join(parts, ", "));
+    if (parts.empty()) return fmt::format("{}: nothing was asked for that could be measured.", name);
+    return fmt::format("{} {}.", name, fmt::join(parts, ", "));
 }
 
 }  // namespace
@@ -111,12 +142,15 @@ std::string verdict(const Comparison& comparison) {
     const MethodFigures* const a = comparison.subject();
     if (a == nullptr) return "Only the control ran; there is nothing to compare.";
     const MethodFigures* const b = comparison.rival();
-    if (b == nullptr) return alone(*a);
+    const std::string name = short_name(*a, comparison);
+    if (b == nullptr) return alone(*a, name);
+    const std::string rival = short_name(*b, comparison);
     std::vector<std::string> parts;
-    if (a->settle_ms && b->settle_ms) parts.push_back(settling(*a, *b));
-    if (const std::string text = lag(*a, *b, parts.empty()); !text.empty()) parts.push_back(text);
+    if (a->settle_ms && b->settle_ms) parts.push_back(settling(*a, *b, rival));
+    if (const std::string text = lag(*a, *b, parts.empty() ? rival : ""); !text.empty())
+        parts.push_back(text);
     if (const std::string text = ripple(*a, *b, comparison); !text.empty()) parts.push_back(text);
-    return fmt::format("{} {}.", a->method, fmt::join(parts, ", "));
+    return fmt::format("{} {}.", name, fmt::join(parts, ", "));
 }
 
 }  // namespace ripplenotch

@@ -80,3 +80,15 @@ TEST_CASE("the verdict counts a method's weakest line, and does not put a number
     comparison.methods[0].attenuation = {{1.0, 25.0, std::nullopt}};
     CHECK_THAT(verdict(comparison), !Catch::Contains("dB"));
 }
+
+TEST_CASE("a long method is told by its name, or by what tells it from others of that name") {
+    const std::string crossfade = "switching,table=a/long/path/to/table.json,transition=crossfade";
+    const std::string keep = "switching,table=a/long/path/to/table.json,transition=keep";
+    const std::string tracking = "tracking,q=2,gear-ratio=100,orders=1:2";
+    CHECK(
+        verdict(of({figures(crossfade, 100.0, {}), figures(keep, 50.0, {})})) ==
+        "switching,transition=crossfade settles 2.0 times slower than switching,transition=keep (100 against "
+        "50 ms to 0.5 %).");
+    CHECK(verdict(of({figures(crossfade, 100.0, {}), figures(tracking, 50.0, {})})) ==
+          "switching settles 2.0 times slower than tracking (100 against 50 ms to 0.5 %).");
+}
