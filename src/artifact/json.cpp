@@ -2,9 +2,12 @@
 #include "artifact/json.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/version.hpp"
+#include "ripplenotch/figure/visible_text.hpp"
 
 namespace ripplenotch {
 
@@ -29,6 +32,38 @@ std::string to_text(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+namespace {
+
+// Where a file of this kind comes from.
+std::string_view written_by(std::string_view kind) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 5> writers = {
+        {{"joint", "identify --json"},
+         {"joints", "identify --joint all --json"},
+         {"table", "design --json"},
+         {"model", "diagnose -o model.json"},
+         {"figure", "--plot FILE.json of any command"}}};
+    for (const auto& [name, writer] : writers) {
+        if (name == kind) return writer;
+    }
+    return "--json";
+}
+
+// "a table, as 'design -o table.json' writes it"
+std::string wanted(std::string_view kind) {
+    return fmt::format("\"ripplenotch/{}/1\", as '{}' writes it", kind, written_by(kind));
+}
+
+// The opening of the line that is no JSON.
+std::string opening_of(std::string_view text) {
+    constexpr std::size_t most = 20;
+    if (text.empty()) return "an empty file";
+    const std::string_view line = text.substr(0, text.find('\n'));
+    return fmt::format("'{}{}', which is not JSON", visible_text(line.substr(0, most)),
+                       line.size() > most ? "..." : "");
+}
+
+}  // namespace
+
 Json parse_document(std::string_view text, const std::string& source, std::string_view kind) {
     Json json;
     try {
@@ -37,17 +72,19 @@ Json parse_document(std::string_view text, const std::string& source, std::strin
         const std::size_t at = std::min<std::size_t>(error.byte == 0 ? 0 : error.byte - 1, text.size());
         const std::string_view before = text.substr(0, at);
         const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-        const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-        raise<DataError>("{}:{}:{}: this is not JSON; expected a ripplenotch/{}/1 file", source, line,
-                         at - line_start + 1, kind);
+        const std::size_t line_start =
+            before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+        raise<DataError>("{}:{}:{}: read {}, expected schema {}", source, line, at - line_start + 1,
+                         opening_of(text.substr(std::min(line_start, text.size()))), wanted(kind));
     }
     const std::string expected = fmt::format("ripplenotch/{}/1", kind);
     const auto schema = json.is_object() ? json.find("schema") : json.end();
     if (!json.is_object() || schema == json.end() || !schema->is_string()) {
-        raise<DataError>("{}: no \"schema\" field; expected \"{}\"", source, expected);
+        raise<DataError>("{}: read no \"schema\" field, expected {}", source, wanted(kind));
     }
     if (*schema != expected) {
-        raise<DataError>("{}: schema is \"{}\", expected \"{}\"", source, schema->get<std::string>(), expected);
+        raise<DataError>("{}: read schema \"{}\", expected {}", source, schema->get<std::string>(),
+                         wanted(kind));
     }
     return json;
 }
@@ -60,7 +97,8 @@ Fields::Fields(const Json& object, std::string source, std::string path)
 }
 
 std::string Fields::where(std::string_view name) const {
-    return path_.empty() ? fmt::format("{}: {}", source_, name) : fmt::format("{}: {}.{}", source_, path_, name);
+    return path_.empty() ? fmt::format("{}: {}", source_, name)
+                         : fmt::format("{}: {}.{}", source_, path_, name);
 }
 
 const Json* Fields::find(std::string_view name) {

@@ -205,7 +205,8 @@ PageSection section_of_result(const std::string& text, const std::string& source
     try {
         json = Json::parse(text);
     } catch (const Json::parse_error&) {
-        raise<DataError>("{}: this is not JSON; report takes what --json or --plot FILE.json writes", source);
+        raise<DataError>("{}: read {}, expected JSON as --json, -o joint.json or --plot FILE.json write it",
+                         source, text.empty() ? "an empty file" : "what is not JSON");
     }
     const std::string kind = kind_of(json, source);
     PageSection section;

@@ -103,7 +103,7 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
     struct stat status {};
     if (::fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) {
         ::close(descriptor_);
-        raise<FileError>("{}: is a directory; name a log file in it", path);
+        raise<FileError>("{}: is a directory; name a file in it", path);
     }
     if (S_ISFIFO(status.st_mode)) widen_pipe(descriptor_);
     if (S_ISREG(status.st_mode) && status.st_size > 0) size_ = static_cast<std::uint64_t>(status.st_size);

@@ -164,8 +164,8 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(DegPerSec from, De
     if (!(a >= 0.0))
         raise<UsageError>("speed range starts at {} deg/s; bands are on |v|, so 0 or above", shortest(a));
     if (!(a < b)) {
-        raise<UsageError>("speed range {}:{} deg/s is empty; it must end above its start", shortest(a),
-                          shortest(b));
+        raise<UsageError>("speed range {}:{} deg/s is empty; it must end above its start, as {}:{} does",
+                          shortest(a), shortest(b), shortest(b), shortest(a > b ? a : b + 1.0));
     }
     if (!(width > 0.0)) raise<UsageError>("band width {} deg/s is not above 0", shortest(width));
     const double exact = (b - a) / width;

@@ -85,8 +85,9 @@ std::optional<std::string> compare_table_rate(Hertz table, Hertz log, const std:
 LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : reader_(std::move(reader)) {
     const Trace head = read_head();
     if (head.size() < 2) {
-        raise<DataError>("{}: {} of data; filtering needs at least two", reader_->layout().source,
-                         head.size() == 0 ? "no row" : "one row");
+        raise<DataError>(
+            "{}: read {} of data, expected at least two, which tell the sample rate; check what wrote it",
+            reader_->layout().source, head.size() == 0 ? "no row" : "one row");
     }
     measure_clock(head, gap_steps);
 }

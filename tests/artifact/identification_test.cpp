@@ -91,6 +91,8 @@ TEST_CASE("a joint.json that says something else is refused with the field's nam
     CHECK_THAT(message(changed("ripplenotch/joint/1", "ripplenotch/table/1")),
                Contains("expected \"ripplenotch/joint/1\""));
     CHECK_THAT(message("{"), Contains("not JSON"));
+    CHECK_THAT(message(""), Contains("read an empty file") && Contains("as 'identify --json' writes it"));
+    CHECK_THAT(message("time_s,torque_nm\n0,1\n"), Contains("read 'time_s,torque_nm"));
 }
 
 TEST_CASE("several joints share one document of another schema") {
