@@ -102,7 +102,7 @@ TEST_CASE("direct form I gives the bits of one section after the other, in stret
         const Candidates candidates(some_table(1, sections, engine).bands());
         std::vector<Past> past(sections), alone(sections);
         const double origin = between(-2.0, 2.0, engine);
-        for (const std::size_t count : {1UL, 2UL, 3UL, 4UL, 5UL, 1000UL, 1UL, 7UL, 8UL, 9UL, 17UL}) {
+        for (const std::size_t count : {1UL, 2UL, 3UL, 4UL, 5UL, 1000UL, 1UL, 6UL, 7UL, 8UL, 9UL, 17UL}) {
             std::vector<double> in(count), out(count);
             for (double& value : in) value = between(-2.0, 2.0, engine);
             run_direct_form(candidates.cascades[0], past, in, origin, out);

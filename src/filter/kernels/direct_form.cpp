@@ -9,7 +9,7 @@ namespace {
 
 /// How many samples the second of two sections works behind the first: long enough for its input to have been
 /// written and to be read again without being waited for.
-constexpr std::size_t behind = 8;
+constexpr std::size_t behind = 6;
 
 /// Two sections in the lanes of one register. What the first makes of a sample waits in `out` for the second.
 void run_two(const Biquad& f, const Biquad& g, std::span<Past> past, std::span<const double> in,

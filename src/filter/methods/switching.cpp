@@ -103,9 +103,10 @@ class SwitchingFilter final : public CausalFilter {
                 at += run(in, out, at, 1);
                 continue;
             }
-            const std::size_t count = supervisor_.stay(in.velocity_deg_s.subspan(at));
+            const std::size_t most = std::min(out.size() - at, most_at_once);
+            const std::size_t count = supervisor_.stay(in.velocity_deg_s.subspan(at, most));
             at += run(in, out, at, count);
-            if (at == out.size()) break;
+            if (count == most) continue;
             const int before = supervisor_.candidate();
             const SpeedRegion left = supervisor_.region();
             if (supervisor_.move(in.velocity_deg_s[at])) {
@@ -123,6 +124,10 @@ class SwitchingFilter final : public CausalFilter {
     [[nodiscard]] std::size_t switch_count() const override { return switch_count_; }
 
   private:
+    /// Looked through and then filtered; short, so that the processor fetches torques while speeds are looked
+    /// through and the other way round.
+    static constexpr std::size_t most_at_once = 512;
+
     // Samples of one region: the candidate in force, mixed with the raw torque where the rule fades.
     std::size_t run(const Samples& in, std::span<double> out, std::size_t at, std::size_t count) {
         if (count == 0) return 0;
