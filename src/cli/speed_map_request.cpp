@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "cli/joint_facts.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/artifact/speed_map.hpp"
@@ -43,6 +44,8 @@ void attach_speed_map(Options& options, SpeedMapRequest& request) {
                  "over speed: frequency against speed, or order against speed");
     options.number("--gear-ratio", request.gear_ratio, Dimension::none,
                    "--map order: count orders per motor turn instead of per output turn");
+    options.text("--joint-file", request.joint_file, "FILE",
+                 "--map: joint.json with the gear ratio, and the orders whose lines are drawn");
     options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders");
     options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends");
     options.quantity("--speed-step", request.speed_step, Dimension::speed, "width of a row of the map");
@@ -50,8 +53,10 @@ void attach_speed_map(Options& options, SpeedMapRequest& request) {
 
 void check_speed_map(const SpeedMapRequest& request) {
     if (!request.map) {
-        if (request.gear_ratio || request.resolution || request.highest || request.speed_step) {
-            raise<UsageError>("--gear-ratio, --resolution, --highest and --speed-step belong to --map");
+        if (request.joint_file || request.gear_ratio || request.resolution || request.highest ||
+            request.speed_step) {
+            raise<UsageError>(
+                "--joint-file, --gear-ratio, --resolution, --highest and --speed-step belong to --map");
         }
         return;
     }
@@ -64,6 +69,22 @@ void check_speed_map(const SpeedMapRequest& request) {
     positive("--resolution", request.resolution);
     positive("--highest", request.highest);
     if (request.speed_step) positive("--speed-step", request.speed_step->value());
+}
+
+MapLines take_map_lines(SpeedMapRequest& request, Provenance& provenance) {
+    MapLines lines;
+    if (request.joint_file) {
+        const auto ratio = request.gear_ratio ? std::optional(GearRatio(*request.gear_ratio)) : std::nullopt;
+        const JointFacts joint = load_joint_facts(*request.joint_file, ratio);
+        provenance.inputs.push_back(input_record(*request.joint_file));
+        request.gear_ratio = gear_ratio_of(joint).value();
+        for (const Order order : joint.orders) lines.orders.push_back(order.value());
+    } else if (request.gear_ratio) {
+        lines.orders = {1.0, 2.0, 3.0, 4.0};
+    }
+    if (request.gear_ratio) lines.gear_ratio = GearRatio(*request.gear_ratio);
+    lines.axis_per_motor_turn = request.gear_ratio && *request.map == "order";
+    return lines;
 }
 
 SpeedMapResult speed_map_result(const SpeedMapRequest& request, const Trace& trace,

@@ -9,11 +9,13 @@
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/report/spectrum_figure.hpp"
 
 namespace ripplenotch {
 
 struct SpeedMapRequest {
     std::optional<std::string> map;  ///< "campbell" or "order"; nothing without it
+    std::optional<std::string> joint_file;
     std::optional<double> gear_ratio, resolution, highest;
     std::optional<DegPerSec> speed_step;
 };
@@ -22,6 +24,10 @@ void attach_speed_map(Options& options, SpeedMapRequest& request);
 
 /// Throws UsageError when options of the map are given without --map, or make no sense.
 void check_speed_map(const SpeedMapRequest& request);
+
+/// The lines that are drawn into the map: of the joint file's orders where there is one, else of orders 1 to
+/// 4 with a gear ratio. Takes the file's gear ratio where none is stated, and notes the file as an input.
+[[nodiscard]] MapLines take_map_lines(SpeedMapRequest& request, Provenance& provenance);
 
 /// CSV, one row a cell: speed_deg_s, then frequency_hz, order (with a gear ratio) or order_output, then
 /// amplitude_nm. JSON: schema ripplenotch/spectrum/1.

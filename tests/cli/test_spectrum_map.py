@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import subprocess
+import tempfile
 import unittest
 
 TOOL = os.environ["RIPPLENOTCH"]
@@ -62,6 +63,35 @@ class Maps(unittest.TestCase):
         self.assertIn("instead of 0.001", done.stderr)
         for row in result["rows"]:
             self.assertEqual(len(row["amplitude_nm"]), len(result["axis_values"]))
+
+    def test_the_orders_of_a_joint_file_are_the_lines_of_the_figure(self):
+        with tempfile.TemporaryDirectory() as folder:
+            joint, figure = f"{folder}/joint.json", f"{folder}/map.json"
+            logs = [str(DATA / f"paper_{speed}deg_s.csv") for speed in (60, 120, 180)]
+            done = subprocess.run([TOOL, "identify", *logs, "-o", joint, "-q"], capture_output=True, text=True,
+                                  timeout=60, stdin=subprocess.DEVNULL)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for words, orders in ((["--joint-file", joint], [1, 2]), (["--gear-ratio", "100"], [1, 2, 3, 4]),
+                                  ([], [])):
+                for kind, scale in (("campbell", 100 / 360), ("order", 1)):
+                    done = run(MOVE, "--map", kind, "--highest", "5", *words, "-o", f"{folder}/map.csv",
+                               "--plot", figure, "--force")
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    result = json.loads(pathlib.Path(figure).read_text())
+                    lines = result["panels"][0]["lines"]
+                    self.assertEqual([line["name"] for line in lines], [f"order {n}" for n in orders])
+                    for line, order in zip(lines, orders, strict=True):
+                        self.assertAlmostEqual(line["value"], order * scale, delta=2e-5)
+                    names = [entry["name"] for entry in result["inputs"]]
+                    self.assertEqual(names, [MOVE, joint] if "--joint-file" in words else [MOVE])
+
+    def test_a_joint_file_that_is_none_is_refused(self):
+        done = run(MOVE, "--map", "order", "--joint-file", MOVE)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("expected schema \"ripplenotch/joint/1\"", done.stderr)
+        done = run(MOVE, "--joint-file", "joint.json")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("belong to --map", done.stderr)
 
     def test_requests_that_make_no_sense_are_refused(self):
         for words, part in ((["--resolution", "1"], "--map"), (["--map", "waterfall"], "campbell"),

@@ -124,12 +124,10 @@ Result frequency_result(const Request& request, std::vector<StretchSpectrum> spe
             }};
 }
 
-Result map_result(const Request& request, const Trace& trace, const Provenance& provenance) {
-    SpeedMapResult result = speed_map_result(request.map, trace, request.common, provenance);
-    MapLines lines;
-    if (request.map.gear_ratio) {
-        lines = {GearRatio(*request.map.gear_ratio), {1.0, 2.0, 3.0, 4.0}, *request.map.map == "order"};
-    }
+Result map_result(const Request& request, const Trace& trace, Provenance& provenance) {
+    SpeedMapRequest wanted = request.map;
+    const MapLines lines = take_map_lines(wanted, provenance);
+    SpeedMapResult result = speed_map_result(wanted, trace, request.common, provenance);
     return {std::move(result.text),
             [map = std::move(result.map), lines, source = joint_in_words(request.path, trace.joint)] {
                 return speed_map_figure(source, map, lines);
@@ -153,9 +151,12 @@ Made whole_result(const Request& request, const std::string& command_line) {
     const Log log = read_log(request.path, request.log.resolve());
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.timebase.warnings);
-    const Provenance provenance{{input_record(request.path)}, command_line};
+    Provenance provenance{{input_record(request.path)}, command_line};
     const TraceView trace = log.trace.view();
-    if (request.map.map) return {map_result(request, log.trace, provenance), provenance};
+    if (request.map.map) {
+        Result map = map_result(request, log.trace, provenance);
+        return {std::move(map), std::move(provenance)};
+    }
     if (request.domain == "order")
         return {order_result(request, trace, log.trace.joint, provenance), provenance};
     return {frequency_result(request, frequency_spectra(request, trace), log.trace.joint, provenance),
