@@ -27,14 +27,12 @@ double two_digits(double value) {
 
 bool near(double a, double b) { return std::abs(a - b) <= nominal_tolerance * b; }
 
-void append(std::vector<double>& to, const std::vector<double>& from, std::size_t count) {
-    to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
-}
-
 // Digits after the decimal mark of a number as it is written in a log.
 int decimals_of(std::string_view number) {
-    const std::size_t mark = number.find_first_of(".,");
-    if (mark == std::string_view::npos) return 0;
+    // Character by character: a cell is shorter than what a search for one of two takes to begin.
+    std::size_t mark = 0;
+    while (mark < number.size() && number[mark] != '.' && number[mark] != ',') ++mark;
+    if (mark == number.size()) return 0;
     std::size_t at = mark + 1;
     while (at < number.size() && number[at] >= '0' && number[at] <= '9') ++at;
     return static_cast<int>(std::min<std::size_t>(at - mark - 1, 17));
@@ -83,7 +81,7 @@ std::optional<std::string> compare_table_rate(Hertz table, Hertz log, const std:
 }
 
 LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : reader_(std::move(reader)) {
-    const Trace head = read_head();
+    const std::vector<double> head = read_head();
     if (head.size() < 2) {
         raise<DataError>(
             "{}: read {} of data, expected at least two, which tell the sample rate; check what wrote it",
@@ -94,8 +92,8 @@ LogStream::LogStream(std::unique_ptr<LogReader> reader, double gap_steps) : read
 
 // Which rows count as first depends on the log alone, not on how its bytes arrived: a pipe and a file must
 // give the same coefficients.
-Trace LogStream::read_head() {
-    Trace head;
+std::vector<double> LogStream::read_head() {
+    std::vector<double> head;
     std::size_t bytes = 0;
     moving_deg_s_.assign(1 + reader_->layout().others.size(), 0.0);
     while (head.size() < clock_rows && bytes < most_read_ahead_bytes) {
@@ -109,10 +107,8 @@ Trace LogStream::read_head() {
                (count >= block.row_end.size() || bytes + block.row_end[count] < most_read_ahead_bytes)) {
             ++count;
         }
-        const JointRows& joint = block.joints.front();
-        append(head.time_s, block.time_s, count);
-        append(head.velocity_deg_s, joint.velocity_deg_s, count);
-        append(head.torque_nm, joint.torque_nm, count);
+        head.insert(head.end(), block.time_s.begin(),
+                    block.time_s.begin() + static_cast<std::ptrdiff_t>(count));
         note_head(block, count);
         bytes += block.bytes.size();
         read_ahead_.push_back(std::move(block));
@@ -134,24 +130,24 @@ void LogStream::note_head(const RowBlock& block, std::size_t count) {
     }
 }
 
-void LogStream::measure_clock(const Trace& head, double gap_steps) {
+void LogStream::measure_clock(const std::vector<double>& head_s, double gap_steps) {
     const std::string& source = reader_->layout().source;
     if (const auto stated = reader_->layout().stated_rate) {
         measured_rate_ = design_rate_ = *stated;
         gap_s_ = gap_steps / stated->value();
         return;
     }
-    if (!std::all_of(head.time_s.begin(), head.time_s.end(), [](double t) { return std::isfinite(t); })) {
+    if (!std::all_of(head_s.begin(), head_s.end(), [](double t) { return std::isfinite(t); })) {
         raise<DataError>("{}: no column of time; state the rate of its rows, for example --sample-rate 1kHz",
                          source);
     }
-    const Timebase clock = examine_timebase(head.view(), gap_steps);
+    const Timebase clock = examine_steps(head_s, gap_steps);
     if (!(clock.median_step.value() > 0.0) || !(clock.sample_rate.value() > 0.0)) {
         raise<DataError>(
             "{}: time does not advance from row to row (median step {} s in the first {} rows); state the "
             "rate of "
             "its rows, for example --sample-rate 1kHz, or name the right column with --columns time=NAME",
-            source, shortest(clock.median_step.value()), head.size());
+            source, shortest(clock.median_step.value()), head_s.size());
     }
     measured_rate_ = clock.sample_rate;
     design_rate_ = nominal_rate(measured_rate_);

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "log/text_lines.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "log/text_dialect.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
+constexpr std::size_t shortest_usual_line = 16, most_usual_lines = 4000;  // for room to begin with
 constexpr std::string_view utf8_mark = "\xef\xbb\xbf";
 
 void refuse_binary(std::string_view bytes, const std::string& source) {
@@ -32,6 +36,7 @@ void refuse_binary(std::string_view bytes, const std::string& source) {
 // Complete lines; the last, unfinished one counts only when the file ends there.
 std::vector<TextLine> lines_of(std::string_view bytes, bool whole, char line_end, std::size_t from) {
     std::vector<TextLine> lines;
+    lines.reserve(std::min(bytes.size() / shortest_usual_line, most_usual_lines));
     std::size_t number = 1;
     for (std::size_t begin = from; begin < bytes.size(); ++number) {
         const std::size_t at = bytes.find(line_end, begin);
@@ -53,20 +58,23 @@ TextLines opening_lines(std::string_view bytes, bool whole, const std::string& s
     TextLines opening;
     const bool line_feeds = bytes.find('\n') != std::string_view::npos;
     opening.line_end = !line_feeds && bytes.find('\r') != std::string_view::npos ? '\r' : '\n';
-    const std::vector<TextLine> lines = lines_of(bytes, whole, opening.line_end, start);
+    std::vector<TextLine> lines = lines_of(bytes, whole, opening.line_end, start);
     if (!whole && bytes.size() - (lines.empty() ? start : lines.back().next) > longest_line) {
         raise<DataError>(
             "{}:{}: read a line of more than 1 MiB, expected rows of numbers; check that this is a text log",
             source, lines.size() + 1);
     }
+    std::size_t kept = 0;
     for (const TextLine& line : lines) {
         if (is_blank_line(line.of(bytes))) continue;
         if (!is_comment_line(line.of(bytes))) {
-            opening.content.push_back(line);
-        } else if (opening.content.empty()) {
+            lines[kept++] = line;
+        } else if (kept == 0) {
             opening.comments.push_back(line);
         }
     }
+    lines.resize(kept);
+    opening.content = std::move(lines);
     if (opening.content.empty()) {
         raise<DataError>("{}: read {} without a row of numbers, expected rows; check what wrote it", source,
                          whole ? "a file" : "the first 64 kB");

@@ -28,8 +28,7 @@ double usual_step(const std::vector<double>& steps) {
 }
 
 /// Returns the longest step that is no gap; 0 when there is no such limit.
-double examine_steps(const TraceView& trace, double gap_steps, Timebase& timebase) {
-    const auto& time = trace.time_s;
+double measure_steps(std::span<const double> time, double gap_steps, Timebase& timebase) {
     std::vector<double> steps(time.size() - 1);
     for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = time[i + 1] - time[i];
     const auto [shortest, longest] = std::minmax_element(steps.begin(), steps.end());
@@ -61,11 +60,17 @@ double examine_steps(const TraceView& trace, double gap_steps, Timebase& timebas
 
 }  // namespace
 
+Timebase examine_steps(std::span<const double> time_s, double gap_steps) {
+    Timebase timebase;
+    if (time_s.size() >= 2 && std::isfinite(time_s.front())) measure_steps(time_s, gap_steps, timebase);
+    return timebase;
+}
+
 Timebase examine_timebase(const TraceView& trace, double gap_steps) {
     Timebase timebase;
     if (trace.size() < 2) return timebase;
     const bool timed = std::isfinite(trace.time_s.front());
-    const double limit = timed ? examine_steps(trace, gap_steps, timebase) : 0.0;
+    const double limit = timed ? measure_steps(trace.time_s, gap_steps, timebase) : 0.0;
     ClockTroubles troubles{trace.size(), 0, timebase.repeated_times, {}, count_held(trace)};
     for (const Gap& gap : timebase.gaps) troubles.add_gap(gap);
     timebase.held_samples = troubles.held.count;

@@ -33,6 +33,27 @@ Trace swing(double rate = 1000.0, std::size_t rows = 10000) {
 
 }  // namespace
 
+TEST_CASE("the steps alone are what the whole examination says of them") {
+    Trace trace;
+    for (int k = 0; k < 500; ++k) {
+        trace.time_s.push_back(0.001 * (k - k % 7 % 2) + (k > 300 ? 0.4 : 0.0));  // repeated times and a gap
+        trace.velocity_deg_s.push_back(10.0);
+        trace.torque_nm.push_back(0.5);
+    }
+    const Timebase whole = examine_timebase(trace.view());
+    const Timebase steps = examine_steps(trace.time_s);
+    CHECK(steps.sample_rate == whole.sample_rate);
+    CHECK(steps.median_step == whole.median_step);
+    CHECK(steps.longest_step == whole.longest_step);
+    CHECK(steps.jitter == whole.jitter);
+    CHECK(steps.repeated_times == whole.repeated_times);
+    CHECK(steps.repeated_times > 0);
+    REQUIRE(steps.gaps.size() == 1);
+    CHECK(steps.gaps.front().row == 300);
+    CHECK(steps.warnings.empty());
+    CHECK(examine_steps(std::span(trace.time_s).first(1)).median_step.value() == 0.0);
+}
+
 TEST_CASE("the rate is rows over time, not one over the median step", "[log]") {
     // Three steps of 1 ms and one of 2 ms: 4 samples in 5 ms are 800 Hz, while the median says 1000.
     Trace trace = swing();

@@ -91,9 +91,9 @@ class LogStream {
     StreamReport run(CausalFilter& filter, LogWriter* writer, RippleMeter* meter, std::size_t threads = 1);
 
   private:
-    Trace read_head();
+    std::vector<double> read_head();  ///< times
     void note_head(const RowBlock& block, std::size_t count);
-    void measure_clock(const Trace& head, double gap_steps);
+    void measure_clock(const std::vector<double>& head_s, double gap_steps);
 
     std::unique_ptr<LogReader> reader_;
     std::deque<RowBlock> read_ahead_;

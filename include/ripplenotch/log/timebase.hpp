@@ -41,4 +41,7 @@ inline constexpr double default_gap_steps = 10.0;
 /// are checked.
 [[nodiscard]] Timebase examine_timebase(const TraceView& trace, double gap_steps = default_gap_steps);
 
+/// Of that the steps alone: rate, steps, jitter, gaps and repeated times, and no warnings.
+[[nodiscard]] Timebase examine_steps(std::span<const double> time_s, double gap_steps = default_gap_steps);
+
 }  // namespace ripplenotch
