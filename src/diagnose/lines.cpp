@@ -188,4 +188,15 @@ RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& 
     return found;
 }
 
+StatedRipple stated_ripple(const Model& model) {
+    StatedRipple ripple{{}, model.gear_ratio};
+    Motion scratch;
+    for (const Term& term : model.terms) {
+        if (term.effect->ripple_order) ripple.orders.push_back(values_of(term)[*term.effect->ripple_order]);
+        if (term.effect->change_motion != nullptr)
+            term.effect->change_motion(values_of(term), scratch, ripple.ratio);
+    }
+    return ripple;
+}
+
 }  // namespace ripplenotch

@@ -24,6 +24,13 @@ struct Line {
                                                      const std::vector<double>& residual_nm,
                                                      std::size_t most);
 
+/// The orders of a model's ripple, and the gear ratio with what its terms make of it.
+struct StatedRipple {
+    std::vector<double> orders;
+    GearRatio ratio;
+};
+[[nodiscard]] StatedRipple stated_ripple(const Model& model);
+
 /// Gear ratios that put `orders` on the strongest lines of a torque over the angle, the best first; how many
 /// were compared comes with them.
 struct RatioCandidates {

@@ -199,27 +199,11 @@ double NoiseFloor::of_sums() const {
     return std::max(1.0, white_share / std::max(sum * sum, 1e-3));
 }
 
-NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open) {
-    const Case& c = looked_at;
-    std::vector<double> torque_nm = c.torque_nm;
-    const auto predicted = predict_nm(model, c.motion);
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];
-    std::vector<double> orders;
-    GearRatio ratio = model.gear_ratio;
-    Motion scratch;
-    for (const Term& term : model.terms) {
-        if (term.effect->ripple_order) orders.push_back(values_of(term)[*term.effect->ripple_order]);
-        if (term.effect->change_motion != nullptr)
-            term.effect->change_motion(values_of(term), scratch, ratio);
-    }
-    Columns columns(c.size());
-    add_slopes(columns, c, model, open);
-    add_ripple(columns, c, ratio.value(), orders);
-    add_smooth(columns, c);
-    for (const Nuisance& nuisance : motion_errors(c, model))
-        columns.add([&](std::size_t k) { return nuisance.torque_nm[k]; });
+namespace {
+
+// Lines that stand out of what is about them are no noise: they become columns, two at a time.
+VectorXd left_without_lines(Columns& columns, const Case& c, const std::vector<double>& torque_nm) {
     VectorXd left = left_by(columns, c, torque_nm);
-    // Lines that stand out of what is about them are no noise.
     for (int line = 0; line < most_lines; line += 2) {
         const std::vector<double> values(left.data(), left.data() + left.size());
         const auto found = standing_out(c, values, stands_out, 2);
@@ -232,6 +216,11 @@ NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& o
         }
         left = left_by(columns, c, torque_nm);
     }
+    return left;
+}
+
+// At lags 0 to most_lags, over pairs of samples that both count.
+std::vector<double> autocovariance(const VectorXd& left, const Case& c) {
     std::vector<double> covariance;
     for (Index lag = 0; lag <= most_lags; ++lag) {
         double sum = 0.0, count = 0.0;
@@ -243,6 +232,25 @@ NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& o
         }
         covariance.push_back(sum / std::max(count, 1.0));
     }
+    return covariance;
+}
+
+}  // namespace
+
+NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open) {
+    const Case& c = looked_at;
+    std::vector<double> torque_nm = c.torque_nm;
+    const auto predicted = predict_nm(model, c.motion);
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];
+    const StatedRipple ripple = stated_ripple(model);
+    Columns columns(c.size());
+    add_slopes(columns, c, model, open);
+    add_ripple(columns, c, ripple.ratio.value(), ripple.orders);
+    add_smooth(columns, c);
+    for (const Nuisance& nuisance : motion_errors(c, model))
+        columns.add([&](std::size_t k) { return nuisance.torque_nm[k]; });
+    const VectorXd left = left_without_lines(columns, c, torque_nm);
+    std::vector<double> covariance = autocovariance(left, c);
     const double samples = static_cast<double>(c.used());
     const double spent = samples / std::max(samples - static_cast<double>(columns.count()), 0.2 * samples);
     covariance[0] = std::max(covariance[0], 1e-24);

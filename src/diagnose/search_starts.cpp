@@ -2,6 +2,7 @@
 #include "diagnose/search_starts.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace ripplenotch {
 namespace {
@@ -47,14 +48,10 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
 Hints hints_of(const Bench& bench, const Model& stated) {
     Hints hints;
     hints.tones_hz = strongest_tones_hz(bench.looked_at(), bench.raw_residual(stated), 3);
-    hints.ratio = stated.gear_ratio;
-    Motion scratch;
+    StatedRipple ripple = stated_ripple(stated);
+    hints.ratio = ripple.ratio;
+    hints.orders = std::move(ripple.orders);
     Model without_ripple = stated;
-    for (const Term& term : stated.terms) {
-        if (term.effect->ripple_order) hints.orders.push_back(values_of(term)[*term.effect->ripple_order]);
-        if (term.effect->change_motion != nullptr)
-            term.effect->change_motion(values_of(term), scratch, hints.ratio);
-    }
     std::erase_if(without_ripple.terms,
                   [](const Term& term) { return term.effect->ripple_order.has_value(); });
     hints.ratios = likely_ratios(bench.looked_at(), bench.raw_residual(without_ripple), hints.orders,
