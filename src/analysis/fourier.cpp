@@ -14,6 +14,8 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/piece_kernel.hpp"
+#include "analysis/point_kernel.hpp"
 #include "analysis/power_kernel.hpp"
 #include "analysis/spreading_kernel.hpp"
 
@@ -132,15 +134,44 @@ void spread(std::span<const double> where, std::span<const double> value, double
 
 std::complex<double> unit_phasor(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-/// True when no place is off an even grid by more than a ten-thousandth of a cycle.
-bool evenly_placed(std::span<const double> where, double step, double frequency) {
-    const double allowed = 1e-4;
-    for (std::size_t j = 0; j < where.size(); ++j) {
-        const double off = where[j] - where.front() - static_cast<double>(j) * step;
-        if (std::abs(off * frequency) > allowed) return false;
+/// Places of samples, looked at once for sums at several frequencies.
+class Places {
+  public:
+    explicit Places(std::span<const double> where) : where_(where) {
+        if (where.empty()) return;
+        // Places are taken from the middle so that the derivatives stay well conditioned.
+        middle_ = 0.5 * (where.front() + where.back());
+        if (where.size() > 1) step_ = (where.back() - where.front()) / static_cast<double>(where.size() - 1);
+        off_grid_ = look_at_even(where, where, step_).worst;
     }
-    return true;
-}
+
+    /// Sums whose phase is that of places from the middle.
+    [[nodiscard]] FourierPoint centred(std::span<const double> value, double frequency) const {
+        // No place is off an even grid by more than a ten-thousandth of a cycle.
+        if (off_grid_ * std::abs(frequency) <= 1e-4)
+            return even_point(where_, value, middle_, step_, frequency);
+        FourierPoint point;
+        for (std::size_t j = 0; j < where_.size(); ++j) {
+            const double place = where_[j] - middle_;
+            const std::complex<double> phasor = unit_phasor(-tau * frequency * place);
+            const double weight = value[j], first = weight * place;
+            point.value += weight * phasor;
+            point.first += first * phasor;
+            point.second += first * place * phasor;
+        }
+        return point;
+    }
+    /// The same, placed as they are; derivatives by frequency stay those of the centred sum.
+    [[nodiscard]] FourierPoint point(std::span<const double> value, double frequency) const {
+        const FourierPoint point = centred(value, frequency);
+        const std::complex<double> back = unit_phasor(-tau * frequency * middle_), turn(0.0, -tau);
+        return {point.value * back, turn * point.first * back, turn * turn * point.second * back};
+    }
+
+  private:
+    std::span<const double> where_;
+    double middle_ = 0.0, step_ = 0.0, off_grid_ = 0.0;
+};
 
 }  // namespace
 
@@ -221,37 +252,16 @@ std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> whe
 }
 
 FourierPoint fourier_point(std::span<const double> where, std::span<const double> value, double frequency) {
-    FourierPoint point;
-    if (where.empty()) return point;
-    // Places are taken from the middle so that the derivatives stay well conditioned; the phase is put back
-    // below.
-    const double middle = 0.5 * (where.front() + where.back());
-    const double step =
-        where.size() > 1 ? (where.back() - where.front()) / static_cast<double>(where.size() - 1) : 0.0;
-    const bool turning = evenly_placed(where, step, frequency);
-    const std::complex<double> turn_by = unit_phasor(-tau * frequency * step);
-    std::complex<double> phasor;
-    for (std::size_t j = 0; j < where.size(); ++j) {
-        const double place = where[j] - middle;
-        // On an even grid the phasor turns by a constant; it is set anew before rounding adds up.
-        phasor = turning && j % 256 != 0 ? phasor * turn_by : unit_phasor(-tau * frequency * place);
-        const double weight = value[j], first = weight * place;
-        point.value += weight * phasor;
-        point.first += first * phasor;
-        point.second += first * place * phasor;
-    }
-    const std::complex<double> back = unit_phasor(-tau * frequency * middle);
-    const std::complex<double> turn(0.0, -tau);
-    return {point.value * back, turn * point.first * back, turn * turn * point.second * back};
+    return Places(where).point(value, frequency);
 }
 
 double refine_peak(std::span<const double> where, std::span<const double> value, double frequency,
                    double cell) {
     const double start = frequency;
+    const Places places(where);
     for (int round = 0; round < 8; ++round) {
-        const FourierPoint at = fourier_point(where, value, frequency);
-        // Half the derivatives of |S|^2. `back` above makes them those of the centred sum: a common phase, no
-        // slope.
+        const FourierPoint at = places.point(value, frequency);
+        // Half the derivatives of |S|^2: a common phase has no slope.
         const double slope = std::real(std::conj(at.value) * at.first);
         const double curve = std::norm(at.first) + std::real(std::conj(at.value) * at.second);
         if (!(curve < 0.0)) return frequency;

@@ -92,3 +92,28 @@ TEST_CASE("the derivatives of a Fourier sum are those of its centred form") {
         (std::norm(direct_sum(where, value, f + h)) - std::norm(direct_sum(where, value, f - h))) / (2 * h);
     CHECK_THAT(2.0 * std::real(std::conj(at.value) * at.first), WithinAbs(slope, 1e-6));
 }
+
+TEST_CASE("a Fourier sum over an even grid is the direct sum at every length, its derivatives too") {
+    const std::size_t n = GENERATE(1U, 2U, 7U, 8U, 9U, 255U, 256U, 257U, 1031U);
+    const double frequency = GENERATE(0.0, 0.37, 41.3, 499.0);
+    tests::Noise noise(7);
+    std::vector<double> where, value, centred;
+    for (std::size_t k = 0; k < n; ++k) {
+        where.push_back(0.25 + 0.001 * static_cast<double>(k));
+        value.push_back(noise());
+    }
+    const double middle = 0.5 * (where.front() + where.back());
+    for (const double at : where) centred.push_back(at - middle);
+    const FourierPoint found = fourier_point(where, value, frequency);
+    const std::complex<double> back = std::polar(1.0, -2.0 * std::numbers::pi * frequency * middle);
+    const auto moment = [&](int power) {
+        std::vector<double> weighted = value;
+        for (std::size_t k = 0; k < n; ++k) weighted[k] *= std::pow(centred[k], power);
+        return direct_sum(centred, weighted, frequency) * back *
+               std::pow(std::complex<double>(0.0, -2.0 * std::numbers::pi), power);
+    };
+    const double rounding = 1e-12 * static_cast<double>(n);
+    CHECK_THAT(std::abs(found.value - moment(0)), WithinAbs(0.0, rounding));
+    CHECK_THAT(std::abs(found.first - moment(1)), WithinAbs(0.0, 10.0 * rounding));
+    CHECK_THAT(std::abs(found.second - moment(2)), WithinAbs(0.0, 50.0 * rounding));
+}

@@ -31,7 +31,8 @@ CASES = {
     "filter, CSV, shortest digits": ["filter", "{log}.csv", "--table", "{table}", "--decimals", "shortest", "-o", "{out}.csv"],
     "filter, npy": ["filter", "{log}.npy", "--table", "{table}", "-o", "{out}.npy"],
     # Through a pipe, whose bytes are not hashed: valgrind knows no instructions for SHA-256, so hashing would be most of it.
-    "spectrum, npy, segments of 4096": ["spectrum", "-", "--segment", "2.048s", "-o", "{out}.csv"],
+    # No line in either log: the short one has two by chance, and what it costs to measure them is no cost of a row.
+    "spectrum, npy, segments of 4096": ["spectrum", "-", "--segment", "2.048s", "--false-alarm", "1e-6", "-o", "{out}.csv"],
     "track, npy, least squares": ["track", "-", "--orders", "1,2", "--gear-ratio", "40", "-o", "{out}.csv"],
     "track, npy, Vold-Kalman": ["track", "-", "--orders", "1,2", "--gear-ratio", "40", "--method", "vold-kalman", "-o", "{out}.csv"],
     "spectrum against order, npy": ["spectrum", "-", "--domain", "order", "-o", "{out}.csv"],
