@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -41,10 +40,6 @@ std::string dialect_options(const TextDialect& dialect) {
     const std::string name = delimiter_name(dialect.rules.delimiter);
     return fmt::format("--delimiter {} --decimal {}{}", name == ";" ? "';'" : name,
                        dialect.rules.decimal_mark, dialect.has_header ? "" : " --no-header");
-}
-
-std::string shown(std::string_view text) {
-    return text.size() <= 40 ? std::string(text) : std::string(text.substr(0, 37)) + "...";
 }
 
 }  // namespace
@@ -212,67 +207,6 @@ bool CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
     return true;
 }
 
-void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row) {
-    split_cells(line, dialect_.rules.delimiter, split_);
-    const auto& cells = split_.cells;
-    if (split_.unclosed) {
-        complain(cells.back().begin,
-                 "read a quote that is not closed on its line, expected its end; mend or remove the line");
-    }
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (static_cast<unsigned char>(line[i]) < 0x20 && line[i] != '\t' && line[i] != '\f') {
-            complain(i + 1,
-                     fmt::format(
-                         "read the byte 0x{:02x}, expected text; the file is damaged here, remove the line",
-                         static_cast<unsigned>(static_cast<unsigned char>(line[i]))));
-        }
-    }
-    if (cells.size() != dialect_.columns) {
-        const bool cut = !last_line_complete_ && cells.size() < dialect_.columns;
-        complain(cells.empty() ? 1 : cells.back().end + 1,
-                 fmt::format("read {} cells, expected {}; {}", cells.size(), dialect_.columns,
-                             cut ? "the last line is cut off: remove it, e.g. with head -n -1"
-                                 : "mend or remove the line"));
-    }
-    for (const WantedColumn& wanted : wanted_) {
-        const Cell& cell = cells[wanted.column];
-        row.values[wanted.slot] = read_cell(line, cell, wanted.slot, block);
-        if (is_torque(wanted.slot))
-            row.torques[joint_of(wanted.slot)] = {line.data() + cell.begin, line.data() + cell.end};
-    }
-    const Cell& last = cells.back();
-    row.content_end = line.data() + last.end + (last.quoted ? 1 : 0);
-}
-
-double CsvReader::read_cell(std::string_view line, const Cell& cell, std::size_t slot, RowBlock& block) {
-    const std::string_view text = cell.of(line);
-    const auto number = parse_number(text, dialect_.rules.decimal_mark);
-    if (number && std::isfinite(*number)) return *number;
-    const auto column =
-        std::find_if(wanted_.begin(), wanted_.end(), [&](const WantedColumn& w) { return w.slot == slot; });
-    const std::string name = column_label(dialect_.names, column->column);
-    // "NA", "null" and the like are texts; only what is empty or a nan of arithmetic counts as a missing
-    // value.
-    const bool missing = text.empty() || (number && std::isnan(*number));
-    if (missing && options_.hold_bad_values && slot != time_slot && rows_ > 0) {
-        ++block.held_bad_values;
-        return before_.values[slot];
-    }
-    std::string remedy = "mend or remove the line";
-    if (missing && slot != time_slot) {
-        remedy = options_.hold_bad_values
-                     ? "the first row has no value before it: remove the line"
-                     : "mend the line, or say --hold-bad-values to repeat the value before";
-    } else if (!number && dialect_.rules.delimiter != ',' &&
-               text.find(dialect_.rules.decimal_mark == '.' ? ',' : '.') != std::string_view::npos) {
-        remedy =
-            fmt::format("mend the line, or say --decimal {}", dialect_.rules.decimal_mark == '.' ? ',' : '.');
-    }
-    complain(cell.begin + 1, fmt::format("read {} in {}, expected a {}number; {}",
-                                         text.empty() ? std::string("nothing") : "'" + shown(text) + "'",
-                                         name, number ? "finite " : "", remedy));
-}
-
 void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
     const double time = row.values[time_slot], before = before_.values[time_slot];
     if (layout_.chosen.time && time < before) {
@@ -300,10 +234,6 @@ void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
     }
     std::swap(before_, row);
     ++rows_;
-}
-
-void CsvReader::complain(std::size_t column, const std::string& sentence) const {
-    raise<DataError>("{}:{}:{}: {}", source_->name(), line_, column, sentence);
 }
 
 }  // namespace ripplenotch
