@@ -16,6 +16,7 @@
 #include "cli/command.hpp"
 #include "cli/options_implementation.hpp"
 #include "cli/progress_bar.hpp"
+#include "core/unfinished_files.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/version.hpp"
 
@@ -149,5 +150,6 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     // "| head" must end us quietly even where the parent process has SIGPIPE ignored.
     std::signal(SIGPIPE, SIG_DFL);
+    ripplenotch::remove_unfinished_files_on_signals();
     return ripplenotch::run(argc, argv);
 }

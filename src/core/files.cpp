@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/unfinished_files.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/progress.hpp"
 
@@ -177,6 +178,7 @@ ByteSink::ByteSink(const std::string& path, Overwrite overwrite, bool binary)
         temporary_.clear();
         raise<FileError>("{}: cannot write: {}", path, why);
     }
+    unfinished_ = std::make_unique<UnfinishedFile>(temporary_);
 }
 
 ByteSink::~ByteSink() {

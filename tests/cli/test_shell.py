@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import pty
+import signal
 import subprocess
 import tempfile
 import time
@@ -53,6 +54,35 @@ class Pipes(unittest.TestCase):
                      f"--method {LOWPASS} - | head -n 2; test ${{PIPESTATUS[2]}} -eq 0")
         self.assertEqual(done.stderr, b"")
         self.assertEqual(len(done.stdout.splitlines()), 2)
+
+    def interrupted(self, folder, number, ignored=False):
+        """The tool with a part of a log in a pipe that stays open, as it ends by a signal; what it left in the folder."""
+        out = pathlib.Path(folder, "out.csv")
+        tool = subprocess.Popen([TOOL, "filter", "-", "--method", LOWPASS, "--columns", "velocity,torque", "--no-header",
+                                 "--sample-rate", "1kHz", "-o", out, "-q"], stdin=subprocess.PIPE,
+                                preexec_fn=(lambda: signal.signal(number, signal.SIG_IGN)) if ignored else None)
+        tool.stdin.write(b"90,0.5\n90,0.25\n" * 20000)
+        tool.stdin.flush()
+        deadline = time.monotonic() + 30
+        while not list(out.parent.iterdir()) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertEqual(len(list(out.parent.iterdir())), 1, "there is a temporary file")
+        tool.send_signal(number)
+        if ignored:
+            time.sleep(0.1)
+            tool.stdin.close()
+        code = tool.wait(timeout=30)
+        tool.stdin.close()
+        return code, [file.name for file in out.parent.iterdir()]
+
+    def test_a_signal_leaves_no_temporary_file_behind(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number=number), tempfile.TemporaryDirectory() as folder:
+                self.assertEqual(self.interrupted(folder, number), (-number, []))
+
+    def test_an_ignored_signal_stays_ignored(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.interrupted(folder, signal.SIGHUP, ignored=True), (0, ["out.csv"]))
 
     def test_a_full_disk_is_exit_code_4_with_a_reason(self):
         done = shell(f"ripplenotch filter --method {LOWPASS} {LOG} > /dev/full")

@@ -12,6 +12,8 @@
 
 namespace ripplenotch {
 
+class UnfinishedFile;
+
 /// A source of bytes: a file, or standard input when the path is "-".
 class ByteSource {
   public:
@@ -76,6 +78,7 @@ class ByteSink {
 
     std::string path_;
     std::string temporary_;
+    std::unique_ptr<UnfinishedFile> unfinished_;
     std::string waiting_;  ///< behind the last whole pages of a file
     std::uint64_t reserved_ = 0, written_ = 0;
     int descriptor_ = -1;
