@@ -20,8 +20,9 @@ namespace ripplenotch {
 #else
 #define RIPPLENOTCH_TARGET_AVX2  // compiled, never called: has_avx2() is false (core/processor.hpp)
 #endif
-// Two copies of a function. The address sanitizer is not there yet when it is decided which one runs.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+// Two copies of a function. Sanitizers are not there yet when it is decided which one runs.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define RIPPLENOTCH_FOR_AVX2_TOO __attribute__((target_clones("avx2", "default")))
 #else
 #define RIPPLENOTCH_FOR_AVX2_TOO
