@@ -3,7 +3,8 @@
 # Where an archive is missing (another distribution, a sanitizer's runtime) all stays shared, and the configuration says so.
 option(RIPPLENOTCH_STATIC "Link the program without shared libraries where every archive is there" ON)
 
-# fmt: Debian has it shared or as headers; the definitions in its headers, compiled once, are the archive.
+# fmt: Debian has it shared or as headers; the definitions in its headers, compiled once, are the archive. Where a version
+# of fmt does not link that way, its headers are compiled into every file, which takes longer to build.
 add_library(ripplenotch_fmt INTERFACE)
 target_link_libraries(ripplenotch_fmt INTERFACE fmt::fmt)
 set(RIPPLENOTCH_PROGRAM_LINK_OPTIONS)
@@ -41,11 +42,22 @@ endif()
 set_target_properties(PkgConfig::FFTW PROPERTIES INTERFACE_LINK_LIBRARIES "${RIPPLENOTCH_FFTW_ARCHIVE};m")
 set_target_properties(PkgConfig::NETTLE PROPERTIES INTERFACE_LINK_LIBRARIES ${RIPPLENOTCH_NETTLE_ARCHIVE})
 get_target_property(fmt_type fmt::fmt TYPE)
-if(fmt_type STREQUAL SHARED_LIBRARY)
-    add_library(ripplenotch_fmt_archive STATIC ${CMAKE_CURRENT_LIST_DIR}/fmt_definitions.cpp)
-    target_include_directories(ripplenotch_fmt_archive SYSTEM
-        PUBLIC $<TARGET_PROPERTY:fmt::fmt,INTERFACE_INCLUDE_DIRECTORIES>)
-    target_compile_definitions(ripplenotch_fmt_archive
-        PUBLIC $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
-    set_target_properties(ripplenotch_fmt PROPERTIES INTERFACE_LINK_LIBRARIES ripplenotch_fmt_archive)
+if(NOT fmt_type STREQUAL SHARED_LIBRARY)
+    return()
 endif()
+get_target_property(fmt_include_dirs fmt::fmt INTERFACE_INCLUDE_DIRECTORIES)
+try_compile(RIPPLENOTCH_FMT_LINKS
+    SOURCES ${CMAKE_CURRENT_LIST_DIR}/fmt_check.cpp ${CMAKE_CURRENT_LIST_DIR}/fmt_definitions.cpp
+    CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${fmt_include_dirs}" LINK_OPTIONS -static-pie
+    CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
+if(NOT RIPPLENOTCH_FMT_LINKS)
+    message(STATUS "fmt ${fmt_VERSION} is compiled into every file: cmake/fmt_definitions.cpp does not hold all of it")
+    set_target_properties(ripplenotch_fmt PROPERTIES INTERFACE_LINK_LIBRARIES fmt::fmt-header-only)
+    return()
+endif()
+add_library(ripplenotch_fmt_archive STATIC ${CMAKE_CURRENT_LIST_DIR}/fmt_definitions.cpp)
+target_include_directories(ripplenotch_fmt_archive SYSTEM
+    PUBLIC $<TARGET_PROPERTY:fmt::fmt,INTERFACE_INCLUDE_DIRECTORIES>)
+target_compile_definitions(ripplenotch_fmt_archive
+    PUBLIC $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
+set_target_properties(ripplenotch_fmt PROPERTIES INTERFACE_LINK_LIBRARIES ripplenotch_fmt_archive)

@@ -53,7 +53,7 @@ write("structured_aligned.npy", structured(numpy.dtype([("valid", "i1"), ("time_
 plain = numpy.column_stack([TIME, VELOCITY, TORQUE, POSITION])
 write("plain_f8.npy", plain)
 write("plain_f4_three.npy", plain[:, :3].astype("<f4"))
-write("refused_fortran.npy", numpy.asfortranarray(plain))
+write("plain_fortran.npy", numpy.asfortranarray(plain))
 write("refused_objects.npy", numpy.array([["a", 1], ["b", 2]], dtype=object))
 write("refused_three_dimensions.npy", numpy.zeros((2, 2, 3)))
 write("refused_text.npy", numpy.array(["abc", "def"]))

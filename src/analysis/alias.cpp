@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -147,7 +148,8 @@ FoldAnswer answer_fold(const FoldQuestion& question, std::optional<GearRatio> hi
     double most = -1e300;
     for (const Fold& fold : likely) {
         const auto n = on_comb(fold.order_output, ratio, question.tolerance);
-        const double nats = n ? fold.gain + std::log(share_of_n[static_cast<std::size_t>(*n - 1)]) : most;
+        const double nats =
+            n ? fold.gain + portable::log(share_of_n[static_cast<std::size_t>(*n - 1)]) : most;
         if (nats > most) {
             most = nats;
             chosen = &fold;

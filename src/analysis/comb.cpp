@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -32,7 +34,7 @@ std::optional<int> place_on(double ratio, const OrderLine& line) {
 /// often missing.
 double alone_nats(int n) {
     constexpr std::array share{0.25, 0.55, 0.02, 0.06, 0.01, 0.04, 0.01, 0.06};
-    return std::log(share[static_cast<std::size_t>(n - 1)]);
+    return portable::log(share[static_cast<std::size_t>(n - 1)]);
 }
 
 /// The ratio that fits the matched lines best, by weighted least squares, the weights from their errors.
@@ -73,7 +75,7 @@ void judge(Comb& comb, std::span<const OrderLine> lines, std::optional<GearRatio
             std::min(1.0, 2.0 * lines[i].amplitude_nm / strongest);  // weak lines count less
         if (comb.n[i]) {
             const double chance = std::min(0.9, 2.0 * tolerance(lines[i]) / comb.ratio);
-            comb.nats += weight * -std::log(chance);
+            comb.nats += weight * -portable::log(chance);
             orders.push_back(*comb.n[i]);
         } else {
             comb.nats += weight * unexplained_nats;

@@ -7,6 +7,9 @@
 #include <complex>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -56,7 +59,7 @@ double gain_at(const Eigen::VectorXd& kernel, const Sparse& mass, double turn) {
     const Eigen::VectorXd seen = mass * kernel;
     std::complex<double> sum;
     for (Eigen::Index j = 0; j < seen.size(); ++j)
-        sum += seen[j] * std::polar(1.0, turn * static_cast<double>(j));
+        sum += seen[j] * portable::polar(1.0, turn * static_cast<double>(j));
     return std::abs(sum);
 }
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/envelope_solver.hpp"
 
-#include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/phasor.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -118,8 +120,9 @@ class Section {
 void fill_row(const TrackedSignal& signal, std::size_t sample, bool trend, Eigen::VectorXd& row) {
     for (std::size_t i = 0; i < signal.lines.size(); ++i) {
         const double angle = 2.0 * std::numbers::pi * signal.lines[i].order * signal.lines[i].turns[sample];
-        row[static_cast<Eigen::Index>(2 * i)] = std::cos(angle);
-        row[static_cast<Eigen::Index>(2 * i + 1)] = -std::sin(angle);
+        const std::complex<double> phasor = portable::phasor(angle);
+        row[static_cast<Eigen::Index>(2 * i)] = phasor.real();
+        row[static_cast<Eigen::Index>(2 * i + 1)] = -phasor.imag();
     }
     if (trend) row[row.size() - 1] = 1.0;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <complex>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,6 +19,8 @@
 #include "analysis/point_kernel.hpp"
 #include "analysis/power_kernel.hpp"
 #include "analysis/spreading_kernel.hpp"
+#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -72,10 +75,11 @@ class KernelTransform {
     explicit KernelTransform(double step) : step_(step) {
         for (std::size_t i = 0; i < nodes; ++i) {
             const double t = std::numbers::pi / 2.0 * (static_cast<double>(i) + 0.5) / nodes;
-            place_[i] = std::sin(t);
-            weight_[i] = std::exp(beta * (std::cos(t) - 1.0)) * std::cos(t) * std::numbers::pi / nodes;
-            turn_real_[i] = std::cos(step * place_[i]);
-            turn_imaginary_[i] = std::sin(step * place_[i]);
+            place_[i] = portable::sin(t);
+            weight_[i] =
+                portable::exp(beta * (portable::cos(t) - 1.0)) * portable::cos(t) * std::numbers::pi / nodes;
+            turn_real_[i] = portable::cos(step * place_[i]);
+            turn_imaginary_[i] = portable::sin(step * place_[i]);
         }
     }
 
@@ -84,8 +88,8 @@ class KernelTransform {
         if (count_ % 256 == 0) {
             for (std::size_t i = 0; i < nodes; ++i) {
                 const double phase = step_ * static_cast<double>(count_) * place_[i];
-                real_[i] = weight_[i] * std::cos(phase);
-                imaginary_[i] = weight_[i] * std::sin(phase);
+                real_[i] = weight_[i] * portable::cos(phase);
+                imaginary_[i] = weight_[i] * portable::sin(phase);
             }
         }
         ++count_;
@@ -132,7 +136,7 @@ void spread(std::span<const double> where, std::span<const double> value, double
     }
 }
 
-std::complex<double> unit_phasor(double angle) { return {std::cos(angle), std::sin(angle)}; }
+std::complex<double> unit_phasor(double angle) { return portable::phasor(angle); }
 
 /// Places of samples, looked at once for sums at several frequencies.
 class Places {

@@ -11,6 +11,7 @@
 #include "analysis/comb.hpp"
 #include "analysis/excess_scatter.hpp"
 #include "analysis/ratio_rivals.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -103,9 +104,9 @@ std::vector<RatioCandidate> scored(std::span<const Comb> combs, std::span<const 
     double most = combs.front().nats, total = 0.0;
     for (const RatioRival& rival : rivals) most = std::max(most, rival.nats);
     std::vector<RatioCandidate> all;
-    for (const Comb& comb : combs) all.push_back({comb.ratio, std::exp(comb.nats - most), comb.reason});
+    for (const Comb& comb : combs) all.push_back({comb.ratio, portable::exp(comb.nats - most), comb.reason});
     for (const RatioRival& rival : rivals)
-        all.push_back({rival.ratio, std::exp(rival.nats - most), rival.reason});
+        all.push_back({rival.ratio, portable::exp(rival.nats - most), rival.reason});
     for (const RatioCandidate& one : all) total += one.score;
     for (RatioCandidate& one : all) one.score /= total;
     std::stable_sort(all.begin(), all.end(),

@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/disagreement.hpp"
+#include "analysis/hums.hpp"
 #include "analysis/reported_line.hpp"
+#include "analysis/tone_family.hpp"
 #include "analysis/verdict.hpp"
 #include "ripplenotch/analysis/gear_ratio.hpp"
 #include "ripplenotch/analysis/identification.hpp"
@@ -64,9 +67,10 @@ Hertz mean_sample_rate(std::span<const TraceView> logs) {
 }
 
 MotionLines motion_lines_of(std::span<const TraceView> logs, const IdentifyOptions& options,
-                            double false_alarm, bool nothing_steady_moves) {
+                            double false_alarm, bool nothing_steady_moves, std::vector<double> known_hz) {
     MotionLinesOptions motion;
     motion.false_alarm = false_alarm;
+    motion.known_hz = std::move(known_hz);
     MotionLines found = find_motion_lines(logs, motion);
     if (found.sweeps > 0 || !nothing_steady_moves) return found;
     motion = short_log_options();
@@ -98,42 +102,73 @@ void add_motion_lines(const MotionLines& motion, const IdentifyOptions& options,
     }
 }
 
-}  // namespace
+std::vector<ToneFamily> families_among(const std::vector<Reported>& reported) {
+    std::vector<Tone> tones;
+    for (const Reported& one : reported) {
+        if (one.line.kind == LineKind::tone && one.line.hz) tones.push_back({*one.line.hz, one.hz_error});
+    }
+    const auto family = family_of(tones);
+    return family ? std::vector{*family} : std::vector<ToneFamily>{};
+}
 
-Identification identify(std::span<const TraceView> logs, const IdentifyOptions& options) {
+/// What the logs say together, without asking whether each says so.
+Identification identify_together(std::span<const TraceView> logs, const IdentifyOptions& options) {
     Identification result;
     Looked looked;
     result.sample_rate = mean_sample_rate(logs);
     std::vector<Reported> reported;
-    using Evidence = IdentifyOptions::Evidence;
+    using Way = IdentifyOptions::Way;
     // Automatic asks twice, so each way has half of the false alarms allowed.
     const double false_alarm =
-        options.evidence == Evidence::automatic ? 0.5 * options.false_alarm : options.false_alarm;
-    if (options.evidence != Evidence::order) {
+        options.way == Way::automatic ? 0.5 * options.false_alarm : options.false_alarm;
+    if (options.way != Way::order) {
         looked.steady = find_steady_lines(logs, rule_of(options), false_alarm);
         for (const SteadyLine& line : looked.steady->lines)
             reported.push_back(from_steady(logs, *looked.steady, line, options));
-        result.evidence = "steady stretches";
+        result.evidence = LineEvidence::stretches;
     }
-    if (options.evidence != Evidence::steady && !has_order(reported)) {
+    if (options.way != Way::steady && !has_order(reported)) {
         const bool nothing_steady_moves = !looked.steady || looked.steady->moving == 0;
-        looked.motion = motion_lines_of(logs, options, false_alarm, nothing_steady_moves);
+        std::vector<double> tones;
+        for (const Reported& one : reported) {
+            if (one.line.kind == LineKind::tone) tones.push_back(*one.line.hz);
+        }
+        looked.motion = motion_lines_of(logs, options, false_alarm, nothing_steady_moves, std::move(tones));
         if (motion_tells_more(*looked.motion, reported)) {
             add_motion_lines(*looked.motion, options, result.sample_rate, reported);
-            result.evidence = nothing_steady_moves ? "order spectrum" : "steady stretches and order spectrum";
+            result.evidence = nothing_steady_moves ? LineEvidence::sweeps : LineEvidence::both;
         }
     }
     const bool clock_in_doubt =
         std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
     add_ratio(reported, options, clock_in_doubt, result);
+    result.families = families_among(reported);
     for (Reported& r : reported) {
         name_mains(r.line);
         result.lines.push_back(std::move(r.line));
     }
     std::stable_sort(result.lines.begin(), result.lines.end(),
                      [](const Line& a, const Line& b) { return a.amplitude_nm > b.amplitude_nm; });
+    result.hums = hums_beside(looked, result.lines);
     conclude(looked, options, result);
     return result;
+}
+
+}  // namespace
+
+Identification identify(std::span<const TraceView> logs, const IdentifyOptions& options) {
+    Identification together = identify_together(logs, options);
+    const bool ripple = std::any_of(together.lines.begin(), together.lines.end(), [](const Line& line) {
+        return line.kind != LineKind::tone && line.order_output;
+    });
+    if (ripple && logs.size() > 1) {
+        std::vector<Identification> each;
+        for (const TraceView& log : logs) each.push_back(identify_together({&log, 1}, options));
+        together.disagreements = disagreements(together, each);
+        settle(together);
+    }
+    for (const Doubt& doubt : options.doubts) cast_doubt(together, doubt);
+    return together;
 }
 
 }  // namespace ripplenotch

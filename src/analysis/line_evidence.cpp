@@ -8,6 +8,8 @@
 
 #include "analysis/place_error.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -146,7 +148,7 @@ void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, Mo
         constexpr double agreement =
             0.7;  // of random phases, two sweeps reach this by chance less than half the time
         if (lengths > 0.0 && std::abs(together) > agreement * lengths) {
-            line.phase_deg = std::arg(together) * degrees_per_radian;
+            line.phase_deg = portable::arg(together) * degrees_per_radian;
         }
     } else {
         line.hz = place;
@@ -164,8 +166,9 @@ void subtract(std::vector<Sweep>& sweeps, Axis axis, double place) {
         double cc = 0.0, cs = 0.0, ss = 0.0, xc = 0.0, xs = 0.0;
         for (std::size_t k = 0; k < at.size(); ++k) {
             const double angle = tau * place * at[k];
-            cosine[k] = std::cos(angle);
-            sine[k] = std::sin(angle);
+            const std::complex<double> phasor = portable::phasor(angle);
+            cosine[k] = phasor.real();
+            sine[k] = phasor.imag();
             cc += sweep.weight[k] * cosine[k] * cosine[k];
             cs += sweep.weight[k] * cosine[k] * sine[k];
             ss += sweep.weight[k] * sine[k] * sine[k];

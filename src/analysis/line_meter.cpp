@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "analysis/piece_kernel.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -37,8 +38,8 @@ void LineMeter::expect_even_pieces(std::span<const double> even_time_s) {
     half_s_ = 0.5 / bin_hz_;
     for (const double t : even_time_s) {
         place_.push_back(t / half_s_);
-        cosine_.push_back(std::cos(tau * start_hz_ * t));
-        sine_.push_back(-std::sin(tau * start_hz_ * t));
+        cosine_.push_back(portable::cos(tau * start_hz_ * t));
+        sine_.push_back(-portable::sin(tau * start_hz_ * t));
     }
 }
 
@@ -83,6 +84,6 @@ double LineMeter::hz() const { return power_ > 0.0 ? weighted_hz_ / power_ : sta
 
 double LineMeter::amplitude_nm() const { return std::sqrt(power_ / static_cast<double>(pieces_)); }
 
-double LineMeter::phase_rad() const { return std::arg(strongest_) - tau * hz() * strongest_middle_s_; }
+double LineMeter::phase_rad() const { return portable::arg(strongest_) - tau * hz() * strongest_middle_s_; }
 
 }  // namespace ripplenotch

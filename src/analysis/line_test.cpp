@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "analysis/running_median.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -44,8 +46,8 @@ double beta_fraction(double x, double a, double b) {
 double incomplete_beta(double x, double a, double b) {
     if (x <= 0.0) return 0.0;
     if (x >= 1.0) return 1.0;
-    const double front =
-        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+    const double front = portable::exp(portable::lgamma(a + b) - portable::lgamma(a) - portable::lgamma(b) +
+                                       a * portable::log(x) + b * portable::log1p(-x));
     if (x < (a + 1.0) / (a + b + 2.0)) return front * beta_fraction(x, a, b) / a;
     return 1.0 - front * beta_fraction(1.0 - x, b, a) / b;
 }
@@ -76,13 +78,6 @@ void gather_below(const PowerSpectrum& s, std::size_t bin, double guard, double 
     for (std::size_t d = inner; d <= outer; ++d) into.push_back(s.power[bin - d]);
 }
 
-double median(std::vector<double>& values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 struct LocalFloor {
     double power = 0.0;
     double cells = 0.0;
@@ -91,7 +86,7 @@ LocalFloor floor_around(const PowerSpectrum& s, std::size_t bin, double reach_ce
                         std::vector<double>& scratch) {
     gather(s, bin, guard_cells * s.bins_per_cell, reach_cells * s.bins_per_cell, scratch);
     const double cells = static_cast<double>(scratch.size()) / s.bins_per_cell;
-    return {median(scratch) / median_over_mean(s.averages_at(bin)), cells};
+    return {median_in(scratch) / median_over_mean(s.averages_at(bin)), cells};
 }
 
 }  // namespace
@@ -133,7 +128,7 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
         const std::size_t to = std::min(from + stride, n - 1);
         const double there = at(to);
         const double factor =
-            to > from ? std::exp(std::log(there / here) / static_cast<double>(to - from)) : 1.0;
+            to > from ? portable::exp(portable::log(there / here) / static_cast<double>(to - from)) : 1.0;
         double level = here;
         for (std::size_t k = from; k < std::min(from + stride, n); ++k, level *= factor) floor[k] = level;
         here = there;
@@ -162,10 +157,10 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         const LocalFloor far = floor_around(spectrum, k, far_cells, scratch);
         gather_below(spectrum, k, guard_cells * spectrum.bins_per_cell, near_cells * spectrum.bins_per_cell,
                      scratch);
-        const double below = median(scratch) / median_over_mean(spectrum.averages_at(k));
+        const double below = median_in(scratch) / median_over_mean(spectrum.averages_at(k));
         gather(spectrum, k, inner_from_cells * spectrum.bins_per_cell,
                inner_to_cells * spectrum.bins_per_cell, scratch);
-        const double inner = median(scratch) / median_over_mean(spectrum.averages_at(k));
+        const double inner = median_in(scratch) / median_over_mean(spectrum.averages_at(k));
         const double local = std::max({near.power, far.power, below, inner});
         if (near.cells < fewest_cells || !(local > 0.0)) continue;
         const double chance =

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analysis/line_evidence.hpp"
+#include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -76,13 +77,11 @@ double detectable(const Stack& stack, double false_alarm) {
         stack.floor_nm.begin() + static_cast<std::ptrdiff_t>(std::min(stack.first, stack.floor_nm.size())),
         stack.floor_nm.end());
     if (floors.empty()) return 0.0;
-    const auto middle = floors.begin() + static_cast<std::ptrdiff_t>(floors.size() / 2);
-    std::nth_element(floors.begin(), middle, floors.end());
     const double averages = stack.averages[(stack.first + stack.averages.size()) / 2];
     const double tries = static_cast<double>(floors.size()) * stack.spacing / stack.resolution;
     double ratio = 1.0;
     while (ratio < 1e3 && exceedance(ratio, averages, floor_cells) * tries > false_alarm) ratio *= 1.05;
-    return *middle * std::sqrt(ratio - 1.0);
+    return median_in(floors) * std::sqrt(ratio - 1.0);
 }
 
 struct SpeedRange {
@@ -239,7 +238,8 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
     found.fastest_deg_s = range.fast;
     for (const Sweep& sweep : sweeps) found.turns += sweep.length_turns;
 
-    std::vector<double> taken_orders, taken_hz;
+    std::vector<double> taken_orders, taken_hz = options.known_hz;
+    for (const double hz : options.known_hz) subtract(sweeps, Axis::time, hz);
     const double least_amplitude = least_amplitude_of(logs, options.least_share);
     Stacks stacks = stacked(sweeps, options);
     if (options.most_lines > 0) state_resolution(stacks.angle, least_amplitude, options.false_alarm, found);
@@ -267,6 +267,7 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
         found.lines.push_back(std::move(line));
         if (found.lines.size() < options.most_lines) stacks = stacked(sweeps, options);
     }
+    found.humps = stacks.time.humps(options.false_alarm, options.lowest_tone_hz);
     return found;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "ripplenotch/analysis/steady.hpp"
 
@@ -38,19 +37,8 @@ std::vector<double> unwrapped_position(const TraceView& log) {
 }  // namespace
 
 OutputAngle output_angle(const TraceView& log) {
-    OutputAngle angle{integrated_velocity(log), false};
-    if (!log.has_position() || log.size() == 0) return angle;
-    std::vector<double> position = unwrapped_position(log);
-    double product = 0.0, square = 0.0;
-    constexpr std::size_t pieces = 200;
-    for (std::size_t b = 0; b < pieces; ++b) {
-        const std::size_t from = (log.size() - 1) * b / pieces, to = (log.size() - 1) * (b + 1) / pieces;
-        const double moved = angle.turns[to] - angle.turns[from];
-        product += moved * (position[to] - position[from]);
-        square += moved * moved;
-    }
-    if (product < 0.5 * square || product > 2.0 * square) return angle;
-    return {std::move(position), true};
+    if (log.has_position()) return {unwrapped_position(log), true};
+    return {integrated_velocity(log), false};
 }
 
 std::vector<double> smoothed_speed(const TraceView& log) {
@@ -58,31 +46,33 @@ std::vector<double> smoothed_speed(const TraceView& log) {
     return moving_mean(log.velocity_deg_s, width);
 }
 
-std::vector<SampleRun> directed_runs(std::span<const double> time_s, std::span<const double> speed_deg_s,
-                                     Hertz sample_rate, const RunRule& rule) {
+std::vector<SampleRun> directed_runs(std::span<const double> speed_deg_s,
+                                     std::span<const std::size_t> run_starts, const RunRule& rule) {
     double fastest = 0.0;
     for (const double v : speed_deg_s) fastest = std::max(fastest, std::abs(v));
-    const double slowest = std::max(rule.slowest_deg_s, rule.slowest_share * fastest);
-    const double gap = rule.gap_steps / sample_rate.value();
+    const double slowest = rule.slowest_share * fastest;
     std::vector<SampleRun> runs;
+    auto start = run_starts.begin();
     int direction = 0;
-    for (std::size_t k = 0; k < time_s.size(); ++k) {
+    for (std::size_t k = 0; k < speed_deg_s.size(); ++k) {
         const int here = speed_deg_s[k] > slowest ? 1 : speed_deg_s[k] < -slowest ? -1 : 0;
-        const bool jumped = k > 0 && time_s[k] - time_s[k - 1] > gap;
-        if (here != 0 && (here != direction || jumped)) runs.push_back({k, k});
+        const bool begins = start != run_starts.end() && *start == k;
+        start += begins ? 1 : 0;
+        if (here != 0 && (here != direction || begins)) runs.push_back({k, k});
         if (here != 0) runs.back().end = k + 1;
         direction = here;
     }
     return runs;
 }
 
-std::vector<SampleRun> gapless_runs(std::span<const double> time_s, Hertz sample_rate, double gap_steps) {
-    const double gap = gap_steps / sample_rate.value();
+std::vector<SampleRun> whole_runs(std::size_t samples, std::span<const std::size_t> run_starts) {
     std::vector<SampleRun> runs;
-    for (std::size_t k = 0; k < time_s.size(); ++k) {
-        if (k == 0 || time_s[k] - time_s[k - 1] > gap) runs.push_back({k, k});
-        runs.back().end = k + 1;
+    std::size_t first = 0;
+    for (const std::size_t start : run_starts) {
+        runs.push_back({first, start});
+        first = start;
     }
+    if (first < samples) runs.push_back({first, samples});
     return runs;
 }
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/analysis/order_map.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/track_by_speed.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -30,7 +31,8 @@ std::vector<SampleRun> half_overlapping(const SampleRun& run, std::span<const do
     const double start = place[run.first];
     const double whole = std::abs(place[run.end - 1] - start);
     if (whole < length * (1.0 - 1e-9)) return {};
-    const double hops = std::ceil(2.0 * (whole - length) / length);
+    // No more windows than samples, however far apart those are.
+    const double hops = std::min(std::ceil(2.0 * (whole - length) / length), static_cast<double>(run.size()));
     std::vector<SampleRun> windows;
     std::size_t from = run.first, to = run.first;
     for (double i = 0.0; i <= hops; i += 1.0) {
@@ -88,7 +90,7 @@ Window make_window(const TraceView& log, const SampleRun& run, std::span<const d
         const double share =
             std::abs(place[after] - place[before]) * std::min(1.0, 2.0 * most / std::max(seconds, 1e-12));
         window.where[k] = place[at] - start;
-        window.weight[k] = (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * u)) * share;
+        window.weight[k] = (0.5 - 0.5 * portable::cos(2.0 * std::numbers::pi * u)) * share;
         window.weight_sum += window.weight[k];
     }
     if (window.weight_sum > 0.0) remove_cubic(window, torque.subspan(run.first, n));
@@ -141,7 +143,7 @@ SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
     SpeedMap map;
     map.axis_kind = options.axis;
     double length = 0.0;
-    const auto runs = directed_runs(log.time_s, speed_deg_s, log.sample_rate, {});
+    const auto runs = directed_runs(speed_deg_s, log.run_starts, {});
     const std::vector<SampleRun> windows = cut(runs, place, options, length, map.runs_too_short);
     if (windows.empty())
         raise<DataError>("no window of the map holds {} samples; use a finer resolution", fewest_samples);
@@ -195,7 +197,7 @@ double cut_rms_nm(const SpeedMap& map, std::size_t speed, double centre, double 
         const double inside = std::min(map.axis[k] + 0.5 * map.spacing, centre + 0.5 * width) -
                               std::max(map.axis[k] - 0.5 * map.spacing, centre - 0.5 * width);
         if (inside > 0.0)
-            power += 0.5 * std::pow(map.amplitude_nm[speed][k], 2) * std::min(1.0, inside / map.spacing);
+            power += 0.5 * portable::pow(map.amplitude_nm[speed][k], 2) * std::min(1.0, inside / map.spacing);
     }
     // A line's power over all its bins is its squared amplitude times the noise bandwidth in bins.
     return std::sqrt(power / bins_per_resolution);

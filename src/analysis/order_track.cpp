@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/analysis/order_track.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -39,7 +42,9 @@ std::vector<SampleRun> windows_of(const SampleRun& run, std::span<const double> 
     const double whole = std::abs(place[run.end - 1] - start);
     if (whole < 0.5 * length) return {};
     if (whole <= length) return {run};
-    const double hops = std::ceil((whole - length) / (hop_share * length));
+    // No more windows than samples, however far apart those are.
+    const double hops =
+        std::min(std::ceil((whole - length) / (hop_share * length)), static_cast<double>(run.size()));
     std::vector<SampleRun> windows;
     std::size_t from = run.first, to = run.first;
     for (double i = 0.0; i <= hops; i += 1.0) {
@@ -86,13 +91,13 @@ class WindowFit {
     void report(std::size_t line, LineTrack& track) const {
         const Eigen::Index c = trend_terms + 2 * (degree_ + 1) * static_cast<Eigen::Index>(line);
         const double a = coefficients_[c], b = coefficients_[c + 1];
-        const double amplitude = std::hypot(a, b);
+        const double amplitude = portable::hypot(a, b);
         const double ua = amplitude > 0.0 ? a / amplitude : 1.0, ub = amplitude > 0.0 ? b / amplitude : 0.0;
         const double variance = ua * ua * covariance_(c, c) + 2.0 * ua * ub * covariance_(c, c + 1) +
                                 ub * ub * covariance_(c + 1, c + 1);
         track.amplitude_nm.push_back(amplitude);
         track.standard_error_nm.push_back(std::sqrt(std::max(variance, 0.0)));
-        track.phase_deg.push_back(std::atan2(-b, a) * degrees_per_radian);
+        track.phase_deg.push_back(portable::atan2(-b, a) * degrees_per_radian);
     }
 
   private:
@@ -110,7 +115,8 @@ class WindowFit {
             Eigen::Index column = trend_terms;
             for (const TrackedLine& line : signal_.lines) {
                 const double angle = 2.0 * std::numbers::pi * line.order * line.turns[at];
-                const double cosine = std::cos(angle), sine = std::sin(angle);
+                const std::complex<double> phasor = portable::phasor(angle);
+                const double cosine = phasor.real(), sine = phasor.imag();
                 power = 1.0;
                 for (int i = 0; i <= degree_; ++i, power *= s) {
                     basis_(k, column++) = cosine * power;
@@ -175,7 +181,7 @@ OrderTracks track_orders(const TrackedSignal& signal, const WindowRule& rule) {
     WindowFit fit(signal, rule);
     double squares = 0.0;
     std::size_t samples = 0;
-    for (const SampleRun& run : directed_runs(signal.time_s, signal.speed_deg_s, signal.sample_rate, {})) {
+    for (const SampleRun& run : directed_runs(signal.speed_deg_s, signal.run_starts, {})) {
         for (const SampleRun& window : windows_of(run, place, length, rule.hop)) {
             const double duration = signal.time_s[window.end - 1] - signal.time_s[window.first];
             if (!by_time && duration > rule.longest.value()) {

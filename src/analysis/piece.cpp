@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "analysis/power_kernel.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -14,11 +15,12 @@ namespace {
 /// A clock counts as even when no sample is off it by more than this share of a step: then the plain
 /// transform is the same sum.
 constexpr double even_share = 1e-3;
+constexpr double most_steps = 3.0;     // that one sample stands for, beside a gap
 constexpr std::size_t most_ahead = 8;  // pieces; those of usual lengths stay in the processor's cache
 
 /// At a place and for a length in the same unit.
 double hann(double place, double length) {
-    return 0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * place / length);
+    return 0.5 + 0.5 * portable::cos(2.0 * std::numbers::pi * place / length);
 }
 
 void remove_line(std::span<const double> t, std::vector<double>& x) {
@@ -104,7 +106,11 @@ void PieceMaker::make_uneven(std::span<const double> time_s, std::span<const dou
     remove_line(time_s_, value_);
     piece_.window_sum = piece_.window_square_sum = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
-        const double window = hann(time_s_[k], length_s);
+        // Each sample stands for the time around it. Were all alike, a clock that stumbles in a pattern would
+        // make lines of that pattern out of the slow motion, a hundred times stronger than any ripple.
+        const double before = time_s_[k > 0 ? k - 1 : k], after = time_s_[std::min(k + 1, n - 1)];
+        const double share = std::clamp(0.5 * (after - before) / step_s_, 0.0, most_steps);
+        const double window = share * hann(time_s_[k], length_s);
         value_[k] *= window;
         piece_.window_sum += window;
         piece_.window_square_sum += window * window;

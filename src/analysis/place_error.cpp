@@ -8,6 +8,7 @@
 
 #include "analysis/excess_scatter.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -111,7 +112,7 @@ double place_error(std::span<const Sweep> sweeps, const Stack& stack, double pla
     double error = std::sqrt(variance) / -curve;
     // A floor known from some five cells (Student's t for their number), and an amplitude that changes along
     // the one short sweep, which no other sweep contradicts, and moves a line by about a tenth of its width.
-    if (stack.few_cells) error = std::hypot(1.3 * error, 0.1 * stack.resolution);
+    if (stack.few_cells) error = portable::hypot(1.3 * error, 0.1 * stack.resolution);
     return std::min(error * std::max(disagreement(whole), disagreement(parts)), stack.resolution);
 }
 

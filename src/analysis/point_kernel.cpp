@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/lanes.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -24,8 +25,8 @@ struct Phasors {
 Phasors turns_of(double angle) {
     Phasors turns{};
     for (std::size_t k = 0; k < at_once; ++k) {
-        turns.real[k] = std::cos(angle * static_cast<double>(k));
-        turns.imaginary[k] = std::sin(angle * static_cast<double>(k));
+        turns.real[k] = portable::cos(angle * static_cast<double>(k));
+        turns.imaginary[k] = portable::sin(angle * static_cast<double>(k));
     }
     return turns;
 }
@@ -37,16 +38,16 @@ FourierPoint even_point(std::span<const double> where, std::span<const double> v
                         double step, double frequency) {
     const double radians = -2.0 * std::numbers::pi * frequency;
     const Phasors lane_turns = turns_of(radians * step);
-    const double turn_real = std::cos(radians * step * at_once),
-                 turn_imaginary = std::sin(radians * step * at_once);
+    const double turn_real = portable::cos(radians * step * at_once),
+                 turn_imaginary = portable::sin(radians * step * at_once);
     Four real[groups], imaginary[groups], weight, place;
     Four value_real[groups] = {}, value_imaginary[groups] = {}, first_real[groups] = {},
          first_imaginary[groups] = {}, second_real[groups] = {}, second_imaginary[groups] = {};
     FourierPoint point;
     for (std::size_t begin = 0; begin < where.size(); begin += anew) {
         const std::size_t end = std::min(begin + anew, where.size()), even = end - (end - begin) % at_once;
-        const double phase = radians * (where[begin] - middle), seed_real = std::cos(phase),
-                     seed_imaginary = std::sin(phase);
+        const double phase = radians * (where[begin] - middle), seed_real = portable::cos(phase),
+                     seed_imaginary = portable::sin(phase);
 #pragma GCC unroll 2
         for (std::size_t g = 0; g < groups; ++g) {
             load(weight, &lane_turns.real[g * lanes]);

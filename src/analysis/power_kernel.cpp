@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/lanes.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -60,8 +61,8 @@ void add_power(std::span<const std::complex<double>> sums, double scale, std::sp
 HalfPower::HalfPower(std::size_t length) {
     const double step = 2.0 * std::numbers::pi / static_cast<double>(length);
     for (std::size_t k = 0; 4 * k <= length; ++k) {
-        cosine_.push_back(std::cos(step * static_cast<double>(k)));
-        sine_.push_back(std::sin(step * static_cast<double>(k)));
+        cosine_.push_back(portable::cos(step * static_cast<double>(k)));
+        sine_.push_back(portable::sin(step * static_cast<double>(k)));
     }
 }
 

@@ -91,13 +91,21 @@ std::optional<RatioRival> scale_rival(const Comb& best, const GearRatioFit& fit,
         return std::nullopt;
     const std::string what = fmt::format("the velocity's or position's scale reads {:.2f} % {}",
                                          100.0 * std::abs(share), share < 0.0 ? "high" : "low");
+    // 100 and 101 are both sold.
+    const bool another_gear = best.listed && *best.listed != listed_ratio(hint.value());
+    const std::string cause =
+        another_gear
+            ? fmt::format("either the gear is one of {:.6g}, or {}, or a time column runs off by that much",
+                          *best.listed, what)
+            : fmt::format(
+                  "the likely cause is that {}, or that a time column runs off by that much; a gear "
+                  "ratio that odd is unlikely",
+                  what);
     return RatioRival{
         hint.value(), best.nats + scale_nats, "if " + what,
-        fmt::format(
-            "the ratio {:.6g} is {:+.2f} % from the hint {:.6g}, more than its error of {:.2f} %: the "
-            "likely cause is that {}, or that a time column runs off by that much; a gear ratio that "
-            "odd is unlikely",
-            *fit.value, 100.0 * share, hint.value(), 100.0 * doubt, what)};
+        fmt::format("the ratio {:.6g} is {:+.2f} % from the hint {:.6g}, more than its error of "
+                    "{:.2f} %: {}",
+                    *fit.value, 100.0 * share, hint.value(), 100.0 * doubt, cause)};
 }
 
 }  // namespace ripplenotch

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -31,7 +32,7 @@ std::optional<double> phase_in_angle(std::span<const TraceView> logs, const Stea
         for (const double torque : part.torque_nm) mean += torque / static_cast<double>(part.size());
         for (std::size_t k = 0; k < part.size(); ++k) {
             const double u = (static_cast<double>(k) + 0.5) / static_cast<double>(part.size());
-            const double window = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * u);
+            const double window = 0.5 - 0.5 * portable::cos(2.0 * std::numbers::pi * u);
             turns[k] = part.position_deg[k] / 360.0;
             value[k] = window * (part.torque_nm[k] - mean);
             weights += window;
@@ -42,7 +43,7 @@ std::optional<double> phase_in_angle(std::span<const TraceView> logs, const Stea
     }
     constexpr double agreement = 0.7;
     if (!(lengths > 0.0) || std::abs(together) < agreement * lengths) return std::nullopt;
-    return std::arg(together) * degrees_per_radian;
+    return portable::arg(together) * degrees_per_radian;
 }
 
 std::string listed_orders(std::span<const double> orders) {
@@ -102,7 +103,8 @@ Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
         hz_top += seen.hz / (seen.hz_error * seen.hz_error);
         hz_bottom += 1.0 / (seen.hz_error * seen.hz_error);
         if (seen.speed_deg_s == 0.0) continue;
-        const double error = std::hypot(seen.order_error(), seen.order_output() * seen.speed_share_error);
+        const double error =
+            portable::hypot(seen.order_error(), seen.order_output() * seen.speed_share_error);
         order_top += seen.order_output() / (error * error);
         order_bottom += 1.0 / (error * error);
         order.observations.push_back({seen.order_output(), seen.order_error(), seen.speed_deg_s,
@@ -111,7 +113,10 @@ Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
     line.amplitude_nm = amplitude;
     line.speed_from_deg_s = slowest;
     line.speed_to_deg_s = fastest;
-    if (found.kind == LineKind::tone || found.kind == LineKind::unknown) line.hz = hz_top / hz_bottom;
+    if (found.kind == LineKind::tone || found.kind == LineKind::unknown) {
+        line.hz = hz_top / hz_bottom;
+        reported.hz_error = 1.0 / std::sqrt(hz_bottom);
+    }
     if (found.kind == LineKind::tone) {
         line.note = fastest == 0.0 ? "seen at rest" : "";
         return reported;
@@ -129,7 +134,8 @@ Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
             line.phase_known = true;
         }
     } else {
-        line.note = "seen at one speed only";
+        line.note = found.by_accident ? "shares an order with a line at another speed, as unrelated lines may"
+                                      : "seen at one speed only";
     }
     const Sighting& first = found.sightings.front();
     if (found.kind == LineKind::alias) {
@@ -162,7 +168,10 @@ Reported from_motion(const MotionLines& motion, std::size_t source, const Identi
     line.by_speed = found.by_speed;
     line.speed_from_deg_s = motion.slowest_deg_s;
     line.speed_to_deg_s = motion.fastest_deg_s;
-    if (found.kind != LineKind::order && found.hz > 0.0) line.hz = found.hz;
+    if (found.kind != LineKind::order && found.hz > 0.0) {
+        line.hz = found.hz;
+        reported.hz_error = found.hz_stderr;
+    }
     const bool tone = found.kind == LineKind::tone;
     const double order = tone ? found.order_seen : found.order_output;
     const double error = tone ? 0.1 * motion.resolution_orders : found.order_stderr;

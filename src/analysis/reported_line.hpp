@@ -15,8 +15,9 @@ namespace ripplenotch {
 
 /// A line as it is reported, and as the gear ratio sees it when it may turn with the joint.
 struct Reported {
-    Line line;
-    std::optional<OrderLine> order;
+    Line line = {};
+    std::optional<OrderLine> order = {};
+    double hz_error = 0.0;  ///< of line.hz
 };
 
 [[nodiscard]] Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,

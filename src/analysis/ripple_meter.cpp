@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/analysis/ripple_meter.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -39,9 +43,7 @@ struct ThinnedMedian {
     [[nodiscard]] double median() const {
         if (values.empty()) return 0.0;
         auto sorted = values;
-        const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-        std::nth_element(sorted.begin(), middle, sorted.end());
-        return *middle;
+        return median_in(sorted);
     }
 };
 
@@ -63,62 +65,65 @@ double spread(const Eigen::VectorXd& values) { return values.maxCoeff() - values
 struct RippleMeter::State {
     double ratio;
     std::vector<double> orders;
-    double sample_rate_hz;
     std::size_t signals;
     std::size_t most_rows;
 
     // The window under way: angles in motor turns from its first row, torques row by row.
-    std::vector<double> turns, torque_nm;
+    std::vector<double> turns, torque_nm, time_s;
     double furthest = 0.0;
     bool has_last = false;
-    double last_velocity = 0.0, last_position = 0.0;
+    double last_velocity = 0.0, last_position = 0.0, last_s = 0.0;
     std::size_t seen = 0;
     Sums sums;
     LineGains gains;
 
-    [[nodiscard]] double turned(double velocity_deg_s, const double* position_deg) const {
+    [[nodiscard]] double turned(double step_s, double velocity_deg_s, const double* position_deg) const {
         double moved_deg = 0.0;
         if (position_deg != nullptr) {
             moved_deg = *position_deg - last_position;
             if (std::abs(moved_deg) > 180.0) moved_deg -= 360.0 * std::round(moved_deg / 360.0);
         } else {
-            moved_deg = 0.5 * (last_velocity + velocity_deg_s) / sample_rate_hz;
+            moved_deg = 0.5 * (last_velocity + velocity_deg_s) * step_s;
         }
         return ratio * moved_deg / 360.0;
     }
 
-    void begin(std::span<const double> torque) {
+    void begin(double now_s, std::span<const double> torque) {
         turns.assign(1, 0.0);
+        time_s.assign(1, now_s);
         torque_nm.assign(torque.begin(), torque.end());
         furthest = 0.0;
     }
 
-    void add(double velocity_deg_s, const double* position_deg, std::span<const double> torque) {
+    void add(double now_s, double velocity_deg_s, const double* position_deg,
+             std::span<const double> torque) {
         ++seen;
         if (!has_last) {
-            begin(torque);
+            begin(now_s, torque);
         } else {
-            const double angle = turns.back() + turned(velocity_deg_s, position_deg);
+            const double angle = turns.back() + turned(now_s - last_s, velocity_deg_s, position_deg);
             const double back = furthest < 0.0 ? angle - furthest : furthest - angle;
             if (back > reversal_turns) {
                 close(sums);
-                begin(torque);
+                begin(now_s, torque);
             } else if (turns.size() == most_rows) {
                 // A joint that stands still has no ripple to measure and is not worth a word.
                 if (!close(sums) && std::abs(furthest) > reversal_turns) ++sums.too_slow;
-                begin(torque);
+                begin(now_s, torque);
             } else {
                 turns.push_back(angle);
+                time_s.push_back(now_s);
                 torque_nm.insert(torque_nm.end(), torque.begin(), torque.end());
                 if (std::abs(angle) > std::abs(furthest)) furthest = angle;
                 if (std::abs(angle) >= turns_wanted) {
                     measure(turns.size(), sums);
-                    begin(torque);
+                    begin(now_s, torque);
                 }
             }
         }
         has_last = true;
         last_velocity = velocity_deg_s;
+        last_s = now_s;
         if (position_deg != nullptr) last_position = *position_deg;
     }
 
@@ -139,10 +144,11 @@ struct RippleMeter::State {
 // What the fit of a window sees is the mean of the filtered line's amplitude and phase over it.
 void RippleMeter::State::expect_in(std::size_t rows, Sums& into) const {
     const std::size_t parts = std::min(parts_of_window, rows - 1);
+    const double step_s = (time_s[rows - 1] - time_s.front()) / static_cast<double>(rows - 1);
     std::vector<std::complex<double>> now(orders.size()), mean(orders.size());
     for (std::size_t part = 0; part < parts; ++part) {
         const std::size_t first = (rows - 1) * part / parts, last = (rows - 1) * (part + 1) / parts;
-        const double seconds = static_cast<double>(last - first) / sample_rate_hz;
+        const double seconds = step_s * static_cast<double>(last - first);
         gains(std::abs(turns[last] - turns[first]) * 360.0 / ratio / seconds, now);
         for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += now[i] / static_cast<double>(parts);
     }
@@ -167,8 +173,9 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
         for (Eigen::Index i = 0; i < trend_terms; ++i, power *= s) basis(k, i) = power;
         for (std::size_t i = 0; i < orders.size(); ++i) {
             const double phase = 2.0 * std::numbers::pi * orders[i] * turns[static_cast<std::size_t>(k)];
-            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i)) = std::cos(phase);
-            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i + 1)) = std::sin(phase);
+            const std::complex<double> phasor = portable::phasor(phase);
+            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i)) = phasor.real();
+            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i + 1)) = phasor.imag();
         }
     }
     const Eigen::MatrixXd normal = basis.transpose() * basis;
@@ -183,7 +190,7 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
         for (std::size_t i = 0; i < orders.size(); ++i) {
             const auto row = trend_terms + static_cast<Eigen::Index>(2 * i);
             into.amplitude_squared[i * signals + j] +=
-                weight * (std::pow(fitted(row, column), 2) + std::pow(fitted(row + 1, column), 2));
+                weight * (portable::pow(fitted(row, column), 2) + portable::pow(fitted(row + 1, column), 2));
         }
         const Eigen::VectorXd detrended =
             torque.col(column) - basis.leftCols(trend_terms) * fitted.col(column).head(trend_terms);
@@ -195,7 +202,7 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
     }
     if (gains) expect_in(rows, into);
     into.turns += turned_by;
-    into.seconds += static_cast<double>(rows - 1) / sample_rate_hz;
+    into.seconds += time_s[rows - 1] - time_s.front();
     into.rows += rows;
     into.steps += rows - 1;  // the last row of a window is the first of the next
     ++into.windows;
@@ -215,7 +222,6 @@ RippleMeter::RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz s
         state_->orders.push_back(order.value());
     }
     state_->ratio = ratio.value();
-    state_->sample_rate_hz = sample_rate.value();
     state_->signals = signals;
     state_->most_rows =
         static_cast<std::size_t>(std::clamp(longest_window_s * sample_rate.value(), 64.0, 65536.0));
@@ -230,8 +236,9 @@ RippleMeter::~RippleMeter() = default;
 RippleMeter::RippleMeter(RippleMeter&&) noexcept = default;
 RippleMeter& RippleMeter::operator=(RippleMeter&&) noexcept = default;
 
-void RippleMeter::add(double velocity_deg_s, const double* position_deg, std::span<const double> torque_nm) {
-    state_->add(velocity_deg_s, position_deg, torque_nm);
+void RippleMeter::add(Seconds time, double velocity_deg_s, const double* position_deg,
+                      std::span<const double> torque_nm) {
+    state_->add(time.value(), velocity_deg_s, position_deg, torque_nm);
 }
 
 void RippleMeter::expect(LineGains gains) { state_->gains = std::move(gains); }

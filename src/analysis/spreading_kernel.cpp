@@ -6,12 +6,13 @@
 #include <numbers>
 
 #include "core/lanes.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
 double kernel(double x) {
-    return std::exp(SpreadingKernel::beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0));
+    return portable::exp(SpreadingKernel::beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0));
 }
 
 }  // namespace
@@ -26,9 +27,9 @@ SpreadingKernel::SpreadingKernel() {
             double sum = 0.0;
             for (std::size_t j = 0; j < terms; ++j) {
                 const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / terms;
-                const double offset = 0.5 * (std::cos(angle) + 1.0);
+                const double offset = 0.5 * (portable::cos(angle) + 1.0);
                 const double x = (static_cast<double>(i) + offset) * 2.0 / width - 1.0;
-                sum += kernel(x) * std::cos(static_cast<double>(m) * angle);
+                sum += kernel(x) * portable::cos(static_cast<double>(m) * angle);
             }
             const double share = (m == 0 ? 1.0 : 2.0) / terms * sum;
             for (std::size_t d = 0; d <= m; ++d) coefficients_[d][i] += share * now[d];

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/analysis/humps.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -58,6 +59,34 @@ std::vector<SignificantPeak> Stack::peaks(double false_alarm) const {
                            : significant_peaks(tested(), false_alarm / tries_factor);
     for (SignificantPeak& peak : found) peak.false_alarm = std::min(1.0, peak.false_alarm * tries_factor);
     return found;
+}
+
+std::vector<SpectralHump> Stack::humps(double false_alarm, double lowest) const {
+    std::vector<SpectralHump> humps;
+    if (few_cells || ratio.size() <= first) return humps;
+    for (const SignificantHump& found : significant_humps(tested(), false_alarm / tries_factor)) {
+        if (static_cast<double>(found.first) * spacing < lowest) continue;
+        SpectralHump hump;
+        double square = 0.0, beside = 0.0;
+        std::size_t highest = found.first;
+        for (std::size_t k = found.first; k < found.end; ++k) {
+            const double noise = floor_nm[k] * floor_nm[k];
+            square += 0.5 * (ratio[k] - found.floor) * noise * spacing / resolution;
+            beside += found.floor * noise / static_cast<double>(found.end - found.first);
+            if (amplitude_nm[k] > amplitude_nm[highest]) highest = k;
+        }
+        hump.from_hz = static_cast<double>(found.first) * spacing;
+        hump.to_hz = static_cast<double>(found.end - 1) * spacing;
+        hump.peak_hz = static_cast<double>(highest) * spacing;
+        hump.peak_nm = amplitude_nm[highest];
+        hump.rms_nm = std::sqrt(std::max(square, 0.0));
+        hump.floor_nm = std::sqrt(beside);
+        hump.false_alarm = std::min(1.0, found.false_alarm * tries_factor);
+        humps.push_back(hump);
+    }
+    std::stable_sort(humps.begin(), humps.end(),
+                     [](const SpectralHump& a, const SpectralHump& b) { return a.rms_nm > b.rms_nm; });
+    return humps;
 }
 
 Stack stack_sweeps(std::span<const Sweep> sweeps, Axis axis, const StackRule& rule) {

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <queue>
 
+#include "ripplenotch/core/median.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -34,10 +36,15 @@ class Extremes {
     std::deque<std::size_t> high_, low_;
 };
 
-bool within_band(double lowest, double highest, const SteadyRule& rule) {
-    const double middle = 0.5 * (highest + lowest);
-    return 0.5 * (highest - lowest) <= std::max(rule.band_deg_s, 0.01 * rule.band_percent * std::abs(middle));
-}
+struct Band {
+    double share = 0.0, width_deg_s = 0.0;  // of the middle speed, or absolute
+    double standstill_deg_s = 0.0;
+    [[nodiscard]] bool holds(double lowest, double highest) const {
+        if (std::max(std::abs(lowest), std::abs(highest)) <= standstill_deg_s) return true;
+        const double middle = 0.5 * (highest + lowest);
+        return 0.5 * (highest - lowest) <= std::max(width_deg_s, share * std::abs(middle));
+    }
+};
 
 struct Window {
     std::size_t first = 0, end = 0;
@@ -56,27 +63,26 @@ bool long_enough(const Window& window, const TraceView& trace, const SteadyRule&
 }
 
 /// Every window within the band that can be extended to neither side.
-std::vector<Window> maximal_windows(const TraceView& trace, std::span<const double> speed,
+std::vector<Window> maximal_windows(const TraceView& trace, std::span<const double> speed, const Band& band,
                                     const SteadyRule& rule) {
     std::vector<Window> windows;
     Extremes extremes(speed);
     std::size_t first = 0;
-    const double gap = rule.gap_steps / trace.sample_rate.value();
     const auto close = [&](std::size_t end) {
         if (const Window window{first, end}; long_enough(window, trace, rule)) windows.push_back(window);
     };
     extremes.add(0);
     for (std::size_t k = 1; k < speed.size(); ++k) {
-        const bool jumped = trace.time_s[k] - trace.time_s[k - 1] > gap;
+        const bool jumped = trace.starts_run(k);
         const double lowest = std::min(extremes.lowest(), speed[k]);
         const double highest = std::max(extremes.highest(), speed[k]);
-        if (jumped || !within_band(lowest, highest, rule)) close(k);
+        if (jumped || !band.holds(lowest, highest)) close(k);
         if (jumped) {
             first = k;
             extremes = Extremes(speed);
         }
         extremes.add(k);
-        while (!within_band(extremes.lowest(), extremes.highest(), rule)) extremes.drop_before(++first);
+        while (!band.holds(extremes.lowest(), extremes.highest())) extremes.drop_before(++first);
     }
     close(speed.size());
     return windows;
@@ -121,6 +127,31 @@ Stretch measured(const TraceView& trace, std::size_t first, std::size_t count, c
     return stretch;
 }
 
+/// Standard deviation of what changes from sample to sample, spikes and steps aside.
+double white_noise_of(std::span<const double> values) {
+    if (values.size() < 2) return 0.0;
+    std::vector<double> changes;
+    for (std::size_t k = 1; k < values.size(); ++k) changes.push_back(std::abs(values[k] - values[k - 1]));
+    return 1.4826 * median_in(changes) / std::sqrt(2.0);
+}
+
+/// The angle goes no further than noise takes it: a few times its own trembling where it is measured,
+/// `walk_deg` as integrated velocity.
+bool moves_nowhere(const TraceView& trace, double walk_deg) {
+    if (trace.has_position()) {
+        const auto [low, high] = std::minmax_element(trace.position_deg.begin(), trace.position_deg.end());
+        constexpr double trembling = 8.0;  // the range of thousands of draws, in deviations
+        if (*high - *low <= trembling * white_noise_of(trace.position_deg)) return true;
+    }
+    double angle = 0.0, lowest = 0.0, highest = 0.0;
+    for (const double v : trace.velocity_deg_s) {
+        angle += v / trace.sample_rate.value();
+        lowest = std::min(lowest, angle);
+        highest = std::max(highest, angle);
+    }
+    return highest - lowest <= walk_deg;
+}
+
 }  // namespace
 
 std::vector<double> moving_mean(std::span<const double> values, std::size_t width) {
@@ -140,15 +171,29 @@ std::vector<double> moving_mean(std::span<const double> values, std::size_t widt
     return mean;
 }
 
+double standstill_deg_s(const TraceView& trace, std::span<const double> smoothed_speed,
+                        const SteadyRule& rule) {
+    double fastest = 0.0;
+    for (const double v : smoothed_speed) fastest = std::max(fastest, std::abs(v));
+    const double noise = white_noise_of(trace.velocity_deg_s), step = 1.0 / trace.sample_rate.value();
+    constexpr double far = 4.0;  // deviations, once in some thousand draws
+    if (moves_nowhere(trace, far * noise * std::sqrt(static_cast<double>(trace.size())) * step))
+        return fastest;
+    const double left = noise / std::sqrt(std::max(1.0, rule.smoothing.value() / step));
+    return std::max(0.01 * rule.rest_percent * fastest, far * left);
+}
+
 std::vector<Stretch> steady_stretches(const TraceView& trace, const SteadyRule& rule) {
     std::vector<Stretch> stretches;
     const double rate = trace.sample_rate.value();
     if (trace.size() < 2 || !(rate > 0.0)) return stretches;
     const auto width = static_cast<std::size_t>(rule.smoothing.value() * rate) | 1U;
     const std::vector<double> speed = moving_mean(trace.velocity_deg_s, width);
-    for (const Window& window : longest_apart(maximal_windows(trace, speed, rule), trace, rule)) {
+    const Band band{0.01 * rule.band_percent, rule.band_deg_s, standstill_deg_s(trace, speed, rule)};
+    const double rest = std::max(band.standstill_deg_s, 0.5 * rule.band_deg_s);
+    for (const Window& window : longest_apart(maximal_windows(trace, speed, band, rule), trace, rule)) {
         stretches.push_back(measured(trace, window.first, window.end - window.first, rule));
-        stretches.back().rest = std::abs(stretches.back().speed.value()) <= 0.5 * rule.band_deg_s;
+        stretches.back().rest = std::abs(stretches.back().speed.value()) <= rest;
     }
     return stretches;
 }

@@ -3,34 +3,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
+#include "analysis/tone_family.hpp"
 #include "ripplenotch/analysis/alias.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_peaks = 16;  // per stretch, the clearest
 constexpr std::size_t fewest_samples = 64;
-constexpr double same_order_share = 0.005;  // scatter of speeds that stretches of one order may show
 constexpr double same_fold_share = 0.0005;  // the same for orders beyond half the sample rate: many are tried
 constexpr double chance_of_fold = 0.01;
 constexpr double highest_folded_order = 1000.0;
 constexpr double other_speed_share = 0.02;  // speeds further apart are different ones
-
-double median_of(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::vector<StretchLines> measure_stretches(std::span<const TraceView> logs, const SteadyRule& rule,
                                             double false_alarm) {
     std::vector<StretchLines> found;
     for (std::size_t i = 0; i < logs.size(); ++i) {
         for (const Stretch& stretch : steady_stretches(logs[i], rule)) {
-            if (stretch.count >= fewest_samples) found.push_back({i, stretch, {}, 0.0, 0.0});
+            if (stretch.count >= fewest_samples) found.push_back({i, stretch, {}, {}, 0.0, 0.0});
         }
     }
     for (StretchLines& one : found) {
@@ -40,6 +36,7 @@ std::vector<StretchLines> measure_stretches(std::span<const TraceView> logs, con
                          [](const SpectralPeak& a, const SpectralPeak& b) { return a.snr > b.snr; });
         if (spectrum.peaks.size() > most_peaks) spectrum.peaks.resize(most_peaks);
         one.peaks = std::move(spectrum.peaks);
+        one.humps = std::move(spectrum.humps);
         one.floor_nm = median_of(std::move(spectrum.floor_nm));
         one.bin_hz = spectrum.bin_width.value();
     }
@@ -63,16 +60,13 @@ std::vector<Sighting> sightings_of(std::span<const TraceView> logs,
 
 bool same_order(const Sighting& a, const Sighting& b) {
     if (a.speed_deg_s == 0.0 || b.speed_deg_s == 0.0) return false;
-    const double order = a.order_output();
-    const double speeds = order * std::hypot(a.speed_share_error, b.speed_share_error);
-    const double allowed =
-        4.0 * std::hypot(a.order_error(), b.order_error(), speeds) + same_order_share * order;
-    return std::abs(order - b.order_output()) <= allowed;
+    const double hz = a.order_output() * std::abs(b.speed_deg_s) / 360.0;
+    return std::abs(hz - b.hz) <= order_allowance_hz(a, b);
 }
 
 bool same_tone(const Sighting& a, const Sighting& b, const std::vector<StretchLines>& stretches) {
     const double bin = 0.25 * std::max(stretches[a.stretch].bin_hz, stretches[b.stretch].bin_hz);
-    return std::abs(a.hz - b.hz) <= 4.0 * std::hypot(a.hz_error, b.hz_error) + bin;
+    return std::abs(a.hz - b.hz) <= 4.0 * portable::hypot(a.hz_error, b.hz_error) + bin;
 }
 
 std::size_t count_speeds(std::vector<double> speeds) {
@@ -123,7 +117,7 @@ Group grow(LineKind kind, std::size_t seed, const std::vector<Sighting>& all, co
     std::vector<double> speeds;
     for (const std::size_t member : group.members) {
         speeds.push_back(all[member].speed_deg_s);
-        group.clearness += std::log(std::max(1.0, all[member].snr));
+        group.clearness += portable::log(std::max(1.0, all[member].snr));
     }
     group.speeds = count_speeds(std::move(speeds));
     return group;
@@ -140,7 +134,7 @@ struct FoldedMatch {
 FoldedMatch match_folded(double order, double order_error, const Sighting& seen) {
     const double hz = order * std::abs(seen.speed_deg_s) / 360.0;
     const double allowed =
-        4.0 * std::hypot(seen.hz_error, hz * seen.speed_share_error, hz * order_error / order) +
+        4.0 * portable::hypot(seen.hz_error, hz * seen.speed_share_error, hz * order_error / order) +
         same_fold_share * hz;
     const double off = folded_hz(hz, seen.rate_hz) - seen.seen_hz;
     return {hz, std::abs(off) / allowed, std::min(1.0, 4.0 * allowed / seen.rate_hz)};
@@ -156,7 +150,7 @@ Group grow_folded(std::size_t seed, const std::vector<Sighting>& all, const std:
     for (const double order : orders) {
         const double hz = order * std::abs(first.speed_deg_s) / 360.0;
         const double error =
-            order * std::hypot(first.hz_error / hz, first.speed_share_error, 0.5 * same_fold_share);
+            order * portable::hypot(first.hz_error / hz, first.speed_share_error, 0.5 * same_fold_share);
         Group group{LineKind::alias, {seed}, 0, 0.0, order};
         std::vector<double> speeds{first.speed_deg_s};
         double chance = static_cast<double>(orders.size());
@@ -180,7 +174,7 @@ Group grow_folded(std::size_t seed, const std::vector<Sighting>& all, const std:
             speeds.push_back(all[*nearest].speed_deg_s);
         }
         group.speeds = count_speeds(std::move(speeds));
-        group.clearness = -std::log(chance);
+        group.clearness = -portable::log(chance);
         if (group.speeds >= 3 && chance < chance_of_fold && best < group) best = std::move(group);
     }
     return best;
@@ -195,10 +189,9 @@ void unfold(SteadyLine& line, double order) {
     }
 }
 
-std::vector<SteadyLine> grouped(const std::vector<Sighting>& all,
-                                const std::vector<StretchLines>& stretches) {
+std::vector<SteadyLine> grouped(const std::vector<Sighting>& all, const std::vector<StretchLines>& stretches,
+                                std::vector<bool> used) {
     std::vector<SteadyLine> lines;
-    std::vector<bool> used(all.size(), false);
     while (true) {
         Group best;
         for (std::size_t seed = 0; seed < all.size(); ++seed) {
@@ -241,7 +234,15 @@ SteadyLines find_steady_lines(std::span<const TraceView> logs, const SteadyRule&
         if (!one.stretch.rest) speeds.push_back(one.stretch.speed.value());
     }
     found.speeds = count_speeds(std::move(speeds));
-    found.lines = grouped(sightings_of(logs, found.stretches), found.stretches);
+    const std::vector<Sighting> all = sightings_of(logs, found.stretches);
+    std::vector<bool> used(all.size(), false);
+    found.lines = grouped(all, found.stretches, used);
+    std::vector<SteadyLine> tones = tones_instead(all, found.stretches, found.lines, used);
+    if (!tones.empty()) {
+        found.lines = grouped(all, found.stretches, used);
+        std::move(tones.begin(), tones.end(), std::back_inserter(found.lines));
+    }
+    part_accidents(all, found.lines);
     return found;
 }
 

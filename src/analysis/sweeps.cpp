@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/analysis/sweeps.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -20,7 +21,9 @@ std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std
     const double duration = log.time_s[run.end - 1] - log.time_s[run.first];
     const double longest = std::min(rule.longest_turns, length * rule.longest_s / std::max(duration, 1e-9));
     if (length <= longest) return {run};
-    const auto count = static_cast<std::size_t>(std::max(1.0, std::floor(2.0 * length / longest) - 1.0));
+    // No more pieces than samples, however far apart those are.
+    const auto count = static_cast<std::size_t>(
+        std::clamp(std::floor(2.0 * length / longest) - 1.0, 1.0, static_cast<double>(run.size())));
     const double hop = count > 1 ? (length - longest) / static_cast<double>(count - 1) : 0.0;
     std::vector<SampleRun> pieces;
     std::size_t from = run.first;
@@ -49,7 +52,7 @@ void remove_trend(Sweep& sweep, std::span<const double> torque, const SweepRule&
         row[0] = 1.0;
         row[1] = u - 0.5;
         // cos(m pi u) by the recurrence of Chebyshev's polynomials.
-        const double c = std::cos(std::numbers::pi * u);
+        const double c = portable::cos(std::numbers::pi * u);
         double before = 1.0, now = c;
         for (Eigen::Index m = 2; m < terms; ++m) {
             row[m] = now;
@@ -94,7 +97,7 @@ void weigh(Sweep& sweep) {
     for (std::size_t k = 0; k < sweep.turns.size(); ++k) {
         const double u =
             std::clamp(std::abs(sweep.turns[k] - sweep.turns.front()) / sweep.length_turns, 0.0, 1.0);
-        sweep.weight[k] = (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * u)) * sweep.share_turns[k];
+        sweep.weight[k] = (0.5 - 0.5 * portable::cos(2.0 * std::numbers::pi * u)) * sweep.share_turns[k];
         sweep.weight_sum += sweep.weight[k];
         sweep.weight_square_sum += sweep.weight[k] * sweep.weight[k];
     }
@@ -183,8 +186,7 @@ Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule) {
         const TraceView& log = logs[i];
         angles.push_back(output_angle(log));
         speeds.push_back(smoothed_speed(log));
-        for (const SampleRun& run : directed_runs(log.time_s, speeds.back(), log.sample_rate,
-                                                  {rule.slowest_share, rule.slowest_deg_s, rule.gap_steps})) {
+        for (const SampleRun& run : directed_runs(speeds.back(), log.run_starts, {rule.slowest_share})) {
             for (const SampleRun& piece : pieces_of(run, log, angles.back().turns, rule)) {
                 if (piece.end - piece.first >= rule.fewest_samples) planned.push_back({i, piece});
             }

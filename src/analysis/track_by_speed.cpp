@@ -7,6 +7,8 @@
 #include <limits>
 #include <map>
 
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -27,14 +29,14 @@ void gather_line(const LineTrack& track, const std::vector<std::size_t>& rows, S
         square += amplitude * amplitude;
         hz += track.hz[row];
         error = track.standard_error_nm[row];
-        arrow += std::polar(amplitude, track.phase_deg[row] / degrees_per_radian);
+        arrow += portable::polar(amplitude, track.phase_deg[row] / degrees_per_radian);
     }
     const double n = static_cast<double>(count);
     const double mean = count > 0 ? sum / n : nan;
     const double variance = count > 1 ? std::max(0.0, (square - sum * mean) / (n - 1.0)) : error * error;
     line.amplitude_nm.push_back(mean);
     line.spread_nm.push_back(std::sqrt(variance));
-    line.phase_deg.push_back(count > 0 ? std::arg(arrow) * degrees_per_radian : nan);
+    line.phase_deg.push_back(count > 0 ? portable::arg(arrow) * degrees_per_radian : nan);
     line.hz.push_back(count > 0 ? hz / n : nan);
 }
 
@@ -44,7 +46,7 @@ double speed_step(double slowest_deg_s, double fastest_deg_s) {
     const double fastest = std::max(std::abs(slowest_deg_s), std::abs(fastest_deg_s));
     const double least = std::max((fastest_deg_s - slowest_deg_s) / ranges_wanted, finest_share * fastest);
     if (!(least > 0.0)) return 1.0;
-    const double power = std::pow(10.0, std::floor(std::log10(least)));
+    const double power = portable::pow(10.0, std::floor(portable::log10(least)));
     for (const double step : {1.0, 2.0, 5.0}) {
         if (step * power >= least) return step * power;
     }

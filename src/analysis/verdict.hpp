@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the analysis room: what was looked at, and the sentence that says what came of it.
+// Internal to the analysis room: what was looked at, and what comes of it.
 
 #include <optional>
 
@@ -15,7 +15,10 @@ struct Looked {
     std::optional<MotionLines> motion;
 };
 
-/// Writes verdict, conclusive and notes from the lines and the ratio already in `result`.
+/// Writes finding, grounds, notes, conclusive and verdict from the lines and the ratio already in `result`.
 void conclude(const Looked& looked, const IdentifyOptions& options, Identification& result);
+
+/// Finding, conclusive and verdict once more, after something was added.
+void settle(Identification& result);
 
 }  // namespace ripplenotch

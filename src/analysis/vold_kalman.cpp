@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -12,6 +13,8 @@
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -23,7 +26,6 @@ constexpr double widest_share = 0.25;  ///< of the sample rate
 constexpr double worst_condition = 1e13;
 constexpr double trend_widths = 4.0;   ///< the trend's bandwidth over a line's
 constexpr double fewest_cycles = 1.0;  ///< of a line within 1/bandwidth, or it is one with its mirror image
-constexpr double gap_steps = 10.0;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 void check(const TrackedSignal& signal, const VoldKalmanRule& rule) {
@@ -74,8 +76,9 @@ class RunTracker {
             for (std::size_t i = 0; i < signal_.lines.size(); ++i) {
                 const TrackedLine& line = signal_.lines[i];
                 const double angle = 2.0 * std::numbers::pi * line.order * line.turns[at];
-                const double value = envelopes_.at(2 * i, time_s_[k]) * std::cos(angle) -
-                                     envelopes_.at(2 * i + 1, time_s_[k]) * std::sin(angle);
+                const std::complex<double> phasor = portable::phasor(angle);
+                const double value = envelopes_.at(2 * i, time_s_[k]) * phasor.real() -
+                                     envelopes_.at(2 * i + 1, time_s_[k]) * phasor.imag();
                 result.waveform_nm[i][at] = value;
                 left -= value;
             }
@@ -135,8 +138,8 @@ class RunTracker {
     void add_value(LineTrack& track, std::size_t line, std::size_t point, double hz, double error,
                    bool unknown) const {
         const double a = envelopes_.value[2 * line][point], b = envelopes_.value[2 * line + 1][point];
-        track.amplitude_nm.push_back(unknown ? nan : std::hypot(a, b));
-        track.phase_deg.push_back(unknown ? nan : std::atan2(b, a) * degrees_per_radian);
+        track.amplitude_nm.push_back(unknown ? nan : portable::hypot(a, b));
+        track.phase_deg.push_back(unknown ? nan : portable::atan2(b, a) * degrees_per_radian);
         track.standard_error_nm.push_back(unknown ? nan : error);
         track.hz.push_back(hz);
     }
@@ -172,7 +175,7 @@ std::vector<SampleRun> long_runs(const TrackedSignal& signal, const VoldKalmanRu
     const double needed = shortest_run / rule.bandwidth.value();
     double longest = 0.0;
     std::vector<SampleRun> runs;
-    for (const SampleRun& run : gapless_runs(signal.time_s, signal.sample_rate, gap_steps)) {
+    for (const SampleRun& run : whole_runs(signal.time_s.size(), signal.run_starts)) {
         const double duration = signal.time_s[run.end - 1] - signal.time_s[run.first];
         longest = std::max(longest, duration);
         if (duration >= needed) {
@@ -204,16 +207,17 @@ double vold_kalman_weight(double bandwidth_share, int poles) {
                           shortest(bandwidth_share));
     }
     const double gain = std::sqrt(std::numbers::sqrt2 - 1.0);
-    const double weight = gain / std::pow(2.0 * std::sin(0.5 * std::numbers::pi * bandwidth_share), poles);
-    const double condition = 1.0 + std::pow(4.0, poles) * weight * weight;
+    const double weight =
+        gain / portable::pow(2.0 * portable::sin(0.5 * std::numbers::pi * bandwidth_share), poles);
+    const double condition = 1.0 + portable::pow(4.0, poles) * weight * weight;
     if (condition > worst_condition) {
         const double narrowest_sine =
-            0.5 * std::pow(gain * std::pow(2.0, poles) / std::sqrt(worst_condition), 1.0 / poles);
+            0.5 * portable::pow(gain * portable::pow(2.0, poles) / std::sqrt(worst_condition), 1.0 / poles);
         raise<UsageError>(
             "a bandwidth of {} times the sample rate with {} poles makes the equations ill-conditioned "
             "({:.1g}); use at least {:.2g} times the sample rate, or fewer poles",
             shortest(bandwidth_share), poles, condition,
-            1.01 * 2.0 * std::asin(narrowest_sine) / std::numbers::pi);
+            1.01 * 2.0 * portable::asin(narrowest_sine) / std::numbers::pi);
     }
     return weight;
 }

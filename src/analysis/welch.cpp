@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr std::size_t trend_bins = 3;  // main lobe of what the straight line le
 /// Newton.
 double log_parabola(double left, double middle, double right) {
     if (!(left > 0.0) || !(right > 0.0)) return 0.0;
-    const double a = std::log(left), b = std::log(middle), c = std::log(right);
+    const double a = portable::log(left), b = portable::log(middle), c = portable::log(right);
     const double bend = a - 2.0 * b + c;
     return bend < 0.0 ? std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : 0.0;
 }
@@ -84,6 +86,10 @@ bool Welch::find_lines(double false_alarm) {
     gain_ *= share;
     floor_ = noise_floor(tested());
     found_ = without_skirts(significant_peaks(tested(), floor_, false_alarm), power_);
+    const std::vector<double> rest = power_without_lines();
+    PowerSpectrum without_lines = tested();
+    without_lines.power = rest;
+    humps_ = significant_humps(without_lines, false_alarm);
     for (const SignificantPeak& found : found_) {
         const std::size_t k = found.bin;
         const double between = log_parabola(power_[k - 1], power_[k], power_[k + 1]);
@@ -91,6 +97,55 @@ bool Welch::find_lines(double false_alarm) {
         if (pieces_ > 1) meter.expect_even_pieces(maker_.even_time_s());
     }
     return !found_.empty();
+}
+
+/// The noise in place of each line, as far as its skirt rises above it.
+std::vector<double> Welch::power_without_lines() const {
+    std::vector<double> rest = power_;
+    for (const SignificantPeak& found : found_) {
+        const double amplitude = skirt_margin * std::sqrt(power_[found.bin]);
+        const auto fill = [&](std::size_t bin, std::size_t apart) {
+            const double leaks = amplitude * leakage(static_cast<double>(apart) - 0.5);
+            if (apart > 2 && leaks * leaks < floor_[bin]) return false;
+            rest[bin] = floor_[bin];
+            return true;
+        };
+        for (std::size_t k = found.bin; k < rest.size() && fill(k, k - found.bin); ++k) {
+        }
+        for (std::size_t k = found.bin; k > tested().first && fill(k - 1, found.bin - k + 1); --k) {
+        }
+    }
+    return rest;
+}
+
+std::vector<SpectralHump> Welch::humps() const {
+    std::vector<SpectralHump> humps;
+    const std::vector<double> rest = power_without_lines();
+    for (const SignificantHump& found : humps_) {
+        SpectralHump hump;
+        double square = 0.0;
+        std::size_t highest = found.first;
+        for (std::size_t k = found.first; k < found.end; ++k) {
+            square += (rest[k] - found.floor) / (2.0 * hann_noise_bandwidth);
+            if (rest[k] > rest[highest]) highest = k;
+        }
+        // What widens a line, because its frequency or amplitude moves, is no hump beside it.
+        const bool of_a_line = std::any_of(found_.begin(), found_.end(), [&](const SignificantPeak& line) {
+            return line.bin + 1 >= found.first && line.bin <= found.end && power_[line.bin] > 2.0 * square;
+        });
+        if (of_a_line) continue;
+        hump.from_hz = static_cast<double>(found.first) * bin_hz();
+        hump.to_hz = static_cast<double>(found.end - 1) * bin_hz();
+        hump.peak_hz = static_cast<double>(highest) * bin_hz();
+        hump.peak_nm = std::sqrt(rest[highest]);
+        hump.rms_nm = std::sqrt(std::max(square, 0.0));
+        hump.floor_nm = std::sqrt(found.floor);
+        hump.false_alarm = found.false_alarm;
+        humps.push_back(hump);
+    }
+    std::stable_sort(humps.begin(), humps.end(),
+                     [](const SpectralHump& a, const SpectralHump& b) { return a.rms_nm > b.rms_nm; });
+    return humps;
 }
 
 std::size_t Welch::measure(std::span<const double> time_s, std::span<const double> torque_nm) {
@@ -136,6 +191,7 @@ Spectrum Welch::spectrum() const {
         spectrum.floor_nm.push_back(k < first ? 0.0 : std::sqrt(floor_[k]));
     }
     spectrum.trend_removed_to_hz = static_cast<double>(first) * bin_hz();
+    spectrum.humps = humps();
     for (std::size_t line = 0; line < found_.size(); ++line) spectrum.peaks.push_back(peak(line));
     std::stable_sort(
         spectrum.peaks.begin(), spectrum.peaks.end(),

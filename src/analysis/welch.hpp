@@ -9,6 +9,7 @@
 
 #include "analysis/line_meter.hpp"
 #include "analysis/piece.hpp"
+#include "ripplenotch/analysis/humps.hpp"
 #include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
 
@@ -35,6 +36,8 @@ class Welch {
     [[nodiscard]] PowerSpectrum tested() const;
     [[nodiscard]] double bin_hz() const { return rate_ / static_cast<double>(length_); }
     [[nodiscard]] SpectralPeak peak(std::size_t line) const;
+    [[nodiscard]] std::vector<double> power_without_lines() const;
+    [[nodiscard]] std::vector<SpectralHump> humps() const;
 
     std::size_t length_;
     double rate_;
@@ -44,6 +47,7 @@ class Welch {
     double gain_ = 0.0;          // of density times rate over squared amplitude, likewise
     std::vector<double> floor_;  // mean noise power
     std::vector<SignificantPeak> found_;
+    std::vector<SignificantHump> humps_;
     std::vector<LineMeter> meters_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/artifact/comparison.hpp"
 
-#include "artifact/json.hpp"
+#include "artifact/gear_json.hpp"
 #include "artifact/ledger_json.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
@@ -78,7 +78,8 @@ std::string comparison_text(const Comparison& comparison, const Provenance& prov
     json["crossover_hz"] = comparison.crossover ? Json(comparison.crossover->value()) : Json(nullptr);
     json["no_notch_below_deg_s"] =
         comparison.no_notch_below ? Json(comparison.no_notch_below->value()) : Json(nullptr);
-    json["gear_ratio"] = comparison.lines ? Json(comparison.lines->gear_ratio.value()) : Json(nullptr);
+    json["gear_ratio"] = comparison.lines ? Json(comparison.lines->ratio.value()) : Json(nullptr);
+    json["gear"] = gear_to_json(comparison.lines);
     json["orders"] = Json::array();
     if (comparison.lines) {
         for (const Order order : comparison.lines->orders) json["orders"].push_back(order.value());
@@ -92,7 +93,7 @@ std::string comparison_text(const Comparison& comparison, const Provenance& prov
     json["methods"] = Json::array();
     for (const MethodFigures& figures : comparison.methods)
         json["methods"].push_back(method_to_json(figures));
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "artifact/json.hpp"
 #include "artifact/model_json.hpp"
@@ -129,6 +130,7 @@ Json baseline_json(const Diagnosis& diagnosis) {
 std::string write_diagnosis(const Diagnosis& diagnosis, const Provenance& provenance) {
     Json json = document_head("diagnosis", provenance);
     json["verdict"] = verdict_name(diagnosis.verdict);
+    if (!diagnosis.doubt.empty()) json["doubt"] = diagnosis.doubt;
     json["named"] = diagnosis.named;
     json["rounds"] = Json::array();
     for (const Finding& finding : diagnosis.rounds) json["rounds"].push_back(round_json(finding));
@@ -154,7 +156,7 @@ std::string write_diagnosis(const Diagnosis& diagnosis, const Provenance& proven
     json["false_alarm"] = diagnosis.false_alarm;
     json["model"] = {{"schema", "ripplenotch/model/1"}};
     put_model(json["model"], diagnosis.model);
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

@@ -43,7 +43,7 @@ std::string export_report_to_json(const ExportReport& report, const Provenance& 
     json["sections"] = Json::array();
     for (const SectionCheck& check : report.checks) json["sections"].push_back(check_to_json(check));
     json["violations"] = report.violations;
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

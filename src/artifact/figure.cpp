@@ -108,7 +108,7 @@ Json panel_json(const Panel& panel) {
 
 std::string figure_text(const Figure& figure, const Provenance& provenance) {
     check_figure(figure);
-    Json json = document_head("figure", provenance);
+    Json json = document_head("figure", {provenance.inputs, provenance.command});
     json["name"] = figure.name;
     json["title"] = figure.title;
     json["sentence"] = figure.sentence;

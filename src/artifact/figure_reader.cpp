@@ -136,7 +136,7 @@ class Reader {
 Figure figure_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "figure");
     Fields fields(json, source, "");
-    fields.ignore({"schema", "tool", "version", "command", "inputs"});
+    fields.ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings"});
     Figure figure{fields.text("name"), fields.text("title"), fields.text("sentence"), {}};
     figure.columns = static_cast<int>(std::clamp(fields.number("columns"), 1.0, 4.0));
     const Json& panels = fields.at("panels");

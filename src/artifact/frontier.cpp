@@ -44,7 +44,7 @@ std::string frontier_to_json(const Frontier& frontier, const Provenance& provena
     json["recommended"]["reason"] = frontier.reason;
     json["recommended"]["no_notch_below_deg_s"] =
         frontier.slowest ? Json(frontier.slowest->value()) : Json(nullptr);
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 std::string frontier_to_csv(const Frontier& frontier) {

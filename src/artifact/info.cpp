@@ -2,8 +2,10 @@
 #include "ripplenotch/artifact/info.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "artifact/json.hpp"
+#include "artifact/recording_json.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -42,8 +44,8 @@ Json joint_json(const JointInfo& joint) {
             {"torque_nm", range_json(joint.torque_nm)},
             {"position_deg", range_json(joint.position_deg)},
             {"turns", joint.turns},
-            {"held_samples", joint.held_samples},
-            {"longest_hold", joint.longest_hold},
+            {"held_samples", joint.recording.held.count},
+            {"longest_hold", joint.recording.held.longest},
             {"clock_factor", optional_json(joint.clock_factor)},
             {"steady_stretches", stretches},
             {"options", joint.options}};
@@ -70,18 +72,18 @@ std::optional<double> best_clock_factor(const std::vector<JointInfo>& joints) {
 }
 
 void add_clock(Json& json, const LogInfo& log) {
-    const Timebase& clock = log.timebase;
-    const bool timed = clock.sample_rate.value() > 0.0;
+    const ClockFacts& clock = log.clock;
+    const bool timed = clock.nominal_rate.value() > 0.0;
     const auto ms = [timed](Seconds time) { return timed ? Json(1e3 * time.value()) : Json(nullptr); };
-    json["sample_rate_hz"] = timed ? Json(clock.sample_rate.value()) : Json(nullptr);
-    json["median_step_ms"] = ms(clock.median_step);
+    json["sample_rate_hz"] = timed ? Json(clock.nominal_rate.value()) : Json(nullptr);
+    json["mean_rate_hz"] = timed ? Json(clock.mean_rate.value()) : Json(nullptr);
+    json["median_step_ms"] = ms(clock.usual_step);
     json["shortest_step_ms"] = ms(clock.shortest_step);
     json["longest_step_ms"] = ms(clock.longest_step);
     json["jitter_ms"] = ms(clock.jitter);
     json["repeated_times"] = clock.repeated_times;
-    json["gaps"] = Json::array();
-    for (const Gap& gap : clock.gaps)
-        json["gaps"].push_back({{"row", gap.row}, {"from_s", gap.from_s}, {"to_s", gap.to_s}});
+    json["gap_count"] = clock.gap_count;
+    json["gaps"] = gaps_json(clock);
 }
 
 void add_log(Json& json, const LogInfo& log) {
@@ -90,7 +92,7 @@ void add_log(Json& json, const LogInfo& log) {
     json["duration_s"] = optional_json(log.duration_s);
     add_clock(json, log);
     std::size_t held = 0;
-    for (const JointInfo& joint : log.joints) held = std::max(held, joint.held_samples);
+    for (const JointInfo& joint : log.joints) held = std::max(held, joint.recording.held.count);
     json["held_samples"] = held;
     json["bad_values_held"] = log.bad_values_held;
     json["clock_factor"] = optional_json(best_clock_factor(log.joints));
@@ -104,6 +106,9 @@ void add_log(Json& json, const LogInfo& log) {
         json["uses"].push_back({{"name", use.name}, {"possible", use.possible}, {"reason", use.reason}});
     }
     json["warnings"] = log.warnings;
+    std::vector<Recording> recordings;
+    for (const JointInfo& joint : log.joints) recordings.push_back(joint.recording);
+    add_recordings(json, recordings);
     json["options"] = log.layout.options;
 }
 
@@ -113,7 +118,7 @@ std::string info_to_json(std::span<const LogInfo> logs, const Provenance& proven
     Json json = document_head("info", provenance);
     if (logs.size() == 1) {
         add_log(json, logs[0]);
-        return to_text(json);
+        return to_fitted_text(std::move(json));
     }
     json["logs"] = Json::array();
     for (const LogInfo& log : logs) {
@@ -121,7 +126,7 @@ std::string info_to_json(std::span<const LogInfo> logs, const Provenance& proven
         add_log(entry, log);
         json["logs"].push_back(std::move(entry));
     }
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

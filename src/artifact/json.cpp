@@ -5,7 +5,9 @@
 #include <array>
 #include <utility>
 
+#include "artifact/recording_json.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
 
@@ -24,7 +26,31 @@ Json document_head(std::string_view kind, const Provenance& provenance) {
         if (input.rows) entry["rows"] = *input.rows;
         json["inputs"].push_back(entry);
     }
+    add_recordings(json, provenance.recordings);
     return json;
+}
+
+namespace {
+
+bool is_time(std::string_view name) { return name.ends_with("_s") && !name.ends_with("deg_s"); }
+
+void round_fitted(Json& json) {
+    if (json.is_number_float()) {
+        json = to_digits(json.get<double>());
+    } else if (json.is_object()) {
+        for (auto& [name, value] : json.items()) {
+            if (!is_time(name)) round_fitted(value);
+        }
+    } else if (json.is_array()) {
+        for (Json& value : json) round_fitted(value);
+    }
+}
+
+}  // namespace
+
+std::string to_fitted_text(Json json) {
+    round_fitted(json);
+    return to_text(json);
 }
 
 std::string to_text(const Json& json) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -42,7 +43,7 @@ std::optional<double> number_at(const Json& owner, const std::string& name) {
 // Decimals at which an error has two digits; empty for none or one that says nothing.
 std::optional<int> decimals_of(double error) {
     if (!std::isfinite(error) || !(error > 0.0)) return std::nullopt;
-    return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, most_decimals);
+    return std::clamp(1 - static_cast<int>(std::floor(portable::log10(error))), 0, most_decimals);
 }
 
 std::optional<int> decimals_of_span(const Json& ci95) {
@@ -67,7 +68,7 @@ std::string span_text(const Json& span) {
     const double from = span[0].get<double>(), to = span[1].get<double>();
     const double larger = std::max(std::abs(from), std::abs(to));
     if (!(larger > 0.0) || !std::isfinite(larger)) return fmt::format("{:g} to {:g}", from, to);
-    const double unit = std::pow(10.0, std::floor(std::log10(larger)) - 3.0);
+    const double unit = portable::pow(10.0, std::floor(portable::log10(larger)) - 3.0);
     const auto shown = [unit](double value) {
         return fmt::format("{:.6g}", unit * std::round(value / unit) + 0.0);
     };

@@ -2,9 +2,12 @@
 #include "ripplenotch/artifact/metrics.hpp"
 
 #include <cmath>
+#include <utility>
 
-#include "artifact/json.hpp"
+#include "artifact/gear_json.hpp"
 #include "artifact/ledger_json.hpp"
+#include "artifact/recording_json.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -24,14 +27,15 @@ Json order_to_json(const FilterMetrics& metrics, std::size_t order) {
     json["filtered_nm"] = finite_or_null(level.amplitude_nm[1]);
     json["attenuation_db"] = attenuation ? Json(*attenuation) : Json(nullptr);
     json["predicted_nm"] = predicted ? finite_or_null(*predicted) : Json(nullptr);
-    if (predicted) json["predicted_from"] = metrics.amplitude_nm.empty() ? "log" : "joint";
+    if (predicted) json["predicted_from"] = metrics.gear->amplitude_nm.empty() ? "log" : "joint";
     return json;
 }
 
 // Null figures, not zeros, when there was nothing to measure them on.
 void add_levels(Json& json, const FilterMetrics& metrics) {
     const bool measured = metrics.levels && metrics.levels->windows > 0;
-    json["gear_ratio"] = metrics.gear_ratio ? Json(metrics.gear_ratio->value()) : Json(nullptr);
+    json["gear_ratio"] = metrics.gear ? Json(metrics.gear->ratio.value()) : Json(nullptr);
+    json["gear"] = gear_to_json(metrics.gear);
     json["orders"] = Json::array();
     if (!measured) {
         for (const char* name : {"residual_rms_nm", "residual_peak_to_peak_nm", "ripple_peak_to_peak_nm"}) {
@@ -57,18 +61,16 @@ void add_levels(Json& json, const FilterMetrics& metrics) {
 
 void add_stream(Json& json, const FilterMetrics& metrics) {
     const StreamReport& stream = metrics.stream;
-    json["rows"] = stream.rows;
+    const ClockFacts& clock = stream.recording.clock;
+    json["rows"] = clock.rows;
     json["sample_rate_hz"] = metrics.sample_rate.value();
-    json["measured_sample_rate_hz"] = finite_or_null(stream.measured_rate.value());
+    json["measured_sample_rate_hz"] = finite_or_null(clock.mean_rate.value());
     if (metrics.table_rate) json["table_sample_rate_hz"] = metrics.table_rate->value();
-    json["gap_count"] = stream.gap_count;
-    json["gaps"] = Json::array();
-    for (const Gap& gap : stream.gaps) {
-        json["gaps"].push_back({{"row", gap.row}, {"from_s", gap.from_s}, {"to_s", gap.to_s}});
-    }
-    json["repeated_times"] = stream.repeated_times;
+    json["gap_count"] = clock.gap_count;
+    json["gaps"] = gaps_json(clock);
+    json["repeated_times"] = clock.repeated_times;
     json["speed_deg_s"] = {finite_or_null(stream.slowest_deg_s), finite_or_null(stream.fastest_deg_s)};
-    json["held_samples"] = stream.held_samples;
+    json["held_samples"] = stream.recording.held.count;
     json["held_bad_values"] = stream.held_bad_values;
 }
 
@@ -77,14 +79,15 @@ void add_stream(Json& json, const FilterMetrics& metrics) {
 std::optional<double> attenuation_db(const OrderLevel& level) {
     const double raw = level.amplitude_nm[0], filtered = level.amplitude_nm[1];
     if (!(raw > 0.0) || !(filtered > 0.0)) return std::nullopt;
-    return 20.0 * std::log10(raw / filtered);
+    return 20.0 * portable::log10(raw / filtered);
 }
 
 std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order) {
     if (!metrics.levels || metrics.levels->windows == 0) return std::nullopt;
     const OrderLevel& level = metrics.levels->orders[order];
     if (!level.expected_gain) return std::nullopt;
-    const double before = metrics.amplitude_nm.empty() ? level.amplitude_nm[0] : metrics.amplitude_nm[order];
+    const std::vector<double>& known_nm = metrics.gear->amplitude_nm;
+    const double before = known_nm.empty() ? level.amplitude_nm[0] : known_nm[order];
     return before * *level.expected_gain;
 }
 
@@ -102,7 +105,7 @@ std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& prov
     json["switches"] = Json::array();
     for (const TimedSwitch& entry : metrics.stream.switches)
         json["switches"].push_back(switch_to_json(entry.change, Seconds(entry.time_s)));
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

@@ -20,7 +20,7 @@ Json term_json(const Term& term) {
 
 // The catalogue answers an unknown name as a wrong request; in a file it is wrong data, and the file must be
 // named.
-const Effect& effect_named(const std::string& name, const std::string& where) {
+const Effect& effect_named(std::string_view name, std::string_view where) {
     try {
         return find_effect(name);
     } catch (const UsageError& error) {
@@ -66,7 +66,7 @@ std::string write_model(const Model& model, const Provenance& provenance) {
 Model read_model(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "model");
     Fields fields(json, source, "");
-    fields.ignore({"schema", "tool", "version", "command", "inputs"});
+    fields.ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings"});
     Model model;
     model.gear_ratio = GearRatio(fields.number("gear_ratio"));
     if (!(model.gear_ratio.value() > 0.0 && model.gear_ratio <= largest_gear_ratio)) {

@@ -7,6 +7,7 @@
 #include "artifact/plotly_traces.hpp"
 #include "figure/gnuplot_script.hpp"
 #include "figure/page_layout.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
 
 namespace ripplenotch {
@@ -102,14 +103,16 @@ class PlotlyPanel {
     void axis(const char* which, const PlotAxis& axis, const PlotRange& range) {
         const bool log = axis.scale == PlotScale::logarithmic;
         Json& json = layout_[which + suffix_];
-        json = {{"title", {{"text", axis_title(which, axis)}, {"font", {{"size", 13}}}, {"standoff", 8}}},
-                {"type", log ? "log" : "linear"},
-                {"range", {log ? std::log10(range.from) : range.from, log ? std::log10(range.to) : range.to}},
-                {"gridcolor", "#e3e3e3"},
-                {"linecolor", "#555"},
-                {"showline", true},
-                {"zeroline", false},
-                {"ticks", "outside"}};
+        json = {
+            {"title", {{"text", axis_title(which, axis)}, {"font", {{"size", 13}}}, {"standoff", 8}}},
+            {"type", log ? "log" : "linear"},
+            {"range",
+             {log ? portable::log10(range.from) : range.from, log ? portable::log10(range.to) : range.to}},
+            {"gridcolor", "#e3e3e3"},
+            {"linecolor", "#555"},
+            {"showline", true},
+            {"zeroline", false},
+            {"ticks", "outside"}};
         if (!log) json["tickformat"] = ".6~g";
         if (axis.scale == PlotScale::whole) json["dtick"] = whole_step(range);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "artifact/plotly_traces.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
 
 namespace ripplenotch {
@@ -85,8 +86,8 @@ void PlotlyLines::label(Json& layout, const NamedLine& line, const Segment& s, b
               {"font", {{"size", 11}, {"color", inside ? "#ffffff" : "#1b1b1b"}}},
               {"xref", on_top ? x : x + " domain"},
               {"yref", on_top ? y + " domain" : y},
-              {"x", on_top ? plotly_number(log ? std::log10(where) : where) : Json(1)},
-              {"y", on_top ? Json(1) : plotly_number(log ? std::log10(where) : where)},
+              {"x", on_top ? plotly_number(log ? portable::log10(where) : where) : Json(1)},
+              {"y", on_top ? Json(1) : plotly_number(log ? portable::log10(where) : where)},
               {"xanchor", on_top   ? "center"
                           : inside ? "right"
                                    : "left"},

@@ -5,6 +5,7 @@
 
 #include "figure/gnuplot_script.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
 
@@ -41,12 +42,12 @@ void stems(Json& json, const Curve& curve) {
 
 void colour_ticks(Json& bar, const HeatMap& map) {
     bar["tickvals"] = bar["ticktext"] = Json::array();
-    for (double decade = std::pow(10.0, std::floor(std::log10(map.lowest))); decade <= map.highest;
+    for (double decade = portable::pow(10.0, std::floor(portable::log10(map.lowest))); decade <= map.highest;
          decade *= 10.0) {
         for (const double step : {1.0, 2.0, 5.0}) {
             const double value = decade * step;
             if (value < map.lowest || value > map.highest) continue;
-            bar["tickvals"].push_back(plotly_number(std::log10(value)));
+            bar["tickvals"].push_back(plotly_number(portable::log10(value)));
             bar["ticktext"].push_back(fmt::format("{:.4g}", value));
         }
     }
@@ -116,7 +117,7 @@ Json map_trace(Json json, const Panel& panel, double bottom, double top) {
         Json z_row = Json::array(), said_row = Json::array();
         for (std::size_t column = 0; column < across; ++column) {
             const double cell = map.cells[row * across + column];
-            z_row.push_back(plotly_number(log ? std::log10(within_colours(map, cell)) : cell));
+            z_row.push_back(plotly_number(log ? portable::log10(within_colours(map, cell)) : cell));
             said_row.push_back(plotly_number(cell));
         }
         z.push_back(std::move(z_row));
@@ -124,8 +125,8 @@ Json map_trace(Json json, const Panel& panel, double bottom, double top) {
     }
     json["z"] = std::move(z);
     json["customdata"] = std::move(said);
-    json["zmin"] = log ? std::log10(map.lowest) : map.lowest;
-    json["zmax"] = log ? std::log10(map.highest) : map.highest;
+    json["zmin"] = log ? portable::log10(map.lowest) : map.lowest;
+    json["zmax"] = log ? portable::log10(map.highest) : map.highest;
     json["colorscale"] = {{0, "#08112f"},   {0.2, "#17396e"}, {0.4, "#1d6d86"},
                           {0.6, "#4aa27a"}, {0.8, "#b9c54b"}, {1, "#ffe94a"}};
     json["hoverongaps"] = false;

@@ -3,6 +3,7 @@
 
 #include "artifact/json.hpp"
 #include "artifact/model_json.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 
@@ -17,7 +18,7 @@ std::string write_simulation(const Simulation& simulation, const Provenance& pro
     if (const auto& followed = simulation.followed) {
         json["along_log"] = {{"smoothing_s", followed->smoothing.value()},
                              {"measured_rms_nm", followed->measured_rms_nm},
-                             {"residual_rms_nm", followed->residual_rms_nm}};
+                             {"residual_rms_nm", to_digits(followed->residual_rms_nm)}};
     }
     json["noise_rms_nm"] = simulation.noise_rms.value();
     json["noise_correlation"] = simulation.noise_correlation;

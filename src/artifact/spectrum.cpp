@@ -2,8 +2,10 @@
 #include "ripplenotch/artifact/spectrum.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "artifact/json.hpp"
+#include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -16,6 +18,12 @@ Json peak_to_json(const SpectralPeak& peak) {
             {"floor_nm", peak.floor_nm},
             {"snr", peak.snr},
             {"false_alarm", peak.false_alarm}};
+}
+
+Json hump_to_json(const SpectralHump& hump) {
+    return {{"from_hz", hump.from_hz},        {"to_hz", hump.to_hz},   {"peak_hz", hump.peak_hz},
+            {"peak_nm", hump.peak_nm},        {"rms_nm", hump.rms_nm}, {"floor_nm", hump.floor_nm},
+            {"false_alarm", hump.false_alarm}};
 }
 
 Json line_to_json(const MotionLine& line) {
@@ -50,9 +58,7 @@ double median_floor(const std::vector<double>& floor_nm) {
     std::copy_if(floor_nm.begin(), floor_nm.end(), std::back_inserter(known),
                  [](double value) { return value > 0.0; });
     if (known.empty()) return 0.0;
-    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-    std::nth_element(known.begin(), middle, known.end());
-    return *middle;
+    return median_in(known);
 }
 
 std::string spectra_text(const std::string& joint, const std::vector<StretchSpectrum>& spectra,
@@ -73,9 +79,11 @@ std::string spectra_text(const std::string& joint, const std::vector<StretchSpec
         entry["noise_floor_nm"] = median_floor(one.spectrum.floor_nm);
         entry["peaks"] = Json::array();
         for (const SpectralPeak& peak : one.spectrum.peaks) entry["peaks"].push_back(peak_to_json(peak));
+        entry["humps"] = Json::array();
+        for (const SpectralHump& hump : one.spectrum.humps) entry["humps"].push_back(hump_to_json(hump));
         json["spectra"].push_back(std::move(entry));
     }
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 std::string order_spectrum_text(const std::string& joint, const OrderSpectrum& spectrum, double false_alarm,
@@ -89,7 +97,7 @@ std::string order_spectrum_text(const std::string& joint, const OrderSpectrum& s
     json["noise_floor_nm"] = median_floor(spectrum.stack.floor_nm);
     json["lines"] = Json::array();
     for (const MotionLine& line : spectrum.lines.lines) json["lines"].push_back(line_to_json(line));
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

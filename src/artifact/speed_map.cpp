@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/artifact/speed_map.hpp"
 
-#include "artifact/json.hpp"
+#include "artifact/gear_json.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -13,10 +13,11 @@ Json short_number(double value) { return *parse_number(fmt::format("{:.6g}", val
 }  // namespace
 
 std::string speed_map_text(const std::string& joint, const SpeedMap& map, std::string_view axis_name,
-                           const Provenance& provenance) {
+                           const std::optional<GearAccount>& gear, const Provenance& provenance) {
     Json json = document_head("spectrum", provenance);
     json["joint"] = joint;
     json["domain"] = map.axis_kind == Axis::time ? "campbell" : "order-map";
+    json["gear"] = gear_to_json(gear);
     json["window"] = "hann";
     json["resolution"] = short_number(map.resolution);
     json["speed_step_deg_s"] = map.speed_step_deg_s;
@@ -33,7 +34,7 @@ std::string speed_map_text(const std::string& joint, const SpeedMap& map, std::s
         for (const double value : map.amplitude_nm[row]) one["amplitude_nm"].push_back(short_number(value));
         json["rows"].push_back(std::move(one));
     }
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

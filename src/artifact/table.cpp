@@ -194,7 +194,8 @@ std::string table_to_json(const CandidateTable& table, const Provenance& provena
 CandidateTable table_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "table");
     Fields fields(json, source, "");
-    fields.ignore({"schema", "tool", "version", "command", "inputs", "designed_for"});
+    fields.ignore(
+        {"schema", "tool", "version", "command", "inputs", "recording", "recordings", "designed_for"});
     TableSpec spec;
     spec.sample_rate = Hertz(fields.number("sample_rate_hz"));
     spec.gear_ratio = GearRatio(fields.number("gear_ratio"));

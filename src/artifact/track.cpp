@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "artifact/json.hpp"
+#include "artifact/gear_json.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -200,7 +201,8 @@ std::string track_text(const TrackReport& report, const Provenance& provenance) 
     json["method"] = report.method;
     json["against"] = report.by_speed ? "speed" : "time";
     json["amplitude"] = kind_words(report.kind);
-    json["gear_ratio"] = or_null(report.gear_ratio);
+    json["gear_ratio"] = report.gear ? Json(report.gear->ratio.value()) : Json(nullptr);
+    json["gear"] = gear_to_json(report.gear);
     json["angle"] = report.angle_from_position ? "position" : "integrated velocity";
     json["window_turns"] = report.window_turns ? Json(*report.window_turns) : Json(nullptr);
     json["window_s"] = or_null(report.window);
@@ -218,7 +220,7 @@ std::string track_text(const TrackReport& report, const Provenance& provenance) 
     json["columns"] = Json::object();
     for (const TrackColumn& column : track_columns(report))
         json["columns"][column.name] = array_of(column.values);
-    return to_text(json);
+    return to_fitted_text(std::move(json));
 }
 
 }  // namespace ripplenotch

@@ -1,51 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A filter method as the user wrote it, checked, with its table loaded.
+// A filter method as the user wrote it, checked, with its table loaded and its gear chosen.
 
-#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "ripplenotch/core/spec.hpp"
+#include "cli/gear_choice.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
-#include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
 
-/// What the command line says about the gear outside --method; fills keys of the method that it leaves out.
-struct GearOptions {
-    std::optional<double> gear_ratio;
-    std::vector<double> orders;
-    std::optional<std::string> joint_file;
-};
+/// `spec_text` as --method takes it; `table` is a table.json for methods that need one and name none. Keys of
+/// the gear that the text leaves out are filled, and joint=FILE is replaced by the keys that it fills, so
+/// that the contender's text says all. Throws UsageError on a bad specification, on a gear that is missing,
+/// and what load_table, load_joint and refuse_other_gear throw.
+[[nodiscard]] Contender choose_method(const std::string& spec_text,
+                                      const std::optional<std::string>& table = std::nullopt,
+                                      const GearChoice& gear = GearChoice({}));
 
-struct ChosenMethod {
-    const Method* method = nullptr;
-    std::string text;  ///< as it would be typed again; what joint=... stood for is spelled out
-    std::optional<Settings> settings;  ///< always there after choose_method
-    std::string table_path;            ///< empty when the method needs no table
-    std::shared_ptr<const CandidateTable> table;
-    std::string joint_path;  ///< of joint=...; empty when not given
-
-    [[nodiscard]] std::unique_ptr<CausalFilter> start(Hertz sample_rate) const {
-        return method->start(*settings, sample_rate, table.get());
-    }
-    /// Null for methods that need no first pass.
-    [[nodiscard]] std::unique_ptr<Learner> learner(Hertz sample_rate) const {
-        return method->learner == nullptr ? nullptr : method->learner(*settings, sample_rate);
-    }
-    [[nodiscard]] FrozenFilter frozen(Hertz sample_rate, DegPerSec speed) const {
-        return method->frozen(*settings, sample_rate, table.get(), speed);
-    }
-    /// The same for the measurements of the evaluate room.
-    [[nodiscard]] Contender contender() const { return {text, method, *settings, table}; }
-};
-
-/// `spec_text` as --method takes it; `table` is a table.json for methods that need one and name none. Throws
-/// UsageError on a bad specification, and what load_table and load_identification throw.
-[[nodiscard]] ChosenMethod choose_method(const std::string& spec_text,
-                                         const std::optional<std::string>& table,
-                                         const GearOptions& gear = {});
+/// Throws UsageError, naming both, when the method's filter is made for another gear ratio than that whose
+/// ripple is measured: by more than 0.5 %, or than a table's own ratio error.
+void refuse_other_gear(const Contender& method, const GearAccount& measured);
 
 }  // namespace ripplenotch

@@ -15,12 +15,12 @@ void attach_costs(Options& options, CostRequest& request) {
 
 void add_costs(Comparison& comparison, const CostRequest& request, const Field& field) {
     comparison.crossover = request.crossover;
-    if (request.gates.max_delay_ms && comparison.lines) {
+    if (request.gates.max_delay && comparison.lines) {
         TableSpec notches;
-        notches.gear_ratio = comparison.lines->gear_ratio;
+        notches.gear_ratio = comparison.lines->ratio;
         notches.orders = comparison.lines->orders;
         notches.sample_rate = comparison.sample_rate;
-        comparison.max_delay = Seconds(1e-3 * *request.gates.max_delay_ms);
+        comparison.max_delay = *request.gates.max_delay;
         comparison.no_notch_below = slowest_within(notches, *comparison.max_delay);
     }
     for (std::size_t i = 0; i < field.contenders.size(); ++i) {
@@ -35,9 +35,8 @@ void add_costs(Comparison& comparison, const CostRequest& request, const Field& 
         if (request.ledger)
             figures.ledger = delay_ledger(contender, comparison.sample_rate, {request.crossover, true});
         if (!request.ledger) figures.switch_ledger.clear();
-        if (request.gates.max_delay_ms && (contender.table || contender.settings.has("gear-ratio"))) {
-            figures.within_from =
-                within_from(contender, comparison.sample_rate, Seconds(1e-3 * *request.gates.max_delay_ms));
+        if (request.gates.max_delay && contender.made_for()) {
+            figures.within_from = within_from(contender, comparison.sample_rate, *request.gates.max_delay);
         }
     }
 }

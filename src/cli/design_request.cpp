@@ -98,56 +98,29 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& reque
                             range.width ? *range.width : width_of_spacing(*request.spacing, spec));
 }
 
-// Options first, then joint.json, else the option that is missing.
-void fill_joint(TableSpec& spec, const DesignRequest& request, const std::optional<JointFacts>& joint) {
-    if (!request.gear_ratio && !joint) {
-        raise<UsageError>("the gear ratio is missing; give --gear-ratio, for example 100");
+void fill_gear(TableSpec& spec, const DesignRequest& request, const GearChoice& choice,
+               const std::optional<JointFacts>& joint) {
+    const auto gear = choice.of();
+    if (!gear) raise_no_gear("a table");
+    say(request.common, gear_in_words(*gear));
+    spec.gear_ratio = gear->ratio;
+    spec.orders = gear->orders;
+    spec.amplitude_nm = gear->amplitude_nm;
+    if (!request.amplitudes_nm.empty()) {
+        if (!std::is_sorted(request.gear.orders.begin(), request.gear.orders.end()))
+            raise<UsageError>(
+                "--amplitudes: one per order, lowest order first; write --orders in that sequence");
+        spec.amplitude_nm = request.amplitudes_nm;
     }
-    spec.gear_ratio = request.gear_ratio ? GearRatio(*request.gear_ratio) : gear_ratio_of(*joint);
-    if (!request.sample_rate && !joint) {
+    if (!request.sample_rate && !joint)
         raise<UsageError>("the sample rate is missing; give --sample-rate, for example 1kHz");
-    }
     spec.sample_rate = request.sample_rate ? *request.sample_rate : joint->sample_rate;
-    for (const double order : request.orders) spec.orders.emplace_back(order);
-    if (!request.amplitudes_nm.empty() && !std::is_sorted(spec.orders.begin(), spec.orders.end()))
-        raise<UsageError>("--amplitudes: one per order, lowest order first; write --orders in that sequence");
-    std::sort(spec.orders.begin(), spec.orders.end());
-    if (spec.orders.empty() && joint) spec.orders = joint->orders;
-    if (spec.orders.empty()) {
-        raise<UsageError>("no orders to notch{}; give --orders, for example 1,2",
-                          joint ? fmt::format(": {} has no line that follows the speed", joint->source) : "");
-    }
-    // Otherwise --spacing would divide by it before the table is checked.
-    if (!(spec.gear_ratio.value() > 0.0)) {
-        raise<UsageError>("gear ratio {} is not above 0", shortest(spec.gear_ratio.value()));
-    }
-    if (!(spec.orders.front().value() > 0.0)) {
-        raise<UsageError>("order {} is not above 0", shortest(spec.orders.front().value()));
-    }
-}
-
-// What is known of the ripple's strength and how well the ratio is known; nothing of either without a joint.
-void fill_doubt(TableSpec& spec, const DesignRequest& request, const std::optional<JointFacts>& joint) {
     if (request.ratio_error_percent) {
         if (!(*request.ratio_error_percent >= 0.0))
             raise<UsageError>("--ratio-error {} % is negative", shortest(*request.ratio_error_percent));
         spec.ratio_error = *request.ratio_error_percent / 100.0;
-    } else if (joint && !request.gear_ratio) {
-        spec.ratio_error = joint->ratio_error;
-    }
-    if (!request.amplitudes_nm.empty()) {
-        spec.amplitude_nm = request.amplitudes_nm;
-        return;
-    }
-    if (!joint) return;
-    for (const Order order : spec.orders) {
-        const auto found = std::find(joint->orders.begin(), joint->orders.end(), order);
-        if (found == joint->orders.end()) {
-            spec.amplitude_nm.clear();  // an order that the joint does not have cannot be weighed
-            return;
-        }
-        spec.amplitude_nm.push_back(
-            joint->amplitude_nm[static_cast<std::size_t>(found - joint->orders.begin())]);
+    } else if (joint) {
+        spec.ratio_error = joint->ratio_error;  // none of a ratio that was given
     }
 }
 
@@ -159,11 +132,11 @@ bool leaves_bands(const DesignRequest& request) {
 
 }  // namespace
 
-TableSpec design_spec(const DesignRequest& request, const std::optional<JointFacts>& joint) {
+TableSpec design_spec(const DesignRequest& request, const GearChoice& gear) {
+    const auto joint = gear.facts();
     TableSpec spec;
-    fill_joint(spec, request, joint);
+    fill_gear(spec, request, gear, joint);
     spec.q = request.q.value_or(spec.q);
-    fill_doubt(spec, request, joint);
     if (request.depth_db) spec.depth_db = *request.depth_db;
     spec.width = request.width == "digital" ? WidthRule::digital : WidthRule::analog;
     spec.settle_band_percent = request.settle_band_percent;
@@ -193,11 +166,11 @@ std::pair<DegPerSec, DegPerSec> speeds_seen(const TableSpec& spec, const JointFa
 
 }  // namespace
 
-DesignGoal design_goal(const DesignRequest& request, const TableSpec& spec,
-                       const std::optional<JointFacts>& joint) {
+DesignGoal design_goal(const DesignRequest& request, const TableSpec& spec, const GearChoice& gear) {
+    const auto joint = gear.facts();
     DesignGoal goal;
     goal.min_attenuation_db = request.goal_attenuation_db;
-    goal.max_delay = request.goal_delay;
+    goal.max_delay = request.max_delay;
     goal.q = request.q;
     if (request.max_bands) {
         if (!(*request.max_bands >= 1.0 && *request.max_bands <= 1000.0) ||

@@ -121,6 +121,8 @@ std::string closing(const Diagnosis& diagnosis) {
             return "partly explained: something is left";
         case DiagnosisVerdict::unexplained:
             return "unexplained: no effect of the catalogue accounts for what is left";
+        case DiagnosisVerdict::undecided:
+            return "cannot tell";
     }
     return {};
 }
@@ -128,6 +130,7 @@ std::string closing(const Diagnosis& diagnosis) {
 }  // namespace
 
 std::string diagnosis_story(const Diagnosis& diagnosis) {
+    if (diagnosis.verdict == DiagnosisVerdict::undecided) return diagnosis.doubt + "\n";
     const DiagnosisGap& gap = diagnosis.gap;
     std::string text = fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,
                                    diagnosis.samples_used, short_number(gap.noise_floor_nm));

@@ -48,9 +48,8 @@ std::string switches_line(const StreamReport& stream) {
     std::size_t back = 0;
     for (std::size_t i = 1; i < stream.switches.size(); ++i)
         back += stream.switches[i].change.to_band == stream.switches[i - 1].change.from_band ? 1 : 0;
-    const double seconds = stream.measured_rate.value() > 0.0
-                               ? static_cast<double>(stream.rows) / stream.measured_rate.value()
-                               : 0.0;
+    const double rate = stream.recording.clock.mean_rate.value();
+    const double seconds = rate > 0.0 ? static_cast<double>(stream.recording.rows()) / rate : 0.0;
     if (2 * back > stream.switches.size() &&
         static_cast<double>(stream.switch_count) > many_switches_a_second * seconds) {
         text += fmt::format(
@@ -76,28 +75,12 @@ std::string delay_line(const std::vector<LedgerEntry>& delays) {
 }  // namespace
 
 std::vector<std::string> filter_warnings(const FilterMetrics& metrics) {
-    const StreamReport& stream = metrics.stream;
     std::vector<std::string> warnings;
-    if (stream.gap_count > 0) {
-        const Gap& first = stream.gaps.front();
-        warnings.push_back(fmt::format(
-            "{}: {} in time, the first from {:g} to {:g} s after data row {}; the filter started anew after "
-            "{}",
-            metrics.source, stream.gap_count == 1 ? "one gap" : fmt::format("{} gaps", stream.gap_count),
-            first.from_s, first.to_s, first.row + 1, stream.gap_count == 1 ? "it" : "each"));
-    }
-    const double measured = stream.measured_rate.value(), used = metrics.sample_rate.value();
-    // A table's notches are where its own rate puts them; what counts is the rate of the whole log.
-    if (metrics.table_rate && measured > 0.0) {
-        const auto warning =
-            table_rate_warning(*metrics.table_rate, nominal_rate(stream.measured_rate), metrics.source);
+    for (const std::string& warning : metrics.stream.recording.warnings)
+        warnings.push_back(fmt::format("{}: {}", metrics.source, warning));
+    if (metrics.table_rate) {
+        const auto warning = table_rate_warning(*metrics.table_rate, metrics.sample_rate, metrics.source);
         if (warning) warnings.push_back(*warning);
-    } else if (measured > 0.0 && std::abs(measured / used - 1.0) > rate_worth_a_word) {
-        warnings.push_back(
-            fmt::format("{}: the first rows run at {:.6g} Hz, which the filter was started with, the whole "
-                        "log at {:.6g} Hz; its clock "
-                        "changes on the way, or state the true rate with --sample-rate",
-                        metrics.source, used, measured));
     }
     if (metrics.levels && metrics.levels->windows == 0) {
         warnings.push_back(fmt::format(
@@ -112,9 +95,12 @@ std::vector<std::string> filter_warnings(const FilterMetrics& metrics) {
 std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
     const StreamReport& stream = metrics.stream;
     std::vector<std::string> lines;
-    lines.push_back(fmt::format("{}: {}, {} rows at {:.6g} Hz (measured {:.6g} Hz), {} gaps, {} held samples",
-                                metrics.source, metrics.method, stream.rows, metrics.sample_rate.value(),
-                                stream.measured_rate.value(), stream.gap_count, stream.held_samples));
+    const Recording& recording = stream.recording;
+    lines.push_back(fmt::format(
+        "{}: {}, {} rows at {:.6g} Hz (measured {:.6g} Hz), {} gaps, {} held samples, angle from {}",
+        metrics.source, metrics.method, recording.rows(), metrics.sample_rate.value(),
+        recording.clock.mean_rate.value(), recording.clock.gap_count, recording.held.count,
+        source_name(recording.angle.source())));
     if (metrics.levels && metrics.levels->windows > 0) {
         const RippleLevels& levels = *metrics.levels;
         for (std::size_t i = 0; i < levels.orders.size(); ++i) lines.push_back(ripple_line(metrics, i));

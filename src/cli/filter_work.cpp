@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <complex>
+
 #include "cli/filter_summary.hpp"
 #include "cli/joint_facts.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -18,13 +20,37 @@ bool measures(const FilterRequest& request, const FilterJob& job) {
     return tells(request, job) || request.gates.min_attenuation_db;
 }
 
+/// Sentences about one joint among several say which.
+std::string about(const JointWork& work, const std::string& sentence) {
+    return work.metrics.joint.empty() ? sentence : fmt::format("joint {}: {}", work.metrics.joint, sentence);
+}
+
+/// The complex gains of the method's filter for the lines of its gear, by speed.
+LineGains gains_of(const Contender& method, Hertz sample_rate) {
+    return [method, sample_rate](double speed, std::span<std::complex<double>> gains) {
+        const auto frozen = method.frozen(sample_rate, DegPerSec(speed));
+        for (std::size_t i = 0; i < gains.size(); ++i) {
+            const Hertz at = ripple_frequency(method.gear->orders[i], method.gear->ratio, DegPerSec(speed));
+            gains[i] = frozen ? response(frozen->cascade, at, sample_rate) : 1.0;
+        }
+    };
+}
+
+/// Whether what is left of the ripple is predicted along a log: not for methods that look at the whole log
+/// first, and not for the oscillator, whose filter at a speed is the solution of a Riccati equation: too dear
+/// for every window of a log.
+bool predictable(const Contender& method) {
+    return method.method->learner == nullptr && method.method->frozen != nullptr &&
+           method.method->name != "oscillator";
+}
+
 /// All but the filter, which may have to learn from the log first.
 JointWork start_work(const FilterRequest& request, const FilterJob& job, const LogStream& stream,
                      const std::string& joint, JointMethods& methods) {
     JointWork work;
     work.method = methods.of(joint);
-    const ChosenMethod& method = work.method->chosen;
-    const Gear& gear = work.method->gear;
+    const Contender& method = *work.method;
+    const auto& gear = method.gear;
     FilterMetrics& metrics = work.metrics;
     metrics.source = stream.reader().layout().source;
     if (method.table != nullptr) {
@@ -34,24 +60,19 @@ JointWork start_work(const FilterRequest& request, const FilterJob& job, const L
     metrics.joint = joint;
     metrics.method = method.text;
     metrics.sample_rate = stream.design_rate();
-    metrics.gear_ratio = gear.ratio;
-    if (measures(request, job) && gear.ratio) {
-        work.meter.emplace(*gear.ratio, gear.orders, stream.design_rate(), 2);
-        if (predictable(method)) work.meter->expect(gains_of(method, gear, stream.design_rate()));
+    metrics.gear = gear;
+    if (gear) say(request.common, about(work, gear_in_words(*gear)));
+    if (measures(request, job) && gear) {
+        work.meter.emplace(gear->ratio, gear->orders, stream.design_rate(), 2);
+        if (predictable(method)) work.meter->expect(gains_of(method, stream.design_rate()));
     }
     if (tells(request, job)) {
         metrics.crossover = request.crossover;
-        metrics.amplitude_nm = gear.amplitude_nm;
-        metrics.delays = delay_ledger(method.contender(), stream.design_rate(), {request.crossover, true});
+        metrics.delays = delay_ledger(method, stream.design_rate(), {request.crossover, true});
     }
     if (job.metrics) work.metrics_path = with_joint(*job.metrics, joint);
     if (request.common.json) work.metrics_path.emplace(1, '-');
     return work;
-}
-
-/// Sentences about one joint among several say which.
-std::string about(const JointWork& work, const std::string& sentence) {
-    return work.metrics.joint.empty() ? sentence : fmt::format("joint {}: {}", work.metrics.joint, sentence);
 }
 
 // The filters of a method that looks at the whole log first, from a pass of its own.
@@ -60,7 +81,7 @@ void learn(const FilterRequest& request, const Spool& spool, std::vector<JointWo
     std::vector<std::unique_ptr<Learner>> learners;
     std::vector<JointRun> runs;
     for (const JointWork& work : works) {
-        learners.push_back(work.method->chosen.learner(stream.design_rate()));
+        learners.push_back(work.method->learner(stream.design_rate()));
         runs.push_back({learners.back().get()});
     }
     static_cast<void>(stream.run(runs, nullptr));
@@ -72,7 +93,7 @@ void learn(const FilterRequest& request, const Spool& spool, std::vector<JointWo
 }
 
 void start_filter(const FilterRequest& request, JointWork& work) {
-    if (!work.filter) work.filter = work.method->chosen.start(work.metrics.sample_rate);
+    if (!work.filter) work.filter = work.method->start(work.metrics.sample_rate);
     if (request.exact) return;
     if (const std::string way = work.filter->hurry(); !way.empty())
         say(request.common, fmt::format("{}: {}", work.metrics.source, about(work, way)));
@@ -82,21 +103,19 @@ void start_filter(const FilterRequest& request, JointWork& work) {
 
 ReadOptions FilterRequest::read_options() const {
     ReadOptions options = log.resolve();
+    options.gear_ratio = gear.ratio;
     options.every_joint = every_joint();
     if (options.every_joint) options.joint.reset();
     return options;
 }
 
 Provenance provenance_of(const FilterJob& job, const JointWork& work, const std::string& command_line) {
-    const ChosenMethod& method = work.method->chosen;
     Provenance provenance;
     provenance.command = command_line;
     provenance.inputs.push_back(input_record(job.log));
-    provenance.inputs.back().rows = work.metrics.stream.rows;
-    if (!method.table_path.empty()) provenance.inputs.push_back(input_record(method.table_path));
-    if (!method.joint_path.empty()) provenance.inputs.push_back(input_record(method.joint_path));
-    if (work.method->joint_file && *work.method->joint_file != method.joint_path)
-        provenance.inputs.push_back(input_record(*work.method->joint_file));
+    provenance.inputs.back().rows = work.metrics.stream.recording.rows();
+    provenance.recordings.push_back({work.metrics.stream.recording});
+    for (const std::string& file : work.method->files) provenance.inputs.push_back(input_record(file));
     return provenance;
 }
 
@@ -105,11 +124,11 @@ bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
     FilterMetrics& metrics = work.metrics;
     if (work.meter) metrics.levels = work.meter->levels();
     std::vector<std::string> warnings = filter_warnings(metrics);
-    if (measures(request, job) && !metrics.gear_ratio) {
+    if (measures(request, job) && !metrics.gear) {
         warnings.emplace_back(
             "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file");
     }
-    const auto broken = filter_violations(request.gates, work.method->chosen.contender(), metrics);
+    const auto broken = filter_violations(request.gates, *work.method, metrics);
     for (std::string& warning : warnings) warning = request.every_joint() ? about(work, warning) : warning;
     say_warnings(request.common, warnings);
     for (const std::string& line : filter_summary(metrics))

@@ -24,14 +24,13 @@ struct FilterRequest {
     LogOptions log;
     std::vector<std::string> logs;
     std::string method, decimals = "shortest";
-    std::optional<std::string> table, output_format, metrics, out_directory, joint_file;
-    std::optional<double> gear_ratio;
-    std::vector<double> orders;
+    std::optional<std::string> table, output_format, metrics, out_directory;
+    GearOptions gear;
     std::optional<Hertz> crossover;
     Gates gates;
     double gap_steps = default_gap_steps;
     int threads = 0;
-    bool append = false, exact = false;
+    bool append = false, exact = false, in_place = false;
 
     [[nodiscard]] bool every_joint() const { return log.joint == "all"; }
     [[nodiscard]] ReadOptions read_options() const;
@@ -45,7 +44,7 @@ struct FilterJob {
 
 /// One joint of a log on its way through its filter.
 struct JointWork {
-    std::shared_ptr<const JointMethod> method;
+    std::shared_ptr<const Contender> method;
     std::unique_ptr<CausalFilter> filter;
     std::optional<RippleMeter> meter;
     FilterMetrics metrics;

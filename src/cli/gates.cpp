@@ -10,15 +10,16 @@ namespace ripplenotch {
 namespace {
 
 std::string excess(const Gates& gates, double delay_ms) {
-    return fmt::format("delays by {:.1f} ms, {:.1f} ms more than --max-delay-ms {}", delay_ms,
-                       delay_ms - *gates.max_delay_ms, shortest(*gates.max_delay_ms));
+    const double limit_ms = 1e3 * gates.max_delay->value();
+    return fmt::format("delays by {:.1f} ms, {:.1f} ms more than --max-delay {:.6g}ms", delay_ms,
+                       delay_ms - limit_ms, limit_ms);
 }
 
 }  // namespace
 
 void attach_gates(Options& options, Gates& gates) {
-    options.number("--max-delay-ms", gates.max_delay_ms, Dimension::none,
-                   "exit code 1 when a method's DC delay is longer");
+    options.duration("--max-delay", gates.max_delay,
+                     "exit code 1 when a method's DC delay is longer, e.g. 20ms");
     options.number("--min-attenuation-db", gates.min_attenuation_db, Dimension::none,
                    "exit code 1 when an order is attenuated less");
 }
@@ -26,12 +27,12 @@ void attach_gates(Options& options, Gates& gates) {
 std::vector<std::string> delay_violations(const Gates& gates, const Contender& contender, Hertz sample_rate,
                                           DegPerSec slowest, DegPerSec fastest) {
     std::vector<std::string> sentences;
-    if (!gates.max_delay_ms) return sentences;
+    if (!gates.max_delay) return sentences;
     if (contender.table != nullptr) {
         for (const Band& band : contender.table->bands()) {
             if (!(band.from < fastest) || band.to < slowest) continue;
             const double delay_ms = 1e3 * group_delay(band.cascade(), Hertz(0.0), sample_rate).value();
-            if (delay_ms <= *gates.max_delay_ms) continue;
+            if (delay_ms <= 1e3 * gates.max_delay->value()) continue;
             sentences.push_back(fmt::format("{}: band {} ({:.6g}-{:.6g} deg/s) {}", contender.text,
                                             band.number, band.from.value(), band.to.value(),
                                             excess(gates, delay_ms)));
@@ -40,11 +41,11 @@ std::vector<std::string> delay_violations(const Gates& gates, const Contender& c
     }
     const LongestDelay longest = longest_delay(contender, sample_rate, slowest, fastest);
     const double delay_ms = 1e3 * longest.delay.value();
-    if (delay_ms <= *gates.max_delay_ms) return sentences;
+    if (delay_ms <= 1e3 * gates.max_delay->value()) return sentences;
     std::string sentence = fmt::format("{}: it {}", contender.text, excess(gates, delay_ms));
-    if (contender.settings.has("gear-ratio")) {
+    if (contender.made_for()) {
         sentence += fmt::format(" at {:.4g} deg/s", longest.speed.value());
-        const auto from = within_from(contender, sample_rate, Seconds(1e-3 * *gates.max_delay_ms));
+        const auto from = within_from(contender, sample_rate, *gates.max_delay);
         if (from) sentence += fmt::format("; from {:.3g} deg/s on it stays within", from->value());
     }
     sentences.push_back(std::move(sentence));

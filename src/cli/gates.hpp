@@ -15,8 +15,8 @@
 namespace ripplenotch {
 
 struct Gates {
-    std::optional<double> max_delay_ms, min_attenuation_db;
-    [[nodiscard]] bool any() const { return max_delay_ms || min_attenuation_db; }
+    std::optional<Seconds> max_delay;
+    std::optional<double> min_attenuation_db;
 };
 void attach_gates(Options& options, Gates& gates);
 

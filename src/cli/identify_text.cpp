@@ -16,12 +16,8 @@ std::string range(double from, double to, int digits) {
 
 std::string hz_range(const Line& line) {
     if (line.hz) return fmt::format("{:.5g}", *line.hz);
-    double lowest = 1e300, highest = 0.0;
-    for (const AmplitudeAtSpeed& at : line.by_speed) {
-        lowest = std::min(lowest, at.hz);
-        highest = std::max(highest, at.hz);
-    }
-    return line.by_speed.empty() ? "-" : range(lowest, highest, 4);
+    const auto seen = seen_frequencies(line);
+    return seen ? range(seen->lowest_hz, seen->highest_hz, 4) : "-";
 }
 
 std::string row(const Line& line) {
@@ -33,6 +29,23 @@ std::string row(const Line& line) {
                        line.snr, range(line.speed_from_deg_s, line.speed_to_deg_s, 3), line.note);
 }
 
+/// One recording a row, with the line's amplitude or the ratio as it alone tells it.
+std::string disagreement_table(const Disagreement& one, const std::vector<std::string>& recordings) {
+    const bool ratio = one.about == Disagreement::About::ratio;
+    std::string text =
+        ratio       ? "\nthe recordings disagree: gear ratio\n"
+        : one.order ? fmt::format("\nthe recordings disagree: order {:g}, Nm\n", *one.order)
+                    : fmt::format("\nthe recordings disagree: output order {:.5g}, Nm\n", *one.order_output);
+    for (const Disagreement::Value& value : one.values) {
+        const std::string name = value.recording < recordings.size()
+                                     ? recordings[value.recording]
+                                     : fmt::format("recording {}", value.recording + 1);
+        text +=
+            fmt::format("{:>10.{}g} +/- {:<8.2g} {}\n", value.value, ratio ? 6 : 3, 2.0 * value.error, name);
+    }
+    return text;
+}
+
 std::string trimmed(std::string text) {
     while (!text.empty() && text.back() == ' ') text.pop_back();
     return text;
@@ -40,7 +53,7 @@ std::string trimmed(std::string text) {
 
 }  // namespace
 
-std::string identification_report(const Identification& found) {
+std::string identification_report(const Identification& found, const std::vector<std::string>& recordings) {
     std::string text = found.joint.empty() ? "" : found.joint + ": ";
     text += found.verdict + "\n";
     const GearRatioFit& ratio = found.gear_ratio;
@@ -66,6 +79,7 @@ std::string identification_report(const Identification& found) {
                                 candidate.reason);
         }
     }
+    for (const Disagreement& one : found.disagreements) text += disagreement_table(one, recordings);
     if (!found.notes.empty()) text += "\n";
     for (const std::string& note : found.notes) text += "note: " + note + "\n";
     return text;

@@ -3,12 +3,15 @@
 // An identification as people read it.
 
 #include <string>
+#include <vector>
 
 #include "ripplenotch/analysis/identification.hpp"
 
 namespace ripplenotch {
 
-/// Verdict first, then ratio, lines, rivals, notes.
-[[nodiscard]] std::string identification_report(const Identification& found);
+/// Verdict first, then ratio, lines, rivals, what the recordings disagree about, notes. `recordings` are
+/// their names.
+[[nodiscard]] std::string identification_report(const Identification& found,
+                                                const std::vector<std::string>& recordings);
 
 }  // namespace ripplenotch

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/text_table.hpp"
 
@@ -20,8 +21,8 @@ std::string range_text(const std::optional<Range>& range) {
 
 std::string first_sentence(const LogInfo& log) {
     std::string text = fmt::format("{}: {} rows", log.source, log.rows);
-    if (log.duration_s && log.timebase.sample_rate.value() > 0.0) {
-        text += fmt::format(" over {:.6g} s at {:.5g} Hz", *log.duration_s, log.timebase.sample_rate.value());
+    if (log.duration_s && log.clock.nominal_rate.value() > 0.0) {
+        text += fmt::format(" over {:.6g} s at {:.5g} Hz", *log.duration_s, log.clock.nominal_rate.value());
     } else {
         text += " without a clock";
     }
@@ -43,17 +44,23 @@ double rounded(Seconds jitter, Seconds step) {
 }
 
 std::string clock_text(const LogInfo& log) {
-    const Timebase& clock = log.timebase;
-    if (!(clock.sample_rate.value() > 0.0)) return "no time column and no --sample-rate";
-    if (log.layout.stated_rate) return fmt::format("{:.6g} Hz as stated", clock.sample_rate.value());
-    std::string text =
-        fmt::format("{:.6g} Hz in the mean; step {} ms in the median, {} to {} ms; jitter {} ms rms; ",
-                    clock.sample_rate.value(), figure(1e3 * clock.median_step.value()),
-                    figure(1e3 * clock.shortest_step.value()), figure(1e3 * clock.longest_step.value()),
-                    figure(1e3 * rounded(clock.jitter, clock.median_step)));
-    text += clock.gaps.empty()
-                ? "no gap"
-                : fmt::format("{} gap{}", clock.gaps.size(), clock.gaps.size() == 1 ? "" : "s");
+    const ClockFacts& clock = log.clock;
+    if (!(clock.nominal_rate.value() > 0.0)) return "no time column and no --sample-rate";
+    if (log.layout.stated_rate) return fmt::format("{:.6g} Hz as stated", clock.nominal_rate.value());
+    const double nominal = clock.nominal_rate.value(), mean = clock.mean_rate.value();
+    std::string text;
+    if (std::abs(mean / nominal - 1.0) > rate_worth_a_word)
+        text = fmt::format("{:.6g} Hz by the usual step, ", nominal);
+    text += fmt::format("{:.6g} Hz in the mean; step {} ms in the median, {} to {} ms; jitter {} ms rms; ",
+                        mean, figure(1e3 * clock.usual_step.value()),
+                        figure(1e3 * clock.shortest_step.value()), figure(1e3 * clock.longest_step.value()),
+                        figure(1e3 * rounded(clock.jitter, clock.usual_step)));
+    text += clock.gap_count == 0 ? "no gap"
+                                 : fmt::format("{} gap{}", clock.gap_count, clock.gap_count == 1 ? "" : "s");
+    if (!clock.rate_changes.empty()) {
+        text += fmt::format("; {} change{} of rate", clock.rate_changes.size(),
+                            clock.rate_changes.size() == 1 ? "" : "s");
+    }
     if (clock.repeated_times > 0) text += fmt::format("; {} repeated times", clock.repeated_times);
     return text;
 }
@@ -70,7 +77,7 @@ std::string joints_table(const LogInfo& log) {
                                           [](const SteadyStretch& s) { return !s.rest; });
         rows.push_back({joint.joint.empty() ? "-" : joint.joint, range_text(joint.speed_deg_s),
                         range_text(joint.torque_nm), fmt::format("{:.3g}", joint.turns),
-                        std::to_string(steady), std::to_string(joint.held_samples),
+                        std::to_string(steady), std::to_string(joint.recording.held.count),
                         clock_factor_text(joint.clock_factor)});
     }
     return text_table(rows, "lrrrrrr");
@@ -112,6 +119,12 @@ std::string info_to_text(const LogInfo& log) {
     for (const Use& use : log.uses) {
         text += fmt::format("  {:12} {}  {}\n", use.name, use.possible ? "yes" : "no ", use.reason);
     }
+    if (!log.layout.inferences.empty() || !log.layout.assumptions.empty()) text += "\nnot stated\n";
+    for (const Assumption& one : log.layout.inferences)
+        text += fmt::format("  {} is {}: {}\n", one.about, one.assumed, one.reason);
+    for (const Assumption& one : log.layout.assumptions)
+        text += fmt::format("  {} is taken as {}: {}; {} settles it\n", one.about, one.assumed, one.reason,
+                            one.settle_with);
     if (!log.warnings.empty()) {
         text += "\nwarnings\n";
         for (const std::string& warning : log.warnings) text += fmt::format("  {}\n", warning);

@@ -12,7 +12,6 @@
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {
-
 namespace {
 
 constexpr double whole_order_share = 0.005;
@@ -20,61 +19,58 @@ constexpr double whole_order_share = 0.005;
 // Order per motor turn of a line that turns with the joint; empty for others. Under another ratio than the
 // file's a line keeps its frequency, so its order follows from what was measured per output turn.
 std::optional<double> order_of(const Line& line, const Identification& found,
-                               std::optional<GearRatio> asked) {
-    // A line that was seen at one speed only is unknown; identify gives it an order when its gear ratio rests
-    // on it.
+                               std::optional<GearRatio> given) {
     if (line.kind != LineKind::order && !(line.kind == LineKind::unknown && line.order)) return std::nullopt;
-    if (!asked || (found.gear_ratio.value == asked->value() && line.order)) return line.order;
+    if (!given || (found.gear_ratio.value == given->value() && line.order)) return line.order;
     if (!line.order_output) return std::nullopt;
-    const double order = *line.order_output / asked->value();
+    const double order = *line.order_output / given->value();
     const double whole = std::round(2.0 * order) / 2.0;
     return std::abs(order - whole) <= whole_order_share * order ? whole : order;
 }
 
+// Six digits in per cent, so that --ratio-error says exactly the same.
+double ratio_error(const GearRatioFit& fit) {
+    const double off = std::max(fit.ci95_high - *fit.value, *fit.value - fit.ci95_low);
+    if (!(off > 0.0) || !std::isfinite(off)) return 0.0;
+    return *parse_number(fmt::format("{:.6g}", std::min(49.0, 100.0 * off / *fit.value))) / 100.0;
+}
+
 }  // namespace
 
-JointFacts load_joint_facts(const std::string& path, std::optional<GearRatio> gear_ratio) {
-    if (gear_ratio && !(gear_ratio->value() > 0.0)) {
-        raise<UsageError>("gear ratio {} is not above 0", gear_ratio->value());
-    }
-    const Identification found = load_identification(path);
+JointFacts JointFile::facts(std::optional<GearRatio> given) const {
     JointFacts facts;
-    facts.source = path == "-" ? "standard input" : path;
-    facts.gear_ratio = gear_ratio;
-    if (!gear_ratio && found.gear_ratio.value) {
-        const double value = *found.gear_ratio.value;
-        facts.gear_ratio = GearRatio(value);
-        const double off = std::max(found.gear_ratio.ci95_high - value, value - found.gear_ratio.ci95_low);
-        // Six digits in per cent, so that --ratio-error says exactly the same.
-        if (off > 0.0 && std::isfinite(off))
-            facts.ratio_error =
-                *parse_number(fmt::format("{:.6g}", std::min(49.0, 100.0 * off / value))) / 100.0;
-    }
+    facts.source = source;
     facts.sample_rate = nominal_rate(found.sample_rate);
-    std::map<double, double> amplitude_of;
+    facts.gear_ratio = given;
+    if (!given && found.gear_ratio.value) {
+        facts.gear_ratio = GearRatio(*found.gear_ratio.value);
+        facts.ratio_error = ratio_error(found.gear_ratio);
+    }
+    std::map<double, const Line*> strongest;
     for (const Line& line : found.lines) {
-        const auto order = order_of(line, found, gear_ratio);
+        const auto order = order_of(line, found, given);
         if (!order) continue;
-        double& amplitude = amplitude_of[*order];
-        amplitude = std::max(amplitude, line.amplitude_nm);
         const double a = std::abs(line.speed_from_deg_s), b = std::abs(line.speed_to_deg_s);
         const DegPerSec low(std::min(a, b)), high(std::max(a, b));
-        facts.slowest = amplitude_of.size() == 1 ? low : std::min(facts.slowest, low);
+        facts.slowest = strongest.empty() ? low : std::min(facts.slowest, low);
         facts.fastest = std::max(facts.fastest, high);
+        const Line*& entry = strongest[*order];
+        if (entry == nullptr || line.amplitude_nm > entry->amplitude_nm) entry = &line;
     }
-    for (const auto& [order, amplitude] : amplitude_of) {
+    bool phases_known = true;
+    for (const auto& [order, line] : strongest) {
         facts.orders.emplace_back(order);
-        facts.amplitude_nm.push_back(amplitude);
+        facts.amplitude_nm.push_back(line->amplitude_nm);
+        facts.phase_deg.push_back(line->phase_deg);
+        phases_known = phases_known && line->phase_known;
     }
+    if (!phases_known) facts.phase_deg.clear();
     return facts;
 }
 
-GearRatio gear_ratio_of(const JointFacts& joint) {
-    if (!joint.gear_ratio) {
-        raise<DataError>("{}: its gear ratio is null, because identify found none; give --gear-ratio",
-                         joint.source);
-    }
-    return *joint.gear_ratio;
+JointFile load_joint(const std::string& path) {
+    if (path.empty()) raise<UsageError>("--joint-file: the name is empty");
+    return {path, path == "-" ? "standard input" : path, load_identification(path)};
 }
 
 InputRecord input_record(const std::string& path) {

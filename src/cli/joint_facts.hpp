@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What design and compare take from a joint.json.
+// A joint.json, and what it says about the gear.
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/core/units.hpp"
 
@@ -13,22 +14,29 @@ namespace ripplenotch {
 
 struct JointFacts {
     std::string source;  ///< for messages
+    Hertz sample_rate;   ///< nominal: what filter designs for on the same log
     std::optional<GearRatio> gear_ratio;
-    double ratio_error = 0.0;   ///< share: the further end of the file's 95 % interval; 0 with --gear-ratio
-    std::vector<Order> orders;  ///< of the lines that follow the speed, lowest first, each once
+    double ratio_error =
+        0.0;  ///< share: the further end of the file's 95 % interval; 0 for a ratio that is given
+    std::vector<Order> orders;         ///< of the lines that follow the motor, lowest first, each once
     std::vector<double> amplitude_nm;  ///< one per order
+    std::vector<double> phase_deg;     ///< one per order, or empty where one of them is not known
     DegPerSec slowest, fastest;        ///< |v| at which those lines were seen; both 0 without lines
-    Hertz sample_rate;                 ///< nominal: what filter designs for on the same log
 };
 
-/// Reads joint.json, or standard input when the path is "-". With `gear_ratio` (from --gear-ratio) the orders
-/// are those of the measured lines under that ratio, whole or half where they are within 0.5 % of it. Throws
-/// DataError, FileError, UsageError unless the ratio is above 0.
-[[nodiscard]] JointFacts load_joint_facts(const std::string& path,
-                                          std::optional<GearRatio> gear_ratio = std::nullopt);
+struct JointFile {
+    std::string path, source;  ///< the source is for messages
+    Identification found;
 
-/// The gear ratio, or a DataError that says why there is none and that --gear-ratio gives one.
-[[nodiscard]] GearRatio gear_ratio_of(const JointFacts& joint);
+    /// A line that was seen at one speed only counts when identify gave it an order: then the gear ratio
+    /// rests on it. With a ratio from elsewhere the orders are those of the measured lines under that ratio,
+    /// whole or half where they are within 0.5 % of it. Of two lines of one order the stronger one counts.
+    [[nodiscard]] JointFacts facts(std::optional<GearRatio> given = std::nullopt) const;
+};
+
+/// Reads joint.json, or standard input when the path is "-". Throws DataError, FileError, and UsageError for
+/// an empty path.
+[[nodiscard]] JointFile load_joint(const std::string& path);
 
 /// The file with its hash, for the artifact that is made from it. Standard input has no hash: it is gone.
 [[nodiscard]] InputRecord input_record(const std::string& path);

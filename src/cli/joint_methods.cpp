@@ -11,6 +11,10 @@ namespace ripplenotch {
 bool names_joint(std::string_view text) { return text.find(joint_mark) != std::string_view::npos; }
 
 std::string with_joint(std::string text, const std::string& joint) {
+    if (joint.empty() && names_joint(text)) {
+        raise<UsageError>("{} stands for a joint's name, and the joint of this log has none; name the file",
+                          joint_mark);
+    }
     std::string name = joint;
     std::replace(name.begin(), name.end(), '/', '_');
     for (std::size_t at = text.find(joint_mark); at != std::string::npos;
@@ -21,34 +25,26 @@ std::string with_joint(std::string text, const std::string& joint) {
 
 JointMethods::JointMethods(MethodRequest request) : request_(std::move(request)) {
     const bool each = names_joint(request_.method) || names_joint(request_.table.value_or("")) ||
-                      names_joint(request_.joint_file.value_or(""));
+                      names_joint(request_.gear.joint_file.value_or(""));
     if (!each) common_ = choose("");
 }
 
-std::shared_ptr<const JointMethod> JointMethods::of(const std::string& joint) {
+std::shared_ptr<const Contender> JointMethods::of(const std::string& joint) {
     if (common_) return common_;
-    if (joint.empty()) {
-        raise<UsageError>("{} stands for a joint's name, and the joint of this log has none; name the file",
-                          joint_mark);
-    }
     return choose(joint);
 }
 
-std::shared_ptr<const JointMethod> JointMethods::choose(const std::string& joint) const {
+std::shared_ptr<const Contender> JointMethods::choose(const std::string& joint) const {
     const auto named = [&joint](const std::optional<std::string>& text) {
         return text ? std::optional(with_joint(*text, joint)) : std::nullopt;
     };
-    JointMethod method;
-    method.joint_file = named(request_.joint_file);
-    method.chosen = choose_method(with_joint(request_.method, joint), named(request_.table),
-                                  {request_.gear_ratio, request_.orders, method.joint_file});
-    method.gear = gear_of(method.joint_file, request_.gear_ratio, request_.orders, method.chosen);
-    if (request_.needs_gear && !method.gear.ratio) {
-        raise<UsageError>(
-            "--min-attenuation-db needs to know where the ripple is; give --gear-ratio and --orders, or "
-            "--joint-file");
-    }
-    return std::make_shared<const JointMethod>(std::move(method));
+    GearOptions gear = request_.gear;
+    gear.joint_file = named(gear.joint_file);
+    Contender method =
+        choose_method(with_joint(request_.method, joint), named(request_.table), GearChoice(gear));
+    if (!method.gear && request_.needs_gear) raise_no_gear("--min-attenuation-db");
+    if (!method.gear && !gear.orders.empty()) raise_no_gear("--orders");
+    return std::make_shared<const Contender>(std::move(method));
 }
 
 bool JointMethods::learns() const {

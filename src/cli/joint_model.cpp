@@ -30,20 +30,17 @@ Term parse_ripple(const std::string& text) {
 
 Model assemble_model(const JointModelOptions& options) {
     Model model;
+    check_gear(options.gear);
     if (options.model) {
         const std::string source = *options.model == "-" ? "standard input" : *options.model;
-        if (options.gear_ratio) {
+        if (options.gear.ratio) {
             raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there", source);
         }
         model = read_model(read_all(*options.model), source);
     } else {
-        if (!options.gear_ratio)
+        if (!options.gear.ratio)
             raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
-        model.gear_ratio = GearRatio(*options.gear_ratio);
-        if (!(*options.gear_ratio > 0.0) || model.gear_ratio > largest_gear_ratio) {
-            raise<UsageError>("--gear-ratio: {} is not above 0 and at most {}", shortest(*options.gear_ratio),
-                              shortest(largest_gear_ratio.value()));
-        }
+        model.gear_ratio = GearRatio(*options.gear.ratio);
     }
     if (options.inertia_kgm2) {
         model.terms.push_back(
@@ -56,8 +53,7 @@ Model assemble_model(const JointModelOptions& options) {
 
 void attach_joint_model(Options& options, JointModelOptions& joint) {
     options.text("--model", joint.model, "FILE", "model.json of the joint; - is standard input");
-    options.number("--gear-ratio", joint.gear_ratio, Dimension::none,
-                   "motor revolutions per output revolution");
+    attach_gear(options, joint.gear, {.orders = "", .joint_file = ""});
     options.number("--inertia", joint.inertia_kgm2, Dimension::inertia, "adds the effect inertia");
     options.texts("--ripple", joint.ripples, "ORDER:AMPLITUDE[:PHASE]",
                   "adds the effect ripple: 1:0.8Nm:0deg; repeatable");

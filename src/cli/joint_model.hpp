@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/gear_choice.hpp"
 #include "cli/options.hpp"
 #include "ripplenotch/model/model.hpp"
 
@@ -14,7 +15,8 @@ namespace ripplenotch {
 /// --model, --gear-ratio, --inertia, --ripple, --effect.
 struct JointModelOptions {
     std::optional<std::string> model;
-    std::optional<double> gear_ratio, inertia_kgm2;
+    GearOptions gear;  ///< a ratio alone
+    std::optional<double> inertia_kgm2;
     std::vector<std::string> ripples, effects;
 };
 void attach_joint_model(Options& options, JointModelOptions& joint);

@@ -23,13 +23,15 @@
 namespace ripplenotch {
 namespace {
 
-int complain(ExitCode code, std::string_view command, std::string_view message) {
+using Words = std::vector<std::string>;
+
+ExitCode complain(ExitCode code, std::string_view command, std::string_view message) {
     if (command.empty()) {
         fmt::print(stderr, "{}: {}\n", tool_name, message);
     } else {
         fmt::print(stderr, "{} {}: {}\n", tool_name, command, message);
     }
-    return static_cast<int>(code);
+    return code;
 }
 
 std::vector<std::string> command_names() {
@@ -45,7 +47,7 @@ bool is_command(std::string_view word) {
 }
 
 // CLI11 answers a mistyped command with "A subcommand is required"; people want to know which one they meant.
-int complain_unknown_command(const std::string& word) {
+ExitCode complain_unknown_command(const std::string& word) {
     const auto names = command_names();
     const auto near = nearest_name(word, names);
     return complain(
@@ -56,7 +58,7 @@ int complain_unknown_command(const std::string& word) {
 
 // CLI11 checks that required arguments are there before it looks at unknown options, and would answer a
 // mistyped option with "LOG is required".
-std::optional<std::string> unknown_option(const CLI::App& command, const std::vector<std::string>& words) {
+std::optional<std::string> unknown_option(const CLI::App& command, const Words& words) {
     for (const std::string& word : words) {
         if (word == "--") break;
         const std::string name = word.substr(0, word.find('='));
@@ -76,54 +78,70 @@ std::string unknown_option_message(const CLI::App& command, const std::string& n
                        near ? fmt::format(" (did you mean {}?)", *near) : "", tool_name, command.get_name());
 }
 
-int run(int argc, char** argv) {
-    CLI::App app("Torque ripple of harmonic drives in joint logs: find it, filter it, measure the cost.",
-                 std::string(tool_name));
-    app.set_version_flag("--version", fmt::format("{} {}", tool_name, version()));
-    app.footer("Each command explains itself: ripplenotch COMMAND --help. A LOG of - is standard input.");
-    app.require_subcommand(1);
-
-    std::function<ExitCode()> work;
-    std::string running;
+// What the parsing library refers to until the work is done.
+struct Declared {
     std::vector<std::unique_ptr<Options::Implementation>> implementations;
     std::vector<std::unique_ptr<Options>> options;
-    const std::vector<std::string> words(argv + 1, argv + argc);
-    const bool named_first = !words.empty() && is_command(words.front());
+    std::function<ExitCode()> work;
+};
+
+void declare(CLI::App& app, const Words& words, bool named_first, std::string& running, Declared& declared) {
     for (const Command* command : all_commands()) {
         // Declaring the options of every command takes longer than filtering ten thousand rows.
         if (named_first && words.front() != command->name) continue;
         CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
         sub->footer(std::string(command->description));
         if (std::find(words.begin(), words.end(), command->name) == words.end()) continue;
-        implementations.push_back(
+        declared.implementations.push_back(
             std::make_unique<Options::Implementation>(Options::Implementation{sub, words}));
-        options.push_back(std::make_unique<Options>(*implementations.back()));
-        sub->callback([&work, &running, command, run_it = command->attach(*options.back())] {
-            work = run_it;
+        declared.options.push_back(std::make_unique<Options>(*declared.implementations.back()));
+        sub->callback([&running, &declared, command, work = command->attach(*declared.options.back()),
+                       &parsed = *declared.implementations.back()] {
+            declared.work = work;
             running = command->name;
+            for (const auto& check : parsed.after_parse) check();
         });
     }
+}
+
+// Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.
+ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
+    app.set_version_flag("--version", fmt::format("{} {}", tool_name, version()));
+    app.footer("Each command explains itself: ripplenotch COMMAND --help. A LOG of - is standard input.");
+    app.require_subcommand(1);
+    const bool named_first = !words.empty() && is_command(words.front());
+    if (named_first) running = words.front();
+    Declared declared;
+    declare(app, words, named_first, running, declared);
 
     if (words.empty()) {
         fmt::print(stderr, "{}", app.help());
-        return static_cast<int>(ExitCode::usage);
+        return ExitCode::usage;
     }
+    for (const auto& implementation : declared.implementations) implementation->spell_out(words);
     if (words.front().empty() || words.front().front() != '-') {
         if (!named_first) return complain_unknown_command(words.front());
-        running = words.front();
         const CLI::App& chosen = *app.get_subcommand(running);
         if (const auto unknown = unknown_option(chosen, words)) {
             return complain(ExitCode::usage, running, unknown_option_message(chosen, *unknown));
         }
     }
+    app.parse(Words(words.rbegin(), words.rend()));  // the library wants the last word first
+    const ProgressBar bar(words);                    // gone before a complaint is printed
+    return declared.work();
+}
+
+ExitCode run(const Words& words) {
+    std::string running;
     try {
-        app.parse(argc, argv);
-        const ProgressBar bar(words);  // gone before a complaint is printed
-        return static_cast<int>(work());
-    } catch (const CLI::CallForHelp& request) {
-        return app.exit(request);
-    } catch (const CLI::CallForVersion& request) {
-        return app.exit(request);
+        CLI::App app("Torque ripple of harmonic drives in joint logs: find it, filter it, measure the cost.",
+                     std::string(tool_name));
+        try {
+            return parse_and_work(app, words, running);
+        } catch (const CLI::Success& request) {  // --help or --version
+            app.exit(request);
+            return ExitCode::done;
+        }
     } catch (const CLI::ArgumentMismatch& error) {
         // "At Most 1 required but received 2" is how the library says that an option came twice.
         const std::string what = error.what();
@@ -151,5 +169,5 @@ int main(int argc, char** argv) {
     // "| head" must end us quietly even where the parent process has SIGPIPE ignored.
     std::signal(SIGPIPE, SIG_DFL);
     ripplenotch::remove_unfinished_files_on_signals();
-    return ripplenotch::run(argc, argv);
+    return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));
 }

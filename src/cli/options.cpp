@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
 
+#include "cli/number_list.hpp"
 #include "cli/options_implementation.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -41,19 +43,25 @@ std::string shell_quoted(const std::string& word) {
     return quoted + "'";
 }
 
-std::vector<std::string> split_commas(const std::string& text) {
-    std::vector<std::string> pieces(1);
-    for (const char c : text) {
-        if (c == ',') {
-            pieces.emplace_back();
-        } else {
-            pieces.back() += c;
-        }
+}  // namespace
+
+std::string Options::Implementation::names_for_parser(std::string_view names) {
+    std::vector<std::string> known, one_letter;
+    for (const std::string& name : split_commas(owned(names))) {
+        (name.size() == 3 && name.starts_with("--") ? one_letter : known).push_back(name);
     }
-    return pieces;
+    for (const std::string& name : one_letter) spelled_out[name] = known.back();
+    return fmt::format("{}", fmt::join(known, ","));
 }
 
-}  // namespace
+void Options::Implementation::spell_out(std::vector<std::string>& command_line) const {
+    for (std::string& word : command_line) {
+        if (word == "--") return;
+        const std::size_t name_end = std::min(word.find('='), word.size());
+        const auto entry = spelled_out.find(word.substr(0, name_end));
+        if (entry != spelled_out.end()) word.replace(0, name_end, entry->second);
+    }
+}
 
 void Options::flag(std::string_view names, bool& target, std::string_view help) {
     implementation_.command->add_flag(owned(names), target, owned(help));
@@ -85,7 +93,7 @@ void Options::choice(std::string_view names, std::string& target, std::span<cons
     const std::vector<std::string> allowed(choices.begin(), choices.end());
     CLI::Option* option = single(implementation_.command->add_option(owned(names), target, owned(help)),
                                  fmt::format("{}", fmt::join(choices, "|")));
-    option->check([allowed, option](const std::string& value) {
+    option->check([allowed](const std::string& value) {
         if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return std::string();
         return fmt::format("'{}' is none of {}", value, fmt::join(allowed, ", "));
     });
@@ -103,7 +111,7 @@ void Options::parsed_number(std::string_view names, Dimension dimension, std::st
     const std::string label =
         owned(names.substr(names.rfind(',') == std::string_view::npos ? 0 : names.rfind(',') + 1));
     CLI::Option* option = single(implementation_.command->add_option_function<std::string>(
-                                     owned(names),
+                                     implementation_.names_for_parser(names),
                                      [dimension, label, assign](const std::string& value) {
                                          assign(parse_quantity(value, dimension, label));
                                      },
@@ -121,12 +129,28 @@ void Options::number(std::string_view names, std::optional<double>& target, Dime
     parsed_number(names, dimension, help, 0.0, false, [&target](double value) { target = value; });
 }
 
+void Options::duration(std::string_view names, std::optional<Seconds>& target, std::string_view help) {
+    const std::string label = owned(names);
+    single(implementation_.command->add_option_function<std::string>(
+               owned(names),
+               [&target, label](const std::string& value) {
+                   target = Seconds(parse_quantity(value, Dimension::time, label));
+                   if (parse_number(value) && *target != Seconds(0.0))
+                       raise<UsageError>("{0} {1}: ms or s? write {0} {1}ms or {0} {1}s", label, value);
+               },
+               owned(help)),
+           "TIME");
+}
+
 void Options::numbers(std::string_view names, std::vector<double>& target, Dimension dimension,
                       std::string_view help) {
     const std::string label = owned(names);
     single(implementation_.command->add_option_function<std::string>(
                owned(names),
-               [&target, dimension, label](const std::string& value) {
+               [&target, dimension, label, &words = implementation_.words](const std::string& value) {
+                   refuse_split_list(words, label, dimension);
+                   if (value.find_first_of(" :;") != std::string::npos)
+                       refuse_other_marks(label, value, dimension);
                    target.clear();
                    for (const std::string& piece : split_commas(value)) {
                        target.push_back(parse_quantity(piece, dimension, label));
@@ -145,90 +169,35 @@ void Options::arguments(std::string_view name, std::vector<std::string>& target,
     implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
 }
 
+void Options::after_parse(std::function<void()> check) {
+    implementation_.after_parse.push_back(std::move(check));
+}
+
 std::string Options::command_line() const {
     std::string line = owned(tool_name);
     const auto& words = implementation_.words;
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i] == "-o" || words[i] == "--output" || words[i] == "--plot") {
             ++i;
-        } else if (words[i].rfind("--output=", 0) != 0 && words[i].rfind("--plot=", 0) != 0 && words[i] != "--force" && words[i] != "-q" &&
-                   words[i] != "--quiet" && words[i] != "-v" && words[i] != "--verbose" &&
-                   words[i] != "--json") {
+        } else if (words[i].rfind("--output=", 0) != 0 && words[i].rfind("--plot=", 0) != 0 &&
+                   words[i] != "--force" && words[i] != "-q" && words[i] != "--quiet" && words[i] != "-v" &&
+                   words[i] != "--verbose" && words[i] != "--json") {
             line += " " + shell_quoted(words[i]);
         }
     }
     return line;
 }
 
-void attach_common(Options& options, CommonOptions& common) {
+bool ends_with_json(std::string_view path) { return path.size() > 5 && path.ends_with(".json"); }
+
+void attach_common(Options& options, CommonOptions& common, JsonName by_name) {
+    if (by_name == JsonName::asks_for_json)
+        options.after_parse([&common] { common.json = common.json || ends_with_json(common.output); });
     options.text("-o,--output", common.output, "FILE", "where the result goes; - is standard output");
     options.flag("--json", common.json, "one JSON object instead of text");
     options.flag("--force", common.force, "overwrite existing files");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
     options.flag("-v,--verbose", common.verbose, "say on standard error what was decided");
-}
-
-void attach_log(Options& options, LogOptions& log) {
-    options.text("--format", log.format, "NAME",
-                 "format of the log: csv, npy (default: found out from its first bytes)");
-    options.quantity("--sample-rate", log.sample_rate, Dimension::frequency,
-                     "rate of a log without time; overrides the log's own time");
-    attach_log_columns(options, log);
-}
-
-void attach_log_columns(Options& options, LogOptions& log) {
-    options.text("--joint", log.joint, "NAME",
-                 "which joint of a file that holds several; all runs each where possible");
-    options.text(
-        "--columns", log.columns, "LIST",
-        "what the columns are: by place 'time,velocity,torque' (- skips one), or by name 'torque=tau_J'");
-    options.texts("--unit", log.units, "COLUMN=UNIT",
-                  "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable");
-    options.text("--delimiter", log.delimiter, "CHAR", "between cells of a text log: , ; space or tab");
-    options.text("--decimal", log.decimal, "MARK", "decimal mark of a text log: . or ,");
-    options.flag("--no-header", log.no_header, "the first row of a text log is data");
-    options.text("--kt", log.kt, "Nm/A", "torque constant, for logs of motor current");
-    options.flag("--hold-bad-values", log.hold_bad_values,
-                 "replace empty cells and nan by the value before, and count them");
-}
-
-ReadOptions LogOptions::resolve() const {
-    ReadOptions read;
-    read.format = format;
-    read.joint = joint;
-    if (columns) read.columns = split_commas(*columns);
-    for (const std::string& entry : units) {
-        for (const std::string& piece : split_commas(entry)) {
-            const std::size_t equals = piece.find('=');
-            if (equals == std::string::npos || equals == 0 || equals + 1 == piece.size()) {
-                raise<UsageError>("--unit: '{}' is not COLUMN=UNIT, for example velocity=rad/s", piece);
-            }
-            read.units[piece.substr(0, equals)] = piece.substr(equals + 1);
-        }
-    }
-    read.sample_rate = sample_rate;
-    if (sample_rate && !(sample_rate->value() > 0.0)) raise<UsageError>("--sample-rate: must be above 0 Hz");
-    const auto one_character = [](const std::string& text, std::string_view option) {
-        if (text == "space") return ' ';
-        if (text == "tab" || text == "\\t") return '\t';
-        if (text.size() != 1) raise<UsageError>("{}: '{}' is not one character", option, text);
-        return text.front();
-    };
-    if (delimiter) read.delimiter = one_character(*delimiter, "--delimiter");
-    if (decimal) {
-        read.decimal_mark = one_character(*decimal, "--decimal");
-        if (*read.decimal_mark != '.' && *read.decimal_mark != ',') {
-            raise<UsageError>("--decimal: '{}' is neither . nor ,", *decimal);
-        }
-    }
-    if (no_header) read.header = false;
-    if (kt) {
-        std::string text = *kt;
-        if (text.size() > 4 && text.compare(text.size() - 4, 4, "Nm/A") == 0) text.resize(text.size() - 4);
-        read.nm_per_ampere = parse_quantity(text, Dimension::none, "--kt");
-    }
-    read.hold_bad_values = hold_bad_values;
-    return read;
 }
 
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings) {
@@ -244,6 +213,8 @@ void say(const CommonOptions& common, std::string_view sentence) {
 
 void say_layout(const CommonOptions& common, const Layout& layout) {
     say(common, fmt::format("{}: read as if with {}", layout.source, layout.options));
+    for (const Assumption& one : layout.inferences)
+        say(common, fmt::format("{}: {} is {}: {}", layout.source, one.about, one.assumed, one.reason));
     say_warnings(common, layout.warnings);
 }
 

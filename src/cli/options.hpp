@@ -37,7 +37,9 @@ class Options {
     void number(std::string_view names, double& target, Dimension dimension, std::string_view help);
     void number(std::string_view names, std::optional<double>& target, Dimension dimension,
                 std::string_view help);
-    /// "1,2,4" or "25Hz,50Hz"
+    /// A time of which a bare number could as well be meant in ms as in s: it needs its unit, but for 0.
+    void duration(std::string_view names, std::optional<Seconds>& target, std::string_view help);
+    /// "1,2,4" or "25Hz,50Hz". Refuses "--orders 1 2", which would be a list of one and a log named 2.
     void numbers(std::string_view names, std::vector<double>& target, Dimension dimension,
                  std::string_view help);
 
@@ -58,7 +60,11 @@ class Options {
     void arguments(std::string_view name, std::vector<std::string>& target, bool required,
                    std::string_view help);
 
-    /// The command line as it would be typed again, without -o, --plot, --force, -q, -v and --json; for provenance.
+    /// Runs when all options are read, before the work.
+    void after_parse(std::function<void()> check);
+
+    /// The command line as it would be typed again, without -o, --plot, --force, -q, -v and --json; for
+    /// provenance.
     [[nodiscard]] std::string command_line() const;
 
   private:
@@ -75,14 +81,22 @@ struct CommonOptions {
         return force ? ByteSink::Overwrite::yes : ByteSink::Overwrite::no;
     }
 };
-void attach_common(Options& options, CommonOptions& common);
+/// What -o with a name that ends in .json means.
+enum class JsonName {
+    asks_for_json,  ///< the same as --json
+    is_own,         ///< the command's own affair
+};
+void attach_common(Options& options, CommonOptions& common, JsonName by_name = JsonName::asks_for_json);
+[[nodiscard]] bool ends_with_json(std::string_view path);
 
 /// How to read a log: --format, --joint, --columns, --unit, --sample-rate, --delimiter, --decimal,
-/// --no-header, --kt,
-/// --hold-bad-values. Call resolve() after parsing.
+/// --no-header, --skip-lines, --side, --kt, --hold-bad-values. Call resolve() after parsing.
 struct LogOptions {
     std::optional<std::string> format, joint, columns, delimiter, decimal, kt;
     std::vector<std::string> units;
+    std::optional<std::string> side;
+    int skip_lines = 0;
+    std::optional<double> gear_ratio;  ///< of the command's own options: for motion measured before the gear
     std::optional<Hertz> sample_rate;
     bool no_header = false, hold_bad_values = false;
     [[nodiscard]] ReadOptions resolve() const;

@@ -3,31 +3,87 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+#include <initializer_list>
+#include <span>
 
 #include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
+namespace {
+
+std::string counted(std::size_t count, std::string_view noun) {
+    return count == 0 ? fmt::format("no {}", noun)
+                      : fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string line_table(const std::vector<SpectralPeak>& peaks) {
+    if (peaks.empty()) return "";
+    std::vector<std::vector<std::string>> rows{{"Hz", "+/-", "amplitude, Nm", "phase, deg", "SNR"}};
+    for (const SpectralPeak& peak : peaks) {
+        rows.push_back({fmt::format("{:.4f}", peak.hz), fmt::format("{:.2g}", peak.hz_stderr),
+                        fmt::format("{:.4g}", peak.amplitude_nm), fmt::format("{:.1f}", peak.phase_deg),
+                        fmt::format("{:.1f}", peak.snr)});
+    }
+    return text_table(rows, "r");
+}
+
+std::string hump_table(const std::vector<SpectralHump>& humps) {
+    if (humps.empty()) return "";
+    std::vector<std::vector<std::string>> rows{
+        {"hump, Hz", "rms in it, Nm", "highest at, Hz", "amplitude, Nm", "noise, Nm"}};
+    for (const SpectralHump& hump : humps) {
+        rows.push_back({fmt::format("{:.4g} to {:.4g}", hump.from_hz, hump.to_hz),
+                        fmt::format("{:.3g}", hump.rms_nm), fmt::format("{:.4g}", hump.peak_hz),
+                        fmt::format("{:.3g}", hump.peak_nm), fmt::format("{:.2g}", hump.floor_nm)});
+    }
+    return text_table(rows, "r");
+}
+
+}  // namespace
+
+namespace {
+
+/// "a,b,c"
+void append_cells(std::string& text, std::initializer_list<double> cells) {
+    const char* before = "";
+    for (const double cell : cells) {
+        text += before;
+        append_shortest(text, cell);
+        before = ",";
+    }
+    text += "\n";
+}
+
+/// A power falls as the square of an amplitude: its small values have finer steps than the digits of the
+/// largest.
+double power_cell(double largest, double value) {
+    constexpr int power_digits = 15;
+    return to_digits(to_digits_of(largest, value, power_digits));
+}
+
+double largest_of(std::span<const double> values) {
+    return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+}  // namespace
 
 std::string frequency_csv(const std::vector<StretchSpectrum>& spectra) {
     const bool numbered = spectra.front().number.has_value();
     std::string text = numbered ? "stretch,speed_deg_s,frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n"
                                 : "frequency_hz,amplitude_nm,psd_nm2_hz,floor_nm\n";
     for (const StretchSpectrum& one : spectra) {
-        for (std::size_t k = 0; k < one.spectrum.hz.size(); ++k) {
+        const Spectrum& s = one.spectrum;
+        const double amplitude_nm = largest_of(s.amplitude_nm), psd = largest_of(s.psd_nm2_hz);
+        for (std::size_t k = 0; k < s.hz.size(); ++k) {
             if (numbered) {
                 text += std::to_string(*one.number) + ",";
                 append_shortest(text, one.stretch.speed.value());
                 text += ",";
             }
-            const std::array cells{one.spectrum.hz[k], one.spectrum.amplitude_nm[k],
-                                   one.spectrum.psd_nm2_hz[k], one.spectrum.floor_nm[k]};
-            for (std::size_t c = 0; c < cells.size(); ++c) {
-                if (c > 0) text += ",";
-                append_shortest(text, cells[c]);
-            }
-            text += "\n";
+            append_cells(text, {s.hz[k], to_digits_of(amplitude_nm, s.amplitude_nm[k]),
+                                power_cell(psd, s.psd_nm2_hz[k]), to_digits_of(amplitude_nm, s.floor_nm[k])});
         }
     }
     return text;
@@ -35,14 +91,11 @@ std::string frequency_csv(const std::vector<StretchSpectrum>& spectra) {
 
 std::string order_csv(const Stack& stack) {
     std::string text = "order_output,amplitude_nm,floor_nm,averages\n";
+    const double amplitude_nm = largest_of(stack.amplitude_nm);
     for (std::size_t k = stack.first; k < stack.ratio.size(); ++k) {
-        const std::array cells{static_cast<double>(k) * stack.spacing, stack.amplitude_nm[k],
-                               stack.floor_nm[k], stack.averages[k]};
-        for (std::size_t c = 0; c < cells.size(); ++c) {
-            if (c > 0) text += ",";
-            append_shortest(text, cells[c]);
-        }
-        text += "\n";
+        append_cells(
+            text, {static_cast<double>(k) * stack.spacing, to_digits_of(amplitude_nm, stack.amplitude_nm[k]),
+                   to_digits_of(amplitude_nm, stack.floor_nm[k]), stack.averages[k]});
     }
     return text;
 }
@@ -54,19 +107,11 @@ std::string frequency_peaks(const std::vector<StretchSpectrum>& spectra) {
         if (!text.empty()) text += "\n";
         text += one.number ? fmt::format("Stretch {}, {:.4g} deg/s: ", *one.number, one.stretch.speed.value())
                            : "";
-        text += fmt::format("{} in {:.4g} s (resolution {:.3g} Hz, floor {:.2g} Nm).\n",
-                            s.peaks.empty()
-                                ? "no line"
-                                : fmt::format("{} line{}", s.peaks.size(), s.peaks.size() == 1 ? "" : "s"),
-                            one.stretch.duration.value(), s.resolution.value(), median_floor(s.floor_nm));
-        if (s.peaks.empty()) continue;
-        std::vector<std::vector<std::string>> rows{{"Hz", "+/-", "amplitude, Nm", "phase, deg", "SNR"}};
-        for (const SpectralPeak& peak : s.peaks) {
-            rows.push_back({fmt::format("{:.4f}", peak.hz), fmt::format("{:.2g}", peak.hz_stderr),
-                            fmt::format("{:.4g}", peak.amplitude_nm), fmt::format("{:.1f}", peak.phase_deg),
-                            fmt::format("{:.1f}", peak.snr)});
-        }
-        text += text_table(rows, "r");
+        const std::string humps = s.humps.empty() ? "" : " and " + counted(s.humps.size(), "hump");
+        text += fmt::format("{}{} in {:.4g} s (resolution {:.3g} Hz, floor {:.2g} Nm).\n",
+                            counted(s.peaks.size(), "line"), humps, one.stretch.duration.value(),
+                            s.resolution.value(), median_floor(s.floor_nm));
+        text += line_table(s.peaks) + hump_table(s.humps);
     }
     return text;
 }

@@ -5,7 +5,6 @@
 
 #include <array>
 
-#include "cli/joint_facts.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/artifact/speed_map.hpp"
@@ -42,10 +41,10 @@ std::string in_words(const SpeedMap& map, std::string_view unit, std::optional<d
 void attach_speed_map(Options& options, SpeedMapRequest& request) {
     options.text("--map", request.map, "campbell|order",
                  "over speed: frequency against speed, or order against speed");
-    options.number("--gear-ratio", request.gear_ratio, Dimension::none,
-                   "--map order: count orders per motor turn instead of per output turn");
-    options.text("--joint-file", request.joint_file, "FILE",
-                 "--map: joint.json with the gear ratio, and the orders whose lines are drawn");
+    attach_gear(options, request.gear,
+                {.ratio = "--map order: count orders per motor turn instead of per output turn",
+                 .orders = "--map: orders whose lines are drawn, in cycles per motor turn (default: 1,2)",
+                 .joint_file = "--map: joint.json with gear ratio and orders"});
     options.number("--resolution", request.resolution, Dimension::none, "of the map, in Hz or orders");
     options.number("--highest", request.highest, Dimension::none, "frequency or order where the map ends");
     options.quantity("--speed-step", request.speed_step, Dimension::speed, "width of a row of the map");
@@ -53,10 +52,10 @@ void attach_speed_map(Options& options, SpeedMapRequest& request) {
 
 void check_speed_map(const SpeedMapRequest& request) {
     if (!request.map) {
-        if (request.joint_file || request.gear_ratio || request.resolution || request.highest ||
-            request.speed_step) {
+        if (request.gear.any() || request.resolution || request.highest || request.speed_step) {
             raise<UsageError>(
-                "--joint-file, --gear-ratio, --resolution, --highest and --speed-step belong to --map");
+                "--joint-file, --gear-ratio, --orders, --resolution, --highest and --speed-step belong to "
+                "--map");
         }
         return;
     }
@@ -65,48 +64,42 @@ void check_speed_map(const SpeedMapRequest& request) {
     const auto positive = [](std::string_view option, std::optional<double> value) {
         if (value && !(*value > 0.0)) raise<UsageError>("{} {} is not above 0", option, shortest(*value));
     };
-    positive("--gear-ratio", request.gear_ratio);
+    check_gear(request.gear);
     positive("--resolution", request.resolution);
     positive("--highest", request.highest);
     if (request.speed_step) positive("--speed-step", request.speed_step->value());
 }
 
-MapLines take_map_lines(SpeedMapRequest& request, Provenance& provenance) {
-    MapLines lines;
-    if (request.joint_file) {
-        const auto ratio = request.gear_ratio ? std::optional(GearRatio(*request.gear_ratio)) : std::nullopt;
-        const JointFacts joint = load_joint_facts(*request.joint_file, ratio);
-        provenance.inputs.push_back(input_record(*request.joint_file));
-        request.gear_ratio = gear_ratio_of(joint).value();
-        for (const Order order : joint.orders) lines.orders.push_back(order.value());
-    } else if (request.gear_ratio) {
-        lines.orders = {1.0, 2.0, 3.0, 4.0};
-    }
-    if (request.gear_ratio) lines.gear_ratio = GearRatio(*request.gear_ratio);
-    lines.axis_per_motor_turn = request.gear_ratio && *request.map == "order";
+MapLines map_lines(const SpeedMapRequest& request, Provenance& provenance) {
+    const GearChoice choice(request.gear);
+    if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
+    MapLines lines{choice.of(), false};
+    if (!lines.gear && !request.gear.orders.empty()) raise_no_gear("--orders");
+    lines.axis_per_motor_turn = lines.gear && *request.map == "order";
     return lines;
 }
 
-SpeedMapResult speed_map_result(const SpeedMapRequest& request, const Trace& trace,
+SpeedMapResult speed_map_result(const SpeedMapRequest& request, const MapLines& lines, const Trace& trace,
                                 const CommonOptions& common, const Provenance& provenance) {
     const bool campbell = *request.map == "campbell";
     const TraceView view = trace.view();
     OutputAngle angle = output_angle(view);
-    for (double& turns : angle.turns) turns *= request.gear_ratio.value_or(1.0);
+    for (double& turns : angle.turns) turns *= lines.gear ? lines.gear->ratio.value() : 1.0;
     const std::vector<double> speed = smoothed_speed(view);
     SpeedMap map = speed_map(view, angle.turns, speed,
                              {.axis = campbell ? Axis::time : Axis::angle,
                               .resolution = request.resolution,
                               .highest = request.highest,
                               .speed_step = request.speed_step.value_or(DegPerSec(0.0))});
-    const std::string_view axis = campbell ? "frequency_hz" : request.gear_ratio ? "order" : "order_output";
+    const std::string_view axis = campbell ? "frequency_hz" : lines.gear ? "order" : "order_output";
     const std::string words = in_words(map, campbell ? "Hz" : "orders", request.resolution);
     if (request.resolution && map.resolution > 1.001 * *request.resolution) {
         say_warnings(common, std::vector{words});
     } else {
         say(common, words);
     }
-    std::string text = common.json ? speed_map_text(trace.joint, map, axis, provenance) : map_csv(map, axis);
+    std::string text =
+        common.json ? speed_map_text(trace.joint, map, axis, lines.gear, provenance) : map_csv(map, axis);
     return {std::move(text), std::move(map)};
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/gear_choice.hpp"
 #include "cli/options.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/artifact/document.hpp"
@@ -15,8 +16,8 @@ namespace ripplenotch {
 
 struct SpeedMapRequest {
     std::optional<std::string> map;  ///< "campbell" or "order"; nothing without it
-    std::optional<std::string> joint_file;
-    std::optional<double> gear_ratio, resolution, highest;
+    GearOptions gear;
+    std::optional<double> resolution, highest;
     std::optional<DegPerSec> speed_step;
 };
 
@@ -25,9 +26,8 @@ void attach_speed_map(Options& options, SpeedMapRequest& request);
 /// Throws UsageError when options of the map are given without --map, or make no sense.
 void check_speed_map(const SpeedMapRequest& request);
 
-/// The lines that are drawn into the map: of the joint file's orders where there is one, else of orders 1 to
-/// 4 with a gear ratio. Takes the file's gear ratio where none is stated, and notes the file as an input.
-[[nodiscard]] MapLines take_map_lines(SpeedMapRequest& request, Provenance& provenance);
+/// The lines that are drawn into the map, where a gear is known; notes the joint file as an input.
+[[nodiscard]] MapLines map_lines(const SpeedMapRequest& request, Provenance& provenance);
 
 /// CSV, one row a cell: speed_deg_s, then frequency_hz, order (with a gear ratio) or order_output, then
 /// amplitude_nm. JSON: schema ripplenotch/spectrum/1.
@@ -35,7 +35,8 @@ struct SpeedMapResult {
     std::string text;
     SpeedMap map;
 };
-[[nodiscard]] SpeedMapResult speed_map_result(const SpeedMapRequest& request, const Trace& trace,
-                                              const CommonOptions& common, const Provenance& provenance);
+[[nodiscard]] SpeedMapResult speed_map_result(const SpeedMapRequest& request, const MapLines& lines,
+                                              const Trace& trace, const CommonOptions& common,
+                                              const Provenance& provenance);
 
 }  // namespace ripplenotch

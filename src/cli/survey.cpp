@@ -55,10 +55,10 @@ JointInfo joint_info(const Log& log) {
     joint.joint = log.layout.chosen.joint;
     joint.speed_deg_s = range_of(log.trace.velocity_deg_s);
     joint.torque_nm = range_of(log.trace.torque_nm);
-    joint.position_deg = range_of(log.trace.position_deg);
-    joint.held_samples = log.timebase.held_samples;
-    joint.longest_hold = log.timebase.longest_hold;
-    joint.clock_factor = log.timebase.clock_factor;
+    if (log.position_range_deg)
+        joint.position_deg = Range{log.position_range_deg->first, log.position_range_deg->second};
+    joint.recording = log.recording;
+    joint.clock_factor = log.clock_factor;
     joint.turns = turns_of(log.trace, log.trace.sample_rate.value());
     joint.stretches = stretches_of(log);
     joint.options = log.layout.options;
@@ -84,7 +84,7 @@ void add_warnings(LogInfo& info, const std::vector<Log>& logs) {
     };
     std::vector<Entry> entries;
     for (const Log& log : logs) {
-        for (const std::vector<std::string>& list : {log.layout.warnings, log.timebase.warnings}) {
+        for (const std::vector<std::string>& list : {log.layout.warnings, log.recording.warnings}) {
             for (const std::string& warning : list) {
                 const std::string key = gist(warning);
                 auto same = std::find_if(entries.begin(), entries.end(),
@@ -126,11 +126,9 @@ void state_uses(LogInfo& info) {
                          [](const JointInfo& a, const JointInfo& b) { return a.turns < b.turns; });
     const JointInfo none;
     const JointInfo& joint = most == info.joints.end() ? none : *most;
-    const bool timed = info.timebase.sample_rate.value() > 0.0;
     const std::string missing = !joint.torque_nm     ? "no torque column"
                                 : !joint.speed_deg_s ? "no velocity column"
-                                : !timed             ? "no sample rate"
-                                                     : "";
+                                                     : info.clock.refusal;
     const std::string speeds = speeds_text(joint.stretches);
     const std::string of_joint = info.joints.size() > 1 ? fmt::format("joint {}: ", joint.joint) : "";
 
@@ -143,7 +141,7 @@ void state_uses(LogInfo& info) {
     }
     Use identify{"identify", missing.empty() && joint.turns > 0.05, missing};
     if (missing.empty()) {
-        const double top = 0.5 * info.timebase.sample_rate.value();
+        const double top = 0.5 * info.clock.nominal_rate.value();
         const double speed = std::max(std::abs(joint.speed_deg_s->min), std::abs(joint.speed_deg_s->max));
         identify.reason = fmt::format(
             "{}{:.3g} turns of the joint at up to {:.3g} deg/s; lines below {:.0f} cycles per turn stay "
@@ -156,14 +154,18 @@ void state_uses(LogInfo& info) {
     }
     Use filter{"filter", missing.empty(), missing};
     if (missing.empty()) {
-        filter.reason = info.timebase.gaps.empty()
+        filter.reason = info.clock.gap_count == 0
                             ? "the clock runs without gaps"
-                            : fmt::format("in {} runs, one between gaps", info.timebase.gaps.size() + 1);
+                            : fmt::format("in {} runs, one between gaps", info.clock.gap_count + 1);
+        if (info.clock.rows_left_out > 0)
+            filter.reason +=
+                fmt::format("; {} rows at another rate pass unfiltered", info.clock.rows_left_out);
     }
     Use clock{"clock-check", joint.clock_factor.has_value(), "position and velocity can be compared"};
     if (!clock.possible) {
-        clock.reason =
-            !joint.position_deg ? "no position column" : "too few rows, too little motion, or position and velocity of different things";
+        clock.reason = !joint.position_deg
+                           ? "no position column"
+                           : "too few rows, too little motion, or position and velocity of different things";
     }
     info.uses = {spectrum, identify, filter, clock};
 }
@@ -183,10 +185,10 @@ LogInfo survey_log(const std::string& path, ReadOptions options) {
     const Log& first = logs.front();
     info.source = first.layout.source;
     info.layout = first.layout;
-    info.rows = first.trace.size();
-    info.timebase = first.timebase;
+    info.rows = first.recording.rows();
+    info.clock = first.recording.clock;
     if (first.layout.chosen.time || first.layout.stated_rate)
-        info.duration_s = first.trace.time_s.back() - first.trace.time_s.front();
+        info.duration_s = info.clock.last_s - info.clock.first_s;
     for (const Log& log : logs) {
         info.joints.push_back(joint_info(log));
         info.bad_values_held = std::max(info.bad_values_held, log.held_bad_values);

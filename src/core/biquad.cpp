@@ -5,11 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
 std::complex<double> unit_delay(Hertz at, Hertz sample_rate) {
-    return std::polar(1.0, -2.0 * std::numbers::pi * (at / sample_rate));
+    return portable::polar(1.0, -2.0 * std::numbers::pi * (at / sample_rate));
 }
 
 // Group delay of c0 + c1 z^-1 + c2 z^-2 in samples: Re( sum k c_k z^-k / sum c_k z^-k ).

@@ -172,13 +172,15 @@ ByteSink::ByteSink(const std::string& path, Overwrite overwrite, bool binary)
     }
     static std::atomic<unsigned> made = 0;
     temporary_ = fmt::format("{}.part-{}-{}", path, ::getpid(), made++);
+    unfinished_ =
+        std::make_unique<UnfinishedFile>(temporary_);  // before it is there: a signal may come at once
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0) {
         const std::string why = reason();
+        unfinished_.reset();
         temporary_.clear();
         raise<FileError>("{}: cannot write: {}", path, why);
     }
-    unfinished_ = std::make_unique<UnfinishedFile>(temporary_);
 }
 
 ByteSink::~ByteSink() {

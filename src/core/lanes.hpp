@@ -43,10 +43,6 @@ struct TwoAndTwo {
 using FourBits = long long __attribute__((vector_size(32)));
 using TwoBits = long long __attribute__((vector_size(16)));
 
-/// In memory, at any address of a double.
-using FourInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
-using TwoInMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
-
 RIPPLENOTCH_INLINED TwoAndTwo operator+(const TwoAndTwo& a, const TwoAndTwo& b) {
     return {a.low + b.low, a.high + b.high};
 }
@@ -57,20 +53,20 @@ RIPPLENOTCH_INLINED TwoAndTwo operator*(const TwoAndTwo& a, const TwoAndTwo& b) 
     return {a.low * b.low, a.high * b.high};
 }
 
+// Copied as bytes, which is one instruction for any address of a double: clang aligns a vector type whatever
+// is said.
 RIPPLENOTCH_INLINED void load(Four& lanes, const double* from) {
-    lanes = *reinterpret_cast<const FourInMemory*>(from);
+    __builtin_memcpy(&lanes, from, sizeof lanes);
 }
 RIPPLENOTCH_INLINED void load(TwoAndTwo& lanes, const double* from) {
-    lanes.low = *reinterpret_cast<const TwoInMemory*>(from);
-    lanes.high = *reinterpret_cast<const TwoInMemory*>(from + 2);
+    __builtin_memcpy(&lanes.low, from, sizeof lanes.low);
+    __builtin_memcpy(&lanes.high, from + 2, sizeof lanes.high);
 }
 
-RIPPLENOTCH_INLINED void store(double* to, const Four& lanes) {
-    *reinterpret_cast<FourInMemory*>(to) = lanes;
-}
+RIPPLENOTCH_INLINED void store(double* to, const Four& lanes) { __builtin_memcpy(to, &lanes, sizeof lanes); }
 RIPPLENOTCH_INLINED void store(double* to, const TwoAndTwo& lanes) {
-    *reinterpret_cast<TwoInMemory*>(to) = lanes.low;
-    *reinterpret_cast<TwoInMemory*>(to + 2) = lanes.high;
+    __builtin_memcpy(to, &lanes.low, sizeof lanes.low);
+    __builtin_memcpy(to + 2, &lanes.high, sizeof lanes.high);
 }
 
 RIPPLENOTCH_INLINED double sum(const Four& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }

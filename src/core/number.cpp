@@ -15,6 +15,7 @@
 
 #include "core/eight_digits.hpp"
 #include "core/shortest_digits.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -119,6 +120,19 @@ void append_shortest(std::string& out, double value) {
 void append_fixed(std::string& out, double value, int decimals) {
     std::array<char, number_room> text;
     out.append(text.data(), put_fixed(text.data(), value, decimals));
+}
+
+double to_digits(double value, int digits) {
+    if (!std::isfinite(value)) return value;
+    return parse_number(fmt::format("{:.{}g}", value, digits)).value_or(value);
+}
+
+double to_digits_of(double largest, double value, int digits) {
+    if (!std::isfinite(value) || !std::isnormal(largest)) return value;
+    const int places = digits - 1 - static_cast<int>(std::floor(portable::log10(std::abs(largest))));
+    if (places < 0 || places > 300) return to_digits(value, digits);
+    return parse_number(fmt::format("{:.{}f}", value, places)).value_or(value) +
+           0.0;  // + 0.0: no negative zero
 }
 
 std::string rounded(double value, int decimals) {

@@ -32,6 +32,7 @@ constexpr std::array units = {
     Unit{Dimension::time, "ms", 1e-3},
     Unit{Dimension::time, "us", 1e-6},
     Unit{Dimension::time, "ns", 1e-9},
+    Unit{Dimension::time, "100ns", 1e-7},
     Unit{Dimension::time, "min", 60.0},
     Unit{Dimension::frequency, "Hz", 1.0},
     Unit{Dimension::frequency, "kHz", 1e3},

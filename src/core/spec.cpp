@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 
 #include "ripplenotch/core/error.hpp"
@@ -78,6 +79,18 @@ std::string Spec::text() const {
     return out;
 }
 
+namespace {
+
+// "centers=25Hz,50Hz": what stands between commas are keys, and a list has colons.
+std::string list_hint(const Spec& spec, std::string_view piece) {
+    if (spec.values.empty() || piece.empty() || std::isdigit(static_cast<unsigned char>(piece.front())) == 0)
+        return "";
+    const auto& [key, value] = spec.values.back();
+    return fmt::format("; a list is written with colons: {}={}:{}", key, value, piece);
+}
+
+}  // namespace
+
 Spec parse_spec(std::string_view text) {
     Spec spec;
     const auto pieces = split(text, ',');
@@ -90,7 +103,7 @@ Spec parse_spec(std::string_view text) {
     for (std::size_t i = 1; i < pieces.size(); ++i) {
         const std::size_t equals = pieces[i].find('=');
         if (equals == std::string_view::npos || equals == 0) {
-            raise<UsageError>("'{}': '{}' is not KEY=VALUE", text, pieces[i]);
+            raise<UsageError>("'{}': '{}' is not KEY=VALUE{}", text, pieces[i], list_hint(spec, pieces[i]));
         }
         std::string key(pieces[i].substr(0, equals));
         for (const auto& [other, value] : spec.values) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -39,7 +41,7 @@ BandFit::BandFit(const TableSpec& spec, bool shaped)
       shaped_(shaped),
       shape_(spec.orders.size(), 1.0),
       hz_per_deg_s_(spec.orders.size()),
-      floor_gain_(std::pow(10.0, -spec.depth_db / 20.0)) {
+      floor_gain_(portable::pow(10.0, -spec.depth_db / 20.0)) {
     double all = 0.0;
     for (const double amplitude : spec.amplitude_nm) all += amplitude * amplitude;
     for (std::size_t i = 0; i < spec.orders.size(); ++i) {
@@ -49,7 +51,7 @@ BandFit::BandFit(const TableSpec& spec, bool shaped)
         // Least delay sum 1/(n Q) for a given ripple left sum (a Q)^2: Q goes with (n a^2)^(-1/3).
         if (shaped) {
             const double order = spec.orders[i].value() / spec.orders[0].value();
-            shape_[i] = 1.0 / std::cbrt(order * weight_[i] / weight_[0]);
+            shape_[i] = 1.0 / portable::cbrt(order * weight_[i] / weight_[0]);
         }
     }
 }
@@ -62,11 +64,11 @@ double BandFit::q_each(std::size_t order, double q) const {
 double BandFit::damping(double warped, double q) const {
     if (spec_.width == WidthRule::analog) return 1.0 / q;
     const double sine = 2.0 * warped / (1.0 + warped * warped);
-    return 2.0 * std::tan(std::atan(warped) / q) / sine;
+    return 2.0 * portable::tan(portable::atan(warped) / q) / sine;
 }
 
 double BandFit::warped(std::size_t order, double speed_deg_s) const {
-    return std::tan(std::numbers::pi * hz_per_deg_s_[order] * speed_deg_s / spec_.sample_rate.value());
+    return portable::tan(std::numbers::pi * hz_per_deg_s_[order] * speed_deg_s / spec_.sample_rate.value());
 }
 
 Tuning BandFit::tuned(double center_deg_s, double q) const {
@@ -123,7 +125,8 @@ double BandFit::gain(const Tuning& tuning, double speed_deg_s) const {
         double power = 1.0;
         for (std::size_t i = 0; i < tuning.warped.size(); ++i) {
             const double r = t / tuning.warped[i];
-            const double off = (1.0 - r * r) * (1.0 - r * r), across = std::pow(r * tuning.damping[i], 2);
+            const double off = (1.0 - r * r) * (1.0 - r * r),
+                         across = portable::pow(r * tuning.damping[i], 2);
             power *= (off + floor_gain_ * floor_gain_ * across) / (off + across);
         }
         largest = std::max(largest, power);

@@ -8,6 +8,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/transient.hpp"
 
 namespace ripplenotch {
@@ -16,9 +17,7 @@ namespace {
 constexpr double most_db = 140.0, least_db = 0.1;
 constexpr int settling_trials = 49;  // Q from widest to narrowest, 6 % apart
 
-double gain_of(double attenuation_db) { return std::pow(10.0, -attenuation_db / 20.0); }
-
-double to_digits(double value, int digits) { return *parse_number(fmt::format("{:.{}g}", value, digits)); }
+double gain_of(double attenuation_db) { return portable::pow(10.0, -attenuation_db / 20.0); }
 
 // A higher Q delays less, so it is rounded up; the limits themselves stay what they are.
 double rounded_up(double q) {
@@ -121,7 +120,7 @@ BandSearch::Settling BandSearch::soonest() const {
     std::vector<Settling> trials;
     for (int i = 0; i < settling_trials; ++i) {
         const double q =
-            widest_q * std::pow(narrowest_q / widest_q, static_cast<double>(i) / (settling_trials - 1));
+            widest_q * portable::pow(narrowest_q / widest_q, static_cast<double>(i) / (settling_trials - 1));
         const Tuning tuning = *fit_.tune(from_, {q, std::nullopt});
         Cascade cascade;
         for (std::size_t n = 0; n < tuning.q.size(); ++n) {

@@ -6,6 +6,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/transient.hpp"
 
 namespace ripplenotch {
@@ -91,7 +92,7 @@ Left largest_left(std::span<const Biquad> cascade, const TableSpec& spec, const 
             const double gain = std::abs(response(cascade, at, spec.sample_rate));
             left.largest_gain[n] = std::max(left.largest_gain[n], gain);
             if (weighed) {
-                together += std::pow(spec.amplitude_nm[n] * gain, 2) / all;
+                together += portable::pow(spec.amplitude_nm[n] * gain, 2) / all;
             } else {
                 together = std::max(together, gain * gain);
             }
@@ -199,11 +200,11 @@ void measure_band(Band& band, const TableSpec& spec) {
     band.settle_band_percent = spec.settle_band_percent;
     band.overshoot_percent = figures.overshoot_percent;
     const Left left = largest_left(cascade, spec, band);
-    band.held_attenuation_db = -20.0 * std::log10(left.largest_together);
+    band.held_attenuation_db = -20.0 * portable::log10(left.largest_together);
     band.worst_attenuation_db.clear();
     band.predicted_residual_nm.clear();
     for (std::size_t n = 0; n < left.largest_gain.size(); ++n) {
-        band.worst_attenuation_db.push_back(-20.0 * std::log10(left.largest_gain[n]));
+        band.worst_attenuation_db.push_back(-20.0 * portable::log10(left.largest_gain[n]));
         if (spec.amplitude_nm.size() == left.largest_gain.size())
             band.predicted_residual_nm.push_back(spec.amplitude_nm[n] * left.largest_gain[n]);
     }

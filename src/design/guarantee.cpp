@@ -8,6 +8,7 @@
 #include "design/band_search.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -19,7 +20,7 @@ template <class... Args>
 
 std::string plain(double value) { return fmt::format("{:.4g}", value); }
 
-double db_of(double gain) { return -20.0 * std::log10(gain); }
+double db_of(double gain) { return -20.0 * portable::log10(gain); }
 
 void check_goal(const TableSpec& spec, const DesignGoal& goal) {
     if (!goal.min_attenuation_db && !goal.max_delay)
@@ -201,7 +202,8 @@ Band fixed_band(const TableSpec& spec, const DesignGoal& goal, const BandFit& fi
     QRule rule;
     if (goal.min_attenuation_db) {
         const double wanted = *goal.min_attenuation_db;
-        rule.q = highest_q(fit, from.value(), to.value(), std::pow(10.0, -(wanted + rounding_db) / 20.0));
+        rule.q =
+            highest_q(fit, from.value(), to.value(), portable::pow(10.0, -(wanted + rounding_db) / 20.0));
         if (*rule.q == 0.0) {
             const Band widest = band_of(spec, number, from, to,
                                         *fit.balanced(from.value(), to.value(), {widest_q, std::nullopt}));

@@ -6,6 +6,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -33,7 +34,7 @@ void check(const LowPassSpec& spec, Hertz sample_rate) {
 
 Cascade design_low_pass(const LowPassSpec& spec, Hertz sample_rate) {
     check(spec, sample_rate);
-    const double k = std::tan(std::numbers::pi * (spec.cutoff / sample_rate));
+    const double k = portable::tan(std::numbers::pi * (spec.cutoff / sample_rate));
     Cascade cascade;
     if (spec.order % 2 == 1) {
         Biquad f;
@@ -44,7 +45,7 @@ Cascade design_low_pass(const LowPassSpec& spec, Hertz sample_rate) {
     for (int pair = 1; pair <= spec.order / 2; ++pair) {
         // Butterworth poles stand at equal angles on a circle; each pair's damping is twice the cosine of its
         // angle.
-        const double damping = 2.0 * std::sin(std::numbers::pi * (2 * pair - 1) / (2.0 * spec.order));
+        const double damping = 2.0 * portable::sin(std::numbers::pi * (2 * pair - 1) / (2.0 * spec.order));
         const double scale = 1.0 / (1.0 + k * (damping + k));
         Biquad f;
         f.a1 = 2.0 * (k * k - 1.0) * scale;

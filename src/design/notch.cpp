@@ -6,6 +6,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -47,13 +48,13 @@ std::string_view width_rule_name(WidthRule rule) { return rule == WidthRule::ana
 Biquad design_notch(const NotchSpec& spec, Hertz sample_rate) {
     check(spec, sample_rate);
     const double omega = 2.0 * std::numbers::pi * (spec.center / sample_rate);
-    const double c = std::cos(omega);
+    const double c = portable::cos(omega);
     // The two rules differ in one number: how far the poles stand inside the unit circle. sin(omega) / (2 Q)
     // is the bilinear image of the prototype's damping; tan(omega / (2 Q)) makes the sampled -3 dB points
     // exactly center / Q hertz apart.
-    const double alpha =
-        spec.width == WidthRule::analog ? std::sin(omega) / (2.0 * spec.q) : std::tan(omega / (2.0 * spec.q));
-    const double floor_gain = std::pow(10.0, -spec.depth_db / 20.0);  // exactly 0 for infinite_depth_db
+    const double alpha = spec.width == WidthRule::analog ? portable::sin(omega) / (2.0 * spec.q)
+                                                         : portable::tan(omega / (2.0 * spec.q));
+    const double floor_gain = portable::pow(10.0, -spec.depth_db / 20.0);  // exactly 0 for infinite_depth_db
     const double scale = 1.0 / (1.0 + alpha);
     Biquad f;
     f.b0 = (1.0 + floor_gain * alpha) * scale;

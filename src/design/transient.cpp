@@ -9,6 +9,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -61,7 +62,7 @@ class Remainder {
             residue /= &f == &own ? 2.0 * pole + f.a1 : (pole + f.a1) * pole + f.a2;
         }
         const double size = std::abs(residue);
-        modes_.push_back({size, size, std::pow(std::abs(pole), static_cast<double>(samples_a_look))});
+        modes_.push_back({size, size, portable::pow(std::abs(pole), static_cast<double>(samples_a_look))});
     }
 
     std::vector<Mode> modes_;
@@ -75,8 +76,8 @@ std::size_t samples_to_settle(std::span<const Biquad> cascade, double remainder)
     // What is left after n samples is at most about (n / tau)^(order - 1) / (order - 1)! * exp(-n / tau).
     // Three more time constants per order make up for the polynomial, twenty for unfavourable residues.
     const double orders = 2.0 * static_cast<double>(cascade.size());
-    const double time_constants = 20.0 - std::log(remainder) + 3.0 * orders;
-    const double count = radius < 1e-3 ? 0.0 : time_constants / -std::log(radius);
+    const double time_constants = 20.0 - portable::log(remainder) + 3.0 * orders;
+    const double count = radius < 1e-3 ? 0.0 : time_constants / -portable::log(radius);
     if (!(count < longest_run)) {
         raise<UsageError>(
             "the filter needs {:.3g} samples to settle, too many to measure (limit {:.3g}); its Q is "

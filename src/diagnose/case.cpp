@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 
 namespace ripplenotch {
@@ -72,9 +74,7 @@ void leave_out_kinks(Case& whole, Seconds smoothing) {
         most = std::max(most, std::abs(whole.motion.acceleration_deg_s2[k]));
     }
     std::vector<double> sorted = sizes;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    const double kink = std::max(kink_deviations * 1.4826 * *middle, kink_part * most);
+    const double kink = std::max(kink_deviations * 1.4826 * median_in(sorted), kink_part * most);
     const auto reach = static_cast<std::size_t>(0.5 * smoothing.value() * whole.motion.sample_rate.value());
     for (std::size_t k = 0; k < whole.size(); ++k) {
         if (sizes[k] <= kink) continue;
@@ -179,7 +179,7 @@ std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model) {
                       looked_at.walk_deg * std::sqrt(duration_s) * std::numbers::sqrt2 / quarter_turns};
         for (std::size_t k = 0; k < time_s.size(); ++k) {
             walk.torque_nm[k] = (up[k] - down[k]) / (2.0 * shift_deg) *
-                                std::sin(quarter_turns * (time_s[k] - time_s.front()) / duration_s);
+                                portable::sin(quarter_turns * (time_s[k] - time_s.front()) / duration_s);
         }
         errors.push_back(std::move(walk));
     }

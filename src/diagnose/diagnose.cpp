@@ -15,6 +15,7 @@
 #include "diagnose/undecidable.hpp"
 #include "diagnose/values.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
@@ -142,7 +143,7 @@ void measure_at_samples(std::vector<Leftover>& nameless, const Case& c, const Mo
         for (const Span& span : leftover.where.time_s) {
             const auto first = std::lower_bound(c.motion.time_s.begin(), c.motion.time_s.end(), span.from);
             for (auto at = first; at != c.motion.time_s.end() && *at <= span.to; ++at, count += 1.0)
-                sum += std::pow(left[static_cast<std::size_t>(at - c.motion.time_s.begin())], 2);
+                sum += portable::pow(left[static_cast<std::size_t>(at - c.motion.time_s.begin())], 2);
         }
         leftover.rms_nm = std::sqrt(sum / std::max(count, 1.0));
         leftover.part = sum / std::max(all, 1e-300);

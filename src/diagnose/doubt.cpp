@@ -12,6 +12,7 @@
 #include "diagnose/evenness.hpp"
 #include "diagnose/leftover.hpp"
 #include "diagnose/search.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -116,7 +117,7 @@ void doubt_alone(Finding& finding, const Bench& bench, const Candidate& model, s
 
 double excess_of(const Bench& bench, const Model& stated) {
     const double left_nm = rms(bench.cleared_residual(stated));
-    return std::sqrt(std::max(left_nm * left_nm - std::pow(bench.noise().rms_nm, 2), 0.0));
+    return std::sqrt(std::max(left_nm * left_nm - portable::pow(bench.noise().rms_nm, 2), 0.0));
 }
 
 void doubt_for_leftovers(Finding& finding, double excess_nm, const Bench& bench,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
@@ -36,7 +37,7 @@ Torques torques_of(const Bench& bench, const Model& stated, std::size_t term) {
     for (const std::size_t k : bench.rows()) torques.finding_nm.push_back(added[k]);
     const auto [low, high] = std::minmax_element(added.begin(), added.end());
     torques.changes = *high - *low > 1e-6 * std::max(std::abs(*low), std::abs(*high));
-    torques.variance_nm2 = std::pow(bench.noise().rms_nm, 2) * bench.noise().of_sums();
+    torques.variance_nm2 = portable::pow(bench.noise().rms_nm, 2) * bench.noise().of_sums();
     return torques;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "diagnose/spikes.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -168,7 +169,7 @@ class Detector {
         const double often = std::clamp(
             static_cast<double>(equal) / static_cast<double>(std::max<std::size_t>(moving, 1)), 1e-3, 0.95);
         const auto run = static_cast<std::size_t>(
-            std::ceil(std::log(chance_run / static_cast<double>(n)) / std::log(often)));
+            std::ceil(portable::log(chance_run / static_cast<double>(n)) / portable::log(often)));
         // On whole steps a slow torque stays on one: what is held must be long against that.
         return std::max<std::size_t>(run, step_nm_ > 0.0 ? 30 : 4);
     }

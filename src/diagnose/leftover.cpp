@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <numeric>
 
 #include "diagnose/lines.hpp"
 #include "diagnose/search.hpp"
+#include "ripplenotch/core/phasor.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -143,7 +145,8 @@ class Residual {
         double cc = 0.0, cs = 0.0, ss = 0.0, cy = 0.0, sy = 0.0;
         const auto waves = [&](std::size_t k) {
             const double angle = 2.0 * std::numbers::pi * line.frequency * where[k];
-            return std::pair(std::cos(angle), std::sin(angle));
+            const std::complex<double> phasor = portable::phasor(angle);
+            return std::pair(phasor.real(), phasor.imag());
         };
         for (const std::size_t k : bench_.rows()) {
             const auto [c, s] = waves(k);

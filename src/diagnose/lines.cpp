@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -99,7 +100,7 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t first, double l
     for (std::size_t k = std::max<std::size_t>(first, 1); k + 1 < spectrum.power.size(); ++k) {
         if (spectrum.power[k] < spectrum.power[k - 1] || spectrum.power[k] < spectrum.power[k + 1]) continue;
         // ln 2 of the mean is the median of exponentially distributed power.
-        const double prominence = spectrum.power[k] / floor[k] * std::log(2.0);
+        const double prominence = spectrum.power[k] / floor[k] * portable::log(2.0);
         if (prominence >= least) peaks.push_back({k, prominence});
     }
     std::sort(peaks.begin(), peaks.end(),
@@ -164,8 +165,12 @@ RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& 
     const Spectrum spectrum = spectrum_of(samples, 2.6 * about * highest_order / 360.0);
     // The finest order decides how closely ratios are compared.
     const double step = 0.5 * spectrum.spacing * 360.0 / highest_order;
-    const auto first = static_cast<std::size_t>(0.4 * about / step);
-    const auto last = static_cast<std::size_t>(2.5 * about / step);
+    // Beyond the spectrum there is nothing to score, however far a clock that is wrong says that the joint
+    // turned.
+    const double finest = 2.0 * static_cast<double>(spectrum.power.size()) * highest_order /
+                          *std::min_element(orders.begin(), orders.end());
+    const auto first = static_cast<std::size_t>(std::min(0.4 * about / step, finest));
+    const auto last = static_cast<std::size_t>(std::min(2.5 * about / step, finest));
     std::vector<double> score(last + 1, 0.0);
     for (std::size_t r = first; r <= last; ++r) {
         for (const double order : orders) {

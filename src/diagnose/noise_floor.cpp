@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose/noise_floor.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
 #include "diagnose/lines.hpp"
 #include "model/fit_coordinates.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
@@ -53,8 +54,8 @@ double spline(double x, double low, double high, int i, int n) {
 
 template <class Function>
 void add_wave(Columns& columns, const Function& turns_at, const std::function<double(std::size_t)>& size) {
-    columns.add([&](std::size_t k) { return size(k) * std::cos(2.0 * std::numbers::pi * turns_at(k)); });
-    columns.add([&](std::size_t k) { return size(k) * std::sin(2.0 * std::numbers::pi * turns_at(k)); });
+    columns.add([&](std::size_t k) { return size(k) * portable::cos(2.0 * std::numbers::pi * turns_at(k)); });
+    columns.add([&](std::size_t k) { return size(k) * portable::sin(2.0 * std::numbers::pi * turns_at(k)); });
 }
 
 // Ripple of the model and of its neighbourhood, each swelling with whatever the motion shows.
@@ -73,10 +74,10 @@ void add_ripple(Columns& columns, const Case& c, double ratio, const std::vector
         [&](std::size_t k) { return std::abs(m.velocity_deg_s[k]); },
         [&](std::size_t k) { return m.velocity_deg_s[k]; },
         [&](std::size_t k) { return m.velocity_deg_s[k] * m.velocity_deg_s[k]; },
-        [&](std::size_t k) { return std::tanh(m.velocity_deg_s[k] / 0.2); },
+        [&](std::size_t k) { return portable::tanh(m.velocity_deg_s[k] / 0.2); },
         [&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); },
         [&](std::size_t k) { return (m.time_s[k] - middle_s) / half_s; },
-        [&](std::size_t k) { return std::pow((m.time_s[k] - middle_s) / half_s, 2); },
+        [&](std::size_t k) { return portable::pow((m.time_s[k] - middle_s) / half_s, 2); },
         [&](std::size_t k) { return m.position_deg[k]; }};
     for (const double order : orders) {
         const auto turns = [&](std::size_t k) { return order * ratio * m.position_deg[k] / 360.0; };
@@ -112,9 +113,9 @@ void add_smooth(Columns& columns, const Case& c) {
             [&](std::size_t k) { return spline(m.time_s[k], m.time_s.front(), m.time_s.back(), i, 22); });
     columns.add([&](std::size_t k) { return m.acceleration_deg_s2[k]; });
     columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); });
-    columns.add([&](std::size_t k) { return std::tanh(m.velocity_deg_s[k] / 0.2); });
+    columns.add([&](std::size_t k) { return portable::tanh(m.velocity_deg_s[k] / 0.2); });
     columns.add([&](std::size_t k) {
-        return std::abs(m.acceleration_deg_s2[k]) * std::tanh(m.velocity_deg_s[k] / 0.2);
+        return std::abs(m.acceleration_deg_s2[k]) * portable::tanh(m.velocity_deg_s[k] / 0.2);
     });
 }
 
@@ -149,7 +150,7 @@ VectorXd left_by(const Columns& columns, const Case& c, const std::vector<double
 void color_of(const std::vector<double>& covariance, double samples, NoiseFloor& floor) {
     std::vector<double> a;  // e(k) = sum a[i] e(k-1-i) + white
     double variance = covariance[0];
-    double best = samples * std::log(variance);
+    double best = samples * portable::log(variance);
     floor.color.clear();
     floor.white_nm = std::sqrt(variance);
     for (std::size_t p = 1; p < covariance.size(); ++p) {
@@ -162,7 +163,7 @@ void color_of(const std::vector<double>& covariance, double samples, NoiseFloor&
         next.push_back(reflection);
         a = next;
         variance *= 1.0 - reflection * reflection;
-        const double score = samples * std::log(variance) + 6.0 * static_cast<double>(p);
+        const double score = samples * portable::log(variance) + 6.0 * static_cast<double>(p);
         if (score < best) {
             best = score;
             floor.color = a;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose/screening.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "core/linear_algebra.hpp"
 #include "diagnose/search_starts.hpp"
 #include "model/fit_coordinates.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
@@ -88,8 +89,8 @@ class Screening {
             if (is_there_already(start, model_)) continue;
             Trial trial = opened(start);
             const double values = static_cast<double>(free_values(trial.open));
-            trial.price = values * std::log(samples_) + 2.0 * std::log(cells) +
-                          2.0 * std::log(static_cast<double>(effects) / false_alarm);
+            trial.price = values * portable::log(samples_) + 2.0 * portable::log(cells) +
+                          2.0 * portable::log(static_cast<double>(effects) / false_alarm);
             trial.gain = gain_of(start) * unit_;
             if (trial.gain > 0.0 && (!best || trial.score() > best->score())) best = trial;
         }

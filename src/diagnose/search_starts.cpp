@@ -23,8 +23,9 @@ double value_for_ratio(const Effect& effect, std::size_t p, const Hints& hints, 
 std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hints, double samples,
                           double& cells) {
     const Parameter& parameter = effect.parameters[p];
-    std::vector<double> values(parameter.tried.begin(), parameter.tried.end());
-    if (values.empty() && parameter.hint != Hint::tones) values.push_back(parameter.start);
+    std::vector<double> values;
+    if (parameter.tried.empty() && parameter.hint != Hint::tones) values.push_back(parameter.start);
+    values.insert(values.end(), parameter.tried.begin(), parameter.tried.end());
     cells *= static_cast<double>(std::max<std::size_t>(values.size(), 1));
     if (parameter.hint == Hint::ripple_orders && hints.orders.size() > 1) {
         values.insert(values.end(), hints.orders.begin(), hints.orders.end());

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ripplenotch/core/median.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -77,7 +79,7 @@ class Outliers {
             std::vector<double> part;
             for (std::size_t k = first; k < std::min(first + block, off.size()); ++k)
                 if (case_.use[k] != 0) part.push_back(std::abs(off[k]));
-            blocks.push_back(1.4826 * median(part));
+            blocks.push_back(1.4826 * median_of(part));
         }
         std::vector<double> typical(off.size());
         for (std::size_t k = 0; k < off.size(); ++k) {
@@ -95,13 +97,6 @@ class Outliers {
 };
 
 }  // namespace
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::vector<Spike> find_spikes(const Case& looked_at, double least_nm) {
     const Outliers outliers(looked_at, least_nm);

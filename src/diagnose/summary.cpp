@@ -8,6 +8,7 @@
 
 #include "diagnose/judge.hpp"
 #include "diagnose/search.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -21,9 +22,9 @@ double residual_rms(const Case& c, const Model& stated, const std::vector<unsign
 // Part of the squared gap above the floor that is gone, of samples that no fault spoiled. Empty when there
 // was no gap to speak of.
 std::optional<double> closed_percent(const Case& c, const Diagnosis& diagnosis) {
-    const double floor = std::pow(diagnosis.gap.noise_floor_nm, 2);
-    const double before = std::pow(residual_rms(c, diagnosis.baseline, c.use), 2) - floor;
-    const double after = std::pow(residual_rms(c, diagnosis.model, c.use), 2) - floor;
+    const double floor = portable::pow(diagnosis.gap.noise_floor_nm, 2);
+    const double before = portable::pow(residual_rms(c, diagnosis.baseline, c.use), 2) - floor;
+    const double after = portable::pow(residual_rms(c, diagnosis.model, c.use), 2) - floor;
     if (before < 0.02 * floor) return std::nullopt;
     const double closed = 100.0 * (1.0 - std::max(after, 0.0) / before);
     return std::abs(closed) < 1e-3 ? 0.0 : closed;  // the same model, fitted anew

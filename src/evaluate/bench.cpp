@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/evaluate/bench.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+#include "core/linear_algebra.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -66,12 +67,12 @@ double sine_amplitude(std::span<const double> y, std::size_t from, double omega)
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (std::size_t k = from; k < y.size(); ++k) {
         const double phase = omega * static_cast<double>(k);
-        const Eigen::Vector3d row(std::cos(phase), std::sin(phase), 1.0);
+        const Eigen::Vector3d row(portable::cos(phase), portable::sin(phase), 1.0);
         normal += row * row.transpose();
         right += row * y[k];
     }
     const Eigen::Vector3d fit = normal.ldlt().solve(right);
-    return std::hypot(fit[0], fit[1]);
+    return portable::hypot(fit[0], fit[1]);
 }
 
 }  // namespace
@@ -132,19 +133,19 @@ Seconds Bench::ramp_delay(double slope_nm_s) const {
 std::optional<double> Bench::attenuation_db(Hertz at) const {
     if (!(at.value() > 0.0) || !(at < 0.5 * sample_rate_)) return std::nullopt;
     const double omega = 2.0 * std::numbers::pi * (at / sample_rate_);
-    const auto signal = [omega](std::size_t k) { return std::sin(omega * static_cast<double>(k)); };
+    const auto signal = [omega](std::size_t k) { return portable::sin(omega * static_cast<double>(k)); };
     Run run(contender_, sample_rate_, speed_);
     // Three quarters of a run to settle, one to measure; it must hold a few periods to tell the sine from a
     // constant.
     const auto periods = static_cast<std::size_t>(std::min(16.0 * (sample_rate_ / at), 1e7));
     std::size_t count = std::max(first_length(sample_rate_), periods);
     double before = std::numeric_limits<double>::infinity();
-    const double least = std::pow(10.0, -most_attenuation_db / 20.0);
+    const double least = portable::pow(10.0, -most_attenuation_db / 20.0);
     while (true) {
         run.extend(count, signal);
         const double now = sine_amplitude(run.out(), count - count / 4, omega);
         if (now < least) return most_attenuation_db;
-        if (std::abs(now - before) <= 1e-6 * now + 0.1 * least) return -20.0 * std::log10(now);
+        if (std::abs(now - before) <= 1e-6 * now + 0.1 * least) return -20.0 * portable::log10(now);
         before = now;
         count *= 2;
     }

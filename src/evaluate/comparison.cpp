@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/ripple_meter.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
 
 namespace ripplenotch {
@@ -35,7 +37,7 @@ void fill_levels(MethodFigures& figures, const RippleLevels& levels, std::size_t
         const double before = level.amplitude_nm[0], after = level.amplitude_nm[signal];
         OrderAttenuation entry{level.order, level.mean_hz, std::nullopt};
         if (before > 0.0) {
-            entry.db = after > 0.0 ? std::min(20.0 * std::log10(before / after), most_attenuation_db)
+            entry.db = after > 0.0 ? std::min(20.0 * portable::log10(before / after), most_attenuation_db)
                                    : most_attenuation_db;
         }
         figures.attenuation.push_back(entry);
@@ -67,21 +69,21 @@ void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView
     for (std::size_t k = 0; k < block.size(); ++k) {
         signals[0] = block.torque_nm[k];
         for (std::size_t i = 0; i < runners.size(); ++i) signals[i + 1] = runners[i].out[k];
-        meter.add(block.velocity_deg_s[k], block.has_position() ? &block.position_deg[k] : nullptr, signals);
+        meter.add(Seconds(block.time_s[k]), block.velocity_deg_s[k],
+                  block.has_position() ? &block.position_deg[k] : nullptr, signals);
     }
 }
 
-// The stretches between gaps, in blocks; `at_gap` after each gap.
+// The runs of the log, in blocks; `at_gap` between them.
 template <class Block, class Gap>
-void for_each_block(const ComparedLog& log, const Block& block, const Gap& at_gap) {
-    std::size_t at = 0, gap = 0;
-    while (at < log.trace.size()) {
-        std::size_t end = std::min(at + block_rows, log.trace.size());
-        const bool gap_ahead = gap < log.gap_rows.size() && log.gap_rows[gap] < end;
-        if (gap_ahead) end = log.gap_rows[gap] + 1;
-        block(log.trace.part(at, end - at));
-        if (gap_ahead) {
-            ++gap;
+void for_each_block(const TraceView& trace, const Block& block, const Gap& at_gap) {
+    auto run = trace.run_starts.begin();
+    for (std::size_t at = 0; at < trace.size();) {
+        std::size_t end = std::min(at + block_rows, trace.size());
+        if (run != trace.run_starts.end()) end = std::min(end, *run);
+        block(trace.part(at, end - at));
+        if (run != trace.run_starts.end() && *run == end) {
+            ++run;
             at_gap();
         }
         at = end;
@@ -94,7 +96,7 @@ std::unique_ptr<CausalFilter> filter_for(const Contender& contender, const Compa
     if (learner == nullptr) return contender.start(log.trace.sample_rate);
     std::vector<double> passed;
     for_each_block(
-        log,
+        log.trace,
         [&](const TraceView& block) {
             passed.resize(block.size());
             learner->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, passed);
@@ -107,7 +109,7 @@ std::unique_ptr<CausalFilter> filter_for(const Contender& contender, const Compa
 
 MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, DegPerSec speed,
                                  std::optional<double> step_nm, std::optional<double> ramp_nm_s,
-                                 const RippleLines* lines) {
+                                 const GearAccount* lines) {
     MethodFigures figures;
     figures.method = contender.text;
     const Bench bench(contender, sample_rate, speed);
@@ -125,7 +127,7 @@ MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, 
     }
     if (lines != nullptr) {
         for (const Order order : lines->orders) {
-            const Hertz at = ripple_frequency(order, lines->gear_ratio, speed);
+            const Hertz at = ripple_frequency(order, lines->ratio, speed);
             figures.attenuation.push_back({order.value(), at.value(), bench.attenuation_db(at)});
         }
     }
@@ -140,22 +142,20 @@ DegPerSec median_moving_speed(const TraceView& trace) {
         if (std::abs(v) > fastest / 20.0) moving.push_back(std::abs(v));
     }
     if (moving.empty()) return DegPerSec(0.0);
-    const auto middle = moving.begin() + static_cast<std::ptrdiff_t>(moving.size() / 2);
-    std::nth_element(moving.begin(), middle, moving.end());
-    return DegPerSec(*middle);
+    return DegPerSec(median_in(moving));
 }
 
 LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
-                         const RippleLines& lines) {
+                         const GearAccount& lines) {
     std::vector<Runner> runners;
     for (const Contender& contender : contenders) {
         runners.push_back({filter_for(contender, log), {}});
         if (contender.method->needs_table) runners.back().ledger.emplace(log.truth_nm);
     }
-    RippleMeter meter(lines.gear_ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);
+    RippleMeter meter(lines.ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);
     std::size_t done = 0;
     for_each_block(
-        log,
+        log.trace,
         [&](const TraceView& block) {
             const auto truth = log.truth_nm.empty() ? log.truth_nm : log.truth_nm.subspan(done, block.size());
             run_block(runners, meter, block, truth);

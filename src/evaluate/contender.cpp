@@ -18,6 +18,12 @@ std::optional<FrozenFilter> Contender::frozen(Hertz sample_rate, DegPerSec speed
     return method->frozen(settings, sample_rate, table.get(), speed);
 }
 
+std::optional<GearRatio> Contender::made_for() const {
+    if (settings.has("gear-ratio")) return GearRatio(settings.number("gear-ratio"));
+    if (table != nullptr) return table->spec().gear_ratio;
+    return std::nullopt;
+}
+
 Contender make_contender(const Spec& spec, std::shared_ptr<const CandidateTable> table) {
     const Method& method = find_method(spec.name);
     return {spec.text(), &method, Settings(fmt::format("method {}", spec.name), spec, method.keys),

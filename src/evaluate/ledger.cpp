@@ -7,6 +7,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -69,10 +70,10 @@ CrossoverFigures at_crossover(std::span<const Biquad> cascade, Hertz at, Hertz s
     CrossoverFigures figures;
     for (const Biquad& section : cascade) {
         const auto gain = response(section, at, sample_rate);
-        figures.phase_lag_deg -= degrees_per_radian * std::arg(gain);
+        figures.phase_lag_deg -= degrees_per_radian * portable::arg(gain);
         // A complete null has no gain in dB; what counts is that nothing is left.
         figures.gain_db +=
-            std::max(20.0 * std::log10(std::max(std::abs(gain), 1e-300)), -most_attenuation_db);
+            std::max(20.0 * portable::log10(std::max(std::abs(gain), 1e-300)), -most_attenuation_db);
     }
     figures.gain_db = std::max(figures.gain_db, -most_attenuation_db);
     return figures;
@@ -105,7 +106,7 @@ LongestDelay longest_delay(const Contender& contender, Hertz sample_rate, DegPer
     LongestDelay longest{Seconds(0.0), fastest, ""};
     for (int i = 0; i < speeds_looked_at; ++i) {
         const double share = static_cast<double>(i) / (speeds_looked_at - 1);
-        const double speed = high > 0.0 ? low * std::pow(high / low, share) : 0.0;
+        const double speed = high > 0.0 ? low * portable::pow(high / low, share) : 0.0;
         const auto frozen = contender.frozen(sample_rate, DegPerSec(speed));
         if (!frozen) continue;
         const Seconds delay = group_delay(frozen->cascade, Hertz(0.0), sample_rate);

@@ -7,6 +7,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/low_pass.hpp"
 
 namespace ripplenotch {
@@ -20,7 +21,7 @@ struct Bracket {
     double low_hz, high_hz;
 };
 
-std::string order_list(const RippleLines& lines) {
+std::string order_list(const GearAccount& lines) {
     std::string text = lines.orders.size() == 1 ? "order " : "orders ";
     for (std::size_t i = 0; i < lines.orders.size(); ++i) {
         if (i > 0) text += i + 1 == lines.orders.size() ? " and " : ", ";
@@ -43,11 +44,11 @@ std::optional<Bracket> tighter(const std::vector<double>& cutoffs_hz, const LogL
 
 }  // namespace
 
-std::optional<double> ripple_gain(std::span<const Biquad> cascade, const RippleLines& lines,
+std::optional<double> ripple_gain(std::span<const Biquad> cascade, const GearAccount& lines,
                                   Hertz sample_rate, DegPerSec speed) {
     double before = 0.0, after = 0.0;
     for (std::size_t i = 0; i < lines.orders.size(); ++i) {
-        const Hertz at = ripple_frequency(lines.orders[i], lines.gear_ratio, speed);
+        const Hertz at = ripple_frequency(lines.orders[i], lines.ratio, speed);
         if (!(at.value() > 0.0) || !(at < 0.5 * sample_rate)) continue;
         const double amplitude = lines.amplitude_nm.empty() ? 1.0 : lines.amplitude_nm[i];
         before += amplitude * amplitude;
@@ -57,7 +58,7 @@ std::optional<double> ripple_gain(std::span<const Biquad> cascade, const RippleL
     return std::sqrt(after / before);
 }
 
-std::optional<Hertz> cutoff_for_gain(double gain, int order, const RippleLines& lines, Hertz sample_rate,
+std::optional<Hertz> cutoff_for_gain(double gain, int order, const GearAccount& lines, Hertz sample_rate,
                                      DegPerSec speed) {
     const auto gain_at = [&](double cutoff) {
         const auto left = ripple_gain(design_low_pass({cutoff * sample_rate, order}, sample_rate), lines,
@@ -67,17 +68,17 @@ std::optional<Hertz> cutoff_for_gain(double gain, int order, const RippleLines& 
                               0.5 * sample_rate.value());
         return *left;
     };
-    double low = std::log(lowest_cutoff), high = std::log(highest_cutoff);
-    if (!(gain_at(std::exp(low)) <= gain && gain <= gain_at(std::exp(high)))) return std::nullopt;
+    double low = portable::log(lowest_cutoff), high = portable::log(highest_cutoff);
+    if (!(gain_at(portable::exp(low)) <= gain && gain <= gain_at(portable::exp(high)))) return std::nullopt;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        (gain_at(std::exp(middle)) <= gain ? low : high) = middle;
+        (gain_at(portable::exp(middle)) <= gain ? low : high) = middle;
     }
-    return Hertz(std::exp(0.5 * (low + high)) * sample_rate.value());
+    return Hertz(portable::exp(0.5 * (low + high)) * sample_rate.value());
 }
 
 std::optional<Hertz> cutoff_for_ripple(double ripple_rms_nm, int order, const ComparedLog& log,
-                                       const RippleLines& lines) {
+                                       const GearAccount& lines) {
     const double rate_hz = log.trace.sample_rate.value();
     Bracket bracket{lowest_cutoff * rate_hz, highest_cutoff * rate_hz};
     // A pass over the log costs about the same for many filters as for one, so each pass cuts the bracket
@@ -87,7 +88,7 @@ std::optional<Hertz> cutoff_for_ripple(double ripple_rms_nm, int order, const Co
         std::vector<Contender> contenders;
         for (std::size_t i = 0; i <= cutoffs_a_pass; ++i) {
             const double share = static_cast<double>(i) / static_cast<double>(cutoffs_a_pass);
-            cutoffs_hz.push_back(bracket.low_hz * std::pow(bracket.high_hz / bracket.low_hz, share));
+            cutoffs_hz.push_back(bracket.low_hz * portable::pow(bracket.high_hz / bracket.low_hz, share));
             const Spec spec{
                 "lowpass",
                 {{"cutoff", fmt::format("{:.17g}Hz", cutoffs_hz.back())}, {"order", std::to_string(order)}}};
@@ -107,19 +108,19 @@ Spec low_pass_spec(Hertz cutoff, int order) {
             {{"cutoff", fmt::format("{:.7g}Hz", cutoff.value())}, {"order", std::to_string(order)}}};
 }
 
-std::optional<double> combined_gain(const MethodFigures& figures, const RippleLines& lines) {
+std::optional<double> combined_gain(const MethodFigures& figures, const GearAccount& lines) {
     double before = 0.0, after = 0.0;
     for (std::size_t i = 0; i < figures.attenuation.size(); ++i) {
         if (!figures.attenuation[i].db) continue;
         const double amplitude = lines.amplitude_nm.empty() ? 1.0 : lines.amplitude_nm[i];
         before += amplitude * amplitude;
-        after += amplitude * amplitude * std::pow(10.0, -*figures.attenuation[i].db / 10.0);
+        after += amplitude * amplitude * portable::pow(10.0, -*figures.attenuation[i].db / 10.0);
     }
     if (!(before > 0.0)) return std::nullopt;
     return std::sqrt(after / before);
 }
 
-LowPassMatch match_at_speed(const std::string& subject, double gain, int order, const RippleLines& lines,
+LowPassMatch match_at_speed(const std::string& subject, double gain, int order, const GearAccount& lines,
                             Hertz sample_rate, DegPerSec speed) {
     LowPassMatch match{subject, std::nullopt, "", order, std::nullopt, std::nullopt, std::nullopt};
     if (gain < complete_null_gain) {
@@ -129,7 +130,7 @@ LowPassMatch match_at_speed(const std::string& subject, double gain, int order, 
             subject, speed.value());
         return match;
     }
-    match.attenuation_db = -20.0 * std::log10(gain);
+    match.attenuation_db = -20.0 * portable::log10(gain);
     match.cutoff = cutoff_for_gain(gain, order, lines, sample_rate, speed);
     if (!match.cutoff) {
         match.clause = fmt::format(
@@ -147,7 +148,7 @@ LowPassMatch match_at_speed(const std::string& subject, double gain, int order, 
 }
 
 LowPassMatch match_on_log(const std::string& subject, double ripple_rms_nm, int order, const ComparedLog& log,
-                          const RippleLines& lines) {
+                          const GearAccount& lines) {
     LowPassMatch match{subject, std::nullopt, "", order, std::nullopt, ripple_rms_nm, std::nullopt};
     match.cutoff = cutoff_for_ripple(ripple_rms_nm, order, log, lines);
     if (!match.cutoff) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "export/structure.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -48,12 +49,13 @@ SvfSection svf_of(const ExportSection& section, Hertz sample_rate) {
     if (section.notch) {
         const NotchSpec& notch = *section.notch;
         const double half = std::numbers::pi * (notch.center / sample_rate);
-        g = std::tan(half);
+        g = portable::tan(half);
         // The digital rule has another damping in the same prototype: alpha = tan(W/(2Q)) instead of
         // sin(W)/(2Q).
-        k = notch.width == WidthRule::analog ? 1.0 / notch.q
-                                             : 2.0 * std::tan(half / notch.q) / std::sin(2.0 * half);
-        const double gain = notch.depth_db >= 6000.0 ? 0.0 : std::pow(10.0, -notch.depth_db / 20.0);
+        k = notch.width == WidthRule::analog
+                ? 1.0 / notch.q
+                : 2.0 * portable::tan(half / notch.q) / portable::sin(2.0 * half);
+        const double gain = notch.depth_db >= 6000.0 ? 0.0 : portable::pow(10.0, -notch.depth_db / 20.0);
         svf.m1 = -(1.0 - gain) * k;
     } else {
         const double at_half_rate = 1.0 - f.a1 + f.a2;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 // of the denominator at 0 Hz to that at half the sample rate.
 Hertz natural_frequency(const Biquad& f, Hertz sample_rate) {
     const double g = std::sqrt((1.0 + f.a1 + f.a2) / (1.0 - f.a1 + f.a2));
-    return sample_rate * (std::atan(g) / std::numbers::pi);
+    return sample_rate * (portable::atan(g) / std::numbers::pi);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 
@@ -18,8 +19,8 @@ double cutoff_from_q(double center_hz, double q) {
 }
 
 double q_from_bandwidth(double center_hz, double bandwidth_hz) {
-    const double octaves = 2.0 * std::log2(center_hz / (center_hz - bandwidth_hz / 2.0));
-    return std::sqrt(std::exp2(octaves)) / (std::exp2(octaves) - 1.0);
+    const double octaves = 2.0 * portable::log2(center_hz / (center_hz - bandwidth_hz / 2.0));
+    return std::sqrt(portable::exp2(octaves)) / (portable::exp2(octaves) - 1.0);
 }
 
 double bandwidth_from_q(double center_hz, double q) {
@@ -52,7 +53,8 @@ SharedShape shared_shape(const FilterSet& filters, std::string_view target) {
             }
         }
     }
-    return {first->q, first->depth_db >= infinite_depth_db ? 0.0 : std::pow(10.0, -first->depth_db / 20.0)};
+    return {first->q,
+            first->depth_db >= infinite_depth_db ? 0.0 : portable::pow(10.0, -first->depth_db / 20.0)};
 }
 
 std::vector<int> whole_orders(const FilterSet& filters, int highest, std::string_view target) {

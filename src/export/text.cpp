@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
+#include <cmath>
+#include <cstdint>
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -23,8 +26,22 @@ std::string decimal(double value) { return with_point(shortest(value)); }
 std::string decimal_float(double value) {
     return with_point(fmt::format("{:.9g}", static_cast<float>(value))) + "f";
 }
-std::string hexadecimal(double value) { return fmt::format("{:a}", value); }
-std::string hexadecimal_float(double value) { return fmt::format("{:a}f", static_cast<float>(value)); }
+
+// printf's %a, by our own hand: fmt's form of it depends on its version, and 10 writes 0 as 0x0p-1022.
+std::string hexadecimal(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    const std::uint64_t fraction = bits & 0xF'FFFF'FFFF'FFFFU;
+    const int exponent = static_cast<int>(bits >> 52U & 0x7FFU);
+    const bool normal = exponent != 0;
+    const int power = normal ? exponent - 1023 : fraction == 0 ? 0 : -1022;
+    std::string digits = fmt::format(".{:013x}", fraction);
+    digits.erase(digits.find_last_not_of("0.") + 1);
+    return fmt::format("{}0x{:d}{}p{:+d}", std::signbit(value) ? "-" : "", normal, digits, power);
+}
+
+std::string hexadecimal_float(double value) {
+    return hexadecimal(static_cast<double>(static_cast<float>(value))) + "f";
+}
 
 std::string describe(const ExportSection& section) {
     if (!section.notch) return fmt::format("low-pass section at {:.6g} Hz", section.center.value());

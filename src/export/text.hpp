@@ -14,7 +14,7 @@ namespace ripplenotch {
 [[nodiscard]] std::string decimal(double value);
 /// Nine significant digits, enough for any float, and the f that keeps C from making it a double.
 [[nodiscard]] std::string decimal_float(double value);
-/// C99 hexadecimal literals: exact, whoever reads them.
+/// C99 hexadecimal literals of finite numbers: exact, whoever reads them.
 [[nodiscard]] std::string hexadecimal(double value);
 [[nodiscard]] std::string hexadecimal_float(double value);
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/export/verify.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/transient.hpp"
 
 namespace ripplenotch {
@@ -19,7 +20,7 @@ constexpr std::size_t longest_run = 4'000'000;  // samples; slower sections are 
 constexpr std::size_t shortest_window = 4096;
 constexpr double periods_in_window = 8.0;
 
-double as_db(double gain) { return 20.0 * std::log10(gain); }
+double as_db(double gain) { return 20.0 * portable::log10(gain); }
 
 double depth_of(double gain) {
     return gain > 0.0 ? std::min(-as_db(gain), deepest_measured_db) : deepest_measured_db;
@@ -50,18 +51,18 @@ std::optional<RunFigures> run(const LoadedSection& section, Hertz frequency, Her
     std::vector<double> in(settling + window), out(in.size());
     const double step = 2.0 * std::numbers::pi * (frequency / sample_rate);
     for (std::size_t k = 0; k < in.size(); ++k)
-        in[k] = verify_load_nm + std::sin(step * static_cast<double>(k));
+        in[k] = verify_load_nm + portable::sin(step * static_cast<double>(k));
     run_section(section, in, out);
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (std::size_t k = settling; k < in.size(); ++k) {
         const double angle = step * static_cast<double>(k);
-        const Eigen::Vector3d row(1.0, std::cos(angle), std::sin(angle));
+        const Eigen::Vector3d row(1.0, portable::cos(angle), portable::sin(angle));
         normal += row * row.transpose();
         right += row * (out[k] - verify_load_nm);
     }
     const Eigen::Vector3d fit = normal.ldlt().solve(right);
-    return RunFigures{fit[0], std::hypot(fit[1], fit[2])};
+    return RunFigures{fit[0], portable::hypot(fit[1], fit[2])};
 }
 
 std::string label(const SectionCheck& check) {
@@ -79,7 +80,7 @@ SectionCheck check_response(const Biquad& f, const ExportSection& designed, Hert
     const double poles = warped_square(1.0, f.a1, f.a2);
     const double roots = check.is_notch ? warped_square(f.b0, f.b1, f.b2) : poles;
     if (roots > 0.0 && std::isfinite(roots)) {
-        const Hertz center = sample_rate * (std::atan(std::sqrt(roots)) / std::numbers::pi);
+        const Hertz center = sample_rate * (portable::atan(std::sqrt(roots)) / std::numbers::pi);
         check.shift_percent = 100.0 * (center / designed.center - 1.0);
     }
     check.q = poles > 0.0 ? std::sqrt(poles) * (1.0 - f.a1 + f.a2) / (2.0 * (1.0 - f.a2)) : 0.0;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -32,7 +34,7 @@ class Span {
         if (!(low_ <= high_)) {
             range = scale_ == PlotScale::logarithmic ? PlotRange{0.1, 1.0} : PlotRange{0.0, 1.0};
         } else if (scale_ == PlotScale::logarithmic) {
-            const double factor = high_ > low_ ? std::pow(high_ / low_, widen) : 2.0;
+            const double factor = high_ > low_ ? portable::pow(high_ / low_, widen) : 2.0;
             range = {low_ / factor, high_ * factor};
         } else {
             const double more = high_ > low_ ? widen * (high_ - low_) : std::max(0.5 * std::abs(high_), 0.5);
@@ -105,12 +107,12 @@ double whole_step(const PlotRange& range) {
 double share_along(const PlotRange& range, PlotScale scale, double value) {
     if (scale != PlotScale::logarithmic) return (value - range.from) / (range.to - range.from);
     if (!(value > 0.0)) return std::numeric_limits<double>::quiet_NaN();
-    return std::log(value / range.from) / std::log(range.to / range.from);
+    return portable::log(value / range.from) / portable::log(range.to / range.from);
 }
 
 double value_at(const PlotRange& range, PlotScale scale, double share) {
     if (scale != PlotScale::logarithmic) return range.from + share * (range.to - range.from);
-    return range.from * std::pow(range.to / range.from, share);
+    return range.from * portable::pow(range.to / range.from, share);
 }
 
 std::string axis_text(const PlotAxis& axis) {

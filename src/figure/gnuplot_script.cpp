@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
 
 namespace ripplenotch {
@@ -80,12 +81,12 @@ std::string GnuplotScript::matrix(const HeatMap& map) {
 std::string gnuplot_ticks(const PlotRange& range, PlotScale scale) {
     constexpr double few_decades = 2.3;
     if (scale == PlotScale::whole) return fmt::format("{:g}", whole_step(range));
-    if (scale == PlotScale::linear || std::log10(range.to / range.from) > few_decades) return "";
+    if (scale == PlotScale::linear || portable::log10(range.to / range.from) > few_decades) return "";
     std::string ticks;
-    for (int decade = static_cast<int>(std::floor(std::log10(range.from))); decade <= std::log10(range.to);
-         ++decade) {
+    for (int decade = static_cast<int>(std::floor(portable::log10(range.from)));
+         decade <= portable::log10(range.to); ++decade) {
         for (const double step : {1.0, 2.0, 5.0}) {
-            const double value = step * std::pow(10.0, decade);
+            const double value = step * portable::pow(10.0, decade);
             if (value < range.from || value > range.to) continue;
             ticks += fmt::format("{}{:.6g}", ticks.empty() ? "" : ", ", value);
         }

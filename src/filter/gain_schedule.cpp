@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -38,7 +40,8 @@ std::vector<double> gain_of(const RippleModel& model, double step_turns) {
 GainSchedule::GainSchedule(const RippleModel& model)
     : states_(model.states()), standing_(gain_of(model, 0.0)) {
     const double lowest = *std::min_element(model.orders.begin(), model.orders.end());
-    const auto octaves = static_cast<int>(std::ceil(std::max(std::log2(0.5 / lowest / slowest_turns), 1.0)));
+    const auto octaves =
+        static_cast<int>(std::ceil(std::max(portable::log2(0.5 / lowest / slowest_turns), 1.0)));
     for (int i = 0; i <= octaves * points_an_octave; ++i) {
         const double within = 1.0 + static_cast<double>(i % points_an_octave) / points_an_octave;
         const auto gain = gain_of(model, slowest_turns * std::ldexp(within, i / points_an_octave));

@@ -6,12 +6,11 @@
 
 namespace ripplenotch {
 namespace {
-constexpr double checked_every_turns = 1.0;  ///< of the motor; position and velocity are compared this often
-constexpr double slow_turns = 0.002;         ///< of the motor in a sample
-constexpr double judged_samples = 100.0;     ///< over which trembling is judged
-constexpr double fewest_judged = 6.0;        ///< before which the velocity is taken while slow
-constexpr double still_turns = 1e-5;         ///< trembling that is none
-constexpr double pull_turns = 2e-5;          ///< with which a trembling position at rest still pulls
+constexpr double slow_turns = 0.002;      ///< of the motor in a sample
+constexpr double judged_samples = 100.0;  ///< over which trembling is judged
+constexpr double fewest_judged = 6.0;     ///< before which the velocity is taken while slow
+constexpr double still_turns = 1e-5;      ///< trembling that is none
+constexpr double pull_turns = 2e-5;       ///< with which a trembling position at rest still pulls
 }  // namespace
 
 void MotorAngle::restart() noexcept {
@@ -24,15 +23,15 @@ void MotorAngle::next(double velocity_deg_s, const double* position_deg, double 
         started_ = true;
         from_velocity_ = position_deg == nullptr || source_ == Source::velocity;
         joint_deg_ = position_deg != nullptr ? *position_deg : start_deg_;
-        step_turns_ = checked_velocity_deg_ = checked_position_deg_ = 0.0;
+        step_turns_ = 0.0;
         ahead_deg_ = beside_ = covariance_ = excess_ = slow_speed_ = judged_ = 0.0;
     } else {
         const double by_velocity = 0.5 * (last_velocity_ + velocity_deg_s) * step_s_;
         double moved = by_velocity + correction_deg_s * step_s_;
+        from_velocity_ = from_velocity_ || position_deg == nullptr;
         if (!from_velocity_ && position_deg != nullptr) {
             double by_position = *position_deg - last_position_;
             if (std::abs(by_position) > 180.0) by_position -= 360.0 * std::round(by_position / 360.0);
-            check(by_velocity, by_position);
             moved = follow(by_velocity, by_position);
         }
         joint_deg_ += moved;
@@ -76,17 +75,6 @@ double MotorAngle::follow(double by_velocity_deg, double by_position_deg) noexce
     }
     ahead_deg_ -= moved;
     return moved;
-}
-
-// A position that does half, or twice, of what the velocity says is no position of this joint.
-void MotorAngle::check(double by_velocity_deg, double by_position_deg) noexcept {
-    checked_velocity_deg_ += by_velocity_deg;
-    checked_position_deg_ += by_position_deg;
-    const double far = 360.0 * checked_every_turns / gear_ratio_;
-    if (std::abs(checked_velocity_deg_) < far && std::abs(checked_position_deg_) < far) return;
-    const double ratio = checked_position_deg_ / checked_velocity_deg_;
-    if (!(ratio > 0.5 && ratio < 2.0)) from_velocity_ = true;
-    checked_velocity_deg_ = checked_position_deg_ = 0.0;
 }
 
 }  // namespace ripplenotch

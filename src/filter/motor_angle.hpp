@@ -6,11 +6,10 @@
 
 namespace ripplenotch {
 
-/// Feeds on samples in order. From the position while it agrees with the velocity (unwrapped at half turns of
-/// the joint); from the velocity by trapezoids where there is no position, or once it has turned out to be
-/// another joint's or constant. While the motor turns slowly, a position that trembles about the velocity is
-/// smoothed: to whoever ties a ripple to the angle, a trembling angle under a steady torque says that there
-/// is none.
+/// Feeds on samples in order. From the position where there is one, which is the joint's then (unwrapped at
+/// half turns of the joint); else from the velocity by trapezoids. While the motor turns slowly, a position
+/// that trembles about the velocity is smoothed: to whoever ties a ripple to the angle, a trembling angle
+/// under a steady torque says that there is none.
 class MotorAngle {
   public:
     enum class Source : std::uint8_t { best, velocity };
@@ -30,7 +29,6 @@ class MotorAngle {
     [[nodiscard]] bool from_velocity() const noexcept { return from_velocity_; }
 
   private:
-    void check(double by_velocity_deg, double by_position_deg) noexcept;
     [[nodiscard]] double trembling() const noexcept;
     [[nodiscard]] double follow(double by_velocity_deg, double by_position_deg) noexcept;
 
@@ -38,7 +36,6 @@ class MotorAngle {
     Source source_;
     double start_deg_;
     double joint_deg_ = 0.0, step_turns_ = 0.0, last_velocity_ = 0.0, last_position_ = 0.0;
-    double checked_velocity_deg_ = 0.0, checked_position_deg_ = 0.0;
     double ahead_deg_ = 0.0;   ///< of joint_deg_: where the position is
     double beside_ = 0.0;      ///< motor turns by which the position left the velocity in the last sample
     double covariance_ = 0.0;  ///< of that with the sample before, while slow

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "filter/observer_cascade.hpp"
 
-#include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
+
+#include "core/linear_algebra.hpp"
 
 namespace ripplenotch {
 namespace {

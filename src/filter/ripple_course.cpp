@@ -6,6 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -32,7 +35,7 @@ constexpr int most_bins_apart = 6;
 constexpr double bins_an_octave = 4.0, reach_bins = 1.5;
 
 int speed_bin(double speed_turns_s) {
-    const double octave = std::log2(std::max(std::abs(speed_turns_s), 1e-6)) + 20.0;
+    const double octave = portable::log2(std::max(std::abs(speed_turns_s), 1e-6)) + 20.0;
     return std::clamp(static_cast<int>(octave * bins_an_octave), 0, bins - 1);
 }
 
@@ -47,9 +50,7 @@ class Order {
         std::vector<double> variances;
         for (const RippleWindow& window : windows) variances.push_back(window.variance);
         if (!variances.empty()) {
-            const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-            std::nth_element(variances.begin(), middle, variances.end());
-            least_variance_ = std::max(0.1 * *middle, std::numeric_limits<double>::min());
+            least_variance_ = std::max(0.1 * median_in(variances), std::numeric_limits<double>::min());
         }
         for (std::size_t i = 0; i < windows.size(); ++i) {
             all_.add(value(i), weight(i));
@@ -122,7 +123,7 @@ class Order {
 
     [[nodiscard]] static double nearness(int bin, int other) {
         const double distance = static_cast<double>(bin - other) / reach_bins;
-        return std::abs(bin - other) <= most_bins_apart ? std::exp(-0.5 * distance * distance) : 0.0;
+        return std::abs(bin - other) <= most_bins_apart ? portable::exp(-0.5 * distance * distance) : 0.0;
     }
 
     [[nodiscard]] Amplitude near_speed(std::size_t i, bool held_out) const {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "filter/ripple_kalman.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "core/linear_algebra.hpp"
 #include "filter/gain_schedule.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -21,8 +22,8 @@ double radians(double cycles) { return 2.0 * std::numbers::pi * (cycles - std::f
 // White noise of density q in the second derivative. With measurements of variance 1 every step_s the settled
 // filter has the poles of a second-order Butterworth at (q / step_s)^(1/4).
 RippleModel::TorqueNoise RippleModel::torque_noise() const noexcept {
-    const double density = std::pow(bandwidth_rad_s, 4) * step_s;
-    return {density * std::pow(step_s, 3) / 3.0, density * step_s * step_s / 2.0, density * step_s};
+    const double density = portable::pow(bandwidth_rad_s, 4) * step_s;
+    return {density * portable::pow(step_s, 3) / 3.0, density * step_s * step_s / 2.0, density * step_s};
 }
 
 // A pair alone settles to the gain step/memory: its amplitude forgets over memory_turns at any speed.
@@ -54,8 +55,8 @@ void RippleKalman::look(double motor_turns, double step_turns) noexcept {
     for (std::size_t i = 0; i < model_.orders.size(); ++i) {
         const double phase = radians(model_.orders[i] * motor_turns);
         const double share = model_.share(model_.orders[i], step_turns);
-        h_[2 + 2 * i] = share * std::cos(phase);
-        h_[3 + 2 * i] = share * std::sin(phase);
+        h_[2 + 2 * i] = share * portable::cos(phase);
+        h_[3 + 2 * i] = share * portable::sin(phase);
     }
 }
 
@@ -83,7 +84,7 @@ void RippleKalman::start(double motor_turns) {
     x_[1] = 0.0;
     p_[0] = torque_variance;
     // A hundred times the settled variance: a log may begin amid a motion.
-    p_[m_ + 1] = 100.0 * std::numbers::sqrt2 * std::pow(model_.bandwidth_rad_s, 3) * model_.step_s;
+    p_[m_ + 1] = 100.0 * std::numbers::sqrt2 * portable::pow(model_.bandwidth_rad_s, 3) * model_.step_s;
     surprise_ = 0.0;
 }
 
@@ -196,9 +197,9 @@ RippleRotation ripple_rotation(const RippleModel& model, double step_turns) {
     frame.step[1] = model.step_s;
     for (std::size_t i = 2; i < m; i += 2) {
         const double order = model.orders[i / 2 - 1], phase = radians(order * step_turns);
-        frame.step[i * m + i] = frame.step[(i + 1) * m + i + 1] = std::cos(phase);
-        frame.step[i * m + i + 1] = std::sin(phase);
-        frame.step[(i + 1) * m + i] = -std::sin(phase);
+        frame.step[i * m + i] = frame.step[(i + 1) * m + i + 1] = portable::cos(phase);
+        frame.step[i * m + i + 1] = portable::sin(phase);
+        frame.step[(i + 1) * m + i] = -portable::sin(phase);
         frame.seen[i] = model.share(order, step_turns);
     }
     return frame;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "filter/ripple_windows.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <utility>
+
+#include "core/linear_algebra.hpp"
+#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -98,7 +101,7 @@ double RippleWindows::background(std::size_t order, std::span<const double> resi
         for (std::size_t k = 0; k < residual.size(); ++k) {
             const double cycles = place * turns_[k];
             found += weight[k] * residual[k] *
-                     std::polar(1.0, 2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
+                     portable::polar(1.0, 2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
             weights += weight[k];
         }
         sum += std::norm(2.0 * found / weights);
@@ -120,14 +123,15 @@ void RippleWindows::close() {
     for (Eigen::Index k = 0; k < rows; ++k) {
         const auto row = static_cast<std::size_t>(k);
         const double place = (static_cast<double>(k) + 0.5) / static_cast<double>(rows);
-        weight(k) = std::sin(std::numbers::pi * place);
+        weight(k) = portable::sin(std::numbers::pi * place);
         double power = 1.0;
         for (Eigen::Index i = 0; i < trend_terms; ++i, power *= 2.0 * place - 1.0) basis(k, i) = power;
         for (std::size_t i = 0; i < orders_.size(); ++i) {
             const double cycles = orders_[i] * (first_turns_ + turns_[row]);
             const double phase = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
-            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i)) = std::cos(phase);
-            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i + 1)) = std::sin(phase);
+            const std::complex<double> phasor = portable::phasor(phase);
+            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i)) = phasor.real();
+            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i + 1)) = phasor.imag();
         }
     }
     const Eigen::Map<const Eigen::VectorXd> torque(torque_nm_.data(), rows);
@@ -140,7 +144,7 @@ void RippleWindows::close() {
     window.middle = first_travelled_ + 0.5 * std::abs(furthest_);
     window.length = std::abs(furthest_);
     window.speed_turns_s = furthest_ * rate_hz_ / static_cast<double>(rows);
-    window.variance = 2.0 * variance * weight.squaredNorm() / std::pow(weight.sum(), 2);
+    window.variance = 2.0 * variance * weight.squaredNorm() / portable::pow(weight.sum(), 2);
     const auto count = static_cast<std::size_t>(rows);
     for (std::size_t i = 0; i < orders_.size(); ++i) {
         const auto at = trend_terms + static_cast<Eigen::Index>(2 * i);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/kernels/first_outside.hpp"
+#include "core/first_outside.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

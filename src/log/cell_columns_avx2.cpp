@@ -125,7 +125,7 @@ class Pairs {
   private:
     // Not inlined: all that it needs of vectors stays in registers.
     template <bool plain>
-    WITH_AVX2 [[gnu::noinline]] std::size_t read_as(const CellColumn& column, std::size_t row,
+    [[gnu::noinline]] WITH_AVX2 std::size_t read_as(const CellColumn& column, std::size_t row,
                                                     double* numbers) const {
         const Places places = places_;
         const __m128i magic = _mm_set1_epi64x(0x4330000000000000);  // 2^52 as a double's bits

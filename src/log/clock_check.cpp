@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "log/unwrap.hpp"
+#include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -21,12 +21,6 @@ constexpr double agreement = 0.02;         // a factor within 2 % of 1, or of a 
 constexpr double widest_doubt = 0.05;      // a factor less certain than 5 % is not stated
 
 using Piece = MotionPieces::Piece;
-
-double median_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 struct Fit {
     double factor = 0.0, lag_s = 0.0, doubt = 0.0;  // doubt: standard error of the factor
@@ -153,34 +147,43 @@ constexpr std::array named_factors = {
     NamedFactor{1.0 / 360.0, "1/360: the position is in turns and was taken as deg"},
 };
 
+std::string start_of(double factor) {
+    return fmt::format("position changes {:.4g} times as much as velocity and time say", factor);
+}
+
 std::string explain(double factor, Hertz sample_rate) {
-    const std::string start =
-        fmt::format("position changes {:.4g} times as much as velocity and time say", factor);
+    const bool wrong_clock = factor > 0.5 && factor < 2.0;
+    if (!wrong_clock) return factor_in_words(factor);
+    return fmt::format(
+        "{}: the clock is wrong by this factor (the sample rate is then {:.4g} Hz, not {:.4g} Hz), or one of "
+        "the two is not in the unit stated",
+        start_of(factor), sample_rate.value() / factor, sample_rate.value());
+}
+
+}  // namespace
+
+std::string factor_in_words(double factor) {
+    const std::string start = start_of(factor);
     if (factor < 0.0) return fmt::format("{}: velocity and position have opposite signs", start);
     for (const NamedFactor& named : named_factors) {
         if (std::abs(factor / named.factor - 1.0) < agreement)
             return fmt::format("{}; {}", start, named.cause);
-    }
-    if (factor > 0.2 && factor < 5.0) {
-        return fmt::format(
-            "{}: the clock is wrong by this factor (the sample rate is then {:.4g} Hz, not {:.4g} Hz), "
-            "or one of the two is not in the unit stated",
-            start, sample_rate.value() / factor, sample_rate.value());
     }
     if (factor >= 5.0) {
         return fmt::format(
             "{}: the position may be that of the motor, {:.4g} being the gear ratio, or a unit is wrong",
             start, factor);
     }
-    return fmt::format(
-        "{}: the velocity may be that of the motor, {:.4g} being the gear ratio, or a unit is wrong", start,
-        1.0 / factor);
+    if (factor <= 0.2) {
+        return fmt::format(
+            "{}: the velocity may be that of the motor, {:.4g} being the gear ratio, or a unit is wrong",
+            start, 1.0 / factor);
+    }
+    return fmt::format("{}: the position may be another joint's, or the clock or a unit is wrong", start);
 }
 
-}  // namespace
-
-MotionPieces::MotionPieces(std::size_t rows, double gap_s)
-    : rows_(rows), rows_in_piece_(std::max(shortest_piece, rows / most_pieces)), gap_s_(gap_s) {}
+MotionPieces::MotionPieces(std::size_t rows)
+    : rows_(rows), rows_in_piece_(std::max(shortest_piece, rows / most_pieces)) {}
 
 void MotionPieces::end_piece() {
     if (in_piece_ >= shortest_piece) pieces_.push_back(piece_);
@@ -190,10 +193,6 @@ void MotionPieces::end_piece() {
 
 void MotionPieces::take(const Row& row) {
     const double step = row.time_s - before_->time_s;
-    if (gap_s_ > 0.0 && step > gap_s_) {
-        end_piece();
-        return;
-    }
     piece_.position_change += row.position_deg - before_->position_deg;
     piece_.velocity_change += row.velocity_deg_s - before_->velocity_deg_s;
     piece_.integrated_velocity += 0.5 * (before_->velocity_deg_s + row.velocity_deg_s) * step;
@@ -204,7 +203,8 @@ void MotionPieces::take(const TraceView& rows) {
     if (!rows.has_position()) return;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const Row row{rows.time_s[i], rows.velocity_deg_s[i], rows.position_deg[i]};
-        if (before_) take(row);
+        if (before_ && rows.starts_run(i)) end_piece();
+        if (before_ && !rows.starts_run(i)) take(row);
         before_ = row;
     }
 }
@@ -221,19 +221,6 @@ ClockCheck MotionPieces::check(Hertz sample_rate) {
     if (std::abs(fit.factor - 1.0) > std::max(agreement, 3.0 * doubt))
         check.warning = explain(fit.factor, sample_rate);
     return check;
-}
-
-ClockCheck check_clock(const TraceView& trace, double gap_s, Hertz sample_rate) {
-    MotionPieces pieces(trace.size(), gap_s);
-    TraceView continuous = trace;
-    std::vector<double> position;
-    if (const auto period = wrap_period(trace.position_deg)) {
-        position.assign(trace.position_deg.begin(), trace.position_deg.end());
-        Unwrapper(*period).apply(position);
-        continuous.position_deg = position;
-    }
-    pieces.take(continuous);
-    return pieces.check(sample_rate);
 }
 
 }  // namespace ripplenotch

@@ -21,10 +21,10 @@ struct ClockCheck {
 /// The motion of a log in pieces that are long enough to average noise, and many enough for a median.
 class MotionPieces {
   public:
-    /// `rows` of the whole log. A longer step than `gap` ends a piece; 0 when there is no such limit.
-    MotionPieces(std::size_t rows, double gap_s);
+    /// `rows` of the whole log.
+    explicit MotionPieces(std::size_t rows);
 
-    /// Rows with a continuous position, one after another.
+    /// Rows with a continuous position, one after another; where a run starts, a piece ends.
     void take(const TraceView& rows);
     [[nodiscard]] ClockCheck check(Hertz sample_rate);
 
@@ -42,14 +42,13 @@ class MotionPieces {
     void end_piece();
 
     std::size_t rows_, rows_in_piece_;
-    double gap_s_;
     std::optional<Row> before_;
     std::size_t in_piece_ = 0;
     Piece piece_;
     std::vector<Piece> pieces_;
 };
 
-/// A position that wraps is unwrapped on a copy first. `gap_s` as in MotionPieces.
-[[nodiscard]] ClockCheck check_clock(const TraceView& trace, double gap_s, Hertz sample_rate);
+/// "position changes 57.3 times as much as velocity and time say; ..." and what that factor may come from.
+[[nodiscard]] std::string factor_in_words(double factor);
 
 }  // namespace ripplenotch

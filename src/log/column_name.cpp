@@ -38,6 +38,7 @@ constexpr std::array role_words = {
     RoleWord{"timestamp", Role::time, 0},      RoleWord{"stamp", Role::time, 0},
     RoleWord{"timestamps", Role::time, 0},     RoleWord{"zeit", Role::time, 0},
     RoleWord{"elapsed", Role::time, 0},        RoleWord{"duration", Role::time, 1},
+    RoleWord{"datetime", Role::time, 1},       RoleWord{"date", Role::time, 2},
 };
 
 constexpr std::array<std::string_view, 7> current_words = {"current", "currents", "iq",  "amps",
@@ -121,7 +122,8 @@ bool is_clock_name(const std::vector<Word>& left) {
     return std::all_of(left.begin(), left.end(), [](const Word& word) {
         return contains(general_words, word.text) || word.text == "stamp" || word.text == "time" ||
                word.text == "elapsed" || word.text == "ros" || word.text == "header" ||
-               word.text == "sample" || word.text == "since" || word.text == "start";
+               word.text == "sample" || word.text == "since" || word.text == "start" || word.text == "unix" ||
+               word.text == "epoch" || word.text == "boot" || word.text == "log" || word.text == "system";
     });
 }
 
@@ -135,12 +137,17 @@ ColumnName read_column_name(std::string_view name) {
 
     std::vector<Word> left;
     const RoleWord* found = nullptr;
-    bool foreign = false, motor_side = false, filtered = false;
-    for (const Word& word : split_words(parts.name)) {
+    bool foreign = false, filtered = false;
+    const std::vector<Word> words = split_words(parts.name);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const Word& word = words[i];
+        // tau_J: the J is of the symbol; in tau_J1 it is of the joint.
+        const bool numbered = i + 1 < words.size() && words[i + 1].glued;
+        if (word.text == "j" && i > 0 && words[i - 1].text == "tau" && !numbered) continue;
         const auto role = std::find_if(role_words.begin(), role_words.end(),
                                        [&](const RoleWord& known) { return known.word == word.text; });
         if (contains(foreign_words, word.text)) foreign = true;
-        if (word.text == "motor" || word.text == "rotor") motor_side = true;
+        if (word.text == "motor" || word.text == "rotor") column.motor_side = true;
         if (word.text == "filtered" || word.text == "smoothed") filtered = true;
         if (contains(reference_words, word.text) || (word.text == "d" && found != nullptr)) {
             column.reference = true;
@@ -163,7 +170,7 @@ ColumnName read_column_name(std::string_view name) {
     const bool clock = column.role == Role::time;
     if (!clock) column.joint = joint_of(left);
     if (foreign || (clock && !is_clock_name(left))) column.role = Role::other;
-    if (motor_side && !column.current) column.rank += 2;
+    if (column.motor_side && !column.current) column.rank += 2;
     if (filtered) column.rank += 4;
     return column;
 }

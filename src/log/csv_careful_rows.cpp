@@ -42,9 +42,16 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
                              cut ? "the last line is cut off: remove it, e.g. with head -n -1"
                                  : "mend or remove the line"));
     }
+    row.values[time_slot] = 0.0;
     for (const WantedColumn& wanted : wanted_) {
         const Cell& cell = cells[wanted.column];
-        row.values[wanted.slot] = read_cell(line, cell, wanted.slot, block);
+        const double value = read_cell(line, cell, wanted, block);
+        if (wanted.fraction)
+            row.values[time_slot] += seconds_per_nanosecond * value;
+        else if (wanted.slot == time_slot)
+            row.values[time_slot] += value;
+        else
+            row.values[wanted.slot] = value;
         if (is_torque(wanted.slot))
             row.torques[joint_of(wanted.slot)] = {line.data() + cell.begin, line.data() + cell.end};
     }
@@ -52,13 +59,14 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
     row.content_end = line.data() + last.end + (last.quoted ? 1 : 0);
 }
 
-double CsvReader::read_cell(std::string_view line, const Cell& cell, std::size_t slot, RowBlock& block) {
+double CsvReader::read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted,
+                            RowBlock& block) {
     const std::string_view text = cell.of(line);
-    const auto number = parse_number(text, dialect_.rules.decimal_mark);
+    const std::size_t slot = wanted.slot;
+    const bool stamp = slot == time_slot && stamp_.careful && !wanted.fraction;
+    const auto number = stamp ? read_stamp(text, stamp_) : parse_number(text, dialect_.rules.decimal_mark);
     if (number && std::isfinite(*number)) return *number;
-    const auto column =
-        std::find_if(wanted_.begin(), wanted_.end(), [&](const WantedColumn& w) { return w.slot == slot; });
-    const std::string name = column_label(dialect_.names, column->column);
+    const std::string name = column_label(dialect_.names, wanted.column);
     // "NA", "null" and the like are texts; only what is empty or a nan of arithmetic counts as a missing
     // value.
     const bool missing = text.empty() || (number && std::isnan(*number));
@@ -76,9 +84,13 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, std::size_t
         remedy =
             fmt::format("mend the line, or say --decimal {}", dialect_.rules.decimal_mark == '.' ? ',' : '.');
     }
-    complain(cell.begin + 1, fmt::format("read {} in {}, expected a {}number; {}",
-                                         text.empty() ? std::string("nothing") : "'" + shown(text) + "'",
-                                         name, number ? "finite " : "", remedy));
+    complain(cell.begin + 1,
+             fmt::format("read {} in {}, expected a {}; {}",
+                         text.empty() ? std::string("nothing") : "'" + shown(text) + "'", name,
+                         stamp && stamp_.text ? "time of day or a date and time"
+                         : number             ? "finite number"
+                                              : "number",
+                         remedy));
 }
 
 void CsvReader::complain(std::size_t column, const std::string& sentence) const {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "log/decide_layout.hpp"
+#include "log/text_sample.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -46,20 +47,54 @@ std::string dialect_options(const TextDialect& dialect) {
 
 CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
     : source_(std::move(source)), options_(options) {
-    at_end_ = read_up_to(*source_, first_bytes, sniff_size);
+    source_ended_ = read_up_to(*source_, first_bytes, sniff_size);
     // Lines may be long: a verdict on them needs a few whole ones.
     for (std::size_t size = 2 * sniff_size;
-         !at_end_ && line_ends(first_bytes) < 8 && size <= 8 * longest_line; size *= 2) {
-        at_end_ = read_up_to(*source_, first_bytes, size);
+         !source_ended_ && line_ends(first_bytes) < 8 && size <= 8 * longest_line; size *= 2) {
+        source_ended_ = read_up_to(*source_, first_bytes, size);
     }
-    dialect_ = sniff_text(first_bytes, at_end_, source_->name(), options);
-    ColumnFacts facts{dialect_.names, dialect_.units, dialect_.columns, std::move(dialect_.sample),
-                      dialect_options(dialect_)};
-    layout_ = decide_layout(source_->name(), "csv", facts, options);
+    dialect_ = sniff_text(first_bytes, source_ended_, source_->name(), options);
+    layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
+    if (dialect_.head_lines > 0) {
+        layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
+                                      "a head, passed on and not read",
+                                      "they are no rows, and the names do not stand in the first of them",
+                                      fmt::format("--skip-lines {}", dialect_.head_lines),
+                                      {}});
+    }
     head_ = first_bytes.substr(0, dialect_.data_offset);
-    carry_ = first_bytes.substr(dialect_.data_offset);
+    ahead_ = std::move(first_bytes);
+    ahead_at_ = dialect_.data_offset;
     line_ = dialect_.data_line;
     plan_columns();
+}
+
+// `opening` may be read on while the layout is decided.
+ColumnFacts CsvReader::facts_of(std::string& opening) {
+    ColumnFacts facts;
+    facts.names = dialect_.names;
+    facts.units = dialect_.units;
+    facts.columns = dialect_.columns;
+    facts.sample = std::move(dialect_.sample);
+    facts.first_counts = dialect_.first_counts;
+    facts.clock_texts = dialect_.clock_texts;
+    facts.dialect_options = dialect_options(dialect_);
+    facts.motion_sample = [this, &opening](const MotionPlaces& places, std::size_t bytes) {
+        if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);
+        return text_motion_sample(std::string_view(opening).substr(dialect_.data_offset), dialect_, places);
+    };
+    return facts;
+}
+
+// What was read ahead first, then the source.
+std::size_t CsvReader::read_on(char* into, std::size_t size) {
+    if (ahead_at_ < ahead_.size()) {
+        const std::size_t taken = ahead_.copy(into, size, ahead_at_);
+        ahead_at_ += taken;
+        if (ahead_at_ == ahead_.size()) std::string().swap(ahead_);
+        return taken;
+    }
+    return source_ended_ ? 0 : source_->read(into, size);
 }
 
 void CsvReader::plan_columns() {
@@ -69,7 +104,8 @@ void CsvReader::plan_columns() {
     factors_ = slot_factors(layout_, wanted_);
     std::sort(wanted_.begin(), wanted_.end(),
               [](const auto& a, const auto& b) { return a.column < b.column; });
-    quick_.emplace(RowPlan{dialect_.rules, dialect_.line_end, dialect_.columns, wanted_, factors_});
+    stamp_ = stamp_rule(layout_, dialect_.rules.decimal_mark);
+    quick_.emplace(RowPlan{dialect_.rules, dialect_.line_end, dialect_.columns, wanted_, factors_, stamp_});
 }
 
 bool CsvReader::next(RowBlock& block) {
@@ -99,7 +135,7 @@ bool CsvReader::fetch(RowBlock& block) {
     std::size_t lines = whole_lines();
     for (; lines == 0 && !at_end_ && have <= longest_line; lines = whole_lines()) {
         if (bytes.size() < have + piece_size) bytes.resize(have + piece_size);
-        const std::size_t got = source_->read(bytes.data() + have, piece_size);
+        const std::size_t got = read_on(bytes.data() + have, piece_size);
         at_end_ = got == 0;
         have += got;
     }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "log/decide_layout.hpp"
 #include "log/quick_rows.hpp"
 #include "log/text_dialect.hpp"
 #include "ripplenotch/log/format.hpp"
@@ -28,13 +29,15 @@ class CsvReader : public LogReader {
     [[nodiscard]] const TextDialect& dialect() const { return dialect_; }
 
   private:
+    [[nodiscard]] ColumnFacts facts_of(std::string& opening);
+    std::size_t read_on(char* into, std::size_t size);
     void plan_columns();
     void note_quick_rows(RowBlock& block, std::size_t before);
     [[nodiscard]] bool continues(const RowBlock& block) const;
     std::size_t take_on(RowBlock& block, std::size_t begin);
     bool take_line(RowBlock& block, std::size_t begin, std::size_t end);
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
-    double read_cell(std::string_view line, const Cell& cell, std::size_t slot, RowBlock& block);
+    double read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted, RowBlock& block);
     void append_row(RowBlock& block, ParsedRow& row);
     [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
 
@@ -43,8 +46,11 @@ class CsvReader : public LogReader {
     TextDialect dialect_;
     Layout layout_;
     std::string head_;
+    std::string ahead_;               ///< read to decide on the layout, before the first row was asked for
+    std::size_t ahead_at_ = 0;        ///< what of it has been fetched
+    bool source_ended_ = false;       ///< the source has no more bytes
     std::string carry_;               ///< bytes after the last complete line
-    bool at_end_ = false;             ///< the source has no more bytes
+    bool at_end_ = false;             ///< there is nothing left to fetch
     bool last_line_complete_ = true;  ///< the line being taken has its line end
     bool plain_row_ = false;          ///< the line taken last was a row that needed no care
     bool end_mark_seen_ = false;      ///< a line "EOF"
@@ -54,7 +60,8 @@ class CsvReader : public LogReader {
     std::optional<QuickRows> quick_;
     std::vector<WantedColumn> wanted_;
     std::vector<double> factors_;  ///< by slot
-    ParsedRow before_, row_;       ///< as in the file; `before_` is the row before
+    StampRule stamp_;
+    ParsedRow before_, row_;  ///< as in the file; `before_` is the row before
     CellSplit split_;
 };
 

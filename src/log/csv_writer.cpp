@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "log/csv_writer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "log/unit_text.hpp"
@@ -18,9 +20,17 @@ std::string appended_name(const std::string& wanted, const std::string& torque_n
 
 std::vector<std::string> appended_names(const Layout& layout, const WriteOptions& options) {
     std::vector<std::string> names;
+    const auto taken = [&](const std::string& name) {
+        return std::any_of(layout.columns.begin(), layout.columns.end(),
+                           [&](const Column& column) { return column.name == name; });
+    };
     for (const JointColumns& joint : layout.all_chosen()) {
-        const std::string prefix = layout.others.empty() ? "" : joint.joint + "_";
-        names.push_back(appended_name(prefix + options.append_name, layout.columns[*joint.torque].name));
+        const std::string wanted =
+            (layout.joints.size() < 2 ? "" : joint.joint + "_") + std::string(options.append_name);
+        const std::string& torque = layout.columns[*joint.torque].name;
+        names.push_back(appended_name(wanted, torque));
+        for (int count = 2; taken(names.back()); ++count)
+            names.back() = appended_name(fmt::format("{}_{}", wanted, count), torque);
     }
     return names;
 }

@@ -9,6 +9,8 @@
 #include <set>
 
 #include "log/column_name.hpp"
+#include "log/conventions.hpp"
+#include "log/infer_motion.hpp"
 #include "log/joint_groups.hpp"
 #include "log/stated_units.hpp"
 #include "log/unit_text.hpp"
@@ -26,19 +28,25 @@ class Decision {
         : source_(source),
           facts_(facts),
           options_(options),
-          forced_(layout_detail::read_columns_option(source, facts, options)) {}
+          forced_(layout_detail::read_columns_option(source, facts, options)),
+          stated_(facts.columns) {}
 
     Layout run(const std::string& format) {
         layout_.source = source_;
         layout_.format = format;
         layout_.stated_rate = options_.sample_rate;
         name_columns();
-        layout_.chosen.time =
-            layout_detail::choose_time(source_, facts_, forced_, options_, layout_.warnings);
+        layout_detail::choose_time(facts_, forced_, options_, layout_);
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
+        if (layout_.time_fraction) give_role(*layout_.time_fraction, Role::time, "");
+        layout_detail::settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
         groups_ = layout_detail::group_joints(known(), options_.joint.has_value());
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
         choose_joint();
+        layout_detail::infer_motion(facts_, options_,
+                                    layout_detail::motions_of(known(), groups_, stated_, options_, layout_),
+                                    layout_);
+        layout_detail::state_derived_velocity(layout_, facts_);
         layout_detail::state_units(layout_, facts_, options_);
         report_repeated_names();
         layout_.options = layout_detail::options_line(layout_, facts_, options_);
@@ -104,6 +112,11 @@ class Decision {
         if (options_.needs_torque) require_torque_and_velocity();
     }
 
+    // The slope of a position needs times.
+    bool may_derive(const JointColumns& joint) const {
+        return joint.position && (layout_.chosen.time || layout_.stated_rate);
+    }
+
     layout_detail::KnownColumns known() const { return {source_, facts_, forced_, names_}; }
 
     JointColumns columns_of(const JointGroup& group) {
@@ -127,7 +140,7 @@ class Decision {
         std::vector<const JointGroup*> groups;
         for (const JointGroup& group : groups_) {
             const JointColumns columns = columns_of(group);
-            if (!columns.velocity || !columns.torque) continue;
+            if ((!columns.velocity && !may_derive(columns)) || !columns.torque) continue;
             groups.push_back(&group);
             (groups.size() == 1 ? layout_.chosen : layout_.others.emplace_back()) = columns;
         }
@@ -164,7 +177,7 @@ class Decision {
                                : fmt::format("{}", fmt::join(facts_.names, ", ")).substr(0, 400);
         for (const auto& [column, role] : {std::pair{layout_.chosen.torque, Role::torque},
                                            std::pair{layout_.chosen.velocity, Role::velocity}}) {
-            if (column) continue;
+            if (column || (role == Role::velocity && may_derive(layout_.chosen))) continue;
             raise<DataError>(
                 "{}: read {}, expected a {} column; say which it is, with --columns {}=NAME{}", source_,
                 names, role_name(role), role_name(role),
@@ -177,6 +190,7 @@ class Decision {
         column.role = role;
         column.joint = joint;
         std::string written = names_[c].unit;
+        stated_[c] = !written.empty();
         if (const auto asked = layout_detail::asked_unit(options_, column.name, role)) {
             const auto usual = usual_unit(*asked, role);
             if (!usual || !role_factor(role, *usual, 1.0)) {
@@ -184,11 +198,17 @@ class Decision {
                                   layout_detail::unit_list(role));
             }
             written = *usual;
+            stated_[c] = true;
         }
         if (written.empty()) {
-            column.unit_assumed = true;
-            written =
-                role == Role::torque && names_[c].current ? "A" : std::string(base_unit(dimension_of(role)));
+            const Convention* const known =
+                facts_.names.empty() ? nullptr : convention_of(facts_.names[c], role, facts_.names);
+            column.unit_assumed = known == nullptr;
+            written = known != nullptr ? std::string(known->unit)
+                      : role == Role::torque && names_[c].current
+                          ? "A"
+                          : std::string(base_unit(dimension_of(role)));
+            stated_[c] = known != nullptr && role == Role::time;
         }
         const auto usual = usual_unit(written, role);
         const auto factor =
@@ -196,6 +216,7 @@ class Decision {
         if (factor) {
             column.unit = *usual;
             column.factor = *factor;
+            column.unit_assumed = column.unit_assumed && !stated_[c];
         } else if (is_chosen(c)) {
             raise<DataError>(
                 "{}: read {} in '{}', expected a {} in {}; if the header is wrong, say --unit {}={}", source_,
@@ -228,6 +249,7 @@ class Decision {
     layout_detail::Forced forced_;
     Layout layout_;
     std::vector<ColumnName> names_;
+    std::vector<bool> stated_;  ///< by column: the log or an option says its unit
     std::vector<JointGroup> groups_;
 };
 

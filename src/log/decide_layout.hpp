@@ -4,6 +4,8 @@
 // for every format, so that a CSV and an NPY of the same names are understood alike. Ambiguity is an error
 // that lists the readings and the option that decides.
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,14 +14,31 @@
 
 namespace ripplenotch {
 
+/// The rows of one joint's motion: equal lengths, or empty where there is no such column. Time in the file's
+/// unit, less its origin.
+struct MotionSample {
+    std::vector<double> time, velocity, position;
+};
+
+/// Where they stand, and how time is written.
+struct MotionPlaces {
+    const Layout& layout;
+    std::optional<std::size_t> velocity, position;
+};
+
 /// What a format knows of its columns before any decision.
 struct ColumnFacts {
     std::vector<std::string> names;  ///< one a column; empty when the file names none
     std::vector<std::string> units;  ///< from a unit row; empty when there is none
     std::size_t columns = 0;
     std::vector<std::vector<double>>
-        sample;                   ///< the first rows by column; not-a-number where a cell is no number
-    std::string dialect_options;  ///< "--delimiter ',' --decimal ." and the like, for Layout::options
+        sample;  ///< the first rows by column; not-a-number where a cell is no number
+    std::vector<std::int64_t> first_counts;  ///< whole numbers of the first row, exact; 0 where there is none
+    std::vector<bool> clock_texts;  ///< by column: its cells are dates or times of day; empty when none is
+    std::string dialect_options;    ///< "--delimiter ',' --decimal ." and the like, for Layout::options
+    /// Rows of a velocity and a position, as they stand in the file: those of the first `bytes`, and at least
+    /// those at hand.
+    std::function<MotionSample(const MotionPlaces& places, std::size_t bytes)> motion_sample;
 };
 
 /// Throws DataError (two possible columns, no time, several joints, a unit that does not fit) and UsageError
@@ -42,10 +61,17 @@ struct Forced {
 [[nodiscard]] Forced read_columns_option(const std::string& source, const ColumnFacts& facts,
                                          const ReadOptions& options);
 
-/// The time column, decided by the values as well as the name; empty when there is none or a rate was stated.
-[[nodiscard]] std::optional<std::size_t> choose_time(const std::string& source, const ColumnFacts& facts,
-                                                     const Forced& forced, const ReadOptions& options,
-                                                     std::vector<std::string>& warnings);
+/// The time column, decided by the values as well as the name, into layout.chosen; seconds and nanoseconds in
+/// two columns into layout.time_fraction too. None where there is none or a rate was stated.
+void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptions& options, Layout& layout);
+
+/// The unit of the chosen time column where nothing states it, and what is taken off long stamps. Throws
+/// DataError where no unit gives a rate that a log has.
+void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout);
+
+/// Bytes of the opening that are looked at for units, where those at hand do not tell: joints rest at first.
+/// Where all units are stated, only the first of the two.
+inline constexpr std::size_t longer_opening = std::size_t{1} << 20, longest_opening = std::size_t{1} << 23;
 
 /// The option line that would force this reading.
 [[nodiscard]] std::string options_line(const Layout& layout, const ColumnFacts& facts,

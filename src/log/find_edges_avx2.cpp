@@ -24,8 +24,8 @@ class EdgeFinder {
         const EdgeBits low = look_at_half(text), high = look_at_half(text + 32);
         return {low.any | high.any << 32, low.line_ends | high.line_ends << 32};
     }
-    WITH_AVX2 [[nodiscard]] bool quotes() const { return _mm256_testz_si256(quotes_, quotes_) == 0; }
-    WITH_AVX2 [[nodiscard]] bool returns() const { return _mm256_testz_si256(returns_, returns_) == 0; }
+    [[nodiscard]] WITH_AVX2 bool quotes() const { return _mm256_testz_si256(quotes_, quotes_) == 0; }
+    [[nodiscard]] WITH_AVX2 bool returns() const { return _mm256_testz_si256(returns_, returns_) == 0; }
 
   private:
     WITH_AVX2 EdgeBits look_at_half(const char* text) {

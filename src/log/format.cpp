@@ -43,6 +43,8 @@ const LogFormat& output_format(const std::string& path, std::optional<std::strin
         const auto& known = format->extensions;
         if (std::find(known.begin(), known.end(), extension) != known.end()) return *format;
     }
+    if (extension == ".json")
+        raise<UsageError>("-o {}: a log is not written as JSON; name it .csv or .npy", path);
     return formats::csv;
 }
 

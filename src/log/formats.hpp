@@ -19,7 +19,7 @@ std::unique_ptr<LogReader> open_with(std::unique_ptr<ByteSource> source, std::st
 template <class Writer, class Reader>
 std::unique_ptr<LogWriter> rewrite_with(std::unique_ptr<ByteSink> sink, const LogReader& reader,
                                         const WriteOptions& options) {
-    return std::make_unique<Writer>(std::move(sink), dynamic_cast<const Reader&>(reader), options);
+    return std::make_unique<Writer>(std::move(sink), dynamic_cast<const Reader&>(reader.base()), options);
 }
 
 template <class Table>

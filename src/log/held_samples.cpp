@@ -4,92 +4,94 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ripplenotch/core/median.hpp"
+
 namespace ripplenotch {
 namespace {
 
+constexpr double moving_deg_s = 0.2;
+constexpr std::size_t judged_changes = 16384;  ///< enough to know how coarse a torque is
 constexpr std::size_t fewest_changes = 8;
+constexpr double coarse_steps = 10.0;  ///< a usual change of fewer smallest ones
 
 }  // namespace
 
-void HeldCounter::Way::add(bool same) {
-    run = same ? run + 1 : 0;
-    held.count += same;
-    held.longest = std::max(held.longest, run);
+HeldCounter::Row HeldCounter::row_of(const TraceView& rows, std::size_t k) {
+    return {rows.velocity_deg_s[k], rows.torque_nm[k], rows.has_position() ? rows.position_deg[k] : 0.0};
 }
 
-bool HeldCounter::moves(const Row& row, const Row& before) const {
-    return std::min(std::abs(row.velocity), std::abs(before.velocity)) > moving_deg_s_;
-}
-
-void HeldCounter::take(const Row& row) {
-    const bool moving = moves(row, before_), torque = moving && row.torque == before_.torque;
-    const bool velocity = row.velocity == before_.velocity;
-    const bool position = has_position_ && row.position == before_.position;
-    if (moving) {
-        ++moving_rows_;
-        velocity_repeats_ += velocity;
-        position_repeats_ += position;
-        const double change = std::abs(row.torque - before_.torque);
-        if (change > 0.0) {
-            ++changes_;
-            smallest_change_ = std::min(smallest_change_, change);
-        }
-    }
-    ways_[0].add(torque);
-    ways_[1].add(torque && velocity);
-    ways_[2].add(torque && position);
-    ways_[3].add(torque && velocity && position);
-}
-
-void HeldCounter::take(const TraceView& rows) {
+void HeldCounter::take(const TraceView& rows, bool begins_run) {
+    if (rows.size() == 0) return;
     has_position_ = rows.has_position();
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const Row row{rows.velocity_deg_s[i], rows.torque_nm[i],
-                      has_position_ ? rows.position_deg[i] : Row().position};
-        if (rows_++ > 0)
-            take(row);
-        else
-            usable_ = std::isfinite(row.torque) && std::isfinite(row.velocity);
-        before_ = row;
+    if (any_ && !begins_run) {
+        const Row now = row_of(rows, 0);
+        const std::array velocity = {last_.velocity, now.velocity}, torque = {last_.torque, now.torque},
+                         position = {last_.position, now.position};
+        take_pairs({velocity.data(), torque.data(), has_position_ ? position.data() : nullptr}, 1);
+    } else {
+        run_ = {};
     }
+    take_pairs({rows.velocity_deg_s.data(), rows.torque_nm.data(),
+                has_position_ ? rows.position_deg.data() : nullptr},
+               rows.size() - 1);
+    last_ = row_of(rows, rows.size() - 1);
+    any_ = true;
 }
 
-const HeldCounter::Way& HeldCounter::way() const {
-    return ways_[(velocity_tells() ? 1U : 0U) + (position_tells() ? 2U : 0U)];
+void HeldCounter::take_pairs(const RowChannels& rows, std::size_t pairs) {
+    const RepeatCounts counts = count_repeats(rows, pairs, moving_deg_s);
+    counts_ += counts;
+    if (counts.torque > 0)
+        measure_runs(rows, pairs);
+    else if (pairs > 0)
+        run_ = {};
+    if (changes_.size() < judged_changes) note_changes(rows, pairs);
 }
 
-bool HeldCounter::needs_grain() const {
-    return usable_ && !velocity_tells() && !position_tells() && way().held.count > 0 &&
-           changes_ >= fewest_changes;
-}
-
-void HeldCounter::take_grain(const TraceView& rows) {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const Row row{rows.velocity_deg_s[i], rows.torque_nm[i]};
-        if (grain_rows_++ > 0 && moves(row, grain_before_)) {
-            const double change = std::abs(row.torque - grain_before_.torque);
-            fine_changes_ += change > 0.0 && change < 10.0 * smallest_change_;
+void HeldCounter::measure_runs(const RowChannels& rows, std::size_t pairs) {
+    const auto same = [](const double* values, std::size_t k) {
+        return values != nullptr && values[k] == values[k + 1];
+    };
+    for (std::size_t k = 0; k < pairs; ++k) {
+        const double speed = std::min(std::abs(rows.velocity_deg_s[k]), std::abs(rows.velocity_deg_s[k + 1]));
+        const bool torque = speed > moving_deg_s && same(rows.torque_nm, k);
+        const bool velocity = torque && same(rows.velocity_deg_s, k);
+        const bool position = torque && same(rows.position_deg, k);
+        const std::array held = {torque, velocity, position, velocity && position};
+        for (std::size_t way = 0; way < held.size(); ++way) {
+            run_[way] = held[way] ? run_[way] + 1 : 0;
+            longest_[way] = std::max(longest_[way], run_[way]);
         }
-        grain_before_ = row;
     }
 }
 
-// Steps of the torque are coarse when the usual change is only a few of the smallest: then equality is
-// chance.
-HeldSamples HeldCounter::held() const {
-    if (!usable_) return {};
-    const bool told = velocity_tells() || position_tells();
-    const bool coarse = changes_ < fewest_changes || fine_changes_ > changes_ / 2;  // the median is below
-    return told || !coarse ? way().held : HeldSamples{};
+void HeldCounter::note_changes(const RowChannels& rows, std::size_t pairs) {
+    for (std::size_t k = 0; k < pairs && changes_.size() < judged_changes; ++k) {
+        const double speed = std::min(std::abs(rows.velocity_deg_s[k]), std::abs(rows.velocity_deg_s[k + 1]));
+        const double change = std::abs(rows.torque_nm[k + 1] - rows.torque_nm[k]);
+        if (speed > moving_deg_s && change > 0.0) changes_.push_back(change);
+    }
 }
 
-HeldSamples count_held(const TraceView& trace) {
-    double fastest = 0.0;
-    for (const double speed : trace.velocity_deg_s) fastest = std::max(fastest, std::abs(speed));
-    HeldCounter counter(fastest);
-    counter.take(trace);
-    if (counter.needs_grain()) counter.take_grain(trace);
-    return counter.held();
+HeldCounter::Way HeldCounter::way() const {
+    const bool velocity_tells = 2 * counts_.velocity < counts_.moving;
+    const bool position_tells = has_position_ && 2 * counts_.position < counts_.moving;
+    if (velocity_tells) return position_tells ? with_both : with_velocity;
+    return position_tells ? with_position : torque_alone;
+}
+
+bool HeldCounter::torque_is_coarse() const {
+    if (changes_.size() < fewest_changes) return true;
+    std::vector<double> changes = changes_;
+    return median_in(changes) < coarse_steps * *std::min_element(changes.begin(), changes.end());
+}
+
+HeldSamples HeldCounter::held() const {
+    const std::array counts = {counts_.torque, counts_.velocity_and_torque, counts_.position_and_torque,
+                               counts_.all};
+    const Way chosen = way();
+    if (chosen == torque_alone && counts_.torque > 0 && torque_is_coarse()) return {};
+    return {counts[chosen], longest_[chosen]};
 }
 
 }  // namespace ripplenotch

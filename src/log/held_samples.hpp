@@ -1,63 +1,46 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Rows that repeat the row before because nothing new had been measured.
+// Rows that repeat the row before because nothing new had been measured: the one count of them.
 
 #include <array>
-#include <cstddef>
 #include <limits>
+#include <vector>
 
+#include "core/row_facts.hpp"
 #include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/log/recording.hpp"
 
 namespace ripplenotch {
 
-struct HeldSamples {
-    std::size_t count = 0;
-    std::size_t longest = 0;  ///< rows in the longest unbroken repetition
-};
-
-/// Counts rows whose torque and every other telling channel equal the row before, while the joint moves. A
-/// channel tells when it changes in most moving rows: a coarsely quantised torque repeats by itself, and so
-/// does the velocity of a perfectly steady motion. Nothing is counted where no channel tells and the torque
-/// is coarse. Rows go by once, and a second time where the torque has to be judged.
+/// Counts rows whose torque and every other telling channel equal the row before, while the joint moves by
+/// more than 0.2 deg/s. A channel tells when it changes in most moving rows, which is known at the end only:
+/// a coarsely quantised torque repeats by itself, and so does the velocity of a perfectly steady motion. So
+/// repetitions are counted for every set of telling channels, and one count is chosen then. Where no channel
+/// tells, the torque alone does, unless it is coarse: its usual change is only a few of its smallest.
 class HeldCounter {
   public:
-    /// The fastest row of the log.
-    explicit HeldCounter(double fastest_deg_s) : moving_deg_s_(0.02 * fastest_deg_s) {}
-
-    void take(const TraceView& rows);
-    /// Whether it matters how coarse the torque is.
-    [[nodiscard]] bool needs_grain() const;
-    void take_grain(const TraceView& rows);
-
+    /// Consecutive rows; `begins_run`: the row before is no past of theirs.
+    void take(const TraceView& rows, bool begins_run);
     [[nodiscard]] HeldSamples held() const;
 
   private:
     struct Row {
-        double velocity = std::numeric_limits<double>::quiet_NaN(), torque = velocity, position = velocity;
+        double velocity = 0.0, torque = 0.0, position = 0.0;
     };
-    struct Way {
-        HeldSamples held;
-        std::size_t run = 0;
-        void add(bool same);
-    };
-    [[nodiscard]] bool moves(const Row& row, const Row& before) const;
-    void take(const Row& row);
-    [[nodiscard]] bool velocity_tells() const { return 2 * velocity_repeats_ < moving_rows_; }
-    [[nodiscard]] bool position_tells() const {
-        return has_position_ && 2 * position_repeats_ < moving_rows_;
-    }
-    [[nodiscard]] const Way& way() const;
+    enum Way { torque_alone, with_velocity, with_position, with_both };
 
-    double moving_deg_s_;
-    bool usable_ = true, has_position_ = false;
-    Row before_, grain_before_;
-    std::size_t rows_ = 0, grain_rows_ = 0;
-    std::size_t moving_rows_ = 0, velocity_repeats_ = 0, position_repeats_ = 0;
-    std::array<Way, 4> ways_;                     ///< 1: the velocity must repeat too, 2: the position
-    std::size_t changes_ = 0, fine_changes_ = 0;  ///< of the torque: all, and those below ten of the smallest
-    double smallest_change_ = std::numeric_limits<double>::infinity();
+    static Row row_of(const TraceView& rows, std::size_t k);
+    void take_pairs(const RowChannels& rows, std::size_t pairs);
+    void measure_runs(const RowChannels& rows, std::size_t pairs);
+    void note_changes(const RowChannels& rows, std::size_t pairs);
+    [[nodiscard]] Way way() const;
+    [[nodiscard]] bool torque_is_coarse() const;
+
+    bool any_ = false, has_position_ = false;
+    Row last_;
+    RepeatCounts counts_;
+    std::array<std::size_t, 4> run_ = {}, longest_ = {};  ///< by way
+    std::vector<double> changes_;                         ///< of the torque, the first ones
 };
-
-[[nodiscard]] HeldSamples count_held(const TraceView& trace);
 
 }  // namespace ripplenotch

@@ -80,6 +80,18 @@ double load_field(const char* record, const NpyField& field) {
     }
 }
 
+std::int64_t load_count(const char* record, const NpyField& field) {
+    if ((field.kind == 'i' || field.kind == 'u') && field.size == 8)
+        return load_word<std::int64_t>(record + field.offset, field.big_endian);
+    const double value = load_field(record, field);
+    return std::abs(value) < 9e18 ? static_cast<std::int64_t>(value) : 0;
+}
+
+double load_since(const char* record, const NpyField& field, std::int64_t origin) {
+    if (field.kind == 'f') return load_field(record, field) - static_cast<double>(origin);
+    return static_cast<double>(load_count(record, field) - origin);
+}
+
 void store_float(char* record, const NpyField& field, double value) {
     if (field.size == 4) {
         store_word(record + field.offset, field.big_endian, static_cast<float>(value));

@@ -3,6 +3,7 @@
 // One number in the records of a NumPy array.
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -19,6 +20,10 @@ struct NpyField {
 
 /// A number of a record, and back; `record` points at its first byte.
 [[nodiscard]] double load_field(const char* record, const NpyField& field);
+/// A whole number less `origin`, exactly; other numbers are rounded first.
+[[nodiscard]] double load_since(const char* record, const NpyField& field, std::int64_t origin);
+/// The whole number of the field, without its decimals; 0 where there is none.
+[[nodiscard]] std::int64_t load_count(const char* record, const NpyField& field);
 void store_float(char* record, const NpyField& field, double value);
 
 /// load_field of `rows` records that follow each other. False when a number is not finite.

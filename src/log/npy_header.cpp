@@ -12,6 +12,7 @@
 namespace ripplenotch {
 namespace {
 
+constexpr std::uint64_t most_signals = 64, fewest_times = 32;  // of an array with one row a signal
 constexpr std::size_t largest_header = std::size_t{1} << 20;
 constexpr std::size_t most_fields = 100000;
 constexpr std::uint64_t most_rows = std::uint64_t{1} << 62;
@@ -197,15 +198,14 @@ class HeaderText {
                     "array",
                     source_, shape_.size());
             }
+            // A few long rows are signals one under another, not a log of a few rows.
+            header_.transposed = shape_.size() == 2 && shape_[0] > 1 && shape_[0] <= most_signals &&
+                                 shape_[1] >= fewest_times * shape_[0];
+            if (header_.transposed) std::swap(shape_[0], shape_[1]);
             const std::uint64_t columns = shape_.size() == 2 ? shape_[1] : 1;
             if (columns > most_fields) fail("too many columns");
             if (columns == 0) fail("no columns");
-            if (fortran_ && columns > 1 && shape_[0] > 1) {
-                raise<DataError>(
-                    "{}: read an array stored column by column (Fortran order), expected row by row; save "
-                    "numpy.ascontiguousarray(array)",
-                    source_);
-            }
+            header_.by_columns = fortran_ != header_.transposed && columns > 1 && shape_[0] > 1;
             const NpyField first = header_.fields.front();
             for (std::uint64_t c = 1; c < columns; ++c) {
                 NpyField field = first;

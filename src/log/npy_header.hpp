@@ -20,6 +20,8 @@ struct NpyHeader {
     std::size_t data_offset = 0;  ///< bytes before the first record
     std::string descr;            ///< as written in the file, for headers with a column more
     int version = 1;
+    bool by_columns = false;  ///< the bytes of a column stand together: Fortran order, or one row a signal
+    bool transposed = false;  ///< the file has one row a signal
 };
 
 inline constexpr std::string_view npy_magic = "\x93NUMPY";

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "log/decide_layout.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -32,6 +31,7 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     const std::size_t header_size = npy_header_size(first_bytes);
     if (header_size <= largest_header) read_up_to(first_bytes, header_size);
     header_ = parse_npy_header(first_bytes, source_->name());
+    if (header_.by_columns || header_.transposed) take_whole(first_bytes);
     read_up_to(first_bytes, header_.data_offset + std::min(sample_size, header_.rows * header_.record_size));
     head_ = first_bytes.substr(0, header_.data_offset);
     carry_ = first_bytes.substr(header_.data_offset);
@@ -75,6 +75,12 @@ void NpyReader::decide(const ReadOptions& options) {
         with_default.every_joint = false;  // there is one
         if (facts.columns == 4) with_default.columns.emplace_back("position");
     }
+    for (std::size_t c = 0; c < facts.columns; ++c)
+        facts.first_counts.push_back(rows > 0 ? load_count(carry_.data(), header_.fields[c]) : 0);
+    facts.motion_sample = [this](const MotionPlaces& places, std::size_t bytes) {
+        read_up_to(carry_, std::max(carry_.size(), std::min(bytes, header_.rows * header_.record_size)));
+        return motion_sample(places);
+    };
     layout_ = decide_layout(source_->name(), "npy", facts, with_default);
     if (by_place) {
         layout_.warnings.insert(
@@ -88,6 +94,10 @@ void NpyReader::decide(const ReadOptions& options) {
 
 void NpyReader::plan_columns(const std::vector<std::string>& names) {
     wanted_ = wanted_columns(layout_);
+    // time_at() adds the fraction of a second.
+    wanted_.erase(
+        std::remove_if(wanted_.begin(), wanted_.end(), [](const auto& one) { return one.fraction; }),
+        wanted_.end());
     factors_ = slot_factors(layout_, wanted_);
     before_.assign(factors_.size(), not_a_number);
     for (const WantedColumn& wanted : wanted_) {
@@ -170,8 +180,7 @@ bool NpyReader::take_columns(RowBlock& block) const {
     for (const WantedColumn& wanted : wanted_) {
         std::vector<double>& numbers = numbers_of(block, wanted.slot);
         numbers.resize(rows);
-        if (!load_column(block.bytes.data(), header_.record_size, header_.fields[wanted.column], numbers))
-            return false;
+        if (!take_column(block.bytes.data(), wanted, numbers)) return false;
         if (wanted.slot == time_slot && !std::is_sorted(numbers.begin(), numbers.end())) return false;
         const double factor = factors_[wanted.slot];
         if (factor != 1.0)
@@ -188,7 +197,7 @@ bool NpyReader::take_columns(RowBlock& block) const {
 
 bool NpyReader::continues(const RowBlock& block) const {
     if (!layout_.chosen.time) return true;
-    return !(load_field(block.bytes.data(), header_.fields[*layout_.chosen.time]) < before_[time_slot]);
+    return !(time_at(block.bytes.data(), layout_) < before_[time_slot]);
 }
 
 void NpyReader::count_rows(RowBlock& block) {
@@ -198,13 +207,12 @@ void NpyReader::count_rows(RowBlock& block) {
             block.time_s[i] = static_cast<double>(rows_ + i) / layout_.stated_rate->value();
     }
     const char* const last = block.bytes.data() + (count - 1) * header_.record_size;
-    for (const WantedColumn& wanted : wanted_)
-        before_[wanted.slot] = load_field(last, header_.fields[wanted.column]);
+    for (const WantedColumn& wanted : wanted_) before_[wanted.slot] = value_at(last, wanted);
     rows_ += count;
 }
 
 double NpyReader::take_value(RowBlock& block, const char* record, const WantedColumn& wanted) {
-    const double value = load_field(record, header_.fields[wanted.column]);
+    const double value = value_at(record, wanted);
     const bool time = wanted.slot == time_slot;
     if (time && value < before_[time_slot]) {
         complain(

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "log/decide_layout.hpp"
 #include "log/npy_header.hpp"
 #include "log/row_parser.hpp"
 #include "ripplenotch/log/format.hpp"
@@ -28,7 +29,12 @@ class NpyReader : public LogReader {
     [[nodiscard]] const NpyHeader& header() const { return header_; }
 
   private:
+    void take_whole(std::string& first_bytes);
     void decide(const ReadOptions& options);
+    [[nodiscard]] double time_at(const char* record, const Layout& layout) const;
+    [[nodiscard]] double value_at(const char* record, const WantedColumn& wanted) const;
+    [[nodiscard]] MotionSample motion_sample(const MotionPlaces& places) const;
+    bool take_column(const char* records, const WantedColumn& wanted, std::span<double> numbers) const;
     void read_up_to(std::string& bytes, std::size_t size);
     std::size_t read_behind(std::string& bytes, std::size_t have, std::size_t size);
     void plan_columns(const std::vector<std::string>& names);

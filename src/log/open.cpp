@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "log/derived_velocity.hpp"
 #include "log/formats.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -50,7 +51,9 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
         }
     }
     if (format == nullptr) format = &formats::csv;  // its own messages say what is wrong with the bytes
-    return format->open(std::move(source), std::move(first_bytes), options);
+    auto reader = format->open(std::move(source), std::move(first_bytes), options);
+    if (reader->layout().velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
+    return reader;
 }
 
 std::unique_ptr<LogReader> open_log(const std::string& path, const ReadOptions& options) {

@@ -42,11 +42,18 @@ std::string options_line(const Layout& layout, const ColumnFacts& facts, const R
         columns.push_back(fmt::format("{}={}", role_name(c.role), handle(facts, *column)));
         units.push_back("--unit " + quoted(fmt::format("{}={}", role_name(c.role), c.unit)));
     }
+    std::vector<std::string> sides;
+    for (const auto& column : {layout.chosen.velocity, layout.chosen.position}) {
+        if (column && layout.columns[*column].side == Shaft::motor)
+            sides.push_back(fmt::format("{}=motor", role_name(layout.columns[*column].role)));
+    }
     if (!columns.empty()) words.push_back("--columns " + quoted(fmt::format("{}", fmt::join(columns, ","))));
     words.insert(words.end(), units.begin(), units.end());
+    if (!sides.empty()) words.push_back(fmt::format("--side {}", fmt::join(sides, ",")));
     if (!layout.chosen.joint.empty()) words.push_back("--joint " + quoted(layout.chosen.joint));
     if (layout.stated_rate) words.push_back("--sample-rate " + shortest(layout.stated_rate->value()) + "Hz");
     if (options.nm_per_ampere) words.push_back("--kt " + shortest(*options.nm_per_ampere));
+    if (options.skip_lines > 0) words.push_back(fmt::format("--skip-lines {}", options.skip_lines));
     if (options.hold_bad_values) words.push_back("--hold-bad-values");
     return fmt::format("{}", fmt::join(words, " "));
 }

@@ -2,12 +2,12 @@
 #include "ripplenotch/log/passes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "log/account.hpp"
 #include "log/clock_check.hpp"
-#include "log/plausibility.hpp"
-#include "log/step_watch.hpp"
 #include "log/unwrap.hpp"
 #include "ripplenotch/core/spool.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -25,112 +25,93 @@ class LogPasses::Work {
 
     Layout layout;
     LogFacts facts;
-    std::vector<std::string> warnings;
+    Recording recording;
 
   private:
-    void run(const Take& take);
+    Account run(const Take& take);
     void look_at(const TraceView& rows);
-    void find_usual_step();
 
     Spool spool_;
     ReadOptions options_;
     std::unique_ptr<LogReader> reader_;  ///< of the pass that comes next; made when it begins, but the first
-    StepWatch steps_{default_gap_steps};
     WrapWatch wrap_;
+    std::size_t rows_ = 0;
     double sum_s_ = 0.0;
-    bool timed_ = false, moves_ = false;  ///< the first row has a time, a velocity
-    LogExtremes extremes_;
+    bool has_position_ = false;
 };
 
-void LogPasses::Work::run(const Take& take) {
+Account LogPasses::Work::run(const Take& take) {
     if (!reader_) reader_ = open_log(spool_.open(), options_);
+    Opening opening = read_opening(*reader_);
+    Account account(reader_->layout(), opening);
+    constexpr std::array<std::size_t, 1> at_first_row = {0};
     RowBlock block;
-    while (reader_->next(block)) {
-        if (block.size() == 0) continue;
-        const JointRows& joint = block.joints.front();
-        take({facts.sample_rate, block.time_s, joint.velocity_deg_s, joint.torque_nm, joint.position_deg});
+    while (next_block(opening, *reader_, block)) {
+        for (const RunPart& part : account.take(block)) {
+            if (!part.usable || part.count == 0) continue;
+            TraceView rows = view_of(block, 0, part.first, part.count);
+            rows.sample_rate = facts.sample_rate;
+            if (part.begins_run) rows.run_starts = at_first_row;
+            take(rows);
+        }
     }
+    if (options_.needs_torque) account.clock().require();
     if (facts.rows == 0) layout = reader_->layout();
     reader_.reset();
+    return account;
 }
 
 void LogPasses::Work::look_at(const TraceView& rows) {
-    if (extremes_.rows == 0) {
-        facts.first_s = rows.time_s.front();
-        timed_ = std::isfinite(facts.first_s);
-        moves_ = std::isfinite(rows.velocity_deg_s.front());
-    }
-    extremes_.rows += rows.size();
+    if (rows_ == 0) facts.first_s = rows.time_s.front();
+    rows_ += rows.size();
     facts.last_s = rows.time_s.back();
     for (const double time : rows.time_s) sum_s_ += time;
-    for (const double speed : rows.velocity_deg_s)
-        extremes_.speed_deg_s = std::max(extremes_.speed_deg_s, std::abs(speed));
-    if (timed_) steps_.take(rows.time_s);
     wrap_.take(rows.position_deg);
-    if (rows.has_position()) extremes_.position_deg = wrap_.largest();
-}
-
-// The guess from the first rows was no good: the median itself, and once more what it decides.
-void LogPasses::Work::find_usual_step() {
-    StepOfRank usual(steps_.usual_rank());
-    do {
-        run([&](const TraceView& rows) { usual.take(rows.time_s); });
-    } while (usual.next_digit());
-    steps_ = StepWatch(default_gap_steps, usual.value());
-    run([&](const TraceView& rows) { steps_.take(rows.time_s); });
+    has_position_ = has_position_ || rows.has_position();
 }
 
 void LogPasses::Work::first(const Take& take) {
-    run([&](const TraceView& rows) {
+    const Account account = run([&](const TraceView& rows) {
         look_at(rows);
         take(rows);
     });
-    facts.rows = extremes_.rows;
-    if (!steps_.settled()) find_usual_step();
+    facts.rows = rows_;
+    recording = account.recording(layout, 0);
     const auto rows = static_cast<double>(facts.rows);
     facts.mean_s = sum_s_ / rows;
-    facts.mean_position_deg = wrap_.sum() / rows;
-    facts.sample_rate = layout.stated_rate.value_or(steps_.sample_rate());
-    extremes_.sample_rate = facts.sample_rate;
-    require_rate(layout, extremes_, options_);
-    for (std::string& warning : doubts(layout, wrap_.period(), extremes_))
-        layout.warnings.push_back(std::move(warning));
+    const bool by_position = recording.angle.source() == AngleFacts::Source::position;
+    const double sign = recording.angle.verdict == AngleFacts::Verdict::reversed ? -1.0 : 1.0;
+    if (by_position && has_position_) facts.mean_position_deg = sign * wrap_.sum() / rows;
+    facts.sample_rate = recording.clock.mean_rate;
+    if (const auto period = wrap_.period()) layout.warnings.push_back(wrap_in_words(*period));
 }
 
 void LogPasses::Work::again(const Take& take) {
     std::optional<Unwrapper> unwrapper;
     if (const auto period = wrap_.period()) unwrapper.emplace(*period);
-    std::vector<double> position;
-    run([&](const TraceView& rows) {
-        TraceView continuous = rows;
+    std::vector<double> continuous;
+    JointsPosition joints;
+    static_cast<void>(run([&](const TraceView& logged) {
+        TraceView rows = logged;
         if (unwrapper) {
-            position.assign(rows.position_deg.begin(), rows.position_deg.end());
-            unwrapper->apply(position);
-            continuous.position_deg = position;
+            continuous.assign(rows.position_deg.begin(), rows.position_deg.end());
+            unwrapper->apply(continuous);
+            rows.position_deg = continuous;
         }
-        take(continuous);
-    });
+        rows.position_deg = joints.of(recording.angle, rows);
+        take(rows);
+    }));
 }
 
+// The clock is compared with the motion by the position as it was logged.
 void LogPasses::Work::second(const Take& take) {
-    HeldCounter held(extremes_.speed_deg_s);
-    MotionPieces motion(facts.rows, steps_.gap_s());
+    MotionPieces motion(facts.rows);
+    const bool turned = recording.angle.verdict == AngleFacts::Verdict::reversed;
     again([&](const TraceView& rows) {
-        held.take(rows);
-        if (timed_ && moves_) motion.take(rows);
+        if (!turned) motion.take(rows);
         take(rows);
     });
-    if (facts.rows < 2) return;
-    ClockTroubles troubles = steps_.troubles();
-    troubles.rows = facts.rows;
-    troubles.held = held.held();
-    if (held.needs_grain() && worth_telling(troubles, troubles.held.count)) {
-        again([&](const TraceView& rows) { held.take_grain(rows); });
-        troubles.held = held.held();
-    }
-    warnings = timebase_warnings(troubles);
-    ClockCheck check = motion.check(steps_.sample_rate());
-    if (!check.warning.empty()) warnings.push_back(std::move(check.warning));
+    recording.warnings = recording_warnings(recording, motion.check(facts.sample_rate).warning);
 }
 
 LogPasses::LogPasses(const std::string& path, const ReadOptions& options)
@@ -142,6 +123,6 @@ void LogPasses::second(const Take& take) { work_->second(take); }
 void LogPasses::again(const Take& take) { work_->again(take); }
 const LogFacts& LogPasses::facts() const { return work_->facts; }
 const Layout& LogPasses::layout() const { return work_->layout; }
-const std::vector<std::string>& LogPasses::warnings() const { return work_->warnings; }
+const Recording& LogPasses::recording() const { return work_->recording; }
 
 }  // namespace ripplenotch

@@ -12,8 +12,8 @@ namespace ripplenotch {
 
 QuickRows::QuickRows(RowPlan plan)
     : plan_(std::move(plan)),
-      parser_(plan_.rules, plan_.columns, plan_.wanted),
-      vectorised_(has_avx2() && plan_.rules.delimiter != ' ' && plan_.columns > 0) {}
+      parser_(plan_.rules, plan_.columns, plan_.wanted, plan_.stamp),
+      vectorised_(has_avx2() && !plan_.stamp.careful && plan_.rules.delimiter != ' ' && plan_.columns > 0) {}
 
 std::size_t QuickRows::take(RowBlock& block, std::size_t begin, double time_before) const {
     return vectorised_ ? take_rows_by_vectors(block, begin, time_before, plan_, parser_)

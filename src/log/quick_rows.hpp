@@ -21,6 +21,8 @@ struct RowPlan {
     std::vector<double> factors =
         std::vector<double>(slot_count(1), 1.0);  ///< into the tool's units, by slot
 
+    StampRule stamp = {};
+
     [[nodiscard]] std::size_t joints() const { return factors.size() / slots_a_joint; }
 
     [[nodiscard]] std::optional<std::size_t> column_of(std::size_t slot) const {

@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: MIT
-// Whole logs in memory, with their time base examined.
+// Whole logs in memory, with an account of them.
 
+#include <algorithm>
 #include <memory>
 
-#include "log/plausibility.hpp"
+#include "log/account.hpp"
+#include "log/clock_check.hpp"
 #include "log/unwrap.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 namespace {
 
-void append(std::vector<double>& to, const std::vector<double>& from) {
+void append(std::vector<double>& to, std::span<const double> from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-Log read_rows(LogReader& reader, const ReadOptions& options) {
-    Log log;
-    RowBlock block;
-    while (reader.next(block)) {
-        append(log.trace.time_s, block.time_s);
-        const JointRows& joint = block.joints.front();
-        append(log.trace.velocity_deg_s, joint.velocity_deg_s);
-        append(log.trace.torque_nm, joint.torque_nm);
-        append(log.trace.position_deg, joint.position_deg);
-        log.held_bad_values += block.held_bad_values;
-    }
-    log.layout = reader.layout();
-    log.trace.source = log.layout.source;
-    log.trace.joint = log.layout.chosen.joint;
-    const auto period = wrap_period(log.trace.position_deg);
-    if (period) Unwrapper(*period).apply(log.trace.position_deg);
-    log.timebase = examine_timebase(log.trace.view());
-    if (log.layout.stated_rate) log.timebase.sample_rate = *log.layout.stated_rate;
-    log.trace.sample_rate = log.timebase.sample_rate;
-    const LogExtremes extremes = extremes_of(log.trace.view());
-    require_rate(log.layout, extremes, options);
-    for (std::string& warning : doubts(log.layout, period, extremes))
-        log.layout.warnings.push_back(std::move(warning));
-    return log;
+void append(Trace& trace, const TraceView& rows, bool begins_run) {
+    if (begins_run && trace.size() > 0) trace.run_starts.push_back(trace.size());
+    append(trace.time_s, rows.time_s);
+    append(trace.velocity_deg_s, rows.velocity_deg_s);
+    append(trace.torque_nm, rows.torque_nm);
+    append(trace.position_deg, rows.position_deg);
+}
+
+// The position as it was logged has been looked at; from here on it is the joint's, or there is none. One
+// that is not, or runs the other way, is held against the clock as it was logged.
+void settle_angle(Log& log) {
+    JointsPosition joints;
+    const auto found = joints.of(log.recording.angle, log.trace.view());
+    std::vector<double> position(found.begin(), found.end());
+    const bool as_logged = position.empty() || log.recording.angle.verdict == AngleFacts::Verdict::reversed;
+    if (!as_logged) log.trace.position_deg = position;
+    MotionPieces motion(log.trace.size());
+    motion.take(log.trace.view());
+    const ClockCheck check = motion.check(log.trace.sample_rate);
+    log.clock_factor = check.factor;
+    log.recording.warnings = recording_warnings(log.recording, check.warning);
+    if (as_logged) log.trace.position_deg = std::move(position);
 }
 
 std::unique_ptr<ByteSource> source_of(const std::string& path,
@@ -48,9 +48,38 @@ std::unique_ptr<ByteSource> source_of(const std::string& path,
 
 }  // namespace
 
+Log read_log(LogReader& reader, const ReadOptions& options) {
+    Log log;
+    Opening opening = read_opening(reader);
+    Account account(reader.layout(), opening);
+    RowBlock block;
+    while (next_block(opening, reader, block)) {
+        for (const RunPart& part : account.take(block)) {
+            if (part.usable) append(log.trace, view_of(block, 0, part.first, part.count), part.begins_run);
+        }
+        log.held_bad_values += block.held_bad_values;
+    }
+    if (options.needs_torque) account.clock().require();
+    log.layout = reader.layout();
+    log.trace.source = log.layout.source;
+    log.trace.joint = log.layout.chosen.joint;
+    const auto period = wrap_period(log.trace.position_deg);
+    if (period) Unwrapper(*period).apply(log.trace.position_deg);
+    log.recording = account.recording(log.layout, 0);
+    log.trace.sample_rate = log.recording.clock.mean_rate;
+    if (!log.trace.position_deg.empty()) {
+        const auto [low, high] =
+            std::minmax_element(log.trace.position_deg.begin(), log.trace.position_deg.end());
+        log.position_range_deg.emplace(*low, *high);
+    }
+    if (period) log.layout.warnings.push_back(wrap_in_words(*period));
+    settle_angle(log);
+    return log;
+}
+
 Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
     const auto reader = open_log(std::move(source), options);
-    return read_rows(*reader, options);
+    return read_log(*reader, options);
 }
 
 Log read_log(const std::string& path, const ReadOptions& options) {

@@ -45,6 +45,13 @@ bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 }  // namespace
 
+bool RowParser::add_stamp(std::string_view text, bool fraction, double& time) const {
+    const auto number = fraction ? parse_number(text, rules_.decimal_mark) : read_stamp(text, stamp_);
+    if (!number || !std::isfinite(*number)) return false;
+    time += fraction ? seconds_per_nanosecond * *number : *number;
+    return true;
+}
+
 bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
     const char delimiter = rules_.delimiter;
     const bool runs = delimiter == ' ';
@@ -53,6 +60,7 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
         while (end > at && is_blank(end[-1])) --end;
     }
     std::size_t column = 0;
+    if (stamp_.careful) row.values[time_slot] = 0.0;
     const auto at_cell_end = [&](const char* p) {
         return p == end || *p == delimiter || (runs && *p == '\t');
     };
@@ -61,16 +69,21 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
             while (!runs && at < end && *at == ' ' && delimiter != '\t') ++at;
             double& value = row.values[wanted->slot];
             ParsedRow::Place place{at, nullptr};
-            const char* stop = read_short_decimal(at, end, rules_.decimal_mark, value);
+            const bool stamp = stamp_.careful && wanted->slot == time_slot;
+            const char* stop = stamp ? nullptr : read_short_decimal(at, end, rules_.decimal_mark, value);
             if (stop == nullptr || !at_cell_end(stop)) {
                 stop = at;
                 while (!at_cell_end(stop)) ++stop;
                 const char* content = stop;
                 while (content > at && is_blank(content[-1])) --content;
-                const auto number =
-                    parse_number({at, static_cast<std::size_t>(content - at)}, rules_.decimal_mark);
-                if (!number || !std::isfinite(*number)) return false;
-                value = *number;
+                const std::string_view text(at, static_cast<std::size_t>(content - at));
+                if (stamp) {
+                    if (!add_stamp(text, wanted->fraction, value)) return false;
+                } else {
+                    const auto number = parse_number(text, rules_.decimal_mark);
+                    if (!number || !std::isfinite(*number)) return false;
+                    value = *number;
+                }
                 place.end = content;
             } else {
                 place.end = stop;

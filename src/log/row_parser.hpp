@@ -5,9 +5,11 @@
 // for what is wrong.
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "log/row_slots.hpp"
+#include "log/stamp.hpp"
 #include "log/text_cells.hpp"
 
 namespace ripplenotch {
@@ -28,17 +30,20 @@ struct ParsedRow {
 class RowParser {
   public:
     /// `wanted` sorted by column.
-    RowParser(CellRules rules, std::size_t columns, std::vector<WantedColumn> wanted)
-        : rules_(rules), columns_(columns), wanted_(std::move(wanted)) {}
+    RowParser(CellRules rules, std::size_t columns, std::vector<WantedColumn> wanted, StampRule stamp = {})
+        : rules_(rules), columns_(columns), wanted_(std::move(wanted)), stamp_(stamp) {}
 
     /// True when every wanted cell held a plain finite number and the row has the right number of cells,
     /// without quotes. `row` has room for the slots that are wanted.
     [[nodiscard]] bool parse(const char* begin, const char* end, ParsedRow& row) const;
 
   private:
+    [[nodiscard]] bool add_stamp(std::string_view text, bool fraction, double& time) const;
+
     CellRules rules_;
     std::size_t columns_;
     std::vector<WantedColumn> wanted_;
+    StampRule stamp_;
 };
 
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "log/stamp.hpp"
 #include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
@@ -26,6 +27,7 @@ constexpr std::size_t slot_count(std::size_t joints) { return 1 + slots_a_joint 
 struct WantedColumn {
     std::size_t column = 0;
     std::size_t slot = 0;
+    bool fraction = false;  ///< nanoseconds, to be added to the seconds of another column
 };
 
 /// Where a slot's numbers are kept.
@@ -38,8 +40,11 @@ inline std::vector<double>& numbers_of(RowBlock& block, std::size_t slot) {
                                      : joint.position_deg;
 }
 
+inline constexpr double seconds_per_nanosecond = 1e-9;
+
 /// Every column that is wanted of a layout, with its slot, in the order of the slots.
 [[nodiscard]] std::vector<WantedColumn> wanted_columns(const Layout& layout);
+[[nodiscard]] StampRule stamp_rule(const Layout& layout, char decimal_mark);
 /// What the numbers of each slot are multiplied with to be in the tool's units.
 [[nodiscard]] std::vector<double> slot_factors(const Layout& layout, const std::vector<WantedColumn>& wanted);
 

@@ -22,6 +22,15 @@ void say_assumed_units(Layout& layout, const ColumnFacts& facts) {
         taken.push_back(fmt::format("{} as {}", column_label(facts.names, *column), c.unit));
         asked.push_back(fmt::format("--unit {}={}", role_name(c.role), c.unit));
     }
+    for (const JointColumns& joint : layout.all_chosen()) {
+        if (!joint.torque || !layout.columns[*joint.torque].unit_assumed) continue;
+        const Column& torque = layout.columns[*joint.torque];
+        layout.assumptions.push_back({fmt::format("unit of {}", column_label(facts.names, *joint.torque)),
+                                      torque.unit,
+                                      "nothing in the log says it",
+                                      fmt::format("--unit torque={}", torque.unit),
+                                      {}});
+    }
     if (!taken.empty()) {
         layout.warnings.push_back(fmt::format("no unit is stated for what is read: took {}; {} settles it",
                                               fmt::join(taken, ", "), fmt::join(asked, " ")));
@@ -74,6 +83,24 @@ void state_units(Layout& layout, const ColumnFacts& facts, const ReadOptions& op
     say_assumed_units(layout, facts);
     for (const auto& [key, unit] : options.units) require_used_unit(layout, key);
     say_torque_constant(layout, facts, options);
+}
+
+void state_derived_velocity(Layout& layout, const ColumnFacts& facts) {
+    if (!layout.chosen.time && !layout.stated_rate) return;
+    for (const JointColumns& joint : layout.all_chosen()) {
+        if (joint.velocity || !joint.position) continue;
+        const std::string label = column_label(facts.names, *joint.position);
+        layout.velocity_from_position = true;
+        layout.warnings.push_back(fmt::format(
+            "no velocity is logged: it is the slope of {}, from row to row; --columns velocity=NAME "
+            "decides otherwise",
+            label));
+        layout.inferences.push_back({"velocity",
+                                     fmt::format("the slope of {}", label),
+                                     "no column is a velocity",
+                                     "--columns velocity=NAME",
+                                     {}});
+    }
 }
 
 }  // namespace ripplenotch::layout_detail

@@ -20,4 +20,7 @@ namespace ripplenotch::layout_detail {
 /// currents. Throws UsageError for a --unit that names neither a role nor a column.
 void state_units(Layout& layout, const ColumnFacts& facts, const ReadOptions& options);
 
+/// Marks a layout whose joints lack a velocity that their position can give, with a warning.
+void state_derived_velocity(Layout& layout, const ColumnFacts& facts);
+
 }  // namespace ripplenotch::layout_detail

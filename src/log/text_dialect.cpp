@@ -2,12 +2,15 @@
 #include "log/text_dialect.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <span>
 
 #include "log/guess_rules.hpp"
+#include "log/stamp.hpp"
 #include "log/text_header.hpp"
 #include "log/text_lines.hpp"
+#include "log/text_preamble.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -50,13 +53,23 @@ GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& conte
 
 void take_sample(std::string_view bytes, std::span<const TextLine> rows, TextDialect& dialect) {
     dialect.sample.assign(dialect.columns, {});
+    dialect.clock_texts.assign(dialect.columns, false);
+    dialect.first_counts.assign(dialect.columns, 0);
     CellSplit split;
     for (std::size_t k = 0; k < rows.size() && k < rows_sampled; ++k) {
         const std::string_view line = rows[k].of(bytes);
         split_cells(line, dialect.rules.delimiter, split);
         if (split.cells.size() != dialect.columns) continue;
         for (std::size_t c = 0; c < dialect.columns; ++c) {
-            const auto value = parse_number(split.cells[c].of(line), dialect.rules.decimal_mark);
+            const std::string_view cell = split.cells[c].of(line);
+            auto value = parse_number(cell, dialect.rules.decimal_mark);
+            if (k == 0) std::from_chars(cell.data(), cell.data() + cell.size(), dialect.first_counts[c]);
+            if (!value && (k == 0 || dialect.clock_texts[c])) {
+                if (const auto time = clock_text(cell))
+                    value = static_cast<double>(time->whole_s) + time->fraction_s;
+                dialect.clock_texts[c] = value.has_value();
+                if (k == 0 && value) dialect.first_counts[c] = 0;
+            }
             dialect.sample[c].push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
         }
     }
@@ -85,13 +98,27 @@ TextPlace place_of(std::string_view bytes, std::size_t offset, char line_end) {
 
 TextDialect sniff_text(std::string_view bytes, bool whole, const std::string& source,
                        const ReadOptions& options) {
-    const TextLines lines = opening_lines(bytes, whole, source);
+    TextLines lines = opening_lines(bytes, whole, source, options.skip_lines);
     TextDialect dialect;
     dialect.line_end = lines.line_end;
-    const GuessedRules rules = rules_of(bytes, lines.content, source, options);
+    ReadOptions known = options;
+    if (!known.delimiter) known.delimiter = lines.delimiter;
+    const GuessedRules rules = rules_of(bytes, lines.content, source, known);
     dialect.rules = rules.rules;
     dialect.columns = rules.columns;
-    const std::size_t row = read_header(bytes, lines, source, options, dialect);
+    const Preamble preamble = find_preamble(bytes, lines.content, dialect.rules, dialect.columns);
+    std::size_t row = preamble.first_row;
+    if (preamble.lines > 0) dialect.head_lines = lines.content[preamble.lines].number - 1;
+    if (preamble.names.empty()) {
+        lines.content.erase(lines.content.begin(),
+                            lines.content.begin() + static_cast<std::ptrdiff_t>(preamble.lines));
+        row = read_header(bytes, lines, source, options, dialect);
+    } else {
+        dialect.has_header = true;
+        dialect.names = preamble.names;
+        dialect.units = preamble.units;
+        dialect.header_end = lines.content[preamble.names_line].end;
+    }
     if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source);
     dialect.data_offset = lines.content[row].begin;
     dialect.data_line = lines.content[row].number;

@@ -4,6 +4,7 @@
 // names, units.
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,8 +27,11 @@ struct TextDialect {
     std::size_t unit_row_end = 0;    ///< the same for the unit row; 0 without
     std::size_t data_offset = 0;     ///< of the first row's first byte
     std::size_t data_line = 1;       ///< its line number, from 1
+    std::size_t head_lines = 0;      ///< above the names, or above the first row, that are neither
     /// Numbers of the first rows by column, not-a-number where a cell is none; evidence for choosing columns.
     std::vector<std::vector<double>> sample;
+    std::vector<bool> clock_texts;           ///< by column: dates or times of day; seconds in the sample
+    std::vector<std::int64_t> first_counts;  ///< by column: the first row's whole number, exact
 };
 
 /// Longest line that is read; a file without line ends is not a text log.

@@ -32,6 +32,26 @@ FirstLine kind_of(std::string_view line, const CellSplit& split, char decimal_ma
     return numbers == 0 ? FirstLine::names : FirstLine::mixed;
 }
 
+// Bytes that are no UTF-8 are Latin-1: a degree sign, a micro sign, an umlaut.
+std::string as_utf8(const std::string& text) {
+    std::string converted;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const std::size_t more = byte < 0xC2 ? 0 : byte < 0xE0 ? 1 : byte < 0xF0 ? 2 : byte < 0xF5 ? 3 : 0;
+        bool whole = byte < 0x80 || more > 0;
+        for (std::size_t k = 1; whole && k <= more; ++k)
+            whole = i + k < text.size() && (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+        if (whole) {
+            converted += text.substr(i, more + 1);
+            i += more;
+        } else {
+            converted += static_cast<char>(0xC0 | (byte >> 6));
+            converted += static_cast<char>(0x80 | (byte & 0x3F));
+        }
+    }
+    return converted;
+}
+
 // A row under the header in which every cell is a unit, a dash or nothing, and at least one is a unit.
 bool is_unit_row(std::string_view line, const CellSplit& split) {
     bool any = false;
@@ -40,9 +60,11 @@ bool is_unit_row(std::string_view line, const CellSplit& split) {
         while (!text.empty() && (text.front() == '[' || text.front() == '(')) text.remove_prefix(1);
         while (!text.empty() && (text.back() == ']' || text.back() == ')')) text.remove_suffix(1);
         if (text.empty() || text == "-") continue;
-        if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+        const bool unit = usual_unit(as_utf8(std::string(text)), Role::other) || text == "nm";
+        if (!unit &&
+            std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
             return false;
-        any = any || usual_unit(text, Role::other) || text == "nm";
+        any = any || unit;
     }
     return any;
 }
@@ -55,7 +77,7 @@ std::string bare_unit(std::string text) {
 
 std::vector<std::string> texts_of(std::string_view line, const CellSplit& split) {
     std::vector<std::string> texts;
-    for (const Cell& cell : split.cells) texts.push_back(cell_text(line, cell));
+    for (const Cell& cell : split.cells) texts.push_back(as_utf8(cell_text(line, cell)));
     return texts;
 }
 
@@ -124,6 +146,10 @@ std::size_t take_names(std::string_view bytes, const TextLines& lines, const std
     }
     // "a,b,c" over "1,2,3,": the writer ends rows with a delimiter.
     if (dialect.names.size() + 1 == dialect.columns) dialect.names.emplace_back();
+    // LabVIEW: a column of comments that rows without one leave out.
+    if (dialect.names.size() == dialect.columns + 1 &&
+        (dialect.names.back().empty() || dialect.names.back() == "Comment"))
+        dialect.names.pop_back();
     if (dialect.names.size() != dialect.columns) {
         raise<DataError>(
             "{}:{}: read {} names over rows of {} cells, expected as many; mend the header, or say "

@@ -50,9 +50,19 @@ std::vector<TextLine> lines_of(std::string_view bytes, bool whole, char line_end
     return lines;
 }
 
+// "sep=;" or "sep=\t"
+std::optional<char> stated_delimiter(std::string_view line) {
+    if (line.size() > 1 && line.front() == '"' && line.back() == '"') line = line.substr(1, line.size() - 2);
+    const std::string_view value =
+        line.substr(0, 4) == "sep=" || line.substr(0, 4) == "SEP=" ? line.substr(4) : "";
+    if (value == "\\t") return '\t';
+    return value.size() == 1 ? std::optional<char>(value.front()) : std::nullopt;
+}
+
 }  // namespace
 
-TextLines opening_lines(std::string_view bytes, bool whole, const std::string& source) {
+TextLines opening_lines(std::string_view bytes, bool whole, const std::string& source,
+                        std::size_t skip_lines) {
     refuse_binary(bytes, source);
     const std::size_t start = bytes.substr(0, 3) == utf8_mark ? 3 : 0;
     TextLines opening;
@@ -66,7 +76,11 @@ TextLines opening_lines(std::string_view bytes, bool whole, const std::string& s
     }
     std::size_t kept = 0;
     for (const TextLine& line : lines) {
-        if (is_blank_line(line.of(bytes))) continue;
+        if (line.number <= skip_lines || is_blank_line(line.of(bytes))) continue;
+        if (kept == 0 && !opening.delimiter) {
+            opening.delimiter = stated_delimiter(line.of(bytes));
+            if (opening.delimiter) continue;
+        }
         if (!is_comment_line(line.of(bytes))) {
             lines[kept++] = line;
         } else if (kept == 0) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "log/unwrap.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -63,6 +65,10 @@ const WrapWatch::Turn* WrapWatch::found() const {
 
 std::optional<double> WrapWatch::period() const {
     return found() != nullptr ? std::optional<double>(found()->period) : std::nullopt;
+}
+
+std::string wrap_in_words(double period_deg) {
+    return fmt::format("the position starts again at {:.4g} deg; it was made continuous", period_deg);
 }
 
 std::optional<double> wrap_period(std::span<const double> position_deg) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "ripplenotch/core/units.hpp"
 
@@ -63,6 +64,9 @@ class WrapWatch {
     bool jumped_ = false;  ///< some turn has an unwrapper
     Continuous raw_;
 };
+
+/// A sentence for the warnings of a log.
+[[nodiscard]] std::string wrap_in_words(double period_deg);
 
 [[nodiscard]] std::optional<double> wrap_period(std::span<const double> position_deg);
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -41,7 +41,7 @@ std::array<double, count> lagrange_weights(double u) {
 std::array<double, lag_points> moments(double rate) {
     std::array<double, lag_points> found{};
     if (rate > lag_points) {
-        found[0] = 1.0 - exponential(-std::min(rate, 700.0));
+        found[0] = 1.0 - portable::exp(-std::min(rate, 700.0));
         for (int m = 1; m < lag_points; ++m)
             found[static_cast<std::size_t>(m)] = 1.0 - m / rate * found[static_cast<std::size_t>(m - 1)];
         return found;
@@ -95,7 +95,7 @@ void first_order_lag(std::span<double> values, double time_constant) {
         for (std::size_t m = 0; m < lag_points; ++m)
             weights[static_cast<std::size_t>(i)] += coefficients[m] * moment[m];
     }
-    const double kept = exponential(-std::min(rate, 700.0));
+    const double kept = portable::exp(-std::min(rate, 700.0));
     const std::vector<double> before(values.begin(), values.end());
     for (std::size_t k = 1; k < values.size(); ++k) {
         // From sample k - 1 (u = 0) to sample k (u = 1).

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/model/fit.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.hpp"
 #include "model/fit_coordinates.hpp"
 #include "model/fit_errors.hpp"
 #include "model/weighing.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/reproducible.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -65,9 +65,10 @@ void Coordinates::add_term(std::size_t i) {
         const auto [size, phase] = *effect.polar;
         const double amount = guess(i, size), angle_deg = guess(i, phase);
         const double step = linear_term ? 1.0 : 1e-6 * std::max(amount, effect.parameters[size].start);
-        list_.push_back({CoordinateKind::cosine_part, i, size, phase, amount * cos_degrees(angle_deg),
-                         -unbounded, unbounded, step, linear_term});
-        list_.push_back({CoordinateKind::sine_part, i, size, phase, amount * sin_degrees(angle_deg),
+        list_.push_back({CoordinateKind::cosine_part, i, size, phase,
+                         amount * portable::cos_degrees(angle_deg), -unbounded, unbounded, step,
+                         linear_term});
+        list_.push_back({CoordinateKind::sine_part, i, size, phase, amount * portable::sin_degrees(angle_deg),
                          -unbounded, unbounded, step, linear_term});
     }
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
@@ -80,8 +81,8 @@ void Coordinates::add_term(std::size_t i) {
         if (pair && (p == effect.polar->size || p == effect.polar->phase)) continue;
         const double start = guess(i, p);
         if (parameter.logarithmic) {
-            list_.push_back({CoordinateKind::logarithm, i, p, 0, natural_log(start),
-                             natural_log(parameter.lower), natural_log(parameter.upper), 1e-5, false});
+            list_.push_back({CoordinateKind::logarithm, i, p, 0, portable::log(start),
+                             portable::log(parameter.lower), portable::log(parameter.upper), 1e-5, false});
             continue;
         }
         const bool linear = linear_term && parameter.linear;
@@ -99,10 +100,10 @@ Model Coordinates::at(const std::vector<double>& point) const {
         if (coordinate.kind == CoordinateKind::plain) {
             values[coordinate.parameter] = point[c];
         } else if (coordinate.kind == CoordinateKind::logarithm) {
-            values[coordinate.parameter] = exponential(point[c]);
+            values[coordinate.parameter] = portable::exp(point[c]);
         } else if (coordinate.kind == CoordinateKind::cosine_part) {
-            values[coordinate.parameter] = std::hypot(point[c], point[c + 1]);
-            values[coordinate.phase] = std::atan2(point[c + 1], point[c]) * degrees_per_radian;
+            values[coordinate.parameter] = portable::hypot(point[c], point[c + 1]);
+            values[coordinate.phase] = portable::atan2(point[c + 1], point[c]) * degrees_per_radian;
         }
     }
     return model;
@@ -119,22 +120,22 @@ std::vector<FittedValue> Coordinates::values(const std::vector<double>& point,
             found.push_back(told(place.term, place.parameter, point[c], variance(c, c), 1.0));
             found.back().at_bound = point[c] <= place.lower || point[c] >= place.upper;
         } else if (place.kind == CoordinateKind::logarithm) {
-            const double value = exponential(point[c]);
+            const double value = portable::exp(point[c]);
             found.push_back(told(place.term, place.parameter, value, variance(c, c), value));
             if (auto& ci95 = found.back().ci95) {
                 const double half = normal_95 * std::sqrt(variance(c, c));
-                ci95 = Interval{value * std::exp(-half), value * std::exp(half)};
+                ci95 = Interval{value * portable::exp(-half), value * portable::exp(half)};
             }
             found.back().at_bound = point[c] <= place.lower || point[c] >= place.upper;
         } else if (place.kind == CoordinateKind::cosine_part) {
-            const double x = point[c], y = point[c + 1], size = std::hypot(x, y);
+            const double x = point[c], y = point[c + 1], size = portable::hypot(x, y);
             const double cosine = size > 0.0 ? x / size : 1.0, sine = size > 0.0 ? y / size : 0.0;
             const double xx = variance(c, c), xy = variance(c, c + 1), yy = variance(c + 1, c + 1);
             const double along = xx * cosine * cosine + 2.0 * xy * cosine * sine + yy * sine * sine;
             const double across = xx * sine * sine - 2.0 * xy * cosine * sine + yy * cosine * cosine;
             const bool known = xx >= 0.0 && yy >= 0.0;
             found.push_back(told(place.term, place.parameter, size, known ? along : -1.0, 1.0));
-            found.push_back(told(place.term, place.phase, std::atan2(y, x) * degrees_per_radian,
+            found.push_back(told(place.term, place.phase, portable::atan2(y, x) * degrees_per_radian,
                                  known && size > 0.0 ? across : -1.0,
                                  degrees_per_radian / std::max(size, 1e-300)));
         }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "model/fit_errors.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "core/linear_algebra.hpp"
 
 namespace ripplenotch {
 namespace {

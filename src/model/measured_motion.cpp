@@ -9,6 +9,7 @@
 #include "model/local_motion.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -91,7 +92,7 @@ bool tell_the_same(const TraceView& log, Seconds smoothing, MotionNoise noise) {
         const double off =
             by_velocity.at(k, window).velocity_deg_s - by_position.at(k, window).velocity_deg_s;
         const double usual =
-            std::hypot(by_velocity.velocity_error(k, window), by_position.velocity_error(k, window));
+            portable::hypot(by_velocity.velocity_error(k, window), by_position.velocity_error(k, window));
         differences.push_back(std::abs(off) / usual);
     }
     const auto place = static_cast<std::ptrdiff_t>(quantile * static_cast<double>(differences.size() - 1));

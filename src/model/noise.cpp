@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -35,7 +35,7 @@ double Noise::normal() {
         y = 2.0 * uniform() - 1.0;
         square = x * x + y * y;
     } while (square >= 1.0 || square == 0.0);
-    const double stretch = std::sqrt(-2.0 * natural_log(square) / square);
+    const double stretch = std::sqrt(-2.0 * portable::log(square) / square);
     spare_ = y * stretch;
     has_spare_ = true;
     return x * stretch;

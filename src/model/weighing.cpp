@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "model/weighing.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
+
+#include "core/linear_algebra.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -92,7 +92,7 @@ ResponsePanels empty_panels(const Comparison& comparison) {
     panels.phase.legend = panels.delay.legend = false;
     if (!comparison.lines) return panels;
     for (const Order order : comparison.lines->orders) {
-        const double hz = ripple_frequency(order, comparison.lines->gear_ratio, comparison.speed).value();
+        const double hz = ripple_frequency(order, comparison.lines->ratio, comparison.speed).value();
         panels.magnitude.lines.push_back(
             {fmt::format("order {}", shortest(order.value())), NamedLine::Run::at_x, hz, Ink::black});
     }

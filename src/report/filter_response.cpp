@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/report/comparison_figure.hpp"
 
 namespace ripplenotch {
@@ -19,7 +20,7 @@ std::optional<double> null_hz(const Biquad& section, Hertz sample_rate) {
     if (section.b0 == 0.0 || std::abs(section.b2 / section.b0 - 1.0) > 1e-9) return std::nullopt;
     const double cosine = -section.b1 / (2.0 * section.b0);
     if (!(std::abs(cosine) < 1.0)) return std::nullopt;
-    return std::acos(cosine) / (2.0 * std::numbers::pi) * sample_rate.value();
+    return portable::acos(cosine) / (2.0 * std::numbers::pi) * sample_rate.value();
 }
 
 }  // namespace
@@ -29,7 +30,7 @@ FilterResponse filter_response(std::span<const Biquad> cascade, Hertz sample_rat
     FilterResponse result;
     const double lowest = lowest_share * sample_rate.value(), highest = highest_share * sample_rate.value();
     for (int i = 0; i <= points; ++i)
-        result.hz.push_back(lowest * std::pow(highest / lowest, static_cast<double>(i) / points));
+        result.hz.push_back(lowest * portable::pow(highest / lowest, static_cast<double>(i) / points));
     const auto add = [&](double hz) {
         if (hz > lowest && hz < highest) result.hz.push_back(hz);
     };
@@ -51,9 +52,9 @@ FilterResponse filter_response(std::span<const Biquad> cascade, Hertz sample_rat
             magnitude *= std::abs(gain);
             // A section turns by less than half a turn below half the sample rate, so its phase is not
             // folded.
-            phase_rad += std::arg(gain);
+            phase_rad += portable::arg(gain);
         }
-        const double db = magnitude > 0.0 ? 20.0 * std::log10(magnitude) : lowest_magnitude_db;
+        const double db = magnitude > 0.0 ? 20.0 * portable::log10(magnitude) : lowest_magnitude_db;
         result.magnitude_db.push_back(std::max(db, lowest_magnitude_db));
         const bool at_null = std::any_of(nulls.begin(), nulls.end(),
                                          [hz](double null) { return std::abs(hz / null - 1.0) < 1e-9; });

@@ -68,6 +68,22 @@ std::string lines_in_words(std::size_t count) {
                         : fmt::format("{} lines stand out of the noise", count);
 }
 
+/// "; 2 humps do, the strongest from 59 to 61 Hz with 0.6 Nm rms"
+std::string humps_in_words(std::span<const ShownSpectrum> spectra) {
+    std::size_t count = 0;
+    const SpectralHump* strongest = nullptr;
+    for (const ShownSpectrum& shown : spectra) {
+        for (const SpectralHump& hump : shown.spectrum->humps) {
+            ++count;
+            if (strongest == nullptr || hump.rms_nm > strongest->rms_nm) strongest = &hump;
+        }
+    }
+    if (count == 0) return "";
+    return fmt::format("; {} from {:.3g} to {:.3g} Hz with {:.2g} Nm rms",
+                       count == 1 ? "a hump does," : fmt::format("{} humps do, the strongest", count),
+                       strongest->from_hz, strongest->to_hz, strongest->rms_nm);
+}
+
 }  // namespace
 
 Figure spectrum_figure(const std::string& source, std::span<const ShownSpectrum> spectra) {
@@ -81,6 +97,7 @@ Figure spectrum_figure(const std::string& source, std::span<const ShownSpectrum>
     if (spectra.size() > 1) figure.sentence += fmt::format(" of {} stretches", spectra.size());
     if (spectra.size() > most_spectrum_panels)
         figure.sentence += fmt::format(", of which the first {} are shown", most_spectrum_panels);
+    figure.sentence += humps_in_words(spectra);
     figure.sentence += ".";
     return figure;
 }

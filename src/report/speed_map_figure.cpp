@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/report/spectrum_figure.hpp"
 
@@ -61,10 +62,8 @@ HeatMap heat_map(const SpeedMap& map, const Columns& columns) {
     }
     if (values.empty()) return heat;
     heat.highest = *std::max_element(values.begin(), values.end());
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
     // Colours begin at the noise, but never span more than three decades.
-    heat.lowest = std::min(std::max(*middle, 1e-3 * heat.highest), 0.1 * heat.highest);
+    heat.lowest = std::min(std::max(median_in(values), 1e-3 * heat.highest), 0.1 * heat.highest);
     return heat;
 }
 
@@ -80,14 +79,14 @@ Figure speed_map_figure(const std::string& source, const SpeedMap& map, const Ma
     panel.y.from = 0.0;
     panel.map = heat_map(map, columns_of(map));
     panel.y.to = panel.map->y_edges.back();
-    if (lines.gear_ratio) {
-        for (const double order : lines.orders) {
-            const double per_output_turn = order * lines.gear_ratio->value();
-            NamedLine line{fmt::format("order {}", shortest(order)), NamedLine::Run::ray,
+    if (lines.gear) {
+        for (const Order order : lines.gear->orders) {
+            const double per_output_turn = order.value() * lines.gear->ratio.value();
+            NamedLine line{fmt::format("order {}", shortest(order.value())), NamedLine::Run::ray,
                            per_output_turn / 360.0};
             if (!campbell) {
                 line.run = NamedLine::Run::at_y;
-                line.value = lines.axis_per_motor_turn ? order : per_output_turn;
+                line.value = lines.axis_per_motor_turn ? order.value() : per_output_turn;
             }
             panel.lines.push_back(std::move(line));
         }
@@ -99,7 +98,7 @@ Figure speed_map_figure(const std::string& source, const SpeedMap& map, const Ma
                     campbell ? "Hz" : "orders",
                     panel.lines.empty() ? std::string()
                                         : fmt::format("; lines are orders of a gear ratio of {:.6g}",
-                                                      lines.gear_ratio->value())),
+                                                      lines.gear->ratio.value())),
         {}};
     figure.panels.push_back(std::move(panel));
     return figure;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/analysis/alias.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/identification.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Contains;

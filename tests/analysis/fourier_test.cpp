@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 #include <complex>
 #include <numbers>
 
 #include "analysis/spreading_kernel.hpp"
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Matchers::WithinAbs;

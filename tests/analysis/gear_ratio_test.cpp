@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/traces.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Contains;

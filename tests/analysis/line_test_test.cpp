@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/line_test.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Matchers::WithinAbs;

@@ -2,9 +2,9 @@
 #include "ripplenotch/analysis/motion_lines.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "analysis/traces.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Matchers::WithinAbs;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/analysis/order_map.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "analysis/order_signals.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Matchers::WithinAbs;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/analysis/order_track.hpp"
 
-#include <catch2/catch.hpp>
 #include <cstring>
 
 #include "analysis/order_signals.hpp"
 #include "ripplenotch/analysis/track_by_speed.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Matchers::WithinAbs;

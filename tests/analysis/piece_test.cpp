@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/piece.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "analysis/line_meter.hpp"
 #include "analysis/piece_kernel.hpp"
 #include "analysis/power_kernel.hpp"
 #include "analysis/traces.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Matchers::WithinAbs;

@@ -2,13 +2,13 @@
 #include "ripplenotch/analysis/ripple_meter.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
 #include <random>
 
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 
@@ -46,7 +46,7 @@ RippleLevels measure(const std::function<double(double)>& speed, double seconds,
         for (const double gap : gaps_s) {
             if (k == static_cast<std::size_t>(gap * plant.rate_hz)) meter.split();
         }
-        meter.add(v, position ? &read : nullptr, torque);
+        meter.add(Seconds(t), v, position ? &read : nullptr, torque);
     }
     return meter.levels();
 }
@@ -128,7 +128,7 @@ TEST_CASE("a position that wraps around is unwrapped") {
     for (int k = 0; k < 9000; ++k) {
         const double angle_deg = 0.09 * k, motor = ratio * angle_deg * std::numbers::pi / 180.0;
         const double wrapped = std::remainder(angle_deg, 360.0), torque = std::sin(motor);
-        meter.add(90.0, &wrapped, {&torque, 1});
+        meter.add(Seconds(k / 1000.0), 90.0, &wrapped, {&torque, 1});
     }
     CHECK(meter.levels().orders[0].amplitude_nm[0] == Approx(1.0).epsilon(1e-3));
 }
@@ -164,8 +164,8 @@ TEST_CASE("asking for levels does not disturb the measurement") {
     RippleMeter a(GearRatio(ratio), orders, Hertz(1000.0), 1), b(GearRatio(ratio), orders, Hertz(1000.0), 1);
     for (int k = 0; k < 3000; ++k) {
         const double torque = std::sin(2.0 * std::numbers::pi * 0.025 * k);
-        a.add(90.0, nullptr, {&torque, 1});
-        b.add(90.0, nullptr, {&torque, 1});
+        a.add(Seconds(k / 1000.0), 90.0, nullptr, {&torque, 1});
+        b.add(Seconds(k / 1000.0), 90.0, nullptr, {&torque, 1});
         if (k % 100 == 0) static_cast<void>(a.levels());
     }
     CHECK(a.levels().orders[0].amplitude_nm == b.levels().orders[0].amplitude_nm);
@@ -189,7 +189,8 @@ TEST_CASE("the expected gain is that of the speeds of the windows, phase and all
         for (int k = 0; k < 8000; ++k) {
             const double v = speed(k / 1000.0);
             angle_deg += v / 1000.0;
-            meter.add(v, &angle_deg, std::array{std::sin(ratio * angle_deg * std::numbers::pi / 180.0)});
+            meter.add(Seconds(k / 1000.0), v, &angle_deg,
+                      std::array{std::sin(ratio * angle_deg * std::numbers::pi / 180.0)});
         }
         const RippleLevels levels = meter.levels();
         REQUIRE(levels.windows > 5);

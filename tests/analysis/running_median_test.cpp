@@ -2,9 +2,9 @@
 #include "analysis/running_median.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "analysis/traces.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 
-#include "analysis/traces.hpp"
 #include "ripplenotch/analysis/steady.hpp"
+#include "analysis/traces.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using Catch::Matchers::WithinAbs;
@@ -64,6 +64,7 @@ TEST_CASE("a slow ramp yields no stretch longer than its band allows") {
 TEST_CASE("a gap in time ends a stretch") {
     Trace trace = tests::make_trace({.seconds = 4.0, .speed_deg_s = [](double) { return 50.0; }});
     for (std::size_t k = 2000; k < 4000; ++k) trace.time_s[k] += 1.0;
+    trace.run_starts = {2000};
     const auto found = steady_stretches(trace.view(), {});
     REQUIRE(found.size() == 2);
     CHECK(found[0].count == 2000);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/artifact/comparison.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "artifact/json.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 
@@ -44,7 +43,7 @@ TEST_CASE("what was measured stands under the promised names") {
     figures.settle_ms = {147.0, 130.0, 114.0, 92.0};
     figures.attenuation = {{1.0, 25.0, 21.7}, {2.0, 50.0, std::nullopt}};
     figures.switches = 0;
-    comparison.lines = RippleLines{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}};
+    comparison.lines = GearAccount{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}, {}, ""};
     comparison.on_log = true;
     comparison.windows = 12;
     comparison.match =

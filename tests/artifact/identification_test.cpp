@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/artifact/identification.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 
@@ -13,7 +12,8 @@ Identification example() {
     Identification found;
     found.joint = "j4";
     found.sample_rate = Hertz(999.5);
-    found.evidence = "steady stretches";
+    found.evidence = LineEvidence::stretches;
+    found.finding = RippleFinding::ratio;
     found.verdict = "Ripple at orders 1 and 2 of the motor";
     found.conclusive = true;
     found.notes = {"one", "two"};
@@ -51,7 +51,9 @@ TEST_CASE("joint.json reads back as it was written, byte for byte") {
     Identification without_ratio = example();
     without_ratio.gear_ratio = {};
     without_ratio.lines.clear();
-    for (const Identification& found : {example(), without_ratio, nothing}) {
+    Identification doubted = without_ratio;
+    doubted.doubts = {{DoubtReason::clock, "the clock is wrong"}};
+    for (const Identification& found : {example(), without_ratio, nothing, doubted}) {
         const std::string text = identification_text(found, {});
         CHECK(identification_text(identification_from_json(text, "joint.json"), {}) == text);
     }

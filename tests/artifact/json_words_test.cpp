@@ -2,9 +2,9 @@
 #include "artifact/json_words.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "ripplenotch/artifact/result_section.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

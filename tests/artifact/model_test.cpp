@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/artifact/model.hpp"
 
-#include <catch2/catch.hpp>
-
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/artifact/table.hpp"
 
-#include <catch2/catch.hpp>
 #include <functional>
 
 #include "artifact/json.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

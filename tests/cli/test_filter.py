@@ -180,7 +180,7 @@ class Clock(Case):
     def test_a_gap_is_reported_and_starts_the_filter_anew(self):
         log = self.write("log.csv", log_text(3000, gap_after=1499))
         done = self.good("filter", log, "--method", LOWPASS, "-o", "out.csv", "--metrics", "m.json")
-        self.assertIn(b"one gap in time", done.stderr)
+        self.assertIn(b"1 gap in the time", done.stderr)
         metrics = json.loads((self.folder / "m.json").read_text())
         self.assertEqual(metrics["gap_count"], 1)
         self.assertEqual(metrics["gaps"][0]["row"], 1499)

@@ -89,7 +89,7 @@ class Joints(Case):
                     self.assertEqual(first.get(key), second.get(key), key)
 
     def test_a_limit_that_one_joint_breaks_is_told_with_its_name(self):
-        done = self.run_tool("filter", self.log, "--joint", "all", "--table", "{joint}.json", "--max-delay-ms", "12", "-o", "all.csv")
+        done = self.run_tool("filter", self.log, "--joint", "all", "--table", "{joint}.json", "--max-delay", "12ms", "-o", "all.csv")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("joint j3: ", done.stderr.decode())
 

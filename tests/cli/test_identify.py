@@ -137,6 +137,65 @@ class Answers(unittest.TestCase):
         self.assertIn("at least 64", short.stderr)
 
 
+class Doubts(unittest.TestCase):
+    """Logs that a sure answer would be wrong about."""
+
+    def log(self, folder, name, seconds=6.0, rate=500.0, speed=36.0, ripple_nm=0.0, tones=(), clock=1.0, position=True,
+            seed=1):
+        noise = random.Random(seed)
+        rows = ["time_s,velocity_deg_s,torque_nm" + (",position_deg" if position else "")]
+        for k in range(int(seconds * rate)):
+            t = k / rate
+            torque = 5.0 + ripple_nm * math.sin(math.radians(100 * speed * t)) + noise.gauss(0, 0.05)
+            torque += sum(nm * math.sin(2 * math.pi * hz * t) for hz, nm in tones)
+            rows.append(f"{t / clock:.6f},{speed},{torque:.6f}" + (f",{speed * t:.6f}" if position else ""))
+        path = pathlib.Path(folder) / name
+        path.write_text("\n".join(rows) + "\n")
+        return str(path)
+
+    # As a UR5e writes them: current at multiples of about 10 Hz, and stamps that run 1.475 times too fast.
+    TONES = [(hz / 1.475, 0.3) for hz in (20.06, 30.0, 40.05, 50.02)]
+
+    def test_a_wrong_clock_comes_first_and_no_order_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            logs = [self.log(folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, seed=v) for v in (36, 48)]
+            done = run("identify", *logs, "--require-conclusive", "-q")
+            self.assertEqual(done.returncode, 5, done.stdout)
+            self.assertTrue(done.stdout.startswith("Cannot tell: "), done.stdout)
+            self.assertIn("the position changes 1.475 times as much as velocity and time say", done.stdout)
+            self.assertIn("multiples 2 to 5 of 10.0", done.stdout)
+            self.assertEqual(run("identify", *logs, "-q").returncode, 0)
+            found = identified(*logs)
+            self.assertEqual([doubt["reason"] for doubt in found["doubts"]], ["clock", "clock"])
+            self.assertIsNone(found["gear_ratio"]["value"])
+            self.assertEqual(orders(found, ("order", "alias", "unknown")), [])
+
+    def test_the_family_without_the_position(self):
+        with tempfile.TemporaryDirectory() as folder:
+            logs = [self.log(folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, position=False, seed=v)
+                    for v in (36, 48)]
+            found = identified(*logs)
+            self.assertEqual(orders(found), [])
+            self.assertIsNone(found["gear_ratio"]["value"])
+            self.assertEqual(found["families"][0]["multiples"], [2, 3, 4, 5])
+            self.assertAlmostEqual(found["families"][0]["hz"], 10.0, delta=0.05)
+
+    def test_a_joint_that_wears_is_told_log_by_log(self):
+        with tempfile.TemporaryDirectory() as folder:
+            wear = (0.38, 0.52, 0.74, 0.96)
+            logs = [self.log(folder, f"{i}_{v}.csv", speed=v, ripple_nm=nm, seed=10 * i + v)
+                    for i, nm in enumerate(wear) for v in (40, 70)]
+            done = run("identify", *logs, "-q")
+            self.assertIn("the recordings disagree", done.stdout.splitlines()[0])
+            self.assertIn("0_40.csv", done.stdout)
+            one = identified(*logs)["disagreements"][0]
+            self.assertEqual(one["about"], "amplitude")
+            values = [value["value"] for value in one["values"]]
+            self.assertEqual(len(values), len(wear))
+            for value, nm in zip(values, wear):
+                self.assertAlmostEqual(value, nm, delta=0.05 * nm)
+
+
 class Spectra(unittest.TestCase):
     def test_a_pipe_ends_in_json_with_peaks_floor_window_and_resolution(self):
         done = run("spectrum", "-", "--json", stdin=log_text(72.0, 0.5))
@@ -188,6 +247,28 @@ class RealLogs(unittest.TestCase):
                 self.near(orders(found), order, 0.01)
             self.assertAlmostEqual(found["gear_ratio"]["value"], 120.0, delta=1.2)
             self.assertAlmostEqual(found["gear_ratio"]["candidates"][0]["value"], 120.0, delta=1.2)
+
+    def test_pandas_spectrum_tells_what_stands_in_its_picture(self):
+        """What rises five times above the noise beside it lies in a line or a hump that is told."""
+        log = str(LOGS / "gpl3" / "panda_gaz_all.csv")
+        for joint in (f"panda_joint{number}" for number in range(1, 8)):
+            one = json.loads(run("spectrum", log, "--joint", joint, "--json").stdout)["spectra"][0]
+            told = [(hump["from_hz"] - 1.0, hump["to_hz"] + 1.0) for hump in one["humps"]]
+            told += [(peak["hz"] - 0.5, peak["hz"] + 0.5) for peak in one["peaks"]]
+            for row in run("spectrum", log, "--joint", joint).stdout.splitlines()[1:]:
+                hz, amplitude, _, floor = map(float, row.split(","))
+                if hz > 5.0 and amplitude > 5.0 * floor:
+                    self.assertTrue(any(low <= hz <= high for low, high in told), f"{joint}: {hz} Hz, {amplitude} Nm")
+
+    def test_panda_clock_makes_no_lines_of_the_slow_torque(self):
+        # The model's torque is smooth; read at the log's stumbling stamps it showed 0.81 Nm at 59.7 Hz.
+        log = str(LOGS / "gpl3" / "panda_gaz_all.csv")
+        done = run("spectrum", log, "--columns", "time=time_s,velocity=panda_joint2_velocity_rad_s,torque=panda_joint2_model_torque_Nm")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for row in done.stdout.splitlines()[1:]:
+            hz, amplitude = map(float, row.split(",")[:2])
+            if 59.0 < hz < 61.0:
+                self.assertLess(amplitude, 0.1)
 
     def test_lara_says_that_one_speed_dominates(self):
         found = identified(str(LOGS / "neura_lara8_j3.csv"))

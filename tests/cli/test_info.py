@@ -155,16 +155,19 @@ class RealLogs(unittest.TestCase):
             with self.subTest(name):
                 got = info(LOGS / name)
                 self.assertEqual(got["rows"], rows)
-                self.assertAlmostEqual(got["sample_rate_hz"], rate, delta=0.01)
+                self.assertAlmostEqual(got["mean_rate_hz"], rate, delta=0.01)
+                self.assertEqual(got["sample_rate_hz"], {249.064: 250.0, 978.28: 1000.0}.get(rate, got["sample_rate_hz"]))
                 self.assertEqual(len(got["joints"]), joints)
                 self.assertAlmostEqual(got["clock_factor"], 1.0, delta=0.015)
                 self.assertFalse([w for w in got["warnings"] if "clock is wrong" in w])
 
-    def test_raw_logs_without_units_say_so_and_suspect_radians(self):
-        for name in ("raw/neura_lara8_validate_original.csv", "raw/ur3e_rad_L1L2_original_CR_line_ends.csv"):
-            warnings = " ".join(info(LOGS / name)["warnings"])
-            self.assertIn("no unit is stated", warnings)
-            self.assertIn("may be radians", warnings)
+    def test_raw_logs_without_units_are_read_in_radians_and_the_reason_is_told(self):
+        lara = info(LOGS / "raw/neura_lara8_validate_original.csv")
+        self.assertIn("rad/s", " ".join(one["assumed"] for one in lara["recordings"][0]["assumptions"]))
+        self.assertIn("no unit is stated", " ".join(lara["warnings"]))
+        ur3e = info(LOGS / "raw/ur3e_rad_L1L2_original_CR_line_ends.csv")
+        self.assertIn("UR RTDE", " ".join(one["reason"] for one in ur3e["recordings"][0]["inferences"]))
+        self.assertEqual(ur3e["recordings"][0]["assumptions"], [])
 
 
 if __name__ == "__main__":

@@ -71,7 +71,8 @@ class Maps(unittest.TestCase):
             done = subprocess.run([TOOL, "identify", *logs, "-o", joint, "-q"], capture_output=True, text=True,
                                   timeout=60, stdin=subprocess.DEVNULL)
             self.assertEqual(done.returncode, 0, done.stderr)
-            for words, orders in ((["--joint-file", joint], [1, 2]), (["--gear-ratio", "100"], [1, 2, 3, 4]),
+            for words, orders in ((["--joint-file", joint], [1, 2]), (["--gear-ratio", "100"], [1, 2]),
+                                  (["--gear-ratio", "100", "--orders", "1,2,3,4"], [1, 2, 3, 4]),
                                   ([], [])):
                 for kind, scale in (("campbell", 100 / 360), ("order", 1)):
                     done = run(MOVE, "--map", kind, "--highest", "5", *words, "-o", f"{folder}/map.csv",

@@ -77,6 +77,13 @@ class Columns(Case):
             for x, y in zip(a, b):
                 self.assertAlmostEqual(x, y, delta=2e-4 * max(1.0, abs(x)))
 
+    def test_beside_other_lines_there_are_no_orders_by_default(self):
+        words = (MOVE, "--output-orders", "100,200")
+        alone, _ = self.track(*words, "--window-turns", "0.08")
+        with_ratio, _ = self.track(*words, "--gear-ratio", "100", "--window-turns", "8")
+        self.assertEqual(with_ratio, alone)
+        self.assertNotIn("order_1_amplitude_nm", alone)
+
     def test_a_tone_beside_the_orders_changes_neither(self):
         header, rows = self.track(MOVE, *ORDERS, "--tones", "120Hz")
         self.assertEqual(header[8], "tone_120hz_amplitude_nm")

@@ -1,9 +1,10 @@
 #include "ripplenotch/core/biquad.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
+
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;

@@ -4,14 +4,14 @@
 
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <random>
 
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "ripplenotch/core/number.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

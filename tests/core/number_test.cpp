@@ -1,12 +1,13 @@
 #include "ripplenotch/core/number.hpp"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <random>
 #include <vector>
+
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/core/progress.hpp"
-
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using std::chrono::duration;

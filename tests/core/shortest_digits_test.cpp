@@ -3,7 +3,6 @@
 #include "core/shortest_digits.hpp"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "ripplenotch/core/number.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

@@ -1,12 +1,12 @@
 #include "ripplenotch/core/spec.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
 
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 constexpr std::array<std::string_view, 2> modes = {"keep", "reset"};

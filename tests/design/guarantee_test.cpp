@@ -2,16 +2,16 @@
 #include "ripplenotch/design/guarantee.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/design/frontier.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

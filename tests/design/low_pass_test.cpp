@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/design/low_pass.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "ripplenotch/design/transient.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 TEST_CASE("a low-pass of any order is the Butterworth magnitude, prewarped at its cut-off") {
     for (int order = 1; order <= 20; ++order) {

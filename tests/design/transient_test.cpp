@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/design/transient.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "ripplenotch/design/low_pass.hpp"
 #include "ripplenotch/design/notch.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

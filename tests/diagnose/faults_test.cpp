@@ -2,11 +2,11 @@
 // Faults of the converter, each with what can be taken for it.
 #include "diagnose/faults.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "diagnose_fixture.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What went wrong once, in this tool or in the trials before it, each with a log that shows it.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "diagnose_fixture.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;

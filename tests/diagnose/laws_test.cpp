@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Laws of a diagnosis over the whole catalogue: an effect is under test on the day it is listed.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What no effect explains is reported with its place and under no name.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "diagnose_fixture.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;

@@ -2,12 +2,12 @@
 // Which names a diagnosis gives, and which it keeps to itself: look-alikes, surrogates, what another log
 // contradicts, what the log does not hold.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "diagnose/undecidable.hpp"
 #include "diagnose_fixture.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;

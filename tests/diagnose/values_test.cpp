@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The values told at the end: what pulls them to one side is away, and their intervals hold the truth.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "diagnose/search.hpp"
 #include "diagnose/values.hpp"
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "ripplenotch/core/biquad.hpp"
 #include "ripplenotch/design/transient.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;

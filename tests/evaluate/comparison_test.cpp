@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/evaluate/comparison.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
 #include "ripplenotch/evaluate/bench.hpp"
 #include "ripplenotch/evaluate/match_low_pass.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
@@ -16,7 +16,7 @@ namespace {
 
 Contender contender(const std::string& text) { return make_contender(parse_spec(text)); }
 
-const RippleLines paper_lines{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}};
+const GearAccount paper_lines{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}, {}, ""};
 
 // 20 s at a constant speed: 0.8 Nm of order 1, 0.5 Nm of order 2, an offset, and a little noise.
 Trace steady_log(double speed_deg_s, double noise_nm) {
@@ -42,7 +42,7 @@ TEST_CASE("on a log, attenuation per order is what the method's response says at
     const Trace log = steady_log(80.0, 0.0);
     const std::vector<Contender> contenders = {contender("none"), contender("fixed,centers=25Hz:50Hz,q=0.25"),
                                                contender("lowpass,cutoff=13rad/s,order=1")};
-    const LogLevels levels = measure_on_log(contenders, {log.view(), {}}, paper_lines);
+    const LogLevels levels = measure_on_log(contenders, {log.view()}, paper_lines);
     REQUIRE(levels.windows > 0);
     REQUIRE(levels.methods.size() == 3);
     for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -65,9 +65,9 @@ TEST_CASE("a gap restarts every method, so that nothing rings across it") {
     // The torque has another offset after the gap; a filter that ran on would see a step of 50 Nm.
     for (std::size_t k = 10000; k < log.torque_nm.size(); ++k) log.torque_nm[k] += 50.0;
     const std::vector<Contender> contenders = {contender("lowpass,cutoff=13rad/s,order=1")};
-    const std::vector<std::size_t> gaps = {9999};
-    const LogLevels split = measure_on_log(contenders, {log.view(), gaps}, paper_lines);
-    const LogLevels run_on = measure_on_log(contenders, {log.view(), {}}, paper_lines);
+    const LogLevels run_on = measure_on_log(contenders, {log.view()}, paper_lines);
+    log.run_starts = {10000};
+    const LogLevels split = measure_on_log(contenders, {log.view()}, paper_lines);
     CHECK(split.methods[0].residual_rms_nm.value() < 0.1);
     CHECK(run_on.methods[0].residual_rms_nm.value() > 3.0 * split.methods[0].residual_rms_nm.value());
 }
@@ -75,19 +75,19 @@ TEST_CASE("a gap restarts every method, so that nothing rings across it") {
 TEST_CASE("a low-pass matched on a log leaves the ripple asked for") {
     const Trace log = steady_log(80.0, 0.05);
     const std::vector<Contender> subject = {contender("fixed,centers=25Hz:50Hz,q=1")};
-    const double target = *measure_on_log(subject, {log.view(), {}}, paper_lines).methods[0].ripple_rms_nm;
+    const double target = *measure_on_log(subject, {log.view()}, paper_lines).methods[0].ripple_rms_nm;
     for (const int order : {1, 2, 4}) {
-        const auto cutoff = cutoff_for_ripple(target, order, {log.view(), {}}, paper_lines);
+        const auto cutoff = cutoff_for_ripple(target, order, {log.view()}, paper_lines);
         REQUIRE(cutoff.has_value());
         const std::vector<Contender> matched = {make_contender(low_pass_spec(*cutoff, order))};
-        const LogLevels levels = measure_on_log(matched, {log.view(), {}}, paper_lines);
+        const LogLevels levels = measure_on_log(matched, {log.view()}, paper_lines);
         CHECK(*levels.methods[0].ripple_rms_nm == Approx(target).epsilon(1e-4));
     }
 }
 
 TEST_CASE("no low-pass is found for more ripple than the log has") {
     const Trace log = steady_log(80.0, 0.0);
-    CHECK_FALSE(cutoff_for_ripple(5.0, 1, {log.view(), {}}, paper_lines).has_value());
+    CHECK_FALSE(cutoff_for_ripple(5.0, 1, {log.view()}, paper_lines).has_value());
 }
 
 TEST_CASE("without a log, the matched low-pass has the combined attenuation asked for") {
@@ -102,7 +102,7 @@ TEST_CASE("without a log, the matched low-pass has the combined attenuation aske
         }
     }
     // The paper's own low-pass: 21.7 dB at 25 Hz is a first-order filter at 13 rad/s.
-    const RippleLines first{GearRatio(100.0), {Order(1.0)}, {}};
+    const GearAccount first{GearRatio(100.0), {Order(1.0)}, {}, {}, ""};
     const Cascade papers = contender("lowpass,cutoff=13rad/s,order=1").frozen(1000_Hz, 0_deg_s)->cascade;
     const double gain = ripple_gain(papers, first, 1000_Hz, 90_deg_s).value();
     CHECK(gain == Approx(0.082).margin(0.001));
@@ -111,9 +111,9 @@ TEST_CASE("without a log, the matched low-pass has the combined attenuation aske
 }
 
 TEST_CASE("amplitudes weigh the lines against each other") {
-    RippleLines lines = paper_lines;
+    GearAccount lines = paper_lines;
     lines.amplitude_nm = {0.0, 1.0};
-    const RippleLines second{GearRatio(100.0), {Order(2.0)}, {}};
+    const GearAccount second{GearRatio(100.0), {Order(2.0)}, {}, {}, ""};
     CHECK(cutoff_for_gain(0.1, 1, lines, 1000_Hz, 90_deg_s)->value() ==
           Approx(cutoff_for_gain(0.1, 1, second, 1000_Hz, 90_deg_s)->value()).epsilon(1e-9));
 }
@@ -143,7 +143,7 @@ TEST_CASE("where no low-pass is equal, the match says why and names none") {
     CHECK_FALSE(steep.low_pass.has_value());
     CHECK_THAT(steep.clause, Catch::Contains("120.00 dB") && Catch::Contains("0.01 to 490 Hz"));
     const Trace log = steady_log(80.0, 0.0);
-    const LowPassMatch loud = match_on_log("fixed", 5.0, 1, {log.view(), {}}, paper_lines);
+    const LowPassMatch loud = match_on_log("fixed", 5.0, 1, {log.view()}, paper_lines);
     CHECK_FALSE(loud.low_pass.has_value());
     CHECK_THAT(loud.clause, Catch::Contains("leaves 5 Nm rms"));
 }

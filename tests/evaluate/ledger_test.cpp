@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/evaluate/ledger.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 
 #include "ripplenotch/evaluate/comparison.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

@@ -2,16 +2,16 @@
 // Frequency, width and depth as firmware and drives say them: identities and published cases.
 #include "export/parameters.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/export/target.hpp"
 #include "ripplenotch/export/verify.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 

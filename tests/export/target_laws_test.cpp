@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Laws that hold for every export target: a target is under test on the day it is listed.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <set>
@@ -9,10 +8,12 @@
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/export/verify.hpp"
+#include "support/catch.hpp"
+#include "support/places.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
@@ -63,8 +64,7 @@ std::vector<FilterSet> filters_for(const Target& target) {
 }
 
 std::string page_of(const Target& target) {
-    std::ifstream file(std::string(RIPPLENOTCH_SOURCE_DIR) + "/docs/export/" + std::string(target.name) +
-                       ".md");
+    std::ifstream file(source_folder() + "/docs/export/" + std::string(target.name) + ".md");
     std::stringstream text;
     text << file.rdbuf();
     return text.str();

@@ -3,17 +3,17 @@
 // runs.
 #include "ripplenotch/export/verify.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "export/bank.hpp"
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using Catch::Matchers::WithinAbs;
 
 namespace {

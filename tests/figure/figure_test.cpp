@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/figure/figure.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/figure/gnuplot.hpp"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "figure/gnuplot_script.hpp"
 #include "figure/same_bytes.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -2,10 +2,11 @@
 #include "ripplenotch/figure/min_max.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <random>
+
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

@@ -2,11 +2,11 @@
 #include "figure/page_layout.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "ripplenotch/figure/visible_text.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

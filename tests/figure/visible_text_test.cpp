@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/figure/visible_text.hpp"
-
-#include <catch2/catch.hpp>
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

@@ -2,12 +2,13 @@
 #include "filter/block_pipeline.hpp"
 
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 #include <thread>
+
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

@@ -2,12 +2,12 @@
 // What every method promises. Settings are made up from the method's own list of keys, so that a new entry of
 // methods.def is tested the day it is listed.
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <set>
 
 #include "filter/tables.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;

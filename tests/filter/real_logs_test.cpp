@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <complex>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +15,8 @@
 #include "ripplenotch/analysis/sweeps.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
+#include "support/catch.hpp"
+#include "support/places.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;
@@ -106,7 +107,7 @@ std::vector<double> result(const std::string& text, const Log& log, Hertz rate) 
 }
 
 void check_log(const std::string& name, const std::string& orders, const std::vector<double>& lines) {
-    const std::filesystem::path path = std::filesystem::path(RIPPLENOTCH_LOGS_DIR) / "gpl3" / name;
+    const std::filesystem::path path = std::filesystem::path(logs_folder()) / "gpl3" / name;
     if (!std::filesystem::exists(path)) {
         WARN("skipped: no log " << name << " in the folder of real logs");
         return;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Sample by sample against vectors that SciPy made and Octave confirmed: scripts/make-filter-reference.
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <sstream>
 
 #include "filter/tables.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "support/catch.hpp"
+#include "support/places.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;
@@ -17,7 +18,7 @@ struct Reference {
 };
 
 Reference read(const std::string& name) {
-    std::ifstream file(std::string(RIPPLENOTCH_SOURCE_DIR) + "/tests/filter/data/" + name + ".csv");
+    std::ifstream file(source_folder() + "/tests/filter/data/" + name + ".csv");
     Reference reference;
     std::string line;
     std::getline(file, line);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // What is noted of rows four at a time is what a plain loop over the rows notes.
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
-#include "filter/held_rows.hpp"
-#include "filter/kernels/first_outside.hpp"
-#include "filter/kernels/row_facts.hpp"
+#include "core/first_outside.hpp"
+#include "core/row_facts.hpp"
+#include "ripplenotch/log/format.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 
@@ -25,7 +25,7 @@ std::vector<double> coarse(std::size_t size, std::mt19937& engine) {
     return values;
 }
 
-/// HeldRows' counts by the words of their description.
+/// count_repeats by the words of their description.
 RepeatCounts plainly(const JointRows& rows, std::size_t first, std::size_t end, double moving_deg_s) {
     RepeatCounts counts;
     for (std::size_t k = first + 1; k < end; ++k) {
@@ -36,6 +36,7 @@ RepeatCounts plainly(const JointRows& rows, std::size_t first, std::size_t end, 
         if (!(std::abs(rows.velocity_deg_s[k - 1]) > moving_deg_s)) continue;
         if (!(std::abs(rows.velocity_deg_s[k]) > moving_deg_s)) continue;
         ++counts.moving;
+        if (torque) ++counts.torque;
         if (same(rows.velocity_deg_s)) ++counts.velocity;
         if (same(rows.position_deg)) ++counts.position;
         if (same(rows.velocity_deg_s) && torque) ++counts.velocity_and_torque;
@@ -47,8 +48,8 @@ RepeatCounts plainly(const JointRows& rows, std::size_t first, std::size_t end, 
 
 bool equal(const RepeatCounts& a, const RepeatCounts& b) {
     return a.moving == b.moving && a.velocity == b.velocity && a.position == b.position &&
-           a.velocity_and_torque == b.velocity_and_torque && a.position_and_torque == b.position_and_torque &&
-           a.all == b.all;
+           a.torque == b.torque && a.velocity_and_torque == b.velocity_and_torque &&
+           a.position_and_torque == b.position_and_torque && a.all == b.all;
 }
 
 }  // namespace
@@ -68,27 +69,6 @@ TEST_CASE("repeated rows are counted as a plain loop counts them, with and witho
                 CHECK(equal(found, plainly(rows, 0, size, moving_deg_s)));
             }
         }
-    }
-}
-
-TEST_CASE("held rows are the same however a log is cut into blocks") {
-    std::mt19937 engine(2);
-    constexpr std::size_t size = 500;
-    JointRows rows;
-    for (std::size_t k = 0; k < size; ++k) {  // every third row repeats the one before
-        const bool repeats = k > 0 && k % 3 == 0;
-        rows.velocity_deg_s.push_back(repeats ? rows.velocity_deg_s.back()
-                                              : 20.0 + 0.01 * static_cast<double>(k));
-        rows.torque_nm.push_back(repeats ? rows.torque_nm.back() : static_cast<double>(engine() % 1000));
-    }
-    for (std::size_t i = 0; i < 50; ++i) {
-        HeldRows held(1.0);
-        for (std::size_t first = 0; first < size;) {
-            const std::size_t end = std::min<std::size_t>(size, first + 1 + engine() % 40);
-            held.add(rows, first, end, first > 0);
-            first = end;
-        }
-        CHECK(held.count() == (size - 1) / 3);
     }
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Ripple learned in a first pass and subtracted in a second.
 
-#include <catch2/catch.hpp>
 #include <cstring>
 
 #include "filter/moves.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;

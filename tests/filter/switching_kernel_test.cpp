@@ -2,15 +2,15 @@
 // The kernels under the switching filter give the bits of one sample, one section, one candidate after the
 // other.
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
 
+#include "core/first_outside.hpp"
 #include "filter/kernels/direct_form.hpp"
-#include "filter/kernels/first_outside.hpp"
 #include "filter/kernels/in_series.hpp"
 #include "filter/tables.hpp"
 #include "filter/transitions/filter_bank.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 #include <cstring>
 
 #include "filter/tables.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/filter/supervisor.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;

@@ -3,13 +3,13 @@
 // formulas of the firmwares whose rules it takes over.
 
 #include <fmt/format.h>
-#include <catch2/catch.hpp>
 #include <complex>
 #include <cstring>
 
 #include "filter/moves.hpp"
 #include "ripplenotch/core/biquad.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;

@@ -33,6 +33,8 @@ DOORS = {
     r"CLI/": {"src/cli/options_implementation.hpp"},
     r"fast_float/": {"src/core/number.cpp"},
     r"nettle/": {"src/core/sha256.cpp"},
+    r"Eigen/Sparse": {"src/analysis/envelope_kernel.cpp", "src/analysis/envelope_solver.cpp"},
+    r"Eigen/(?!Sparse)": {"src/core/linear_algebra.hpp"},
 }
 
 
@@ -63,8 +65,24 @@ class Rooms(unittest.TestCase):
                 for pattern, doors in DOORS.items():
                     if re.match(pattern, include):
                         self.assertIn(name, doors, f"{name} includes {include}")
-                if include.startswith("Eigen/"):
-                    self.assertEqual(path.suffix, ".cpp", f"{name} includes {include}; Eigen stays in .cpp files")
+
+    def test_tests_take_catch2_from_the_header_that_knows_both_versions(self):
+        doors = {SOURCE / "tests" / "support" / name for name in ("catch.hpp", "main.cpp")}
+        using = {path for path in (SOURCE / "tests").rglob("*.[ch]pp") if "<catch2/" in path.read_text()}
+        self.assertEqual(using, doors)
+
+    def test_public_headers_show_no_linear_algebra_library(self):
+        for path, _, includes in sources():
+            if "include/ripplenotch" in str(path):
+                self.assertNotIn("core/linear_algebra.hpp", includes, str(path))
+
+    def test_functions_that_libraries_choose_by_processor_are_our_own(self):
+        open_functions = "a?cos|a?sin|a?tan|atan2|tanh|exp|exp2|expm1|log|log10|log2|log1p|pow|cbrt|hypot|polar|arg|lgamma|tgamma"
+        for path, _, _ in sources():
+            for number, line in enumerate(path.read_text().split("\n"), 1):
+                found = re.search(rf"std::({open_functions})\(", line)
+                self.assertIsNone(found, f"{path.relative_to(SOURCE)}:{number} uses {found and found[0]}...); "
+                                         "take it from core/portable_math.hpp")
 
     def test_every_source_file_names_its_licence(self):
         for path, _, _ in sources():

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Names of columns as loggers write them: role, unit, joint.
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
 #include "log/column_name.hpp"
 #include "log/unit_text.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

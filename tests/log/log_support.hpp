@@ -64,6 +64,49 @@ class TemporaryPath {
     std::filesystem::path path_;
 };
 
+/// Rows from memory, in blocks of any size.
+class TraceReader final : public LogReader {
+  public:
+    explicit TraceReader(const Trace& trace, std::size_t block = 1000, std::optional<Hertz> stated = {})
+        : trace_(trace), block_(block) {
+        layout_.source = "log.csv";
+        layout_.columns.resize(1);
+        layout_.chosen.time = 0;
+        layout_.stated_rate = stated;
+    }
+    [[nodiscard]] const Layout& layout() const override { return layout_; }
+    [[nodiscard]] std::string_view head() const override { return {}; }
+    bool next(RowBlock& block) override {
+        block = RowBlock{};
+        const std::size_t count = std::min(block_, trace_.size() - at_);
+        const auto part = [&](const std::vector<double>& from) {
+            const auto first = from.begin() + static_cast<std::ptrdiff_t>(at_);
+            return from.empty() ? from
+                                : std::vector<double>(first, first + static_cast<std::ptrdiff_t>(count));
+        };
+        block.first_row = at_;
+        block.time_s = part(trace_.time_s);
+        block.joints[0].velocity_deg_s = part(trace_.velocity_deg_s);
+        block.joints[0].torque_nm = part(trace_.torque_nm);
+        block.joints[0].position_deg = part(trace_.position_deg);
+        at_ += count;
+        return count > 0;
+    }
+
+  private:
+    const Trace& trace_;
+    std::size_t block_, at_ = 0;
+    Layout layout_;
+};
+
+/// The trace as a log that is read.
+inline Log read_trace(const Trace& trace, std::size_t block = 1000) {
+    TraceReader reader(trace, block);
+    ReadOptions options;
+    options.needs_torque = false;
+    return read_log(reader, options);
+}
+
 using TorqueMap = std::function<double(double)>;
 
 /// The bytes of a log whose torque was mapped, written in `format` ("" for its own).

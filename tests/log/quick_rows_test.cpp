@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
 #include "ripplenotch/core/number.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

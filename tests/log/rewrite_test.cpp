@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // What filter passes on: every byte but the torque.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "log_support.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "support/catch.hpp"
+#include "support/places.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::test;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
@@ -26,8 +27,7 @@ WriteOptions append(const std::string& name = "torque_filtered") {
 }  // namespace
 
 TEST_CASE("a torque that is not changed leaves every byte of every dialect", "[log]") {
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(RIPPLENOTCH_SOURCE_DIR) + "/data/dialects")) {
+    for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/data/dialects")) {
         if (entry.path().extension() != ".csv") continue;
         INFO(entry.path());
         const std::string text = file_bytes(entry.path().string());

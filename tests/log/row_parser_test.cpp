@@ -2,12 +2,12 @@
 // The quick way through a row agrees with the careful way, bit for bit.
 #include "log/row_parser.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <string>
 
 #include "ripplenotch/core/number.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

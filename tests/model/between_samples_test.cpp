@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "model/between_samples.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
 #include <numbers>
 #include <vector>
+
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

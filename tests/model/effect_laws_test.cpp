@@ -2,7 +2,6 @@
 // Laws that hold for every effect of the catalogue: an effect is under test on the day it is listed.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -11,10 +10,12 @@
 #include "effects_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "support/catch.hpp"
+#include "support/places.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
@@ -39,7 +40,7 @@ std::vector<double> measured(const Effect& effect, const std::vector<double>& va
 }
 
 std::string page_of(const Effect& effect) {
-    std::ifstream file(fmt::format("{}/docs/effects/{}.md", RIPPLENOTCH_SOURCE_DIR, effect.name));
+    std::ifstream file(fmt::format("{}/docs/effects/{}.md", source_folder(), effect.name));
     std::stringstream text;
     text << file.rdbuf();
     return text.str();

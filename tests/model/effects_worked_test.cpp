@@ -2,11 +2,11 @@
 // Each effect against figures worked by hand, or against an independent formula in the C library's functions.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <complex>
 #include <numbers>
 
 #include "effects_fixture.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/model/fit.hpp"
 
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "effects_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

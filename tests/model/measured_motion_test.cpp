@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/model/measured_motion.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
@@ -9,10 +8,11 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -2,7 +2,6 @@
 #include "ripplenotch/model/motion.hpp"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <regex>
@@ -10,10 +9,12 @@
 #include <sstream>
 
 #include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
+#include "support/places.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
@@ -62,7 +63,7 @@ TEST_CASE(
         CHECK(&find_motion_kind(name) == kind);
         CHECK(
             std::any_of(examples.begin(), examples.end(), [&](const Example& e) { return e.name == name; }));
-        std::ifstream file(RIPPLENOTCH_SOURCE_DIR "/docs/motions/" + name + ".md");
+        std::ifstream file(source_folder() + "/docs/motions/" + name + ".md");
         REQUIRE(file.good());
         std::stringstream page;
         page << file.rdbuf();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/model/noise.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
+
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

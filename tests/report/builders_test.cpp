@@ -2,7 +2,6 @@
 // Figures show the numbers that the results hold, where they belong.
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "analysis/traces.hpp"
@@ -15,10 +14,11 @@
 #include "ripplenotch/report/spectrum_figure.hpp"
 #include "ripplenotch/report/table_figure.hpp"
 #include "ripplenotch/report/torque_course.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::tests;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 
@@ -83,7 +83,8 @@ TEST_CASE("order lines run through the ridges of a Campbell diagram and of an or
     const auto speed = smoothed_speed(trace.view());
     for (const Axis axis : {Axis::time, Axis::angle}) {
         const SpeedMap map = speed_map(trace.view(), angle.turns, speed, {.axis = axis});
-        const Figure figure = speed_map_figure("log.csv", map, {GearRatio(100.0), {1.0, 2.0}, false});
+        const Figure figure = speed_map_figure(
+            "log.csv", map, {GearAccount{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}, {}, ""}, false});
         check_figure(figure);
         const Panel& panel = figure.panels.front();
         const HeatMap& heat = *panel.map;
@@ -202,7 +203,7 @@ TEST_CASE("step and ramp in a comparison's figure are those that the bench measu
     comparison.speed = DegPerSec(90.0);
     comparison.step_nm = 10.0;
     comparison.ramp_nm_s = 20.0;
-    comparison.lines = RippleLines{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}};
+    comparison.lines = GearAccount{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}, {}, ""};
     for (const Contender& one : contenders) {
         comparison.methods.push_back(measure_on_signals(one, comparison.sample_rate, comparison.speed, 10.0,
                                                         20.0, &*comparison.lines));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/report/diagnosis_figures.hpp"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "ripplenotch/report/track_figure.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
 

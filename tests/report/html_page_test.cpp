@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/report/html_page.hpp"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "filter/tables.hpp"
@@ -10,9 +9,10 @@
 #include "ripplenotch/artifact/result_section.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/report/table_figure.hpp"
+#include "support/catch.hpp"
 
 using namespace ripplenotch;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

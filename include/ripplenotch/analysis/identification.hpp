@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/analysis/verdict.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/core/units.hpp"
 
@@ -42,6 +43,12 @@ struct Line {
     std::string note;  ///< e.g. "mains", "seen at one speed only"
 };
 
+/// Where a line was seen: at one frequency or over a range of speeds. Empty when nothing says where.
+struct SeenFrequencies {
+    double lowest_hz = 0.0, highest_hz = 0.0;
+};
+[[nodiscard]] std::optional<SeenFrequencies> seen_frequencies(const Line& line);
+
 struct RatioCandidate {
     double value = 0.0;
     double score = 0.0;  ///< 0..1, sums to at most 1 over the candidates
@@ -61,26 +68,69 @@ struct GearRatioFit {
     std::vector<Residual> residuals;
 };
 
+/// Fixed tones that are multiples of one frequency.
+struct ToneFamily {
+    double hz = 0.0, hz_stderr = 0.0;
+    std::vector<int> multiples;  ///< ascending
+};
+
+/// A band of frequencies with more torque in it than the strongest ripple line has, beside the lines.
+struct Hum {
+    double from_hz = 0.0, to_hz = 0.0;
+    double peak_hz = 0.0;
+    double rms_nm = 0.0;  ///< in the band, noise taken off, largest of the stretches or rms over sweeps
+};
+
+/// What recordings of one joint say of one thing when they disagree beyond their errors.
+struct Disagreement {
+    enum class About { ratio, amplitude };
+    struct Value {
+        std::size_t recording = 0;  ///< as handed over, from 0
+        double value = 0.0, error = 0.0;
+    };
+    About about = About::ratio;
+    std::optional<double> order, order_output;  ///< of the line, for amplitudes
+    std::vector<Value> values;                  ///< by recording
+    double chance = 1.0;                        ///< that recordings which agree differ as much
+};
+[[nodiscard]] std::string_view about_name(Disagreement::About about);
+/// Empty for a name of none.
+[[nodiscard]] std::optional<Disagreement::About> about_of(std::string_view name);
+
 struct Identification {
     std::string joint;
     Hertz sample_rate;
-    std::string evidence;     ///< "steady stretches" or "order spectrum" or both
+    LineEvidence evidence = LineEvidence::none;
     std::vector<Line> lines;  ///< strongest first
     GearRatioFit gear_ratio;
-    std::string verdict;             ///< one sentence with numbers
+    std::vector<ToneFamily> families;
+    std::vector<Hum> hums;  ///< most torque first
+    std::vector<Disagreement> disagreements;
+    RippleFinding finding = RippleFinding::too_little;
+    std::vector<Doubt> doubts;
+    Grounds grounds;                 ///< not in joint.json
+    std::string verdict;             ///< verdict_sentence of all this: one sentence with numbers
     std::vector<std::string> notes;  ///< what was looked at and why it was not enough, one sentence each
-    bool conclusive = false;         ///< lines found and a ratio, or surely nothing
+    bool conclusive = false;         ///< lines found and a ratio, or surely nothing, and no doubt
 };
 
+/// The verdict in words, doubts first.
+[[nodiscard]] std::string verdict_sentence(const Identification& found);
+
+/// Takes back what `found` says of orders and the gear ratio, and says why: every line that would turn with
+/// the joint is of kind unknown then, with its frequencies. The ratios that it would fit stay listed.
+void cast_doubt(Identification& found, Doubt doubt);
+
 struct IdentifyOptions {
-    enum class Evidence { automatic, steady, order };
-    Evidence evidence = Evidence::automatic;
+    enum class Way { automatic, steady, order };
+    Way way = Way::automatic;
     std::optional<GearRatio> hint;     ///< checked, not believed
     std::vector<int> hinted_orders;    ///< n at which the strongest line is believed to stand
     double false_alarm = 0.01;         ///< chance that a log of noise gives any line
     double steady_band_percent = 5.0;  ///< speed stays within this share of its mean ...
-    double steady_band_deg_s = 1.0;    ///< ... or within this, whichever is wider
+    double steady_band_deg_s = 0.0;    ///< ... or within this, whichever is wider
     Seconds steady_for{1.0};           ///< for at least this long
+    std::vector<Doubt> doubts;         ///< what is known against these logs before they are looked at
 };
 
 inline constexpr std::size_t fewest_identify_samples = 64;

@@ -9,6 +9,7 @@
 
 #include "ripplenotch/analysis/alias.hpp"
 #include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/analysis/stack.hpp"
 
 namespace ripplenotch {
@@ -35,10 +36,12 @@ struct MotionLinesOptions {
     double least_share = 1e-4;     ///< of the torque's range: smaller lines are not reported
     double lowest_tone_hz = 10.0;  ///< slower tones are those of the motion itself
     std::size_t most_lines = 12;
+    std::vector<double> known_hz = {};  ///< tones that are known already: taken out before lines are looked for
 };
 
 struct MotionLines {
-    std::vector<MotionLine> lines;  ///< in the order found: clearest first
+    std::vector<MotionLine> lines;    ///< in the order found: clearest first
+    std::vector<SpectralHump> humps;  ///< against frequency, of what the lines leave
     std::size_t sweeps = 0, sweeps_left_out = 0;
     double turns = 0.0;  ///< output turns that the sweeps cover
     double resolution_orders = 0.0;

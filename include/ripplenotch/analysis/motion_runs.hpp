@@ -16,9 +16,8 @@ struct OutputAngle {
     bool absolute = false;  ///< counted from the zero of the joint's position; else from the first sample
 };
 
-/// From position, jumps of more than half a turn between neighbours taken as wrapping. A position that moves
-/// by less than half or more than twice what the velocity says is of something else (a motor encoder, another
-/// joint): then, and where there is none, the velocity is integrated. O(n).
+/// From the position, which is the joint's where there is one, jumps of more than half a turn between
+/// neighbours taken as wrapping; else the velocity is integrated. O(n).
 [[nodiscard]] OutputAngle output_angle(const TraceView& log);
 
 /// Samples first .. end - 1 of a log.
@@ -28,22 +27,19 @@ struct SampleRun {
 };
 
 struct RunRule {
-    double slowest_share = 0.02;  ///< of the log's highest speed; slower motion belongs to no run ...
-    double slowest_deg_s = 0.2;   ///< ... nor does motion slower than this
-    double gap_steps = 10.0;      ///< a step in time of more mean steps than this ends a run
+    double slowest_share = 0.02;  ///< of the log's highest speed; slower motion belongs to no run
 };
 
 /// Velocity as it cuts and weighs: averaged over 0.05 s, far less than any run lasts.
 [[nodiscard]] std::vector<double> smoothed_speed(const TraceView& log);
 
-/// Runs of samples that move in one direction without a gap in time, in time order. `speed` is signed, one
-/// value a sample. O(n).
-[[nodiscard]] std::vector<SampleRun> directed_runs(std::span<const double> time_s,
-                                                   std::span<const double> speed_deg_s, Hertz sample_rate,
+/// Runs of samples that move in one direction, in time order, none across a row of `run_starts`
+/// (TraceView). `speed` is signed, one value a sample. O(n).
+[[nodiscard]] std::vector<SampleRun> directed_runs(std::span<const double> speed_deg_s,
+                                                   std::span<const std::size_t> run_starts,
                                                    const RunRule& rule);
 
-/// Runs of samples without a gap in time, whatever the motion.
-[[nodiscard]] std::vector<SampleRun> gapless_runs(std::span<const double> time_s, Hertz sample_rate,
-                                                  double gap_steps);
+/// Runs of so many samples, whatever the motion.
+[[nodiscard]] std::vector<SampleRun> whole_runs(std::size_t samples, std::span<const std::size_t> run_starts);
 
 }  // namespace ripplenotch

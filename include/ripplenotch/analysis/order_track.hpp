@@ -25,6 +25,7 @@ struct TrackedSignal {
     std::span<const double> speed_deg_s;      ///< signed, smooth; tells runs apart and is reported
     std::span<const double> reference_turns;  ///< the shaft whose turns windows are measured in
     std::vector<TrackedLine> lines;
+    std::span<const std::size_t> run_starts = {};  ///< as in TraceView
 };
 
 /// One line along the rows of its OrderTracks; nan where it was not measured.

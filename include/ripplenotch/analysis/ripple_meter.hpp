@@ -42,9 +42,10 @@ using LineGains = std::function<void(double speed_deg_s, std::span<std::complex<
 ///
 /// A window is eight motor turns in one direction (at least four where a run ends or turns back). In each,
 /// every signal is fitted by c0 + c1 s + c2 s^2 + c3 s^3 + sum of a_n cos(n theta) + b_n sin(n theta), s
-/// being time and theta the motor angle. Motor angle: gear ratio times position where there is one, since its
-/// error does not grow along a window, whereas a velocity that is 1 % off detunes order 2 by a sixth of a
-/// cycle in eight turns. Position is unwrapped at half turns.
+/// being rows and theta the motor angle. Motor angle: gear ratio times the joint's position where there is
+/// one, since its error does not grow along a window, whereas a velocity that is 1 % off detunes order 2 by a
+/// sixth of a cycle in eight turns; else the velocity added up over the rows' times. Position is unwrapped at
+/// half turns.
 class RippleMeter {
   public:
     /// Throws UsageError unless ratio, sample_rate and all orders are above 0 and signals is at least 1.
@@ -55,7 +56,8 @@ class RippleMeter {
 
     /// position_deg may be nullptr: then the angle is integrated velocity. `torque_nm` has one value per
     /// signal.
-    void add(double velocity_deg_s, const double* position_deg, std::span<const double> torque_nm);
+    void add(Seconds time, double velocity_deg_s, const double* position_deg,
+             std::span<const double> torque_nm);
     /// Works out what a filter should leave at the speeds of the very windows that are measured. Call it
     /// before add().
     void expect(LineGains gains);

@@ -24,9 +24,20 @@ struct SpectralPeak {
     double false_alarm = 1.0;  ///< chance that noise shows such a line anywhere in this spectrum
 };
 
+/// A band that stands out of the noise beside it and is wider than a line: a resonance, or what moves along
+/// with the speed.
+struct SpectralHump {
+    double from_hz = 0.0, to_hz = 0.0;  ///< at least twice the noise's power, 15 dB below its highest
+    double peak_hz = 0.0;               ///< of its highest bin
+    double peak_nm = 0.0;               ///< amplitude there
+    double rms_nm = 0.0;                ///< of the torque in the band, noise taken off
+    double floor_nm = 0.0;              ///< amplitude that noise alone shows beside it, rms
+    double false_alarm = 1.0;           ///< chance that noise shows such a hump anywhere in this spectrum
+};
+
 struct SpectrumOptions {
     std::optional<Seconds> segment;  ///< Welch: length of the pieces, half overlapping; left out: one piece
-    double false_alarm = 0.01;       ///< of `peaks`, for the whole spectrum
+    double false_alarm = 0.01;       ///< of `peaks`, for the whole spectrum, and of `humps` likewise
 };
 
 /// Bins run from 0 Hz to half the sample rate, all vectors have the same length.
@@ -36,6 +47,7 @@ struct Spectrum {
     std::vector<double> psd_nm2_hz;    ///< one-sided
     std::vector<double> floor_nm;      ///< noise floor as an amplitude, rms; 0 where it cannot be known
     std::vector<SpectralPeak> peaks;   ///< strongest first
+    std::vector<SpectralHump> humps;   ///< most energy first
     Hertz bin_width;
     Hertz resolution;  ///< bin_width times 1.5, the noise bandwidth of a Hann window
     std::size_t pieces = 0;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ripplenotch/analysis/line_test.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 
 namespace ripplenotch {
@@ -33,6 +34,8 @@ struct Stack {
     [[nodiscard]] PowerSpectrum tested() const;
     /// significant_peaks of `ratio`, the chance corrected for grids finer than the resolution.
     [[nodiscard]] std::vector<SignificantPeak> peaks(double false_alarm) const;
+    /// significant_humps from `lowest` on, likewise; most energy first. None where there are few cells.
+    [[nodiscard]] std::vector<SpectralHump> humps(double false_alarm, double lowest) const;
     bool few_cells = false;     ///< StackRule::few_cells
     double tries_factor = 1.0;  ///< longest over mean length
 };

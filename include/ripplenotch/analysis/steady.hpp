@@ -14,11 +14,11 @@ namespace ripplenotch {
 
 struct SteadyRule {
     double band_percent = 5.0;  ///< speed stays within this share of its middle value to both sides ...
-    double band_deg_s = 1.0;    ///< ... or within this, whichever is wider
+    double band_deg_s = 0.0;    ///< ... or within this, whichever is wider
+    double rest_percent = 1.0;  ///< of the log's highest speed: slower is standstill, whatever the band
     Seconds at_least{1.0};
     Seconds smoothing{
         0.1};  ///< velocity is averaged over this time before it is judged, against sensor noise
-    double gap_steps = 10.0;  ///< a step in time of more than this many mean steps ends a stretch
 };
 
 struct Stretch {
@@ -26,8 +26,13 @@ struct Stretch {
     Seconds duration;
     DegPerSec speed;  ///< signed mean: change of position over time where there is one, else mean velocity
     double speed_error_deg_s = 0.0;  ///< standard error of that mean
-    bool rest = false;               ///< mean speed within half of band_deg_s of standstill
+    bool rest = false;               ///< standstill
 };
+
+/// Speeds up to this are standstill: SteadyRule::rest_percent of the log's highest smoothed speed, or what the
+/// noise of the velocity leaves of a standstill after smoothing; all speeds in a log that moves nowhere.
+[[nodiscard]] double standstill_deg_s(const TraceView& trace, std::span<const double> smoothed_speed,
+                                      const SteadyRule& rule);
 
 /// The longest stretch, then the longest beside it, and so on; not overlapping, in time order. O(n log n).
 [[nodiscard]] std::vector<Stretch> steady_stretches(const TraceView& trace, const SteadyRule& rule);

@@ -17,6 +17,7 @@ struct StretchLines {
     std::size_t log = 0;
     Stretch stretch;
     std::vector<SpectralPeak> peaks;
+    std::vector<SpectralHump> humps;
     double floor_nm = 0.0;  ///< median over the spectrum
     double bin_hz = 0.0;
 };
@@ -36,6 +37,7 @@ struct Sighting {
 
 struct SteadyLine {
     LineKind kind = LineKind::unknown;
+    bool by_accident = false;         ///< shares an order with a line at another speed as unrelated ones may
     std::vector<Sighting> sightings;  ///< by stretch
 };
 
@@ -46,6 +48,7 @@ struct SteadyLines {
     std::size_t speeds = 0;  ///< different |speed| among the moving stretches
 };
 
+/// Where a family of fixed tones explains what orders would explain too, and better, they are tones.
 /// `false_alarm` is the chance that noise gives any line in any of the stretches.
 [[nodiscard]] SteadyLines find_steady_lines(std::span<const TraceView> logs, const SteadyRule& rule,
                                             double false_alarm);

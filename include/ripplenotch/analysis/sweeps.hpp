@@ -15,14 +15,12 @@ struct SweepRule {
     double longest_s = 20.0;     ///< ... and of at most this duration
     double shortest_turns = 0.02;
     std::size_t fewest_samples = 64;
-    double slowest_share = 0.02;  ///< of the log's highest speed; slower motion belongs to no sweep ...
-    double slowest_deg_s = 0.2;   ///< ... nor does motion slower than this
+    double slowest_share = 0.02;  ///< of the log's highest speed; slower motion belongs to no sweep
     double trend_terms_per_turn =
         12.0;  ///< smooth part of the torque taken out: this many terms per output turn
     std::size_t most_samples =
         300000;  ///< with more, evenly chosen pieces are used, so that the cost is bounded
     std::size_t most_pieces = 100;
-    double gap_steps = 10.0;
 };
 
 /// One piece of motion. The vectors have the same length.
@@ -49,14 +47,14 @@ struct Sweep {
 struct Sweeps {
     std::vector<Sweep> pieces;
     std::size_t pieces_left_out = 0;  ///< because of SweepRule::most_samples or most_pieces
-    bool absolute_angle = true;       ///< all logs have a position, and it agrees with the velocity
+    bool absolute_angle = true;       ///< all logs have a position
 };
 
 /// A part of a sweep with a Hann window of its own; for asking whether a line is there in each half.
 [[nodiscard]] Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count);
 
-/// Angle from position (unwrapped at 360 deg) where there is one that agrees with the velocity, else from
-/// integrated velocity, whose drift does not matter within one sweep. The trend is fitted in angle, under the
+/// Angle from position (unwrapped at 360 deg) where there is one, else from integrated velocity, whose drift
+/// does not matter within one sweep. The trend is fitted in angle, under the
 /// same weights: a line and cosines. Cost O(n terms^2).
 [[nodiscard]] Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule);
 

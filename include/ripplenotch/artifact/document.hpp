@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "ripplenotch/log/recording.hpp"
+
 namespace ripplenotch {
 
 struct InputRecord {
@@ -18,6 +20,7 @@ struct InputRecord {
 struct Provenance {
     std::vector<InputRecord> inputs;
     std::string command;                 ///< the command line that reproduces it, without paths of its own making
+    std::vector<Recording> recordings = {};  ///< the logs among the inputs
 };
 
 }  // namespace ripplenotch

@@ -10,7 +10,7 @@
 
 #include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/log/layout.hpp"
-#include "ripplenotch/log/timebase.hpp"
+#include "ripplenotch/log/recording.hpp"
 
 namespace ripplenotch {
 
@@ -29,7 +29,7 @@ struct SteadyStretch {
 struct JointInfo {
     std::string joint;
     std::optional<Range> speed_deg_s, torque_nm, position_deg;
-    std::size_t held_samples = 0, longest_hold = 0;
+    Recording recording;
     std::optional<double> clock_factor;
     double turns = 0.0;                    ///< of the joint, both directions added up
     std::vector<SteadyStretch> stretches;  ///< rest included
@@ -48,7 +48,7 @@ struct LogInfo {
     Layout layout;  ///< of the file, or of the joint chosen
     std::size_t rows = 0;
     std::optional<double> duration_s;  ///< first to last time, gaps included; empty without a clock
-    Timebase timebase;                 ///< steps and gaps; held samples and clock factor are the joints' own
+    ClockFacts clock;
     std::size_t bad_values_held = 0;
     std::vector<JointInfo> joints;
     std::vector<Use> uses;

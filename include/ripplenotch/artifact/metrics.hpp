@@ -8,6 +8,7 @@
 
 #include "ripplenotch/analysis/ripple_meter.hpp"
 #include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/evaluate/ledger.hpp"
 #include "ripplenotch/filter/engine.hpp"
@@ -19,9 +20,9 @@ struct FilterMetrics {
     Hertz sample_rate;                  ///< that the filter was designed for, or started with
     std::optional<Hertz> table_rate;    ///< that the table was designed for
     StreamReport stream;
-    std::optional<GearRatio> gear_ratio;  ///< empty when unknown: then there are no levels
-    std::optional<RippleLevels> levels;   ///< of two signals, raw and filtered torque
-    std::vector<double> amplitude_nm;     ///< that table or joint state, one per order; empty when unknown
+    std::optional<GearAccount> gear;  ///< empty when unknown: then there are no levels
+    std::optional<RippleLevels>
+        levels;  ///< of two signals, raw and filtered torque, one per order of the gear
     std::vector<LedgerEntry> delays;
     std::optional<Hertz> crossover;  ///< that the ledger's phase lags are for
 };

@@ -8,6 +8,7 @@
 
 #include "ripplenotch/analysis/track_by_speed.hpp"
 #include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 
 namespace ripplenotch {
 
@@ -32,7 +33,7 @@ struct TrackReport {
     std::string joint;
     std::string method;  ///< "ls" or "vold-kalman"
     AmplitudeKind kind = AmplitudeKind::peak;
-    std::optional<GearRatio> gear_ratio;
+    std::optional<GearAccount> gear;
     bool angle_from_position = false;    ///< else phases count from the first sample
     std::optional<double> window_turns;  ///< ls: of the motor where there is a gear ratio, else of the output
     std::optional<Seconds> window;       ///< ls

@@ -35,6 +35,16 @@ void append_shortest(std::string& out, double value);
 /// Appends `value` with exactly `decimals` digits after the mark, rounded as printf does.
 void append_fixed(std::string& out, double value, int decimals);
 
+/// Digits that fitted numbers are written with: a thousand times finer than any torque sensor, and a thousand
+/// times coarser than what processors disagree on where a library chooses its way by them
+/// (docs/decisions/0004-same-bytes.md).
+inline constexpr int fitted_digits = 9;
+/// The nearest number with so many digits; not finite ones stay.
+[[nodiscard]] double to_digits(double value, int digits = fitted_digits);
+/// The same in steps that suit `largest`, for a value of a row in which that is the largest: what a transform
+/// leaves where nothing is comes out as 0.
+[[nodiscard]] double to_digits_of(double largest, double value, int digits = fitted_digits);
+
 /// A figure for people: `decimals` digits after the mark, and no sign where all of them are zero.
 [[nodiscard]] std::string rounded(double value, int decimals);
 

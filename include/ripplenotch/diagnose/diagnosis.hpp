@@ -33,6 +33,7 @@ enum class DiagnosisVerdict {
     explained,         ///< it does with what was named, or with either side of a tie
     partly_explained,  ///< something was named, something is left
     unexplained,       ///< something is left that no effect explains
+    undecided,         ///< another reading of the log, as possible, says something else: see Diagnosis::doubt
 };
 [[nodiscard]] std::string_view verdict_name(DiagnosisVerdict verdict);
 
@@ -123,6 +124,7 @@ struct Diagnosis {
     std::vector<Finding> rounds;
     std::vector<Fault> faults;
     std::vector<std::string> named;
+    std::string doubt;  ///< one sentence, where the verdict is undecided
     std::vector<Tie> ambiguous;
     std::vector<Leftover> unexplained;
     std::vector<Undecidable> undecidable;

@@ -43,13 +43,6 @@ struct MethodFigures {
     std::optional<double> error_rms_nm;  ///< against ComparedLog::truth_nm
 };
 
-/// The lines that a comparison looks at; `amplitude_nm` weighs them against each other where there is no log.
-struct RippleLines {
-    GearRatio gear_ratio;
-    std::vector<Order> orders;
-    std::vector<double> amplitude_nm;  ///< one per order, or empty: all alike
-};
-
 /// How a low-pass was made equal to a method, or why none is.
 struct LowPassMatch {
     std::string subject;                  ///< the method, or "22 dB" when the attenuation was given
@@ -68,7 +61,8 @@ struct Comparison {
     std::optional<Hertz> crossover;           ///< of the control loop
     std::optional<Seconds> max_delay;         ///< a limit of the user's
     std::optional<DegPerSec> no_notch_below;  ///< no notch of any method can keep it there
-    std::optional<RippleLines> lines;
+    std::optional<GearAccount>
+        lines;  ///< amplitudes weigh them where there is no log; without, all are alike
     std::optional<LowPassMatch> match;
     std::vector<MethodFigures> methods;
     bool on_log = false;
@@ -90,12 +84,11 @@ struct Comparison {
 /// Fills settling, delays and, with lines, attenuations measured with sines. Empty optionals are left out.
 [[nodiscard]] MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, DegPerSec speed,
                                                std::optional<double> step_nm, std::optional<double> ramp_nm_s,
-                                               const RippleLines* lines);
+                                               const GearAccount* lines);
 
-/// A log in memory; `gap_rows` are the last rows before each gap, ascending.
+/// A log in memory.
 struct ComparedLog {
-    TraceView trace;
-    std::span<const std::size_t> gap_rows;
+    TraceView trace;  ///< its sample_rate is what the filters are designed for
     std::span<const double> truth_nm =
         {};  ///< the torque without ripple and noise, row by row, where it is known
 };
@@ -112,6 +105,6 @@ struct LogLevels {
     std::string why_none;  ///< a clause that says why no window could be measured
 };
 [[nodiscard]] LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLog& log,
-                                       const RippleLines& lines);
+                                       const GearAccount& lines);
 
 }  // namespace ripplenotch

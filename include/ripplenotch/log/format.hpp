@@ -65,6 +65,8 @@ class LogReader {
     [[nodiscard]] virtual const Layout& layout() const = 0;
     /// The bytes before the first row (header, comments), to be passed on as they are.
     [[nodiscard]] virtual std::string_view head() const = 0;
+    /// The reader of the file itself, for writers that know it.
+    [[nodiscard]] virtual const LogReader& base() const { return *this; }
     /// Fills `block` with the next rows; false when there are none left. Block boundaries carry no meaning; a
     /// block may hold bytes and no row (comments). Throws DataError with file, line and column.
     virtual bool next(RowBlock& block) = 0;

@@ -3,6 +3,7 @@
 // What a reader decided about a log: which column is what, in which unit, and how the file is written.
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,14 +16,35 @@ namespace ripplenotch {
 enum class Role { time, velocity, torque, position, other };
 [[nodiscard]] std::string_view role_name(Role role);
 
+/// Where a motion is measured: behind the gear, or on the motor's shaft before it.
+enum class Shaft { joint, motor };
+
 /// One column of the file, in file order.
 struct Column {
     std::string name;  ///< as in the header, without quotes; "column 3" when there is no header
     Role role = Role::other;
     std::string unit;           ///< as understood ("rad/s"); empty for role other
-    double factor = 1.0;        ///< file value * factor = value in the tool's unit
-    bool unit_assumed = false;  ///< nothing in the log named the unit
+    double factor = 1.0;        ///< file value * factor = value in the tool's unit, of the joint
+    bool unit_assumed = false;  ///< nothing settled the unit: it is in Layout::assumptions
     std::string joint;          ///< "" when the file holds one unnamed joint
+    Shaft side = Shaft::joint;  ///< of a velocity or position, as measured; the factor divides by the ratio
+};
+
+/// What the numbers would be had a log been written otherwise than assumed: factors on the values as read.
+struct OtherReading {
+    std::string words;   ///< "the speed is in rad/s"
+    std::string option;  ///< that makes it so: "--unit velocity=rad/s"
+    double time_factor = 1.0, velocity_factor = 1.0, position_factor = 1.0;
+    bool changes_side = false;  ///< from before the gear to behind it, or back, by no known ratio
+};
+
+/// What a log does not say about itself, and how it was read all the same.
+struct Assumption {
+    std::string about;                 ///< "unit of 'dq' (column 2)"
+    std::string assumed;               ///< "deg/s"
+    std::string reason;                ///< one clause
+    std::string settle_with;           ///< the option that says it: "--unit velocity=deg/s"
+    std::vector<OtherReading> others;  ///< readings as possible as the one assumed, that change the motion
 };
 
 /// What the caller asks of a reader; everything left out is found out from the file.
@@ -38,6 +60,10 @@ struct ReadOptions {
     std::optional<bool> header;
     std::optional<double> nm_per_ampere;  ///< torque constant for current columns (--kt)
     bool hold_bad_values = false;         ///< replace nan and empty cells by the sample before, and count
+    std::size_t skip_lines = 0;           ///< at the top of a text log, passed on and not read
+    std::map<Role, Shaft> sides;          ///< of velocity and position (--side)
+    std::optional<double> gear_ratio;     ///< for what is measured before the gear
+    bool takes_motor_units = false;       ///< motion before a gear of unknown ratio is not refused
     bool needs_torque = true;             ///< false for info
 };
 
@@ -51,12 +77,20 @@ struct Layout {
     std::string source;  ///< for messages: path or "standard input"
     std::string format;  ///< "csv", "npy"
     std::vector<Column> columns;
-    std::vector<std::string> joints;    ///< all joints in the file, in file order
-    JointColumns chosen;                ///< the joint that is read; the first of them
-    std::vector<JointColumns> others;   ///< that are read with it, when every joint is
-    std::optional<Hertz> stated_rate;   ///< from --sample-rate
-    std::string options;                ///< the option line that would force this reading
-    std::vector<std::string> warnings;  ///< one sentence each
+    std::vector<std::string> joints;           ///< all joints in the file, in file order
+    JointColumns chosen;                       ///< the joint that is read; the first of them
+    std::vector<JointColumns> others;          ///< that are read with it, when every joint is
+    std::optional<std::size_t> time_fraction;  ///< beside chosen.time: nanoseconds to be added to its seconds
+    std::int64_t time_origin = 0;  ///< in the column's own unit: taken off stamps that count from long ago
+    bool time_as_text = false;     ///< stamps like 12:30:00.5 or 2024-05-01T12:30:00.5Z
+    bool velocity_from_position = false;  ///< no velocity is logged: it is the slope of the position
+    std::optional<double> motor_ratio;    ///< by which motion measured before the gear was divided
+    bool motor_units = false;             ///< motion is the motor's, and no ratio was known to divide it by
+    std::optional<Hertz> stated_rate;     ///< from --sample-rate
+    std::string options;                  ///< the option line that would force this reading
+    std::vector<std::string> warnings;    ///< one sentence each
+    std::vector<Assumption> assumptions;  ///< what no rule decided
+    std::vector<Assumption> inferences;   ///< what the log does not say and a rule decided, with its reason
 
     /// All joints that are read.
     [[nodiscard]] std::vector<JointColumns> all_chosen() const {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The front door of the log room: open a log as a stream, or read a whole log into memory with its time base
-// examined.
+// The front door of the log room: open a log as a stream, or read a whole log into memory with an account of
+// it.
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/log/format.hpp"
-#include "ripplenotch/log/timebase.hpp"
+#include "ripplenotch/log/recording.hpp"
 
 namespace ripplenotch {
 
@@ -28,14 +30,21 @@ namespace ripplenotch {
 /// A whole log of one joint.
 struct Log {
     Layout layout;
-    Trace trace;  ///< sample_rate is timebase.sample_rate
-    Timebase timebase;
+    Trace trace;  ///< sample_rate is recording.clock.mean_rate; rows at another rate are left out
+    Recording recording;
     std::size_t held_bad_values = 0;
+    /// Change of position divided by integrated velocity, by robust regression over the log; 1 when the
+    /// clock, the velocity unit and the position unit agree. Empty without position or without motion.
+    std::optional<double> clock_factor;
+    /// Least and greatest of the position column, made continuous, whether or not the trace has it.
+    std::optional<std::pair<double, double>> position_range_deg;
 };
 
-/// Reads everything. With options.joint "all" use read_joints.
+/// Reads everything. With options.joint "all" use read_joints. Throws what open_log throws, and DataError
+/// where options.needs_torque and the clock is of no use (ClockFacts::refusal).
 [[nodiscard]] Log read_log(const std::string& path, const ReadOptions& options);
 [[nodiscard]] Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options);
+[[nodiscard]] Log read_log(LogReader& reader, const ReadOptions& options);
 
 /// One Log per joint of the file (only those with a velocity or position and a torque).
 [[nodiscard]] std::vector<Log> read_joints(const std::string& path, const ReadOptions& options);

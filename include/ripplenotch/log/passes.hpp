@@ -10,13 +10,14 @@
 
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/log/layout.hpp"
+#include "ripplenotch/log/recording.hpp"
 
 namespace ripplenotch {
 
 /// Of the joint that is read, known after the first pass.
 struct LogFacts {
-    std::size_t rows = 0;
-    Hertz sample_rate;  ///< stated, or measured as in Timebase
+    std::size_t rows = 0;  ///< without those left out
+    Hertz sample_rate;     ///< ClockFacts::mean_rate
     double first_s = 0.0, last_s = 0.0;
     double mean_s = 0.0;             ///< of the times
     double mean_position_deg = 0.0;  ///< of the continuous position; 0 where there is none
@@ -24,7 +25,7 @@ struct LogFacts {
 
 class LogPasses {
   public:
-    /// Gets consecutive rows, of the joint that options choose.
+    /// Gets consecutive rows, of the joint that options choose; a run starts at their first or nowhere.
     using Take = std::function<void(const TraceView&)>;
 
     /// A pipe is kept in a temporary file (Spool). Throws what open_log throws.
@@ -33,17 +34,16 @@ class LogPasses {
     LogPasses(const LogPasses&) = delete;
     LogPasses& operator=(const LogPasses&) = delete;
 
-    /// Once, first: rows without a sample rate, their position as it stands in the file. Where the steps of
-    /// the clock are so unlike those of the first rows that their median has to be looked for, times alone go
-    /// by five times more. Throws DataError as read_log does.
+    /// Once, first: rows without a sample rate, their position as it stands in the file. Throws DataError as
+    /// read_log does.
     void first(const Take& take);
     [[nodiscard]] const LogFacts& facts() const;
 
-    /// Once, second: rows with a sample rate, and a continuous position. Then all is known that read_log
-    /// would warn of.
+    /// Once, second: rows with a sample rate, and a continuous position if it is the joint's. Then all is
+    /// known that read_log would say.
     void second(const Take& take);
-    [[nodiscard]] const Layout& layout() const;                      ///< as Log::layout
-    [[nodiscard]] const std::vector<std::string>& warnings() const;  ///< as Timebase::warnings
+    [[nodiscard]] const Layout& layout() const;        ///< as Log::layout
+    [[nodiscard]] const Recording& recording() const;  ///< as Log::recording
 
     /// Any number of times: as second.
     void again(const Take& take);

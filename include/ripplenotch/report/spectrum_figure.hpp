@@ -9,6 +9,7 @@
 #include "ripplenotch/analysis/motion_lines.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {
@@ -30,11 +31,10 @@ inline constexpr std::size_t most_spectrum_panels = 8;
 [[nodiscard]] Figure order_spectrum_figure(const std::string& source, const Stack& stack,
                                            const MotionLines& lines);
 
-/// Campbell diagram or order map: speed along x. With a gear ratio the lines of `orders` (per motor turn) are
-/// drawn; `axis_per_motor_turn` says that the map's own orders are per motor turn, not per output turn.
+/// Campbell diagram or order map: speed along x. With a gear the lines of its orders are drawn;
+/// `axis_per_motor_turn` says that the map's own orders are per motor turn, not per output turn.
 struct MapLines {
-    std::optional<GearRatio> gear_ratio;
-    std::vector<double> orders;
+    std::optional<GearAccount> gear;
     bool axis_per_motor_turn = false;
 };
 [[nodiscard]] Figure speed_map_figure(const std::string& source, const SpeedMap& map, const MapLines& lines);

@@ -15,6 +15,7 @@
 #include "cli/plot_request.hpp"
 #include "ripplenotch/artifact/comparison.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/evaluate/match_low_pass.hpp"
 #include "ripplenotch/filter/engine.hpp"
@@ -33,7 +34,7 @@ struct Request {
     LogOptions log_options;
     std::string log, truth;
     std::vector<std::string> methods;
-    LinesRequest lines;
+    GearOptions gear;
     std::optional<double> step_nm, ramp_nm_s, match_attenuation_db;
     std::optional<DegPerSec> speed;
     CostRequest costs;
@@ -59,7 +60,7 @@ std::optional<double> asked_gain(const Request& request) {
         raise<UsageError>("--match-attenuation {} dB is not above 0 dB",
                           shortest(*request.match_attenuation_db));
     }
-    return std::pow(10.0, -*request.match_attenuation_db / 20.0);
+    return portable::pow(10.0, -*request.match_attenuation_db / 20.0);
 }
 
 std::string asked_text(const Request& request) {
@@ -67,8 +68,7 @@ std::string asked_text(const Request& request) {
 }
 
 void add_match_at_speed(Comparison& comparison, const Request& request) {
-    if (!comparison.lines)
-        raise<UsageError>("--match-lowpass needs to know the ripple; give --gear-ratio and --orders");
+    if (!comparison.lines) raise_no_gear("--match-lowpass");
     auto gain = asked_gain(request);
     const std::string subject = gain ? asked_text(request) : match_subject(comparison).method;
     if (!gain) gain = combined_gain(match_subject(comparison), *comparison.lines);
@@ -87,7 +87,7 @@ void add_match_at_speed(Comparison& comparison, const Request& request) {
                                                     &*comparison.lines));
 }
 
-Comparison compare_on_signals(const Request& request, const Field& field, std::optional<RippleLines> lines) {
+Comparison compare_on_signals(const Request& request, const Field& field) {
     if (!request.truth.empty()) raise<UsageError>("--truth goes with a LOG");
     if (!request.step_nm && !request.ramp_nm_s) {
         raise<UsageError>("nothing to compare on; give a LOG, or --step 10Nm, or --ramp 20Nm/s");
@@ -101,7 +101,7 @@ Comparison compare_on_signals(const Request& request, const Field& field, std::o
         raise<UsageError>("the sample rate is missing; give --sample-rate, for example 1kHz");
     }
     (void)request.log_options.resolve();  // refuses a rate that makes no sense
-    if (!request.speed && (lines || field.table)) {
+    if (!request.speed && (field.gear || field.table)) {
         raise<UsageError>(
             "attenuation and switching depend on the joint speed; give --speed, for example 90deg/s");
     }
@@ -109,7 +109,7 @@ Comparison compare_on_signals(const Request& request, const Field& field, std::o
     comparison.speed = request.speed.value_or(DegPerSec(0.0));
     comparison.step_nm = request.step_nm;
     comparison.ramp_nm_s = request.ramp_nm_s;
-    comparison.lines = std::move(lines);
+    comparison.lines = field.gear;
     Progress::current().begin("measuring", "methods", field.contenders.size());
     for (const Contender& contender : field.contenders) {
         comparison.methods.push_back(measure_on_signals(contender, comparison.sample_rate, comparison.speed,
@@ -152,8 +152,7 @@ void add_methods(Comparison& comparison, const std::vector<Contender>& contender
 }
 
 void add_match_on_log(Comparison& comparison, const Request& request, const ComparedLog& log) {
-    if (!comparison.lines)
-        raise<UsageError>("--match-lowpass needs to know the ripple; give --gear-ratio and --orders");
+    if (!comparison.lines) raise_no_gear("--match-lowpass");
     if (comparison.windows == 0) {
         raise<DataError>("--match-lowpass: the log has no window in which its ripple can be measured");
     }
@@ -179,25 +178,21 @@ std::vector<double> true_torque(const Request& request, std::size_t rows, Proven
     return std::move(truth.trace.torque_nm);
 }
 
-Comparison compare_on_log(const Request& request, const Field& field, std::optional<RippleLines> lines,
-                          Provenance& provenance) {
+Comparison compare_on_log(const Request& request, const Field& field, Provenance& provenance) {
     if (request.log_options.joint == "all")
         raise<UsageError>("--joint all: compare looks at one joint; name it");
     const Log log = read_log(request.log, request.log_options.resolve());
     say_layout(request.common, log.layout);
-    say_warnings(request.common, log.timebase.warnings);
+    say_warnings(request.common, log.recording.warnings);
     provenance.inputs.push_back(input_record(request.log));
-    provenance.inputs.back().rows = log.trace.size();
-    std::vector<std::size_t> gap_rows;
-    for (const Gap& gap : log.timebase.gaps) gap_rows.push_back(gap.row);
-    ComparedLog compared{log.trace.view(), gap_rows};
-    if (!request.truth.empty() && !lines)
-        raise<UsageError>(
-            "--truth needs --gear-ratio and --orders, or --joint-file, as all figures on a log do");
+    provenance.inputs.back().rows = log.recording.rows();
+    provenance.recordings.push_back({log.recording});
+    ComparedLog compared{log.trace.view()};
+    if (!request.truth.empty() && !field.gear) raise_no_gear("--truth");
     const std::vector<double> truth = true_torque(request, log.trace.size(), provenance);
     compared.truth_nm = truth;
     // The filters are those that the filter command would run.
-    if (!log.layout.stated_rate) compared.trace.sample_rate = nominal_rate(log.trace.sample_rate);
+    compared.trace.sample_rate = log.recording.clock.nominal_rate;
 
     Comparison comparison;
     comparison.on_log = true;
@@ -213,11 +208,11 @@ Comparison compare_on_log(const Request& request, const Field& field, std::optio
     }
     comparison.step_nm = request.step_nm.value_or(default_step_nm);
     comparison.ramp_nm_s = request.ramp_nm_s.value_or(default_ramp_nm_s);
-    comparison.lines = std::move(lines);
+    comparison.lines = field.gear;
     if (!comparison.lines) {
         say_warnings(request.common,
-                     std::vector<std::string>{"without --gear-ratio and --orders, or --joint-file, the "
-                                              "ripple on the log is not measured"});
+                     std::vector<std::string>{"no gear ratio is known, so no ripple was measured; "
+                                              "give --gear-ratio or --joint-file"});
     }
     add_methods(comparison, field.contenders, compared, request.common);
     if (wants_match(request)) add_match_on_log(comparison, request, compared);
@@ -227,13 +222,11 @@ Comparison compare_on_log(const Request& request, const Field& field, std::optio
 ExitCode run(const Request& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
-    const Field field = load_contenders(request.methods, request.lines, provenance);
-    auto lines = lines_of(request.lines, field, provenance);
-    if (request.costs.gates.min_attenuation_db && !lines)
-        raise<UsageError>("--min-attenuation-db needs to know the ripple; give --gear-ratio and --orders");
-    Comparison comparison = request.log.empty()
-                                ? compare_on_signals(request, field, std::move(lines))
-                                : compare_on_log(request, field, std::move(lines), provenance);
+    const Field field = load_contenders(request.methods, request.gear, provenance);
+    if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation-db");
+    if (field.gear) say(request.common, gear_in_words(*field.gear));
+    Comparison comparison =
+        request.log.empty() ? compare_on_signals(request, field) : compare_on_log(request, field, provenance);
     add_costs(comparison, request.costs, field);
     const std::string text =
         request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison);
@@ -253,11 +246,7 @@ std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
     options.argument("LOG", request->log, false, "a log; - is standard input. Without one, --step or --ramp");
     options.texts("--method", request->methods, "NAME,KEY=VALUE,...", "a method to compare; repeatable");
-    options.number("--gear-ratio", request->lines.gear_ratio, Dimension::none, "motor turns per output turn");
-    options.numbers("--orders", request->lines.orders, Dimension::none,
-                    "ripple lines to look at, in cycles per motor turn");
-    options.text("--joint-file", request->lines.joint_file, "FILE",
-                 "joint.json: gear ratio, orders and amplitudes from there");
+    attach_gear(options, request->gear);
     options.quantity("--speed", request->speed, Dimension::speed,
                      "joint speed for attenuation and delays; on a log its median moving speed");
     options.number("--step", request->step_nm, Dimension::torque, "torque step to settle from");
@@ -274,6 +263,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_costs(options, request->costs);
     attach_plot(options, request->plot);
     attach_log(options, request->log_options);
+    options.after_parse([request] { request->log_options.gear_ratio = request->gear.ratio; });
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };
 }

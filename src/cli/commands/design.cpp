@@ -52,10 +52,7 @@ std::string form_of(const DesignRequest& request) {
     }
     if (!request.form.empty()) return request.form;
     const std::string& path = request.common.output;
-    const auto ends_with = [&path](std::string_view end) {
-        return path.size() > end.size() && path.compare(path.size() - end.size(), end.size(), end) == 0;
-    };
-    return ends_with(".json") ? "json" : ends_with(".csv") ? "csv" : "text";
+    return ends_with_json(path) ? "json" : path.ends_with(".csv") ? "csv" : "text";
 }
 
 // Limits that the caller set: what breaks them is said, and the table is written all the same.
@@ -65,9 +62,9 @@ std::vector<std::string> violations(const DesignRequest& request, const Candidat
         const std::string label =
             fmt::format("band {} ({:.6g}-{:.6g} deg/s)", band.number, band.from.value(), band.to.value());
         const double delay_ms = 1e3 * band.dc_delay.value();
-        if (request.max_delay_ms && !(delay_ms <= *request.max_delay_ms)) {
-            sentences.push_back(fmt::format("{} delays by {:.1f} ms, more than --max-delay-ms {}", label,
-                                            delay_ms, shortest(*request.max_delay_ms)));
+        if (request.checks_delay() && band.dc_delay > *request.max_delay) {
+            sentences.push_back(fmt::format("{} delays by {:.1f} ms, more than --max-delay {:.6g}ms", label,
+                                            delay_ms, 1e3 * request.max_delay->value()));
         }
         for (std::size_t i = 0; request.min_attenuation_db && i < band.notches.size(); ++i) {
             const double worst_db = band.worst_attenuation_db[i];
@@ -88,13 +85,13 @@ struct Drawn {
 };
 
 // By what the table has to hold, or as it was spelled out.
-Drawn draw(const DesignRequest& request, const TableSpec& spec, const std::optional<JointFacts>& joint) {
+Drawn draw(const DesignRequest& request, const TableSpec& spec, const GearChoice& gear) {
     if (!request.has_goal()) {
         if (request.max_bands)
             raise<UsageError>("--max-bands needs something to hold: --min-attenuation or --max-delay");
         return {CandidateTable::design(spec), {}};
     }
-    const DesignGoal goal = design_goal(request, spec, joint);
+    const DesignGoal goal = design_goal(request, spec, gear);
     DesignChoice choice = design_for(spec, goal);
     DesignNote note{goal.min_attenuation_db, goal.max_delay, choice.reason, std::nullopt};
     if (goal.max_delay) note.slowest = slowest_within(spec, *goal.max_delay);
@@ -102,8 +99,8 @@ Drawn draw(const DesignRequest& request, const TableSpec& spec, const std::optio
 }
 
 ExitCode print_frontier(const DesignRequest& request, const std::string& form, const TableSpec& spec,
-                        const std::optional<JointFacts>& joint, const Provenance& provenance) {
-    const Frontier frontier = design_frontier(spec, design_goal(request, spec, joint));
+                        const GearChoice& gear, const Provenance& provenance) {
+    const Frontier frontier = design_frontier(spec, design_goal(request, spec, gear));
     const std::string text = form == "json"  ? frontier_to_json(frontier, provenance)
                              : form == "csv" ? frontier_to_csv(frontier)
                                              : frontier_to_text(frontier);
@@ -123,16 +120,17 @@ ExitCode print_frontier(const DesignRequest& request, const std::string& form, c
 ExitCode run(const DesignRequest& request, const std::string& command_line) {
     const std::string form = form_of(request);
     check_plot(request.plot, request.common);
-    std::optional<JointFacts> joint;
     Provenance provenance{{}, command_line};
+    GearOptions options = request.gear;
     if (!request.joint.empty()) {
-        const auto ratio = request.gear_ratio ? std::optional(GearRatio(*request.gear_ratio)) : std::nullopt;
-        joint = load_joint_facts(request.joint, ratio);
-        provenance.inputs.push_back(input_record(request.joint));
+        if (options.joint_file) raise<UsageError>("JOINT and --joint-file: give one of them");
+        options.joint_file = request.joint;
     }
-    const TableSpec spec = design_spec(request, joint);
-    if (request.frontier) return print_frontier(request, form, spec, joint, provenance);
-    const auto [table, note] = draw(request, spec, joint);
+    const GearChoice gear(options);
+    if (gear.joint()) provenance.inputs.push_back(input_record(gear.joint()->path));
+    const TableSpec spec = design_spec(request, gear);
+    if (request.frontier) return print_frontier(request, form, spec, gear, provenance);
+    const auto [table, note] = draw(request, spec, gear);
     say(request.common, fmt::format("designed as if with {}", option_line(table.spec())));
     say_warnings(request.common, alias_warnings(table));
     const std::string text = form == "json"  ? table_to_json(table, provenance, note)
@@ -147,10 +145,8 @@ ExitCode run(const DesignRequest& request, const std::string& command_line) {
 
 std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<DesignRequest>();
-    options.argument("JOINT", request->joint, false, "joint.json from identify; - is standard input");
-    options.number("--gear-ratio", request->gear_ratio, Dimension::none, "motor turns per output turn");
-    options.numbers("--orders", request->orders, Dimension::none,
-                    "ripple lines to notch, in cycles per motor turn, e.g. 1,2");
+    options.argument("JOINT", request->joint, false, "the same as --joint-file; - is standard input");
+    attach_gear(options, request->gear);
     options.numbers("--amplitudes", request->amplitudes_nm, Dimension::torque,
                     "of the ripple, zero to peak, one per order (default: those in JOINT)");
     options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
@@ -163,15 +159,17 @@ std::function<ExitCode()> attach(Options& options) {
                  "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
     options.number("--min-attenuation", request->goal_attenuation_db, Dimension::decibel,
                    "choose bands and Q that hold this at every speed of every band, e.g. 20dB");
-    options.quantity("--max-delay", request->goal_delay, Dimension::time,
-                     "choose bands and Q whose DC delay is no longer, e.g. 20ms");
+    options.duration("--max-delay", request->max_delay,
+                     "choose bands and Q whose DC delay is no longer, e.g. 20ms; where both are stated, exit "
+                     "code 1 when a band's is");
     options.number("--max-bands", request->max_bands, Dimension::none, "no more bands than this are chosen");
     options.flag("--frontier", request->frontier,
                  "the trade-off curve between attenuation, delay and bands, instead of a table");
     options.number("--ratio-error", request->ratio_error_percent, Dimension::none,
                    "per cent by which the gear ratio may be off (default: the interval in JOINT, else 0)");
-    options.number("--q", request->q, Dimension::none,
-                   "centre over -3 dB width (default: 0.25, the paper's twin-T, or what a goal takes)");
+    options.number(
+        "--quality,--q", request->q, Dimension::none,
+        "or --q: centre over -3 dB width (default: 0.25, the paper's twin-T, or what a goal takes)");
     options.number("--depth", request->depth_db, Dimension::decibel,
                    "attenuation at the centre; a full null when left out");
     options.choice("--width", request->width, width_names,
@@ -181,14 +179,12 @@ std::function<ExitCode()> attach(Options& options) {
                    "per cent of a step within which it counts as settled");
     options.choice("--below", request->below, rule_names, "rule below the first band");
     options.choice("--above", request->above, rule_names, "rule above the last band");
-    options.number("--max-delay-ms", request->max_delay_ms, Dimension::none,
-                   "exit code 1 when a band's DC delay is longer");
     options.number("--min-attenuation-db", request->min_attenuation_db, Dimension::none,
                    "exit code 1 when a line is attenuated less anywhere in its band");
     options.choice("--format", request->form, form_names,
                    "form of the result (default: by the name of -o, else text)");
     attach_plot(options, request->plot);
-    attach_common(options, request->common);
+    attach_common(options, request->common, JsonName::is_own);
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

@@ -9,6 +9,7 @@
 #include "cli/diagnosis_text.hpp"
 #include "cli/joint_facts.hpp"
 #include "cli/plot_request.hpp"
+#include "cli/readings.hpp"
 #include "ripplenotch/artifact/diagnosis.hpp"
 #include "ripplenotch/artifact/model.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -44,25 +45,36 @@ void check(const Request& request) {
         raise<UsageError>("--plot - and --json would both go to standard output; name a file with --plot");
 }
 
-Log read(const Request& request, const std::string& path, Provenance& provenance) {
-    Log log = read_log(path, request.log.resolve());
+Log read(const Request& request, const Model& model, const std::string& path, Provenance& provenance) {
+    ReadOptions options = request.log.resolve();
+    options.gear_ratio = model.gear_ratio.value();
+    Log log = read_log(path, options);
     say_layout(request.common, log.layout);
-    say_warnings(request.common, log.timebase.warnings);
+    say_warnings(request.common, log.recording.warnings);
+    provenance.recordings.push_back({log.recording});
     if (path == "-") return log;
     provenance.inputs.push_back(input_record(path));
-    provenance.inputs.back().rows = log.trace.size();
+    provenance.inputs.back().rows = log.recording.rows();
     return log;
+}
+
+/// What was fitted has no more digits in the model than in the story and its JSON.
+Model with_fitted_digits(Model model) {
+    for (Term& term : model.terms) {
+        for (std::optional<double>& value : term.values) {
+            if (value) value = to_digits(*value);
+        }
+    }
+    return model;
 }
 
 Diagnosis diagnosed(const Request& request, const Model& model, const Log& log, Provenance& provenance) {
     std::optional<Log> other;
-    if (request.validate) other = read(request, *request.validate, provenance);
+    if (request.validate) other = read(request, model, *request.validate, provenance);
     Progress::current().begin("looking for what is missing", "", 0);
     try {
-        const TraceView view = log.trace.view();
-        const TraceView validation = other ? other->trace.view() : view;
-        return diagnose(model, view, other ? &validation : nullptr,
-                        {.smoothing = request.smoothing, .without = request.without});
+        return diagnose_readings(model, log, other ? &*other : nullptr,
+                                 {.smoothing = request.smoothing, .without = request.without});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
@@ -75,10 +87,10 @@ ExitCode run(const Request& request, const std::string& command_line) {
     const Model model = read_model(read_all(request.model), source);
     if (request.model != "-") provenance.inputs.push_back(input_record(request.model));
     const bool keep = request.common.output != "-";
-    const Log log = read(request, request.path, provenance);
+    const Log log = read(request, model, request.path, provenance);
     const Diagnosis diagnosis = diagnosed(request, model, log, provenance);
     if (keep) {
-        write_all(request.common.output, write_model(diagnosis.model, provenance),
+        write_all(request.common.output, write_model(with_fitted_digits(diagnosis.model), provenance),
                   request.common.overwrite());
         say(request.common, fmt::format("the improved model is in {}", request.common.output));
     }
@@ -105,7 +117,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "exit with 5 unless the log is explained in the end");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common);
+    attach_common(options, request->common, JsonName::is_own);
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

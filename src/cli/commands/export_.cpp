@@ -74,8 +74,8 @@ FilterSet filters_of_method(const Request& request) {
             "--method lowpass,...",
             spec.name);
     }
-    const ChosenMethod chosen = choose_method(*request.method, std::nullopt);
-    const Settings& settings = *chosen.settings;
+    const Contender chosen = choose_method(*request.method);
+    const Settings& settings = chosen.settings;
     if (spec.name == "lowpass") {
         // Asking the method for its filter refuses an order that is no whole number, in the method's words.
         static_cast<void>(chosen.frozen(*request.sample_rate, DegPerSec(0.0)));
@@ -131,6 +131,9 @@ ExitCode run(const Request& request, const std::string& command_line) {
     check(request);
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
+    if (ends_with_json(request.common.output) && target.name != "json")
+        raise<UsageError>("-o {}: {} is no JSON; use --to json, or name the file otherwise",
+                          request.common.output, target.name);
     const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
     Provenance provenance{{}, command_line};
     FilterSet filters = request.method ? filters_of_method(request) : filter_set(load_table(request.table));
@@ -196,7 +199,7 @@ std::function<ExitCode()> attach(Options& options) {
                    "exit code 1 when the gain at 0 Hz is off by more");
     options.number("--max-pole-radius", request->limits.pole_radius, Dimension::none,
                    "exit code 1 when a pole is further out; 1 and beyond is always refused");
-    attach_common(options, request->common);
+    attach_common(options, request->common, JsonName::is_own);
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

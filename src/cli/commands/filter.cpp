@@ -39,35 +39,57 @@ WriteOptions write_options(const FilterRequest& request, std::optional<int> log_
     return options;
 }
 
+// Several logs have each a file of metrics in the folder.
+bool metrics_in_folder(const FilterRequest& request) {
+    return request.metrics && (request.out_directory || request.logs.size() > 1);
+}
+
+FilterJob job_of(const FilterRequest& request, const std::filesystem::path& log) {
+    FilterJob job{log.string(), request.common.output, request.metrics};
+    if (request.in_place) job.output = job.log;
+    if (request.out_directory)
+        job.output = (std::filesystem::path(*request.out_directory) / log.filename()).string();
+    if (metrics_in_folder(request)) {
+        job.metrics = (std::filesystem::path(*request.metrics) / log.stem()).string() +
+                      (request.every_joint() ? ".{joint}" : "") + ".metrics.json";
+    }
+    return job;
+}
+
+void check_jobs(const FilterRequest& request, const std::vector<FilterJob>& jobs) {
+    const bool own_names = request.in_place || request.out_directory;
+    if (request.in_place + request.out_directory.has_value() + (request.common.output != "-") > 1)
+        raise<UsageError>("-o, --out-dir and --in-place: give one of them");
+    if (jobs.size() > 1 && !own_names)
+        raise<UsageError>("{} logs need --out-dir DIR, where each gets a file of its own name", jobs.size());
+    std::set<std::string> outputs;
+    for (const FilterJob& job : jobs) {
+        std::error_code failed;
+        if (own_names && job.log == "-")
+            raise<UsageError>("--out-dir and --in-place: standard input has no name; use -o FILE");
+        if (!outputs.insert(job.output).second)
+            raise<UsageError>("two logs would be written to {}; filter them into different folders",
+                              job.output);
+        // A raw log that its filtered torque replaces is gone for good.
+        if (!request.in_place && job.log != "-" && job.output != "-" &&
+            std::filesystem::equivalent(job.log, job.output, failed)) {
+            raise<UsageError>(
+                "{}: the filtered log would take the place of the raw one; name another file, or say "
+                "--in-place",
+                job.output);
+        }
+    }
+}
+
 std::vector<FilterJob> jobs_of(const FilterRequest& request) {
-    const bool several = request.logs.size() > 1;
-    if (!several && !request.out_directory)
-        return {{request.logs.front(), request.common.output, request.metrics}};
-    if (!request.out_directory) {
-        raise<UsageError>("{} logs need --out-dir DIR, where each gets a file of its own name",
-                          request.logs.size());
-    }
-    if (request.common.output != "-") raise<UsageError>("--out-dir and -o: give one of them");
     std::vector<FilterJob> jobs;
-    std::set<std::string> names;
-    for (const std::string& log : request.logs) {
-        const std::filesystem::path path(log);
-        if (log == "-") raise<UsageError>("--out-dir: standard input has no name; use -o FILE");
-        if (!names.insert(path.filename().string()).second) {
-            raise<UsageError>("two logs are named {}; filter them into different folders",
-                              path.filename().string());
-        }
-        FilterJob job{log, (std::filesystem::path(*request.out_directory) / path.filename()).string(), {}};
-        if (request.metrics) {
-            job.metrics = (std::filesystem::path(*request.metrics) / path.stem()).string() +
-                          (request.every_joint() ? ".{joint}" : "") + ".metrics.json";
-        }
-        jobs.push_back(std::move(job));
-    }
+    for (const std::string& log : request.logs) jobs.push_back(job_of(request, log));
+    check_jobs(request, jobs);
     std::error_code failed;
-    for (const auto& directory : {request.out_directory, request.metrics}) {
-        if (directory) std::filesystem::create_directories(*directory, failed);
-        if (failed) raise<FileError>("{}: cannot make the folder: {}", *directory, failed.message());
+    for (const auto& folder :
+         {request.out_directory, metrics_in_folder(request) ? request.metrics : std::nullopt}) {
+        if (folder) std::filesystem::create_directories(*folder, failed);
+        if (failed) raise<FileError>("{}: cannot make the folder: {}", *folder, failed.message());
     }
     return jobs;
 }
@@ -92,8 +114,8 @@ void check(const FilterRequest& request) {
     if (request.every_joint()) check_joints(request);
     if (!(request.gap_steps > 1.0))
         raise<UsageError>("--gap: {} median steps is not above 1", shortest(request.gap_steps));
-    const bool log_on_stdout =
-        request.common.output == "-" && !request.out_directory && request.plot.path != "-";
+    const bool log_on_stdout = request.common.output == "-" && !request.out_directory && !request.in_place &&
+                               request.plot.path != "-";
     if (log_on_stdout && (request.common.json || request.metrics == "-")) {
         raise<UsageError>(
             "the filtered log and its metrics would both go to standard output; name a file with -o");
@@ -132,7 +154,8 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     std::unique_ptr<LogWriter> writer;
     if (!request.plot.instead_of(job.output)) {
         writer = rewrite_log(job.output, stream.reader(), output_format(job.output, request.output_format),
-                             write_options(request, stream.torque_decimals()), request.common.overwrite());
+                             write_options(request, stream.torque_decimals()),
+                             request.in_place ? ByteSink::Overwrite::yes : request.common.overwrite());
     }
     const WatchedWriter* watched = nullptr;
     if (request.plot.wanted()) {
@@ -158,8 +181,7 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
 
 ExitCode run(const FilterRequest& request, const std::string& command_line) {
     check(request);
-    JointMethods methods({request.method.empty() ? "switching" : request.method, request.table,
-                          request.joint_file, request.gear_ratio, request.orders,
+    JointMethods methods({request.method.empty() ? "switching" : request.method, request.table, request.gear,
                           request.gates.min_attenuation_db.has_value()});
     bool within = true;
     for (const FilterJob& job : jobs_of(request)) {
@@ -179,6 +201,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");
     options.text("--output-format", request->output_format, "NAME",
                  "format of the output: csv, npy (default: by the name of -o, else csv)");
+    options.flag("--in-place", request->in_place, "the filtered log takes the place of the raw one");
     options.flag("--append", request->append,
                  "add the filtered torque as a column instead of replacing the torque");
     options.flag("--exact", request->exact,
@@ -190,12 +213,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "log's), or a number");
     options.text("--metrics", request->metrics, "FILE",
                  "JSON about attenuation, residual, delays, switches, gaps; with --out-dir a folder");
-    options.number("--gear-ratio", request->gear_ratio, Dimension::none,
-                   "for methods that follow the gear, and the metrics; switching has it from its table");
-    options.numbers("--orders", request->orders, Dimension::none,
-                    "the same (default for the metrics: the method's, else 1,2)");
-    options.text("--joint-file", request->joint_file, "FILE",
-                 "joint.json with gear ratio and orders, for the same");
+    attach_gear(options, request->gear);
     options.quantity("--crossover", request->crossover, Dimension::frequency,
                      "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");
     attach_gates(options, request->gates);
@@ -205,7 +223,7 @@ std::function<ExitCode()> attach(Options& options) {
                   "threads for long logs; the output is the same for any number; 0 is one a core, at most 4");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common);
+    attach_common(options, request->common, JsonName::is_own);
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

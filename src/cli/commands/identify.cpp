@@ -8,9 +8,13 @@
 #include <memory>
 
 #include "cli/command.hpp"
+#include "cli/gear_choice.hpp"
 #include "cli/identify_text.hpp"
+#include "cli/joint_methods.hpp"
 #include "cli/plot_request.hpp"
+#include "cli/readings.hpp"
 #include "ripplenotch/artifact/identification.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/report/identification_figure.hpp"
@@ -26,7 +30,7 @@ struct Request {
     LogOptions log;
     std::vector<std::string> logs;
     std::string evidence = "automatic";
-    std::optional<double> gear_ratio;
+    GearOptions gear;  ///< a ratio to check
     std::vector<double> order_hint;
     IdentifyOptions identify;
     bool require_conclusive = false;
@@ -41,6 +45,8 @@ struct Joint {
 std::vector<Joint> read_all_joints(const Request& request, Provenance& provenance) {
     std::vector<Joint> joints;
     ReadOptions read = request.log.resolve();
+    read.gear_ratio = request.gear.ratio;
+    read.takes_motor_units = true;
     const bool each = read.joint && *read.joint == "all";
     for (const std::string& path : request.logs) {
         std::vector<Log> logs;
@@ -50,10 +56,11 @@ std::vector<Joint> read_all_joints(const Request& request, Provenance& provenanc
             logs.push_back(read_log(path, read));
         }
         provenance.inputs.push_back(
-            {path, path == "-" ? "" : sha256_of_file(path), logs.front().trace.size()});
+            {path, path == "-" ? "" : sha256_of_file(path), logs.front().recording.rows()});
         for (Log& log : logs) {
             say_layout(request.common, log.layout);
-            say_warnings(request.common, log.timebase.warnings);
+            say_warnings(request.common, log.recording.warnings);
+            provenance.recordings.push_back({log.recording});
             const std::string name = each ? log.trace.joint : logs.front().trace.joint;
             auto joint = std::find_if(joints.begin(), joints.end(),
                                       [&](const Joint& j) { return !each || j.name == name; });
@@ -64,29 +71,47 @@ std::vector<Joint> read_all_joints(const Request& request, Provenance& provenanc
     return joints;
 }
 
+/// That filters for this joint are designed for: of the log with the most rows.
+Hertz controller_rate(const Joint& joint) {
+    const auto longest =
+        std::max_element(joint.logs.begin(), joint.logs.end(),
+                         [](const Log& a, const Log& b) { return a.recording.rows() < b.recording.rows(); });
+    return longest->recording.clock.nominal_rate;
+}
+
 Identification identified(const Joint& joint, const Request& request) {
-    std::vector<TraceView> views;
     for (const Log& log : joint.logs) {
         if (log.trace.size() < fewest_identify_samples) {
             raise<DataError>("{}: {} samples, at least {} are needed to look for lines; leave this log out",
                              log.layout.source, log.trace.size(), fewest_identify_samples);
         }
-        views.push_back(log.trace.view());
     }
-    Identification found = identify(views, request.identify);
+    Identification found = identify_readings(joint.logs, request.identify);
     found.joint = joint.name;
+    found.sample_rate = controller_rate(joint);
     return found;
 }
 
+// What was believed and turned out otherwise is told, and not left to the notes.
+void say_other_ratio(const Request& request, const Identification& found) {
+    constexpr double rounding = 0.001;
+    const GearRatioFit& fit = found.gear_ratio;
+    if (!request.gear.ratio || !fit.value) return;
+    const double doubt = std::max(fit.ci95_high - *fit.value, rounding * *request.gear.ratio);
+    if (std::abs(*fit.value - *request.gear.ratio) <= doubt) return;
+    say_warnings(
+        request.common,
+        std::vector{fmt::format("{}--gear-ratio {}: the lines say {:.6g} (95 %: {:.6g} to {:.6g})",
+                                found.joint.empty() ? "" : "joint " + found.joint + ": ",
+                                shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high)});
+}
+
 void check(Request& request) {
-    request.identify.evidence = request.evidence == "steady"  ? IdentifyOptions::Evidence::steady
-                                : request.evidence == "order" ? IdentifyOptions::Evidence::order
-                                                              : IdentifyOptions::Evidence::automatic;
-    if (request.gear_ratio) {
-        if (!(*request.gear_ratio > 0.0))
-            raise<UsageError>("--gear-ratio {} is not above 0", *request.gear_ratio);
-        request.identify.hint = GearRatio(*request.gear_ratio);
-    }
+    request.identify.way = request.evidence == "steady"  ? IdentifyOptions::Way::steady
+                           : request.evidence == "order" ? IdentifyOptions::Way::order
+                                                         : IdentifyOptions::Way::automatic;
+    check_gear(request.gear);
+    if (request.gear.ratio) request.identify.hint = GearRatio(*request.gear.ratio);
     for (const double n : request.order_hint) {
         if (n < 1.0 || n > 16.0 || n != std::floor(n))
             raise<UsageError>("--order-hint {} is not a whole number from 1 to 16", n);
@@ -99,12 +124,14 @@ void check(Request& request) {
         raise<UsageError>("--steady-band must not be negative");
 }
 
-std::string logs_in_words(const std::vector<std::string>& logs) {
-    return logs.size() == 1 ? logs.front() : fmt::format("{} and {} more", logs.front(), logs.size() - 1);
+std::vector<std::string> names_of(const Joint& joint) {
+    std::vector<std::string> names;
+    for (const Log& log : joint.logs) names.push_back(log.layout.source);
+    return names;
 }
 
-bool ends_with_json(const std::string& path) {
-    return path.size() > 5 && path.substr(path.size() - 5) == ".json";
+std::string logs_in_words(const std::vector<std::string>& logs) {
+    return logs.size() == 1 ? logs.front() : fmt::format("{} and {} more", logs.front(), logs.size() - 1);
 }
 
 ExitCode run(Request& request, const std::string& command_line) {
@@ -117,18 +144,26 @@ ExitCode run(Request& request, const std::string& command_line) {
     Progress::current().begin("looking for lines", "joints", joints.size() > 1 ? joints.size() : 0);
     for (const Joint& joint : joints) {
         found.push_back(identified(joint, request));
+        say_other_ratio(request, found.back());
         if (joints.size() > 1) Progress::current().add(1);
     }
 
     if (request.plot.wanted() && found.size() > 1)
         raise<UsageError>("--plot draws one joint, and --joint all found {}; name one", found.size());
     std::string text;
-    for (const Identification& one : found) text += (text.empty() ? "" : "\n") + identification_report(one);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        text += (text.empty() ? "" : "\n") + identification_report(found[i], names_of(joints[i]));
     const bool json_file = ends_with_json(request.common.output);
     if (request.common.json || json_file) {
-        const std::string json = found.size() == 1 ? identification_text(found.front(), provenance)
-                                                   : identifications_text(found, provenance);
-        write_all(request.common.output, json, request.common.overwrite());
+        if (names_joint(request.common.output)) {
+            for (const Identification& one : found)
+                write_all(with_joint(request.common.output, one.joint), identification_text(one, provenance),
+                          request.common.overwrite());
+        } else {
+            const std::string json = found.size() == 1 ? identification_text(found.front(), provenance)
+                                                       : identifications_text(found, provenance);
+            write_all(request.common.output, json, request.common.overwrite());
+        }
         // The file is for the next command; people still want to read what came out.
         if (json_file && !request.common.json) write_all("-", text, ByteSink::Overwrite::yes);
     } else {
@@ -144,8 +179,10 @@ ExitCode run(Request& request, const std::string& command_line) {
 std::function<ExitCode()> attach(Options& options) {
     const auto request = std::make_shared<Request>();
     options.arguments("LOG", request->logs, true, "logs of one joint; several are fitted together");
-    options.number("--gear-ratio", request->gear_ratio, Dimension::none,
-                   "what you believe the ratio is; checked against the lines, not believed");
+    attach_gear(options, request->gear,
+                {.ratio = "what you believe the ratio is; checked against the lines, not believed",
+                 .orders = "",
+                 .joint_file = ""});
     options.numbers("--order-hint", request->order_hint, Dimension::none,
                     "which multiple of the motor's turn you believe the strongest line to be, 1 to 16");
     options.choice("--evidence", request->evidence, evidence_names,
@@ -155,13 +192,13 @@ std::function<ExitCode()> attach(Options& options) {
     options.number("--steady-band", request->identify.steady_band_percent, Dimension::none,
                    "a stretch is steady while its speed stays within this many per cent ...");
     options.number("--steady-band-speed", request->identify.steady_band_deg_s, Dimension::speed,
-                   "... or within this speed, whichever is wider");
+                   "... or within this speed, whichever is wider; none by default");
     options.quantity("--steady-for", request->identify.steady_for, Dimension::time, "for at least this long");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common);
+    attach_common(options, request->common, JsonName::is_own);
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

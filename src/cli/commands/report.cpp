@@ -58,6 +58,8 @@ std::optional<std::string> plotly_text_of(const Request& request) {
 }
 
 ExitCode run(const Request& request) {
+    if (ends_with_json(request.output))
+        raise<UsageError>("-o {}: a report is an HTML page; name it .html", request.output);
     Page page{request.title, {}};
     for (const std::string& path : request.results) {
         page.sections.push_back(section_of_result(read_all(path), path == "-" ? "standard input" : path));

@@ -47,6 +47,7 @@ struct Course {
     std::vector<double> velocity_deg_s;  ///< of a log: as logged, not smoothed
     std::vector<double> measured_nm;     ///< empty without a log
     bool has_position = true;
+    std::vector<Recording> recordings = {};  ///< of a log
 };
 
 // Up to this, an angle of thousands of degrees times 10^decimals is still a whole number that a double holds.
@@ -77,9 +78,12 @@ Course course_of(const SimulateOptions& options) {
     reading.sample_rate = options.sample_rate;
     const Log log = read_log(options.log, reading.resolve());
     say_layout(options.common, log.layout);
-    say_warnings(options.common, log.timebase.warnings);
-    return {motion_along(log.trace.view(), options.smoothing), log.trace.velocity_deg_s, log.trace.torque_nm,
-            log.trace.view().has_position()};
+    say_warnings(options.common, log.recording.warnings);
+    return {motion_along(log.trace.view(), options.smoothing),
+            log.trace.velocity_deg_s,
+            log.trace.torque_nm,
+            log.trace.view().has_position(),
+            {{log.recording}}};
 }
 
 // Along a log the result is a prediction, and which samples spikes and dropouts hit cannot be predicted.
@@ -150,7 +154,8 @@ void check(const SimulateOptions& options) {
 }
 
 std::string summary(const SimulateOptions& options, const Model& model, Hertz sample_rate,
-                    const std::optional<Followed>& followed, const std::vector<NumberColumn>& columns) {
+                    std::vector<Recording> recordings, const std::optional<Followed>& followed,
+                    const std::vector<NumberColumn>& columns) {
     Simulation made{.model = model,
                     .motions = options.motions,
                     .sample_rate = sample_rate,
@@ -171,7 +176,7 @@ std::string summary(const SimulateOptions& options, const Model& model, Hertz sa
     made.speed_max_deg_s = std::abs(*fast);
     made.torque_min_nm = *low;
     made.torque_max_nm = *high;
-    Provenance provenance{.inputs = {}, .command = options.command_line()};
+    Provenance provenance{{}, options.command_line(), std::move(recordings)};
     if (options.joint.model && *options.joint.model != "-")
         provenance.inputs.push_back(input_record(*options.joint.model));
     if (options.along_log() && options.log != "-") {
@@ -187,7 +192,9 @@ ExitCode simulate(const SimulateOptions& options) {
     const Model model = assemble_model(options.joint);
     ByteSink sink(options.common.output, options.common.overwrite(), format.binary);
     Course course = course_of(options);
-    const Hertz sample_rate = course.motion.sample_rate;
+    std::vector<Recording> recordings = std::move(course.recordings);
+    const Hertz sample_rate =
+        recordings.empty() ? course.motion.sample_rate : recordings.front().clock.nominal_rate;
     Progress::current().begin("simulating", "", 0);
     const auto gap = followed(options, model, course);
     const auto columns = make_columns(options, model, std::move(course));
@@ -200,7 +207,8 @@ ExitCode simulate(const SimulateOptions& options) {
                                         shortest(gap->residual_rms_nm), shortest(gap->measured_rms_nm)));
     }
     if (options.common.json)
-        write_all("-", summary(options, model, sample_rate, gap, columns), ByteSink::Overwrite::no);
+        write_all("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),
+                  ByteSink::Overwrite::no);
     return ExitCode::done;
 }
 
@@ -238,7 +246,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.text("--format", o->format, "NAME",
                  "format of what is written: csv, npy (default: by the extension of -o, else csv)");
     attach_log_columns(options, o->log_options);
-    attach_common(options, o->common);
+    attach_common(options, o->common, JsonName::is_own);
     o->command_line = [&options] { return options.command_line(); };
     return [o] { return simulate(*o); };
 }

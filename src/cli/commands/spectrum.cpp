@@ -112,8 +112,20 @@ std::vector<StretchSpectrum> frequency_spectra(const Request& request, const Tra
     return spectra;
 }
 
+// A piece that is longer than what there is is all of it.
+void say_segment(const Request& request, const StretchSpectrum& one) {
+    constexpr double rounding = 1.01;  // of the piece's length to whole samples
+    const double piece_s = one.spectrum.piece_duration.value();
+    if (!request.segment || request.segment->value() <= rounding * piece_s) return;
+    const std::string what = one.number ? fmt::format("stretch {}", *one.number) : "the log";
+    say_warnings(request.common,
+                 std::vector{fmt::format("--segment {} s: {} is {:.4g} s long, so all of it is one piece",
+                                         shortest(request.segment->value()), what, piece_s)});
+}
+
 Result frequency_result(const Request& request, std::vector<StretchSpectrum> spectra,
                         const std::string& joint, const Provenance& provenance) {
+    for (const StretchSpectrum& one : spectra) say_segment(request, one);
     if (!request.common.json && !request.peaks && request.common.verbose)
         say(request.common, frequency_peaks(spectra));
     std::string text = request.common.json ? spectra_text(joint, spectra, request.false_alarm, provenance)
@@ -125,9 +137,9 @@ Result frequency_result(const Request& request, std::vector<StretchSpectrum> spe
 }
 
 Result map_result(const Request& request, const Trace& trace, Provenance& provenance) {
-    SpeedMapRequest wanted = request.map;
-    const MapLines lines = take_map_lines(wanted, provenance);
-    SpeedMapResult result = speed_map_result(wanted, trace, request.common, provenance);
+    const MapLines lines = map_lines(request.map, provenance);
+    if (lines.gear) say(request.common, gear_in_words(*lines.gear));
+    SpeedMapResult result = speed_map_result(request.map, lines, trace, request.common, provenance);
     return {std::move(result.text),
             [map = std::move(result.map), lines, source = joint_in_words(request.path, trace.joint)] {
                 return speed_map_figure(source, map, lines);
@@ -141,17 +153,17 @@ Made piecewise_result(const Request& request, const std::string& command_line) {
     LogPasses log(request.path, request.log.resolve());
     const StretchSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
         say_layout(request.common, log.layout());
-        say_warnings(request.common, log.warnings());
+        say_warnings(request.common, log.recording().warnings);
     });
-    const Provenance provenance{{input_record(request.path)}, command_line};
+    const Provenance provenance{{input_record(request.path)}, command_line, {{log.recording()}}};
     return {frequency_result(request, {spectrum}, log.layout().chosen.joint, provenance), provenance};
 }
 
 Made whole_result(const Request& request, const std::string& command_line) {
     const Log log = read_log(request.path, request.log.resolve());
     say_layout(request.common, log.layout);
-    say_warnings(request.common, log.timebase.warnings);
-    Provenance provenance{{input_record(request.path)}, command_line};
+    say_warnings(request.common, log.recording.warnings);
+    Provenance provenance{{input_record(request.path)}, command_line, {{log.recording}}};
     const TraceView trace = log.trace.view();
     if (request.map.map) {
         Result map = map_result(request, log.trace, provenance);
@@ -192,17 +204,18 @@ std::function<ExitCode()> attach(Options& options) {
                  "steady stretches instead of the whole log, each or one of them");
     options.quantity("--segment", request->segment, Dimension::time,
                      "average half-overlapping pieces of this length (Welch)");
-    options.flag("--peaks", request->peaks, "a table of the lines instead of the bins");
+    options.flag("--peaks", request->peaks, "tables of the lines and humps instead of the bins");
     options.number("--false-alarm", request->false_alarm, Dimension::none,
                    "chance that noise gives any line in a spectrum");
     options.number("--steady-band", request->steady.band_percent, Dimension::none,
                    "a stretch is steady while its speed stays within this many per cent ...");
     options.number("--steady-band-speed", request->steady.band_deg_s, Dimension::speed,
-                   "... or within this speed, whichever is wider");
+                   "... or within this speed, whichever is wider; none by default");
     options.quantity("--steady-for", request->steady.at_least, Dimension::time, "for at least this long");
     attach_speed_map(options, request->map);
     attach_plot(options, request->plot);
     attach_log(options, request->log);
+    options.after_parse([request] { request->log.gear_ratio = request->map.gear.ratio; });
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };
 }

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "cli/command.hpp"
-#include "cli/joint_facts.hpp"
+#include "cli/gear_choice.hpp"
 #include "cli/plot_request.hpp"
 #include "cli/track_words.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
@@ -30,9 +30,10 @@ struct Request {
     PlotRequest plot;
     LogOptions log;
     std::string path, method = "ls", amplitude = "peak", against = "time";
-    std::vector<double> orders, output_orders, tones_hz;
-    std::optional<double> gear_ratio, window_turns;
-    std::optional<std::string> joint_file;
+    std::vector<double> output_orders, tones_hz;
+    GearOptions gear_options;
+    std::optional<GearAccount> gear;  ///< chosen
+    std::optional<double> window_turns;
     std::optional<Seconds> window;
     std::optional<Hertz> bandwidth, rows_per_second;
     std::optional<DegPerSec> speed_step;
@@ -64,27 +65,21 @@ void check(const Request& request) {
     if (request.log.joint == "all") raise<UsageError>("--joint all: track looks at one joint; name it");
 }
 
-/// Gear ratio and motor orders from the joint file where the command line does not say them.
-void take_joint_file(Request& request, Provenance& provenance) {
-    if (request.joint_file) {
-        const JointFacts facts = load_joint_facts(*request.joint_file);
-        provenance.inputs.push_back(input_record(*request.joint_file));
-        if (!request.gear_ratio) request.gear_ratio = gear_ratio_of(facts).value();
-        if (request.orders.empty()) {
-            for (const Order order : facts.orders) request.orders.push_back(order.value());
-        }
-    }
-    if (request.gear_ratio && !(*request.gear_ratio > 0.0))
-        raise<UsageError>("--gear-ratio {} is not above 0", shortest(*request.gear_ratio));
-    if (!request.orders.empty() && !request.gear_ratio) {
+void take_gear(Request& request, Provenance& provenance) {
+    const GearChoice choice(request.gear_options);
+    if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
+    request.gear = choice.of();
+    const bool orders_stated = !request.gear_options.orders.empty() || request.gear_options.joint_file;
+    const bool other_lines = !request.output_orders.empty() || !request.tones_hz.empty();
+    // Whoever lists other lines and no orders asks for those lines alone.
+    if (request.gear && other_lines && !orders_stated)
+        request.gear = GearAccount{request.gear->ratio, {}, {}, {}, "--gear-ratio"};
+    if (request.gear) say(request.common, gear_in_words(*request.gear));
+    if (!request.gear && !request.gear_options.orders.empty()) raise_no_gear("--orders");
+    if (!request.gear && !other_lines) {
         raise<UsageError>(
-            "--orders count cycles per motor turn and need --gear-ratio or --joint-file; --output-orders "
-            "count per "
-            "turn of the joint");
-    }
-    if (request.orders.empty() && request.output_orders.empty() && request.tones_hz.empty()) {
-        raise<UsageError>(
-            "nothing to track; give --orders 1,2 with --gear-ratio, or --output-orders, or --joint-file");
+            "nothing to track; give --gear-ratio, for example 100, --joint-file joint.json, --output-orders, "
+            "or --tones");
     }
 }
 
@@ -101,17 +96,18 @@ std::unique_ptr<Prepared> prepare(const Request& request, const TraceView& trace
     auto p = std::make_unique<Prepared>();
     p->angle = output_angle(trace);
     p->speed = smoothed_speed(trace);
-    const double ratio = request.gear_ratio.value_or(1.0);
+    const double ratio = request.gear ? request.gear->ratio.value() : 1.0;
     p->motor_turns = p->angle.turns;
     for (double& turns : p->motor_turns) turns *= ratio;
-    p->signal = {trace.sample_rate, trace.time_s, trace.torque_nm, p->speed, p->motor_turns, {}};
+    p->signal = {trace.sample_rate, trace.time_s, trace.torque_nm, p->speed,
+                 p->motor_turns,    {},           trace.run_starts};
     const auto add = [&](TrackLabel::Kind kind, double value, std::span<const double> turns) {
         p->labels.push_back({kind, value});
         p->signal.lines.push_back({value, turns});
     };
-    for (const double order : request.orders) {
-        add(TrackLabel::Kind::order, order, p->motor_turns);
-        p->reference_orders.push_back(order);
+    for (const Order order : request.gear ? request.gear->orders : std::vector<Order>{}) {
+        add(TrackLabel::Kind::order, order.value(), p->motor_turns);
+        p->reference_orders.push_back(order.value());
     }
     for (const double order : request.output_orders) {
         add(TrackLabel::Kind::order_output, order, p->angle.turns);
@@ -149,10 +145,15 @@ void track_by_vold_kalman(const Request& request, const Prepared& prepared, Trac
     report.tracks = std::move(found.tracks);
 }
 
-void write_columns(const Request& request, const LogFormat& format, const TrackReport& report) {
+void write_columns(const Request& request, const TrackReport& report) {
+    const LogFormat& format = output_format(request.common.output, std::nullopt);
     std::vector<NumberColumn> columns;
-    for (TrackColumn& column : track_columns(report))
+    for (TrackColumn& column : track_columns(report)) {
+        if (!column.name.ends_with("time_s")) {
+            for (double& value : column.values) value = to_digits(value);
+        }
         columns.push_back({column.name, std::move(column.values)});
+    }
     ByteSink sink(request.common.output, request.common.overwrite(), format.binary);
     format.write_columns(sink, columns);
     sink.finish();
@@ -179,7 +180,7 @@ TrackReport report_of(const Request& request, const Prepared& prepared, const st
     report.kind = request.amplitude == "rms"            ? AmplitudeKind::rms
                   : request.amplitude == "peak-to-peak" ? AmplitudeKind::peak_to_peak
                                                         : AmplitudeKind::peak;
-    if (request.gear_ratio) report.gear_ratio = GearRatio(*request.gear_ratio);
+    report.gear = request.gear;
     report.angle_from_position = prepared.angle.absolute;
     report.labels = prepared.labels;
     try {
@@ -194,13 +195,13 @@ ExitCode run(Request& request, const std::string& command_line) {
     check(request);
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
-    take_joint_file(request, provenance);
-    const LogFormat& format = output_format(request.common.output, std::nullopt);
+    take_gear(request, provenance);
     const Log log = read_log(request.path, request.log.resolve());
     say_layout(request.common, log.layout);
-    say_warnings(request.common, log.timebase.warnings);
+    say_warnings(request.common, log.recording.warnings);
     provenance.inputs.push_back(input_record(request.path));
-    provenance.inputs.back().rows = log.trace.size();
+    provenance.inputs.back().rows = log.recording.rows();
+    provenance.recordings.push_back({log.recording});
 
     const auto prepared = prepare(request, log.trace.view());
     TrackReport report = report_of(request, *prepared, log.trace.joint);
@@ -213,7 +214,7 @@ ExitCode run(Request& request, const std::string& command_line) {
         write_all(request.common.output, track_text(report, provenance), request.common.overwrite());
     } else {
         say(request.common, track_verdict(report));
-        if (!request.plot.instead_of(request.common.output)) write_columns(request, format, report);
+        if (!request.plot.instead_of(request.common.output)) write_columns(request, report);
     }
     draw_plot(request.plot, request.common, provenance, [&] { return figure_of(request, report); });
     return ExitCode::done;
@@ -222,9 +223,7 @@ ExitCode run(Request& request, const std::string& command_line) {
 std::function<ExitCode()> attach(Options& options) {
     const auto request = std::make_shared<Request>();
     options.argument("LOG", request->path, true, "a log; - is standard input");
-    options.numbers("--orders", request->orders, Dimension::none, "lines to track, in cycles per motor turn");
-    options.number("--gear-ratio", request->gear_ratio, Dimension::none, "motor turns per output turn");
-    options.text("--joint-file", request->joint_file, "FILE", "joint.json: gear ratio and orders from there");
+    attach_gear(options, request->gear_options);
     options.numbers("--output-orders", request->output_orders, Dimension::none,
                     "lines to track along with them, in cycles per output turn");
     options.numbers("--tones", request->tones_hz, Dimension::frequency,
@@ -248,6 +247,7 @@ std::function<ExitCode()> attach(Options& options) {
                      "width of a row's speeds; about 24 rows when left out");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
+    options.after_parse([request] { request->log.gear_ratio = request->gear_options.ratio; });
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };
 }

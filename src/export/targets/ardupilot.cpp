@@ -13,6 +13,7 @@
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -65,7 +66,7 @@ double attenuation_db(const SharedShape& shape, const Settings& settings,
             fmt::format("the firmware holds no full null; its deepest, {} dB, is written", deepest_db));
         return deepest_db;
     }
-    const double depth = -20.0 * std::log10(shape.gain);
+    const double depth = -20.0 * portable::log10(shape.gain);
     check_range(settings, "INS_HNTCH_ATT", depth, shallowest_db, deepest_db,
                 "design with a --depth in this range");
     return depth;
@@ -109,11 +110,11 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
 
 // The coefficients that the firmware computes from its parameters, in float, for its float direct form.
 LoadedSection notch_in_float(double center_hz, double q, double attenuation, Hertz sample_rate) {
-    const double gain = std::pow(10.0, -attenuation / 40.0);
+    const double gain = portable::pow(10.0, -attenuation / 40.0);
     const double omega = 2.0 * std::numbers::pi * center_hz / sample_rate.value();
-    const double alpha = std::sin(omega) / (2.0 * q), scale = 1.0 / (1.0 + alpha);
-    Biquad f{(1.0 + alpha * gain * gain) * scale, -2.0 * std::cos(omega) * scale,
-             (1.0 - alpha * gain * gain) * scale, -2.0 * std::cos(omega) * scale, (1.0 - alpha) * scale};
+    const double alpha = portable::sin(omega) / (2.0 * q), scale = 1.0 / (1.0 + alpha);
+    Biquad f{(1.0 + alpha * gain * gain) * scale, -2.0 * portable::cos(omega) * scale,
+             (1.0 - alpha * gain * gain) * scale, -2.0 * portable::cos(omega) * scale, (1.0 - alpha) * scale};
     for (double* value : {&f.b0, &f.b1, &f.b2, &f.a1, &f.a2})
         *value = static_cast<double>(static_cast<float>(*value));
     return loaded(f, {Form::df1, Precision::float32});

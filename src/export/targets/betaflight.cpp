@@ -14,6 +14,7 @@
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -56,7 +57,7 @@ Written write_rpm_filter(const FilterSet& filters, const Settings& settings) {
         highest, fmt::join(weights, ","), shortest(q), shortest(lowest), shortest(fade));
     if (std::abs(weight / 100.0 - (1.0 - shape.gain)) > 1e-12) {
         written.warnings.push_back(
-            fmt::format("a depth of {:.3g} dB is weight {} %", -20.0 * std::log10(shape.gain), weight));
+            fmt::format("a depth of {:.3g} dB is weight {} %", -20.0 * portable::log10(shape.gain), weight));
     }
     written.warnings.emplace_back(
         "the firmware retunes its notches to the motor at every update: the bands' own centres are not used");

@@ -11,6 +11,7 @@
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -23,12 +24,12 @@ constexpr double sharpest_q = 2.0;
 constexpr double widest_q = 1.0 / 16.0;
 constexpr double lowest_hz = 50.0, highest_hz = 4999.0;  // 5000 turns the notch off
 
-double q_of_width(double code) { return sharpest_q / std::exp2(code / 4.0); }
+double q_of_width(double code) { return sharpest_q / portable::exp2(code / 4.0); }
 double gain_of_depth(double code) { return code / 100.0; }
 
 int width_code(double q) {
     // A tenth of a code step is as good as exact.
-    const double code = 4.0 * std::log2(sharpest_q / q);
+    const double code = 4.0 * portable::log2(sharpest_q / q);
     if (code < -0.1) {
         raise<UsageError>(
             "the drive cannot hold Q {}: its narrowest width code is 0, half the centre, and the sharpest Q "
@@ -80,7 +81,7 @@ Written write(const FilterSet& filters, const Settings& settings, std::span<cons
     }
     if (std::abs(gain_of_depth(depth) - shape.gain) > 1e-12) {
         written.warnings.push_back(fmt::format("a depth of {:.3g} dB is depth code {} in the drive",
-                                               -20.0 * std::log10(shape.gain), depth));
+                                               -20.0 * portable::log10(shape.gain), depth));
     }
     return written;
 }
@@ -101,7 +102,7 @@ LoadedFilters read(std::string_view bytes, const std::string& source, const Filt
             const Hertz center(reader.number());
             const double q = q_of_width(reader.number());
             const double gain = gain_of_depth(reader.number());
-            const NotchSpec notch{center, q, gain > 0.0 ? -20.0 * std::log10(gain) : infinite_depth_db};
+            const NotchSpec notch{center, q, gain > 0.0 ? -20.0 * portable::log10(gain) : infinite_depth_db};
             // How a drive computes is not published; its filter is taken as exact.
             sections.push_back(
                 loaded(design_notch(notch, filters.sample_rate), {Form::df2t, Precision::float64}));

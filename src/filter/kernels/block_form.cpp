@@ -1,39 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "filter/kernels/block_form.hpp"
 
-#include <algorithm>
-
 namespace ripplenotch {
 namespace {
 
-using Wide = long double;
-
 // What eight steps make of a memory and an input at one of the samples (or none: `at` beyond them).
 struct Course {
-    std::array<Wide, BlockForm::memory> memory{};
+    BlockForm::Memory memory{};
     std::array<double, BlockForm::samples> outputs{};
 
     void run(std::span<const Biquad> sections, std::size_t at) {
         for (std::size_t k = 0; k < BlockForm::samples; ++k) {
-            Wide signal = k == at ? 1.0L : 0.0L;
+            double signal = k == at ? 1.0 : 0.0;
             for (std::size_t i = 0; i < sections.size(); ++i) {
                 const Biquad& f = sections[i];
-                Wide& s1 = memory[2 * i];
-                Wide& s2 = memory[2 * i + 1];
-                const Wide y = f.b0 * signal + s1;
+                double& s1 = memory[2 * i];
+                double& s2 = memory[2 * i + 1];
+                const double y = f.b0 * signal + s1;
                 s1 = f.b1 * signal + s2 - f.a1 * y;
                 s2 = f.b2 * signal - f.a2 * y;
                 signal = y;
             }
-            outputs[k] = static_cast<double>(signal);
+            outputs[k] = signal;
         }
-    }
-
-    [[nodiscard]] BlockForm::Memory rounded() const {
-        BlockForm::Memory values;
-        std::transform(memory.begin(), memory.end(), values.begin(),
-                       [](Wide value) { return static_cast<double>(value); });
-        return values;
     }
 };
 
@@ -44,14 +33,14 @@ BlockForm::BlockForm(std::span<const Biquad> sections) {
         Course course;
         course.run(sections, j);
         feed[j] = course.outputs;
-        drive[j] = course.rounded();
+        drive[j] = course.memory;
     }
     for (std::size_t k = 0; k < 2 * sections.size(); ++k) {
         Course course;
-        course.memory[k] = 1.0L;
+        course.memory[k] = 1.0;
         course.run(sections, samples);
         recall[k] = course.outputs;
-        turn[k] = course.rounded();
+        turn[k] = course.memory;
     }
 }
 

@@ -20,7 +20,7 @@ struct BlockForm {
     using Outputs = std::array<double, samples>;
     using Memory = std::array<double, memory>;
 
-    /// At most two sections. Coefficients come from step() itself in long double, rounded once.
+    /// At most two sections. Coefficients come from step() itself.
     explicit BlockForm(std::span<const Biquad> sections);
 
     alignas(32) std::array<Outputs, samples> feed{};   ///< by input

@@ -20,6 +20,7 @@
 #include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -147,7 +148,7 @@ void plan_priors(Plan& p, const Settings& settings) {
             const auto phases = per_order("oscillator", settings, "phases", p.ripple, 0.0);
             for (std::size_t i = 0; i < amplitudes.size(); ++i) {
                 const double phase = phases[i] * std::numbers::pi / 180.0;
-                p.warm[i] = {amplitudes[i] * std::cos(phase), -amplitudes[i] * std::sin(phase),
+                p.warm[i] = {amplitudes[i] * portable::cos(phase), -amplitudes[i] * portable::sin(phase),
                              settings.number("trust") * amplitudes[i]};
             }
         }

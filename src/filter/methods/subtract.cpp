@@ -13,6 +13,7 @@
 #include "filter/ripple_course.hpp"
 #include "filter/ripple_keys.hpp"
 #include "filter/ripple_windows.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -81,7 +82,7 @@ class SubtractingFilter final : public CausalFilter {
             const double cycles = orders_[i] * path_.turns();
             const double phase = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
             const auto value = before.amplitudes[i] + share * (after.amplitudes[i] - before.amplitudes[i]);
-            sum += near * (value.real() * std::cos(phase) + value.imag() * std::sin(phase));
+            sum += near * (value.real() * portable::cos(phase) + value.imag() * portable::sin(phase));
         }
         return sum;
     }

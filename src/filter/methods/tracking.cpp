@@ -12,6 +12,7 @@
 #include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/state_variable.hpp"
 #include "ripplenotch/design/notch.hpp"
 
@@ -152,7 +153,7 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     const std::size_t count = composite == "triple" ? 3 : composite == "double" ? 2 : 1;
     p.q_each = q_of_each(q, static_cast<double>(count));
     p.spread = spread_of(q, count);
-    if (settings.has("depth")) p.depth_gain = std::pow(10.0, -settings.number("depth") / 20.0);
+    if (settings.has("depth")) p.depth_gain = portable::pow(10.0, -settings.number("depth") / 20.0);
     p.min_hz = settings.number("min");
     p.fade_hz = settings.number("fade");
     p.parks = settings.text("low") == "park";
@@ -168,7 +169,7 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     }
     if (settings.has("speed-lowpass")) {
         const double cutoff_hz = settings.number("speed-lowpass");
-        p.speed_pole = std::exp(-2.0 * std::numbers::pi * cutoff_hz / p.sample_rate_hz);
+        p.speed_pole = portable::exp(-2.0 * std::numbers::pi * cutoff_hz / p.sample_rate_hz);
     }
     if (settings.has("slew")) p.slew = settings.number("slew");
     return p;
@@ -237,7 +238,7 @@ class TrackingFilter final : public CausalFilter {
         lines_[line].center_hz = center_hz;
         for (std::size_t j = 0; j < plan_.spread.size(); ++j) {
             const double at = std::numbers::pi * center_hz * plan_.spread[j] / plan_.sample_rate_hz;
-            lines_[line].notches[j].tuning = BandPassTuning::at(std::tan(at), plan_.q_at(center_hz));
+            lines_[line].notches[j].tuning = BandPassTuning::at(portable::tan(at), plan_.q_at(center_hz));
         }
     }
 
@@ -261,7 +262,7 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
         if (left >= 1.0) continue;
         for (const double relative : p.spread) {
             NotchSpec notch{.center = Hertz(p.center_hz(hz) * relative), .q = p.q_at(p.center_hz(hz))};
-            if (left > 0.0) notch.depth_db = -20.0 * std::log10(left);
+            if (left > 0.0) notch.depth_db = -20.0 * portable::log10(left);
             filter.cascade.push_back(design_notch(notch, sample_rate));
         }
         filter.note +=

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -34,7 +34,7 @@ constexpr LookAlike look_alikes[] = {
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        torque_nm[k] += values[0] * smooth_sign(situation.motion.velocity_deg_s[k] / values[1]);
+        torque_nm[k] += values[0] * portable::tanh(situation.motion.velocity_deg_s[k] / values[1]);
     }
 }
 

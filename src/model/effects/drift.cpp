@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -39,7 +39,8 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     const auto& time_s = situation.motion.time_s;
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
         const double elapsed_s = time_s[k] - time_s.front();
-        torque_nm[k] += values[0] * values[1] * (1.0 - exponential(-std::min(elapsed_s / values[1], 700.0)));
+        torque_nm[k] +=
+            values[0] * values[1] * (1.0 - portable::exp(-std::min(elapsed_s / values[1], 700.0)));
     }
 }
 

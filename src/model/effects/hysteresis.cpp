@@ -3,7 +3,7 @@
 
 #include "model/direction.hpp"
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -58,7 +58,7 @@ void apply(const Situation& situation, std::span<const double> values, std::span
         }
         if (held != 0) {
             const double gone_deg = std::max(held * (motion.position_deg[k] - reversal_deg), 0.0);
-            state = held + (at_reversal - held) * exponential(-std::min(gone_deg / values[1], 700.0));
+            state = held + (at_reversal - held) * portable::exp(-std::min(gone_deg / values[1], 700.0));
         }
         torque_nm[k] += values[0] * state;
     }

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -37,8 +37,8 @@ constexpr LookAlike look_alikes[] = {
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        const double load = power(std::abs(situation.load_nm[k]), values[1]);
-        torque_nm[k] += values[0] * load * smooth_sign(situation.motion.velocity_deg_s[k] / values[2]);
+        const double load = portable::pow(std::abs(situation.load_nm[k]), values[1]);
+        torque_nm[k] += values[0] * load * portable::tanh(situation.motion.velocity_deg_s[k] / values[2]);
     }
 }
 

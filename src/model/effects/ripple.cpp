@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -27,15 +27,16 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     const auto& position_deg = situation.motion.position_deg;
     if (situation.ripple_gain.empty()) {
         for (std::size_t k = 0; k < torque_nm.size(); ++k)
-            torque_nm[k] += amplitude_nm * cos_degrees(cycles_per_turn * position_deg[k] + phase_deg);
+            torque_nm[k] +=
+                amplitude_nm * portable::cos_degrees(cycles_per_turn * position_deg[k] + phase_deg);
         return;
     }
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
         const double angle_deg = cycles_per_turn * position_deg[k] + phase_deg;
         const auto gain = situation.ripple_gain[k];
-        const double along = gain.real() * cos_degrees(angle_deg);
+        const double along = gain.real() * portable::cos_degrees(angle_deg);
         // Most changes of the ripple leave its phase as it is.
-        const double across = gain.imag() != 0.0 ? gain.imag() * sin_degrees(angle_deg) : 0.0;
+        const double across = gain.imag() != 0.0 ? gain.imag() * portable::sin_degrees(angle_deg) : 0.0;
         torque_nm[k] += amplitude_nm * (along - across);
     }
 }

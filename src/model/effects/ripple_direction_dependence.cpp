@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -34,10 +34,11 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
     if (!concerns(order, values[3])) return;
     if (values[0] == 0.0 && values[1] == 0.0) return;
     for (std::size_t k = 0; k < gain.size(); ++k) {
-        const double direction = smooth_sign(situation.motion.velocity_deg_s[k] / values[2]);
+        const double direction = portable::tanh(situation.motion.velocity_deg_s[k] / values[2]);
         const double size = 1.0 + 0.01 * values[0] * direction, turn_deg = values[1] * direction;
         const auto before = gain[k];
-        const double cosine = size * cos_degrees(turn_deg), sine = size * sin_degrees(turn_deg);
+        const double cosine = size * portable::cos_degrees(turn_deg),
+                     sine = size * portable::sin_degrees(turn_deg);
         gain[k] = {before.real() * cosine - before.imag() * sine,
                    before.real() * sine + before.imag() * cosine};
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -32,7 +32,7 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
     if (!concerns(order, values[3])) return;
     const auto& position_deg = situation.motion.position_deg;
     for (std::size_t k = 0; k < gain.size(); ++k)
-        gain[k] *= 1.0 + 0.01 * values[1] * cos_degrees(values[0] * position_deg[k] + values[2]);
+        gain[k] *= 1.0 + 0.01 * values[1] * portable::cos_degrees(values[0] * position_deg[k] + values[2]);
 }
 
 }  // namespace

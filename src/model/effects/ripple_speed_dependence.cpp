@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -43,7 +43,7 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
     if (!concerns(order, values[2])) return;
     for (std::size_t k = 0; k < gain.size(); ++k) {
         const double speed = std::abs(situation.motion.velocity_deg_s[k]) / 100.0;
-        gain[k] *= 1.0 + 0.01 * values[0] * power(speed, values[1]);
+        gain[k] *= 1.0 + 0.01 * values[0] * portable::pow(speed, values[1]);
     }
 }
 

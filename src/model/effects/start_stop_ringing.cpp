@@ -3,7 +3,7 @@
 
 #include "model/direction.hpp"
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -55,9 +55,10 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     const Motion& motion = situation.motion;
     const double step_s = 1.0 / motion.sample_rate.value();
     const double turn_deg = 360.0 * values[2] * step_s;
-    const double shrink = exponential(-std::min(step_s / values[3], 700.0));
-    const double turn_real = shrink * cos_degrees(turn_deg), turn_imaginary = shrink * sin_degrees(turn_deg);
-    const double cosine = cos_degrees(values[1]), sine = sin_degrees(values[1]);
+    const double shrink = portable::exp(-std::min(step_s / values[3], 700.0));
+    const double turn_real = shrink * portable::cos_degrees(turn_deg),
+                 turn_imaginary = shrink * portable::sin_degrees(turn_deg);
+    const double cosine = portable::cos_degrees(values[1]), sine = portable::sin_degrees(values[1]);
     double real = 0.0, imaginary = 0.0;
     Movement movement;
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {

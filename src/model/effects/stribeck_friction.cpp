@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -41,7 +41,7 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
         const double v = situation.motion.velocity_deg_s[k];
         const double relative = std::min(std::abs(v) / values[1], 26.0);
-        torque_nm[k] += values[0] * smooth_sign(v / values[2]) * exponential(-relative * relative);
+        torque_nm[k] += values[0] * portable::tanh(v / values[2]) * portable::exp(-relative * relative);
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -36,7 +36,7 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     const auto& time_s = situation.motion.time_s;
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
         const double turn_deg = 360.0 * values[0] * (time_s[k] - time_s.front());
-        torque_nm[k] += values[1] * cos_degrees(turn_deg + values[2]);
+        torque_nm[k] += values[1] * portable::cos_degrees(turn_deg + values[2]);
     }
 }
 

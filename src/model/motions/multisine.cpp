@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "model/motions.hpp"
-#include "model/reproducible.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -47,15 +47,15 @@ std::vector<Sine> make_sines(const Settings& settings) {
 MotionPiece make(const Settings& settings, const std::optional<MotionState>& before) {
     const auto sines = make_sines(settings);
     double center_deg = start_position_deg("multisine", settings, before);
-    for (const Sine& sine : sines) center_deg -= sine.amplitude_deg * sin_degrees(sine.phase_deg);
+    for (const Sine& sine : sines) center_deg -= sine.amplitude_deg * portable::sin_degrees(sine.phase_deg);
     return {Seconds(settings.number("duration")), [=](Seconds elapsed) {
                 MotionState state{.position_deg = center_deg};
                 for (const Sine& sine : sines) {
                     const double angle_deg = 360.0 * sine.frequency_hz * elapsed.value() + sine.phase_deg;
                     const double rad_s = 2.0 * std::numbers::pi * sine.frequency_hz;
-                    const double value = sine.amplitude_deg * sin_degrees(angle_deg);
+                    const double value = sine.amplitude_deg * portable::sin_degrees(angle_deg);
                     state.position_deg += value;
-                    state.velocity_deg_s += sine.amplitude_deg * rad_s * cos_degrees(angle_deg);
+                    state.velocity_deg_s += sine.amplitude_deg * rad_s * portable::cos_degrees(angle_deg);
                     state.acceleration_deg_s2 -= rad_s * rad_s * value;
                 }
                 return state;

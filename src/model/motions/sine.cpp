@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "model/motions.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -20,11 +20,12 @@ MotionPiece make(const Settings& settings, const std::optional<MotionState>& bef
     const double amplitude_deg = settings.number("amplitude");
     const double frequency_hz = settings.number("frequency");
     const double phase_deg = settings.number("phase");
-    const double center_deg = from_deg - amplitude_deg * sin_degrees(phase_deg);
+    const double center_deg = from_deg - amplitude_deg * portable::sin_degrees(phase_deg);
     const double rad_s = 2.0 * std::numbers::pi * frequency_hz;
     return {Seconds(settings.number("duration")), [=](Seconds elapsed) {
                 const double angle_deg = 360.0 * frequency_hz * elapsed.value() + phase_deg;
-                const double sine = sin_degrees(angle_deg), cosine = cos_degrees(angle_deg);
+                const double sine = portable::sin_degrees(angle_deg),
+                             cosine = portable::cos_degrees(angle_deg);
                 return MotionState{center_deg + amplitude_deg * sine, amplitude_deg * rad_s * cosine,
                                    -amplitude_deg * rad_s * rad_s * sine};
             }};

@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "model/motions.hpp"
-#include "model/reproducible.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -23,11 +23,12 @@ MotionPiece make(const Settings& settings, const std::optional<MotionState>& bef
     const double duration_s = settings.number("duration");
     const double rate_hz_s = (settings.number("to-frequency") - from_hz) / duration_s;
     const double phase_deg = settings.number("phase");
-    const double center_deg = from_deg - amplitude_deg * sin_degrees(phase_deg);
+    const double center_deg = from_deg - amplitude_deg * portable::sin_degrees(phase_deg);
     return {Seconds(duration_s), [=](Seconds elapsed) {
                 const double t = elapsed.value();
                 const double angle_deg = 360.0 * (from_hz + 0.5 * rate_hz_s * t) * t + phase_deg;
-                const double sine = sin_degrees(angle_deg), cosine = cos_degrees(angle_deg);
+                const double sine = portable::sin_degrees(angle_deg),
+                             cosine = portable::cos_degrees(angle_deg);
                 const double rad_s = 2.0 * std::numbers::pi * (from_hz + rate_hz_s * t);
                 const double rad_s2 = 2.0 * std::numbers::pi * rate_hz_s;
                 return MotionState{center_deg + amplitude_deg * sine, amplitude_deg * rad_s * cosine,

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What an identification comes to, as values; the words are made of them in one place, verdict_sentence.
+//
+// Another reason for doubt is a name in DoubtReason and a Doubt from whoever knows of it: in
+// IdentifyOptions::doubts when it is known before the lines are looked for, with cast_doubt() when it follows
+// from what was found. A finding under a doubt is no verdict: the sentence begins with "Cannot tell:" and the
+// doubts, in the order in which they came, and the identification is not conclusive.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+/// What the lines come to.
+enum class RippleFinding {
+    ratio,       ///< ripple that turns with the joint, and the gear ratio
+    orders,      ///< ripple that turns with the joint; its gear ratio stays open
+    one_speed,   ///< lines, all at one speed, where an order and a fixed tone look alike
+    nothing,     ///< surely no ripple above Grounds::detectable_nm
+    too_little,  ///< the joint is at rest, or moves too little to say anything
+};
+[[nodiscard]] std::string_view finding_name(RippleFinding finding);
+/// Empty for a name of none.
+[[nodiscard]] std::optional<RippleFinding> finding_of(std::string_view name);
+
+/// Why the lines are not believed whatever they show.
+enum class DoubtReason {
+    clock,  ///< position, velocity and time contradict each other
+};
+[[nodiscard]] std::string_view doubt_name(DoubtReason reason);
+/// Empty for a name of none.
+[[nodiscard]] std::optional<DoubtReason> doubt_of(std::string_view name);
+
+struct Doubt {
+    DoubtReason reason = DoubtReason::clock;
+    std::string because;  ///< half a sentence, with what would settle it; no capital, no full stop
+    bool operator==(const Doubt&) const = default;
+};
+
+/// The way of looking that gave the lines.
+enum class LineEvidence { none, stretches, sweeps, both };
+[[nodiscard]] std::string_view evidence_name(LineEvidence evidence);
+/// Empty for a name of none.
+[[nodiscard]] std::optional<LineEvidence> evidence_of(std::string_view name);
+
+/// What a verdict rests on.
+struct Grounds {
+    std::size_t stretches = 0, rests = 0;  ///< steady stretches that were looked at: moving, at rest
+    std::size_t sweeps = 0;
+    double sweep_turns = 0.0;  ///< output turns that the sweeps cover
+    bool from_sweeps = false;  ///< speeds are those of the sweeps, not of the stretches
+    double slowest_deg_s = 0.0, fastest_deg_s = 0.0;
+    double detectable_nm = 0.0;  ///< smallest amplitude that would have been found, roughly
+    double false_alarm = 0.0;
+    Seconds steady_for;         ///< shortest stretch that counts as steady
+    double needed_turns = 0.0;  ///< output turns before "nothing" means anything
+};
+
+}  // namespace ripplenotch

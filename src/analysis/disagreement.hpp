@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the analysis room: do recordings of one joint tell the same?
+
+#include <span>
+#include <vector>
+
+#include "ripplenotch/analysis/identification.hpp"
+
+namespace ripplenotch {
+
+/// What each recording says by itself, held against the lines and the ratio of all of them. Amplitudes are
+/// compared at like speeds only, for ripple depends on speed; they disagree when chance makes as much of
+/// their errors less than once in a thousand cases and the largest is a tenth above the smallest or more.
+/// Ratios disagree by the same chance. Empty for fewer than two recordings.
+[[nodiscard]] std::vector<Disagreement> disagreements(const Identification& together,
+                                                      std::span<const Identification> each);
+
+}  // namespace ripplenotch

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+// The one place where a verdict becomes words.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/analysis/identification.hpp"
+
+namespace ripplenotch {
+namespace {
+
+/// "1", "1 and 2", "1, 2 and 4".
+std::string listed(const std::vector<std::string>& words) {
+    if (words.size() < 2) return words.empty() ? "" : words.front();
+    std::string text = words.front();
+    for (std::size_t i = 1; i + 1 < words.size(); ++i) text += ", " + words[i];
+    return text + " and " + words.back();
+}
+
+std::string plural(std::size_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string speeds(double from, double to) {
+    return to - from < 0.02 * to ? fmt::format("{:.3g} deg/s", to)
+                                 : fmt::format("{:.3g} to {:.3g} deg/s", from, to);
+}
+
+/// "3 steady stretches at 60 to 180 deg/s"
+std::string basis(const Grounds& grounds) {
+    const std::string at = speeds(grounds.slowest_deg_s, grounds.fastest_deg_s);
+    if (grounds.from_sweeps) {
+        return fmt::format("{} over {:.3g} output turns at {}", plural(grounds.sweeps, "sweep"),
+                           grounds.sweep_turns, at);
+    }
+    return fmt::format(
+        "{} at {}",
+        grounds.stretches == 1 ? "1 steady stretch" : fmt::format("{} steady stretches", grounds.stretches),
+        at);
+}
+
+bool seen_at_rest(const Line& line) {
+    return std::any_of(line.by_speed.begin(), line.by_speed.end(),
+                       [](const AmplitudeAtSpeed& at) { return at.speed_deg_s == 0.0; });
+}
+
+/// What the stretches at rest say.
+std::string at_rest(const Identification& found) {
+    if (found.grounds.rests == 0) return "";
+    std::vector<std::string> seen;
+    for (const Line& line : found.lines) {
+        if (seen_at_rest(line) && line.hz) seen.push_back(fmt::format("{:.4g} Hz", *line.hz));
+    }
+    return seen.empty() ? "; no line at rest" : "; at rest " + listed(seen);
+}
+
+std::vector<const Line*> of_kind(const Identification& found, LineKind kind) {
+    std::vector<const Line*> lines;
+    for (const Line& line : found.lines) {
+        if (line.kind == kind) lines.push_back(&line);
+    }
+    return lines;
+}
+
+/// "multiples 2 to 5 of 10.02 Hz"
+std::string family_in_words(const ToneFamily& family) {
+    std::vector<std::string> words;
+    const auto& n = family.multiples;
+    const bool unbroken = n.back() - n.front() + 1 == static_cast<int>(n.size());
+    for (const int one : n) words.push_back(std::to_string(one));
+    return fmt::format("multiples {} of {:.4g} Hz",
+                       unbroken ? fmt::format("{} to {}", n.front(), n.back()) : listed(words), family.hz);
+}
+
+std::string tones_too(const Identification& found) {
+    std::vector<std::string> words;
+    const std::size_t most = found.families.empty() ? 3 : 6;
+    for (const Line* line : of_kind(found, LineKind::tone)) {
+        if ((!found.families.empty() || !seen_at_rest(*line)) && words.size() < most)
+            words.push_back(
+                fmt::format("{:.4g} Hz{}", *line->hz, line->note.empty() ? "" : " (" + line->note + ")"));
+    }
+    std::string text =
+        words.empty() ? ""
+                      : fmt::format("; fixed tone{} at {}", found.families.empty() ? "" : "s", listed(words));
+    for (const ToneFamily& family : found.families) text += ", " + family_in_words(family);
+    return text;
+}
+
+std::string hums_too(const Identification& found) {
+    std::vector<std::string> words;
+    for (const Hum& hum : found.hums)
+        words.push_back(
+            fmt::format("{:.3g} to {:.3g} Hz ({:.2g} Nm rms)", hum.from_hz, hum.to_hz, hum.rms_nm));
+    if (words.empty()) return "";
+    return fmt::format("; {} stronger than {}: {}", words.size() == 1 ? "a hum" : "hums",
+                       found.finding == RippleFinding::nothing || found.finding == RippleFinding::too_little
+                           ? "the noise"
+                           : "the ripple",
+                       listed(words));
+}
+
+/// "; the recordings disagree: order 1 from 0.38 to 0.96 Nm"
+std::string disagreements_too(const Identification& found) {
+    std::vector<std::string> words;
+    for (const Disagreement& one : found.disagreements) {
+        const auto [least, most] = std::minmax_element(
+            one.values.begin(), one.values.end(),
+            [](const Disagreement::Value& a, const Disagreement::Value& b) { return a.value < b.value; });
+        if (one.about == Disagreement::About::ratio) {
+            words.push_back(fmt::format("gear ratio from {:.6g} to {:.6g}", least->value, most->value));
+        } else {
+            words.push_back(fmt::format("{} from {:.2g} to {:.2g} Nm",
+                                        one.order ? fmt::format("order {:g}", *one.order)
+                                                  : fmt::format("output order {:.5g}", *one.order_output),
+                                        least->value, most->value));
+        }
+    }
+    return words.empty() ? "" : "; the recordings disagree: " + listed(words);
+}
+
+std::string besides(const Identification& found) {
+    return tones_too(found) + hums_too(found) + disagreements_too(found);
+}
+
+std::string with_ratio(const Identification& found) {
+    std::vector<const Line*> lines;
+    for (const Line& line : found.lines) {
+        if (line.order) lines.push_back(&line);
+    }
+    std::sort(lines.begin(), lines.end(), [](const Line* a, const Line* b) { return *a->order < *b->order; });
+    std::vector<std::string> orders, amplitudes;
+    for (const Line* line : lines) {
+        orders.push_back(fmt::format("{:.0f}", *line->order));
+        amplitudes.push_back(fmt::format("{:.2f}", line->amplitude_nm));
+    }
+    std::string doubt;
+    if (std::none_of(lines.begin(), lines.end(),
+                     [](const Line* line) { return line->kind == LineKind::order; })) {
+        doubt =
+            "; one speed dominates, where a fixed tone would look the same: a log at another speed would "
+            "tell";
+    }
+    const GearRatioFit& ratio = found.gear_ratio;
+    const double half = 0.5 * (ratio.ci95_high - ratio.ci95_low);
+    const int decimals = half < 0.005 ? 4 : half < 0.05 ? 3 : half < 0.5 ? 2 : 1;
+    return fmt::format(
+        "Ripple at order{} {} of the motor: gear ratio {:.{}f} +/- {:.{}f} (95 %), {} Nm zero to peak, from "
+        "{}{}{}.",
+        lines.size() == 1 ? "" : "s", listed(orders), *ratio.value, decimals, half, decimals,
+        listed(amplitudes), basis(found.grounds), at_rest(found) + doubt, besides(found));
+}
+
+std::string candidates(const Identification& found) {
+    std::vector<std::string> words;
+    for (const RatioCandidate& candidate : found.gear_ratio.candidates) {
+        if (words.size() < 4 && candidate.score > 0.0)
+            words.push_back(fmt::format("{:.2f} ({})", candidate.value, candidate.reason));
+    }
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string without_ratio(const Identification& found) {
+    std::vector<std::string> words;
+    for (const Line* line : of_kind(found, LineKind::order)) {
+        if (words.size() < 5)
+            words.push_back(fmt::format("{:.5g} ({:.2g} Nm)", *line->order_output, line->amplitude_nm));
+    }
+    return fmt::format(
+        "Ripple at output order{} {}, from {}{}{}; the gear ratio cannot be told from that: {}.",
+        words.size() == 1 ? "" : "s", listed(words), basis(found.grounds), at_rest(found), besides(found),
+        candidates(found));
+}
+
+std::string one_speed(const Identification& found) {
+    const auto unknown = of_kind(found, LineKind::unknown);
+    const Line& first = *unknown.front();
+    std::string text =
+        fmt::format("{} at {:.4g} Hz ({:.2g} Nm zero to peak), from {}",
+                    unknown.size() == 1 ? "One line" : plural(unknown.size(), "line") + ", the strongest",
+                    first.hz.value_or(0.0), first.amplitude_nm, basis(found.grounds));
+    if (first.order_output)
+        text += fmt::format(": output order {:.5g} if it turns with the joint", *first.order_output);
+    text +=
+        "; one speed dominates, where an order and a fixed tone look alike, and a log at another speed would "
+        "tell";
+    if (!found.gear_ratio.candidates.empty())
+        text += "; as an order it fits a gear ratio of " + candidates(found);
+    return text + at_rest(found) + besides(found) + ".";
+}
+
+std::string nothing(const Identification& found) {
+    return fmt::format(
+        "No ripple: no line above {:.2g} Nm turns with the joint, in {} ({:.2g} % false alarms){}{}.",
+        found.grounds.detectable_nm, basis(found.grounds), 100.0 * found.grounds.false_alarm, at_rest(found),
+        besides(found));
+}
+
+std::string too_little(const Identification& found) {
+    const bool still = found.grounds.rests > 0;
+    return fmt::format(
+        "Cannot tell: {}{}{}.", still ? "the joint is at rest" : "the joint moves too little or too briefly",
+        at_rest(found),
+        still ? ""
+              : fmt::format("; needed are {:.2g} s at one speed, or {:.1f} output turns in all",
+                            found.grounds.steady_for.value(), found.grounds.needed_turns));
+}
+
+std::string frequencies(const Line& line) {
+    if (line.hz) return fmt::format("{:.4g} Hz", *line.hz);
+    const SeenFrequencies seen = seen_frequencies(line).value_or(SeenFrequencies{});
+    return fmt::format("{:.4g} to {:.4g} Hz", seen.lowest_hz, seen.highest_hz);
+}
+
+std::string doubted(const Identification& found) {
+    std::vector<std::string> because, seen;
+    for (const Doubt& doubt : found.doubts) because.push_back(doubt.because);
+    std::string text = fmt::format("Cannot tell: {}.", fmt::join(because, "; "));
+    constexpr std::size_t most = 6;
+    for (const Line& line : found.lines) {
+        if (seen.size() < most)
+            seen.push_back(fmt::format("{} ({:.2g} Nm)", frequencies(line), line.amplitude_nm));
+    }
+    if (found.grounds.stretches + found.grounds.sweeps == 0) return text;
+    std::string families;
+    for (const ToneFamily& family : found.families) families += ", " + family_in_words(family);
+    return text + fmt::format(" Seen, from {}: {}{}{}.", basis(found.grounds),
+                              seen.empty()
+                                  ? "no line"
+                                  : fmt::format("line{} at {}", seen.size() == 1 ? "" : "s", listed(seen)),
+                              families, hums_too(found));
+}
+
+}  // namespace
+
+std::string verdict_sentence(const Identification& found) {
+    if (!found.doubts.empty()) return doubted(found);
+    switch (found.finding) {
+        case RippleFinding::ratio:
+            return with_ratio(found);
+        case RippleFinding::orders:
+            return without_ratio(found);
+        case RippleFinding::one_speed:
+            return one_speed(found);
+        case RippleFinding::nothing:
+            return nothing(found);
+        case RippleFinding::too_little:
+            return too_little(found);
+    }
+    return {};
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Verdicts under everything that a log may mean: one that another reading of the log would change is none.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+
+/// The ratio that motion of the motor's shaft is divided by where nobody knows the real one, so that its
+/// lines stand where those of a joint would.
+inline constexpr double stand_in_ratio = 100.0;
+
+/// Readings as possible as the one taken, of all the logs, each once.
+[[nodiscard]] std::vector<OtherReading> open_readings(std::span<const Log> logs);
+/// What the one that was taken is called: "in rad/s and rad, as assumed".
+[[nodiscard]] std::string assumed_reading(std::span<const Log> logs);
+/// Options that settle them, those for what was assumed first.
+[[nodiscard]] std::string settling_options(std::span<const Log> logs);
+
+/// The trace as it would be under another reading.
+[[nodiscard]] Trace read_otherwise(const Trace& trace, const OtherReading& reading);
+
+/// What the logs of one joint show; where another reading that is as possible shows something else, an
+/// inconclusive identification without a ratio whose verdict begins with "Cannot tell". Motion measured
+/// before a gear of unknown ratio gives orders of the motor and no ratio.
+[[nodiscard]] Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options);
+
+/// diagnose(); `undecided`, with nothing named and the model as given, where another reading of the log that
+/// is as possible would name something else.
+[[nodiscard]] Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* validation,
+                                          const DiagnosisOptions& options);
+
+}  // namespace ripplenotch

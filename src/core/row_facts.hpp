@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What is noted of every row besides its filtering, four rows at a time.
+
+#include <cstddef>
+#include <span>
+
+namespace ripplenotch {
+
+/// Of |velocity|.
+struct SpeedRange {
+    double slowest_deg_s, fastest_deg_s;
+};
+/// A velocity that is not a number widens nothing; a range that is none stays as it is.
+void widen(SpeedRange& range, std::span<const double> velocity_deg_s) noexcept;
+
+/// Pairs of a row and the next by what is equal in them; counted where both rows move.
+struct RepeatCounts {
+    std::size_t moving = 0, velocity = 0, position = 0, torque = 0;
+    std::size_t velocity_and_torque = 0, position_and_torque = 0, all = 0;
+
+    RepeatCounts& operator+=(const RepeatCounts& more) noexcept;
+};
+
+/// Rows of one joint, one after another.
+struct RowChannels {
+    const double* velocity_deg_s;
+    const double* torque_nm;
+    const double* position_deg;  ///< or null; then no position repeats
+};
+/// Of `pairs` + 1 rows. Faster than `moving_deg_s` is moving.
+[[nodiscard]] RepeatCounts count_repeats(const RowChannels& rows, std::size_t pairs,
+                                         double moving_deg_s) noexcept;
+
+}  // namespace ripplenotch

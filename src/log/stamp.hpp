@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Stamps of a log: counts from long ago with more digits than a double holds, seconds and nanoseconds in two
+// columns, times of day and dates.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace ripplenotch {
+
+/// How the time cells of a log are turned into numbers.
+struct StampRule {
+    bool careful = false;     ///< false: a time is a number like others
+    bool text = false;        ///< cells as in clock_text()
+    std::int64_t origin = 0;  ///< in the unit of the column; taken off before anything is rounded
+    char decimal_mark = '.';
+};
+
+/// Seconds since midnight of "12:30:01.5", since 1970 of "2024-05-01T12:30:01.5Z" or "2024/05/01 12:30:01":
+/// ISO 8601 dates and times in full, a zone offset at their end is taken into account. Empty for other texts.
+struct ClockTime {
+    std::int64_t whole_s = 0;
+    double fraction_s = 0.0;  ///< 0 to 1
+};
+[[nodiscard]] std::optional<ClockTime> clock_text(std::string_view text);
+
+/// What a time cell says, less the origin, exact to a double's last digit of the difference.
+[[nodiscard]] std::optional<double> read_stamp(std::string_view text, const StampRule& rule);
+
+/// `count - origin` as a double: of whole numbers, with no rounding before the difference.
+[[nodiscard]] inline double since(std::int64_t count, std::int64_t origin) {
+    return static_cast<double>(count - origin);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// Logs that a verdict must not be sure of: tones that look like orders, clocks that are wrong, joints that
+// change from log to log, joints so slow that everything about them is.
+#include <algorithm>
+
+#include "analysis/traces.hpp"
+#include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/analysis/steady.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using Catch::Contains;
+using Catch::Matchers::StartsWith;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+const std::vector<tests::Tone> family{
+    {20.04, 0.3, 0.1}, {30.06, 0.25, 1.0}, {40.08, 0.4, 2.0}, {50.10, 0.2, 3.0}};
+
+Identification identify_all(const std::vector<Trace>& traces, const IdentifyOptions& options = {}) {
+    std::vector<TraceView> views;
+    for (const Trace& trace : traces) views.push_back(trace.view());
+    return identify(views, options);
+}
+
+Trace at_speed(double speed, std::vector<tests::Ripple> ripple, std::vector<tests::Tone> tones,
+               std::uint32_t seed, bool position = true) {
+    return tests::make_trace({.rate_hz = 500.0,
+                              .seconds = 6.0,
+                              .speed_deg_s = [speed](double) { return speed; },
+                              .ripple = std::move(ripple),
+                              .tones = std::move(tones),
+                              .noise_nm = 0.05,
+                              .position = position,
+                              .seed = seed});
+}
+
+std::size_t count_of(const Identification& found, LineKind kind) {
+    return static_cast<std::size_t>(std::count_if(found.lines.begin(), found.lines.end(),
+                                                  [kind](const Line& line) { return line.kind == kind; }));
+}
+
+/// A joint whose ripple has this size, there and back.
+Trace there_and_back(double ripple_nm, std::uint32_t seed) {
+    return tests::make_trace({.rate_hz = 500.0,
+                              .seconds = 8.0,
+                              .speed_deg_s = [](double t) { return 80.0 * std::sin(0.8 * t + 0.3); },
+                              .ripple = {{100.0, ripple_nm, 0.3}, {200.0, 0.3, 1.1}},
+                              .noise_nm = 0.05,
+                              .seed = seed});
+}
+
+}  // namespace
+
+TEST_CASE("tones that are multiples of one frequency are told as a family, at whatever pair of speeds") {
+    // Speeds of 3 : 4, 2 : 3, 4 : 5, 1 : 2: two tones of the family share an order exactly.
+    const double share = GENERATE(4.0 / 3.0, 1.5, 1.25, 2.0);
+    const bool position = GENERATE(true, false);
+    const Identification found = identify_all(
+        {at_speed(36.0, {}, family, 1, position), at_speed(36.0 * share, {}, family, 2, position)});
+    INFO(found.verdict);
+    CHECK(count_of(found, LineKind::order) == 0);
+    CHECK(count_of(found, LineKind::tone) == 4);
+    CHECK_FALSE(found.gear_ratio.value.has_value());
+    REQUIRE(found.families.size() == 1);
+    CHECK_THAT(found.families[0].hz, WithinAbs(10.02, 0.01));
+    CHECK(found.families[0].multiples == std::vector<int>{2, 3, 4, 5});
+    CHECK_THAT(found.verdict, Contains("multiples 2 to 5 of 10.02 Hz"));
+}
+
+TEST_CASE("orders stay orders beside a family of tones, and at speeds that share a divisor") {
+    const std::vector<tests::Ripple> ripple{{100.0, 0.8, 0.3}, {200.0, 0.5, 1.1}};
+    const bool with_tones = GENERATE(false, true);
+    std::vector<Trace> logs;
+    // With the tones at speeds where no order meets one of them, without at those that share a divisor.
+    for (const double speed : with_tones ? std::vector{37.0, 47.0, 67.0} : std::vector{36.0, 48.0, 72.0})
+        logs.push_back(at_speed(speed, ripple, with_tones ? family : std::vector<tests::Tone>{},
+                                static_cast<std::uint32_t>(speed)));
+    const Identification found = identify_all(logs);
+    INFO(found.verdict);
+    REQUIRE(found.gear_ratio.value.has_value());
+    CHECK_THAT(*found.gear_ratio.value, WithinAbs(100.0, 0.3));
+    CHECK(found.conclusive);
+    CHECK(found.families.size() == (with_tones ? 1 : 0));
+}
+
+TEST_CASE("two lone lines whose speeds are known badly share no order") {
+    // 29.9 Hz at one speed and 40.05 Hz at another: order 297 if both turn, and as likely two tones.
+    std::vector<Trace> logs{at_speed(36.0, {}, {{29.9, 0.3, 0.0}}, 1, false),
+                            at_speed(47.0, {}, {{40.05, 0.3, 0.0}}, 2, false)};
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+        auto& v = logs[i].velocity_deg_s;
+        for (std::size_t k = 0; k < v.size(); ++k)
+            v[k] *= 1.0 + 0.045 * std::sin(0.9 * logs[i].time_s[k] + static_cast<double>(i));
+    }
+    const Identification found = identify_all(logs);
+    INFO(found.verdict);
+    CHECK(count_of(found, LineKind::order) == 0);
+    CHECK_FALSE(found.gear_ratio.value.has_value());
+    CHECK_FALSE(found.conclusive);
+}
+
+TEST_CASE("what is known against a log comes first, and takes ratio, orders and certainty with it") {
+    const std::vector<tests::Ripple> ripple{{100.0, 0.8, 0.3}};
+    const std::vector<Trace> logs{at_speed(60.0, GENERATE_COPY(ripple, std::vector<tests::Ripple>{}), {}, 1),
+                                  at_speed(90.0, ripple, {}, 2)};
+    IdentifyOptions options;
+    options.doubts = {{DoubtReason::clock, "the clock is wrong by 1.475"}};
+    const Identification found = identify_all(logs, options);
+    CHECK_THAT(found.verdict, StartsWith("Cannot tell: the clock is wrong by 1.475."));
+    CHECK_FALSE(found.conclusive);
+    CHECK_FALSE(found.gear_ratio.value.has_value());
+    CHECK(found.gear_ratio.candidates.empty());
+    for (const Line& line : found.lines) {
+        CHECK_FALSE(line.order.has_value());
+        CHECK_FALSE(line.order_output.has_value());
+    }
+}
+
+TEST_CASE("recordings between which the ripple grows are told with their values") {
+    std::vector<Trace> year;
+    const std::vector<double> wear{0.38, 0.45, 0.55, 0.7, 0.85, 0.96};
+    for (std::size_t i = 0; i < wear.size(); ++i)
+        year.push_back(there_and_back(wear[i], static_cast<std::uint32_t>(10 + i)));
+    const Identification found = identify_all(year);
+    INFO(found.verdict);
+    REQUIRE(found.disagreements.size() == 1);
+    const Disagreement& one = found.disagreements.front();
+    CHECK(one.about == Disagreement::About::amplitude);
+    CHECK(one.order == 1.0);
+    REQUIRE(one.values.size() == wear.size());
+    for (std::size_t i = 0; i < wear.size(); ++i) CHECK_THAT(one.values[i].value, WithinRel(wear[i], 0.05));
+    CHECK_THAT(found.verdict, Contains("the recordings disagree: order 1 from 0.38 to 0.96 Nm"));
+    CHECK(found.conclusive);
+}
+
+TEST_CASE("recordings of a joint that has not changed agree") {
+    int told = 0;
+    for (std::uint32_t run = 0; run < 6; ++run) {
+        std::vector<Trace> logs;
+        for (std::uint32_t i = 0; i < 4; ++i) logs.push_back(there_and_back(0.5, 100 + 10 * run + i));
+        told += identify_all(logs).disagreements.empty() ? 0 : 1;
+    }
+    CHECK(told == 0);
+}
+
+TEST_CASE("recordings of two joints of different ratios are no one ratio") {
+    std::vector<Trace> logs;
+    for (const double ratio : {100.0, 100.6}) {
+        for (const double speed : {60.0, 90.0})
+            logs.push_back(at_speed(speed, {{ratio, 0.8, 0.0}, {2.0 * ratio, 0.5, 0.0}}, {},
+                                    static_cast<std::uint32_t>(speed + ratio)));
+    }
+    const Identification found = identify_all(logs);
+    INFO(found.verdict);
+    CHECK_FALSE(found.conclusive);
+}
+
+TEST_CASE("a hum that outdoes the ripple is told with its band") {
+    std::vector<Trace> logs;
+    for (const double speed : {40.0, 65.0}) {
+        Trace log = tests::make_trace({.rate_hz = 500.0,
+                                       .seconds = 15.0,
+                                       .speed_deg_s = [speed](double) { return speed; },
+                                       .ripple = {{100.0, 0.2, 0.3}, {200.0, 0.2, 0.0}},
+                                       .noise_nm = 0.02,
+                                       .seed = static_cast<std::uint32_t>(speed)});
+        // Noise through a resonance of 3 Hz at 70 Hz.
+        tests::Noise noise(static_cast<std::uint32_t>(speed) + 7);
+        const double pole = std::exp(-std::numbers::pi * 3.0 / 500.0);
+        double last = 0.0, before = 0.0;
+        for (double& torque : log.torque_nm) {
+            const double now = 2.0 * pole * std::cos(2.0 * std::numbers::pi * 70.0 / 500.0) * last -
+                               pole * pole * before + 0.15 * noise();
+            before = last;
+            last = now;
+            torque += now;
+        }
+        logs.push_back(std::move(log));
+    }
+    const Identification found = identify_all(logs);
+    INFO(found.verdict);
+    REQUIRE(found.hums.size() == 1);
+    CHECK(found.hums[0].from_hz < 70.0);
+    CHECK(found.hums[0].to_hz > 70.0);
+    CHECK(std::sqrt(2.0) * found.hums[0].rms_nm > 0.2);
+    CHECK_THAT(found.verdict, Contains("a hum stronger than the ripple: "));
+}
+
+TEST_CASE("a slow joint is judged by its own speeds: a ramp to 2 deg/s is not steady, 0.4 deg/s is no rest") {
+    const auto ramp = tests::make_trace(
+        {.rate_hz = 200.0, .seconds = 20.0, .speed_deg_s = [](double t) { return 0.1 * t; }});
+    for (const Stretch& stretch : steady_stretches(ramp.view(), {})) {
+        CHECK_FALSE(stretch.rest);
+        CHECK(0.1 * stretch.duration.value() < 0.12 * std::abs(stretch.speed.value()));
+    }
+    const bool position = GENERATE(true, false);
+    const auto slow = tests::make_trace(
+        {.rate_hz = 200.0, .seconds = 20.0, .speed_deg_s = [](double) { return 0.4; }, .position = position});
+    const auto found = steady_stretches(slow.view(), {});
+    REQUIRE(found.size() == 1);
+    CHECK_FALSE(found[0].rest);
+    CHECK_THAT(found[0].speed.value(), WithinAbs(0.4, 1e-6));
+}
+
+TEST_CASE("a joint at rest is at rest, however its velocity trembles") {
+    Trace still = tests::make_trace({.rate_hz = 500.0, .seconds = 10.0, .position = GENERATE(true, false)});
+    tests::Noise noise(5);
+    const double trembling = GENERATE(0.0, 0.05, 1.0);
+    for (double& v : still.velocity_deg_s) v += trembling * noise();
+    const auto found = steady_stretches(still.view(), {});
+    REQUIRE_FALSE(found.empty());
+    for (const Stretch& stretch : found) CHECK(stretch.rest);
+}

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: MIT
+"""One account of a recording: all commands say the same of one log, and each says what it decided."""
+
+import csv
+import json
+import os
+import pathlib
+import resource
+import subprocess
+import tempfile
+import unittest
+
+import hard_logs
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+LOGS = pathlib.Path(os.environ["RIPPLENOTCH_LOGS"])
+GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
+MOST_BYTES = 2 << 30
+
+
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
+
+
+def run(*words):
+    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=300, preexec_fn=limit_memory)
+
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.path = pathlib.Path(cls.folder.name)
+        cls.hard = hard_logs.write_all(cls.path)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def commands(self, log, read):
+        """Every command that reads a log, as words."""
+        model = DATA / "paper_model.json"
+        out = self.path / "out.csv"
+        return {
+            "info": ["info", log, "--json", *read],
+            "filter": ["filter", log, "--method", "tracking,gear-ratio=100,orders=1:2", "-o", out, "--json", "--force", *read],
+            "compare": ["compare", log, "--method", "lowpass,cutoff=5Hz,order=1", *GEAR, "--json", *read],
+            "spectrum": ["spectrum", log, "--json", *read],
+            "spectrum --segment": ["spectrum", log, "--segment", "1s", "--json", *read],
+            "spectrum --domain order": ["spectrum", log, "--domain", "order", "--json", *read],
+            "spectrum --map": ["spectrum", log, "--map", "campbell", "--json", *read],
+            "identify": ["identify", log, "--json", *read],
+            "track": ["track", log, *GEAR, "--json", *read],
+            "simulate": ["simulate", log, "--model", model, "-o", out, "--json", "--force", *read],
+            "diagnose": ["diagnose", log, "--model", model, "--json", *read],
+        }
+
+    def accounts(self, log, read=(), leave_out=()):
+        """The recording blocks by command; commands that refuse the log are left out, and have to say why."""
+        found, refused, gears = {}, {}, []
+        for name, words in self.commands(log, list(read)).items():
+            if name in leave_out:
+                continue
+            done = run(*words)
+            if done.returncode == 0:
+                result = json.loads(done.stdout)
+                self.assertIn("recording", result, f"{name} of {log}")
+                found[name] = result["recording"]
+                if name in ("filter", "compare", "track"):
+                    gears.append((result["gear"]["ratio"], result["gear"]["orders"]))
+            else:
+                self.assertEqual(done.returncode, 3, f"{name} of {log}: {done.stderr}")
+                refused[name] = done.stderr
+        self.assertTrue(all(gear == (100, [1, 2]) for gear in gears), gears)
+        return found, refused
+
+    def one_account(self, log, read=(), leave_out=()):
+        found, refused = self.accounts(log, read, leave_out)
+        info = found.pop("info")
+        for name, account in found.items():
+            self.assertEqual(account, info, f"{name} and info of {log}")
+        return info, refused
+
+
+class Laws(Case):
+    def test_all_commands_say_the_same_of_every_log_in_data(self):
+        for log in sorted(DATA.glob("*.csv")):
+            with self.subTest(log.name):
+                info, _ = self.one_account(log)
+                self.assertGreater(info["rows"], 0)
+
+    def test_all_commands_say_the_same_of_logs_in_every_dialect(self):
+        for log in sorted((DATA / "dialects").glob("*.csv")):
+            with self.subTest(log.name):
+                read = ["--sample-rate", "1kHz"] if log.stem == "no_time" else []
+                joint = json.loads(run("info", log, "--json", *read).stdout)["joints"][0]["joint"]
+                self.one_account(log, read + (["--joint", joint] if joint else []), leave_out=("diagnose", "simulate"))
+
+    def test_all_commands_say_the_same_of_broken_logs(self):
+        for name, log in self.hard.items():
+            with self.subTest(name):
+                self.one_account(log, leave_out=("diagnose",) if "rate" in name else ())
+
+    @unittest.skipUnless(LOGS.is_dir(), "the folder of real logs is not here")
+    def test_all_commands_say_the_same_of_real_logs(self):
+        for name, joint in (("gpl3/panda_gaz_j1.csv", None), ("kuka_kr300_trajA_all.csv", "j4"), ("neura_lara8_j3.csv", None),
+                            ("ur10_unisa_exciting_all.csv", "shoulder_pan_joint")):
+            if not (LOGS / name).is_file():
+                continue
+            with self.subTest(name):
+                self.one_account(LOGS / name, ["--joint", joint] if joint else [], leave_out=("diagnose",))
+
+
+class Angles(Case):
+    """Metrics are measured on the joint's angle, whatever the position column is."""
+
+    def metrics(self, name, *more):
+        done = run("filter", self.hard[name], "--method", "tracking", *GEAR, "-o", self.path / "out.csv", "--json", "--force", "-v",
+                   *more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout), done.stderr
+
+    def test_the_ripple_is_found_and_what_was_decided_is_said(self):
+        plain = self.metrics("clean")[0]["orders"]
+        self.assertAlmostEqual(plain[0]["raw_nm"], hard_logs.RIPPLE_NM[1], delta=0.01)
+        for name, source, said in (
+                ("another_joints_position", "velocity", "0.3 times as much"),
+                ("unrelated_position", "velocity", "another joint's"),
+                ("motor_side_position", "position", "motor side"),
+                ("standing_position", "velocity", "stands still"),
+                ("reversed_position", "position", "opposite signs"),
+                ("position_stops_on_the_way", "position", "from data row")):
+            with self.subTest(name):
+                metrics, messages = self.metrics(name)
+                self.assertEqual(metrics["recording"]["angle"]["source"], source)
+                self.assertIn(said, messages)
+                self.assertIn(f"angle from {source}", messages)
+                for order, expected in zip(metrics["orders"], plain):
+                    self.assertAlmostEqual(order["raw_nm"], hard_logs.RIPPLE_NM[order["order"]], delta=0.01)
+                    self.assertGreater(order["attenuation_db"], expected["attenuation_db"] - 1.0)
+
+    def test_a_limit_is_kept_on_the_right_angle(self):
+        done = run("filter", self.hard["another_joints_position"], "--method", "tracking", *GEAR, "-o", self.path / "out.csv", "--force",
+                   "--min-attenuation-db", "15")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_compare_measures_what_filter_measures(self):
+        for name in ("another_joints_position", "motor_side_position", "reversed_position", "standing_position",
+                     "rate_falls_on_the_way", "lost_rows", "gaps", "position_stops_on_the_way"):
+            with self.subTest(name):
+                metrics, _ = self.metrics(name)
+                done = run("compare", self.hard[name], "--method", "tracking,gear-ratio=100,orders=1:2", *GEAR, "--json")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                rows = {row["method"].split(",")[0]: row for row in json.loads(done.stdout)["methods"]}
+                for one, other in zip(metrics["orders"], rows["tracking"]["attenuation_db"]):
+                    self.assertAlmostEqual(one["attenuation_db"], other["db"], delta=0.02)
+
+
+class Clocks(Case):
+    def account(self, name):
+        done = run("info", self.hard[name], "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_a_change_of_rate_is_told_with_its_row_and_is_no_gap(self):
+        info = self.account("rate_falls_on_the_way")
+        account = info["recording"]
+        self.assertEqual((account["nominal_rate_hz"], account["gap_count"]), (2000, 0))
+        self.assertAlmostEqual(account["mean_rate_hz"], 2000, delta=0.01)
+        self.assertEqual([change["row"] for change in account["rate_changes"]], [17000])
+        self.assertAlmostEqual(account["rate_changes"][0]["to_hz"], 167, delta=0.01)
+        self.assertTrue(any("data row 17001" in warning for warning in info["warnings"]))
+
+    def test_rows_at_another_rate_pass_as_they_are(self):
+        log, out = self.hard["rate_falls_on_the_way"], self.path / "passed.csv"
+        done = run("filter", log, "--method", "lowpass,cutoff=5Hz,order=1", "-o", out, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        before, after = log.read_text().split("\n"), out.read_text().split("\n")
+        changed = [k for k in range(1, len(before) - 1) if before[k] != after[k]]
+        self.assertGreater(len(changed), 16000)
+        self.assertLessEqual(max(changed), 17001)
+
+    def test_lost_rows_do_not_change_the_controllers_rate(self):
+        log = self.hard["lost_rows"]
+        account = self.account("lost_rows")["recording"]
+        self.assertEqual(account["nominal_rate_hz"], 1000)
+        self.assertAlmostEqual(account["mean_rate_hz"], 978.4, delta=0.1)
+        joint = self.path / "joint.json"
+        done = run("identify", log, "-o", joint, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("978.399 Hz in the mean, but at 1000 Hz by the usual step", done.stderr)
+        self.assertEqual(json.loads(joint.read_text())["sample_rate_hz"], 1000)
+        table = self.path / "table.json"
+        done = run("design", joint, "-o", table, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(table.read_text())["sample_rate_hz"], 1000)
+
+    def test_info_says_what_filter_will_do(self):
+        for name, log in self.hard.items():
+            with self.subTest(name):
+                uses = {use["name"]: use for use in self.account(name)["uses"]}
+                done = run("filter", log, "--method", "lowpass,cutoff=5Hz,order=1", "-o", self.path / "out.csv", "--force")
+                self.assertEqual(done.returncode, 0 if uses["filter"]["possible"] else 3, done.stderr)
+                if done.returncode:
+                    self.assertIn(uses["filter"]["reason"], done.stderr)
+
+    def test_every_second_torque_held_is_one_count(self):
+        account = self.account("every_second_torque_held")["recording"]
+        self.assertEqual((account["held_samples"], account["longest_hold"]), (2000, 1))
+
+    def test_no_clock_of_any_kind_makes_memory_grow(self):
+        log = self.path / "nanoseconds.csv"
+        with open(self.hard["clean"]) as read, open(log, "w") as write:
+            rows = list(csv.reader(read))
+            write.write(",".join(rows[0]) + "\n")
+            for row in rows[1:6001]:
+                write.write(",".join([str(int(float(row[0]) * 1e9) + 1_700_000_000_000_000_000)] + row[1:]) + "\n")
+        for name, words in self.commands(log, ["--unit", "time=s"]).items():
+            with self.subTest(name):
+                done = run(*words)
+                self.assertIn(done.returncode, (0, 2, 3), done.stderr)  # 2: 5 Hz is beyond half of such a rate
+
+
+if __name__ == "__main__":
+    unittest.main()

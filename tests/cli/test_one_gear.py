@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""One gear for every command: the same sources give the same ratio and orders, and the same refusals in the same words."""
+
+import json
+import unittest
+
+from test_gear_methods import DATA, MOVE, Case, joint
+
+PAPER_90 = DATA / "paper_90deg_s.csv"
+
+
+
+
+class Commands(Case):
+    """How each command is asked, and where its JSON says the gear."""
+
+    def filtered_by(self, method, words):
+        done = self.run_tool("filter", MOVE, "--method", method, *words, "-o", "out.csv", "--metrics", "out.json", "--force")
+        return done, lambda: json.loads((self.folder / "out.json").read_text())["gear"]
+
+    def compared_by(self, method, words):
+        done = self.run_tool("compare", MOVE, "--method", method, *words, "--json")
+        return done, lambda: json.loads(done.stdout)["gear"]
+
+    def tracked(self, words):
+        done = self.run_tool("track", MOVE, *words, "--json")
+        return done, lambda: json.loads(done.stdout)["gear"]
+
+    def mapped(self, kind, words):
+        done = self.run_tool("spectrum", MOVE, "--map", kind, *words, "--json")
+        return done, lambda: json.loads(done.stdout)["gear"]
+
+    def designed(self, words):
+        done = self.run_tool("design", *words, "--sample-rate", "1kHz", "--speed", "18:90:18", "--json")
+
+        def gear():
+            table = json.loads(done.stdout)
+            return {"ratio": table["gear_ratio"], "orders": table["orders"]}
+        return done, gear
+
+    def every(self, words):
+        """Each command with these words: its name, the run, and what it says the gear is."""
+        for method in ("none", "lowpass,cutoff=13rad/s", "tracking", "oscillator", "subtract"):
+            yield f"filter {method}", *self.filtered_by(method, words)
+            yield f"compare {method}", *self.compared_by(method, words)
+        yield "track", *self.tracked(words)
+        yield "spectrum --map order", *self.mapped("order", words)
+        yield "spectrum --map campbell", *self.mapped("campbell", words)
+        yield "design", *self.designed(words)
+
+
+class SameSources(Commands):
+    def setUp(self):
+        super().setUp()
+        self.good("identify", PAPER_90, "--gear-ratio", 100, "-o", "one_speed.json")
+        found = json.loads((self.folder / "one_speed.json").read_text())
+        self.one_speed = found["gear_ratio"]["value"], sorted(line["order"] for line in found["lines"] if line["order"])
+        self.assertEqual({line["kind"] for line in found["lines"]}, {"unknown"})
+
+    def test_every_command_takes_the_same_ratio_and_orders(self):
+        cases = [
+            (["--gear-ratio", 100], (100, [1, 2])),
+            (["--gear-ratio", 100, "--orders", "2"], (100, [2])),
+            (["--gear-ratio", 100, "--orders", "2,1"], (100, [1, 2])),
+            (["--joint-file", "joint.json"], (100, [1, 2])),
+            (["--joint-file", "joint.json", "--orders", "1"], (100, [1])),
+            (["--joint-file", "joint.json", "--gear-ratio", 50], (50, [2, 4])),
+            (["--joint-file", "one_speed.json"], self.one_speed),
+        ]
+        for words, (ratio, orders) in cases:
+            sources = set()
+            for name, done, gear in self.every(words):
+                with self.subTest(command=name, words=words):
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    said = gear()
+                    self.assertEqual((said["ratio"], said["orders"]), (ratio, orders))
+                    sources.add(said.get("source"))
+            self.assertEqual(len(sources - {None}), 1, f"{words}: {sources}")
+
+    def test_the_source_of_each_half_is_named(self):
+        for words, source in (
+                (["--gear-ratio", 100], "--gear-ratio, orders by default"),
+                (["--gear-ratio", 100, "--orders", "1"], "--gear-ratio, --orders"),
+                (["--joint-file", "joint.json"], "joint.json"),
+                (["--joint-file", "joint.json", "--orders", "1"], "joint.json, orders from --orders"),
+                (["--gear-ratio", 50, "--joint-file", "joint.json"], "--gear-ratio, orders from joint.json")):
+            self.assertEqual(self.tracked(words)[1]()["source"], source)
+        _, gear = self.filtered_by("tracking,gear-ratio=100", ["--joint-file", "joint.json"])
+        self.assertEqual(gear()["source"], "method tracking, orders from joint.json")
+
+    def test_verbose_says_the_gear_everywhere(self):
+        for name, done, _ in self.every(["--gear-ratio", 100, "-v"]):
+            self.assertIn("gear ratio 100, orders 1, 2 (--gear-ratio, orders by default)", done.stderr, name)
+
+
+    def test_a_gear_that_nobody_says_is_null(self):
+        for ask in (self.filtered_by, self.compared_by):
+            for words in ([], ["-q"]):
+                done, gear = ask("lowpass,cutoff=13rad/s", words)
+                self.assertEqual((done.returncode, gear()), (0, None))
+        self.assertIsNone(self.mapped("order", [])[1]())
+
+    def test_every_command_has_all_three_options_and_tells_the_default(self):
+        for command in ("filter", "compare", "track", "spectrum", "design"):
+            text = " ".join(self.good(command, "--help").stdout.split())
+            for piece in ("--gear-ratio NUMBER", "--orders NUMBER,...", "--joint-file FILE", "(default:"):
+                self.assertIn(piece, text, command)
+
+
+class SameRefusals(Commands):
+    def test_every_command_refuses_in_the_same_words(self):
+        (self.folder / "nothing.json").write_text(joint(ratio=None))
+        (self.folder / "no_lines.json").write_text(joint(orders=()))
+        cases = [
+            (["--gear-ratio", 0], 2, "--gear-ratio 0 is not above 0 and at most 100000"),
+            (["--gear-ratio", -3], 2, "--gear-ratio -3 is not above 0 and at most 100000"),
+            (["--gear-ratio", 100, "--orders", "0"], 2, "--orders: 0 is not above 0"),
+            (["--gear-ratio", 100, "--orders", "1,1"], 2, "--orders: 1 is listed twice"),
+            (["--joint-file", "nothing.json"], 3,
+             "nothing.json: its gear ratio is null, because identify found none; give --gear-ratio"),
+            (["--joint-file", "no_lines.json"], 3,
+             "no_lines.json: it has no line that follows the motor; give --orders"),
+            (["--joint-file", ""], 2, "--joint-file: the name is empty"),
+        ]
+        for words, code, message in cases:
+            for name, done, _ in self.every(words):
+                with self.subTest(command=name, words=words):
+                    self.assertEqual(done.returncode, code, done.stderr)
+                    self.assertEqual(done.stderr, f"ripplenotch {name.split()[0]}: {message}\n")
+
+    def test_orders_without_a_ratio_ask_for_one_in_the_same_words(self):
+        for name, done, _ in self.every(["--orders", "1,2"]):
+            with self.subTest(command=name):
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertRegex(done.stderr, r"^ripplenotch \w+: (--orders|a table|method \w+) needs to know the gear: give "
+                                              r"--gear-ratio, for example 100, or --joint-file joint.json\n$")
+
+
+class OtherGears(Commands):
+    def setUp(self):
+        super().setUp()
+        self.good("design", "--gear-ratio", 100, "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:18", "-o",
+                  "table.json")
+        (self.folder / "other.json").write_text(joint().replace('"value": 100.0', '"value": 160.0'))
+
+    def both(self, method, words):
+        yield self.filtered_by(method, words)
+        yield self.compared_by(method, words)
+
+    def test_a_table_for_another_gear_is_refused_with_both_named(self):
+        for words, source in ((["--gear-ratio", 160], "--gear-ratio, orders from table.json"),
+                              (["--joint-file", "other.json"], "other.json")):
+            for done, _ in self.both("switching,table=table.json", words):
+                self.assertEqual(done.returncode, 2)
+                self.assertIn("method switching: its filter is for gear ratio 100 (table.json), and the ripple would be "
+                              f"measured for 160 ({source})", done.stderr)
+                self.assertFalse((self.folder / "out.csv").exists())
+
+    def test_100_and_101_are_two_gears_but_an_estimate_of_100_is_100(self):
+        for ratio, code in ((101, 2), (99, 2), (100.2, 0), (99.98, 0)):
+            for done, _ in self.both("switching,table=table.json", ["--gear-ratio", ratio]):
+                self.assertEqual(done.returncode, code, done.stderr)
+
+    def test_a_table_for_a_doubtful_gear_holds_as_far_as_it_was_designed_for(self):
+        self.good("design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:180:18", "--ratio-error", 2, "-o",
+                  "doubt.json")
+        for done, _ in self.both("switching,table=doubt.json", ["--gear-ratio", 101]):
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_methods_key_against_the_option_is_refused_too(self):
+        for done, _ in self.both("tracking,gear-ratio=100,orders=1:2", ["--gear-ratio", 160]):
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("method tracking: its filter is for gear ratio 100, and the ripple would be measured for 160 "
+                          "(--gear-ratio, orders from method tracking)", done.stderr)
+
+    def test_a_key_wins_over_the_joint_file_and_a_joint_file_over_the_table(self):
+        _, gear = self.filtered_by("tracking,gear-ratio=50,orders=2", ["--joint-file", "joint.json"])
+        self.assertEqual((gear()["ratio"], gear()["orders"]), (50, [2]))
+        (self.folder / "near.json").write_text(joint(ratio=100.1, orders=(1.0, 3.0)))
+        _, gear = self.filtered_by("switching,table=table.json", ["--joint-file", "near.json"])
+        self.assertEqual((gear()["ratio"], gear()["orders"]), (100.1, [1, 3]))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""The same bytes on other processors: docs/decisions/0004-same-bytes.md.
+
+glibc chooses its functions by the processor's instruction sets, and lets itself be told that there are fewer. An emulator,
+where one is installed, hides them from FFTW and from the tool's own kernels too."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+FEWER = "glibc.cpu.hwcaps=-AVX512F,-AVX2,-FMA,-AVX,-BMI2"
+EMULATOR = next(filter(None, map(shutil.which, ("qemu-x86_64-static", "qemu-x86_64"))), None)
+OLD_PROCESSOR = "Nehalem"  # of 2008, without AVX
+
+GEAR = ("--gear-ratio", "100", "--orders", "1,2")
+STEADY = tuple(str(DATA / f"paper_{speed}deg_s.csv") for speed in (60, 120))
+MOVE = str(DATA / "paper_move_2s.csv")
+MADE = ("simulate", "--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--effect",
+        "coulomb-friction,torque_nm=0.5,width_deg_s=0.2", "--motion", "poly6,to=120deg,duration=2s", "--motion",
+        "poly6,to=-60deg,duration=3s", "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", "7")
+MODEL = ('{"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "inertia"}, '
+         '{"effect": "ripple", "order": 1}]}')
+
+COMMANDS = {
+    "simulate": MADE,
+    "identify": ("identify", *STEADY, "--json"),
+    "identify a move": ("identify", "made.csv", "--json"),
+    "spectrum": ("spectrum", "made.csv"),
+    "spectrum over orders": ("spectrum", "made.csv", "--domain", "order", "--json"),
+    "track": ("track", MOVE, *GEAR),
+    "track by Vold and Kalman": ("track", MOVE, *GEAR, "--method", "vold-kalman", "--json"),
+    "design": ("design", *GEAR, "--sample-rate", "1kHz", "--speed", "18:180:18", "--json"),
+    "compare": ("compare", MOVE, *GEAR, "--method", "tracking", "--method", "oscillator", "--method", "subtract", "--json"),
+    "fixed": ("filter", MOVE, "--method", "fixed,centers=25Hz:50Hz"),
+    "tracking": ("filter", MOVE, *GEAR, "--method", "tracking"),
+    "oscillator": ("filter", MOVE, *GEAR, "--method", "oscillator"),
+    "subtract": ("filter", MOVE, *GEAR, "--method", "subtract"),
+    "diagnose": ("diagnose", "--model", "model.json", "made.csv", "--json"),
+}
+SLOW_UNDER_EMULATION = ("diagnose",)
+
+
+class Processors(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.scratch.cleanup)
+        folder = pathlib.Path(cls.scratch.name)
+        (folder / "model.json").write_text(MODEL)
+        (folder / "made.csv").write_bytes(cls.run_tool(*MADE))
+        cls.here = {name: cls.run_tool(*words) for name, words in COMMANDS.items()}
+
+    @classmethod
+    def run_tool(cls, *words, before=(), **settings):
+        done = subprocess.run([*before, TOOL, *words], capture_output=True, timeout=300, cwd=cls.scratch.name,
+                              stdin=subprocess.DEVNULL, env={**os.environ, **settings})
+        if done.returncode != 0 or not done.stdout:
+            raise AssertionError(f"{words}: exit {done.returncode}: {done.stderr.decode()}")
+        return done.stdout
+
+    def test_without_the_instruction_sets_that_the_c_library_would_choose_by(self):
+        for name, words in COMMANDS.items():
+            with self.subTest(name):
+                self.assertEqual(self.run_tool(*words, GLIBC_TUNABLES=FEWER), self.here[name])
+
+    @unittest.skipUnless(EMULATOR, "no qemu-x86_64 here; Debian's qemu-user brings it")
+    def test_on_a_processor_of_2008(self):
+        for name, words in COMMANDS.items():
+            if name in SLOW_UNDER_EMULATION:
+                continue
+            with self.subTest(name):
+                self.assertEqual(self.run_tool(*words, before=(EMULATOR, "-cpu", OLD_PROCESSOR)), self.here[name])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: MIT
+"""What is asked is done or refused; nothing else takes its place without a word."""
+
+import json
+import unittest
+
+from test_filter_joints import wide_log
+from test_gear_methods import DATA, MOVE, Case, joint
+
+PAPER_60, PAPER_90 = DATA / "paper_60deg_s.csv", DATA / "paper_90deg_s.csv"
+LOW = ["--method", "lowpass,cutoff=13rad/s"]
+
+
+class Told(Case):
+    def refused(self, words, *pieces, code=2):
+        done = self.run_tool(*words)
+        self.assertEqual(done.returncode, code, done.stderr)
+        for piece in pieces:
+            self.assertIn(piece, done.stderr)
+        return done
+
+
+class NamesOfJson(Told):
+    def test_a_name_that_ends_in_json_gives_the_bytes_of_the_option(self):
+        (self.folder / "t.json").write_text(self.good(
+            "design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18", "--json").stdout)
+        for words in (["info", MOVE], ["spectrum", PAPER_90], ["spectrum", PAPER_90, "--peaks"],
+                      ["spectrum", MOVE, "--map", "order"], ["track", MOVE, "--gear-ratio", 100],
+                      ["compare", MOVE, *LOW], ["effects"], ["identify", PAPER_90],
+                      ["design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18"]):
+            with self.subTest(words=words):
+                expected = self.good(*words, "--json").stdout
+                self.good(*words, "-o", "by_name.json", "--force")
+                self.assertEqual((self.folder / "by_name.json").read_text(), expected)
+                json.loads(expected)
+
+    def test_what_cannot_be_json_is_refused_under_such_a_name(self):
+        self.refused(["filter", MOVE, *LOW, "-o", "x.json"], "a log is not written as JSON; name it .csv or .npy")
+        self.refused(["simulate", "--gear-ratio", 100, "--ripple", "1:1Nm", "--motion", "constant,speed=60deg/s,duration=1s",
+                      "--sample-rate", "1kHz", "-o", "x.json"], "a log is not written as JSON")
+        self.good("design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18", "-o", "t.json")
+        self.refused(["report", "t.json", "-o", "x.json"], "a report is an HTML page")
+        self.refused(["export", "t.json", "--to", "c-header", "-o", "x.json"], "c-header is no JSON")
+        self.good("export", "t.json", "--to", "json", "-o", "x.json")
+        self.good("filter", MOVE, *LOW, "--output-format", "csv", "-o", "stated.json")
+
+
+class Lists(Told):
+    def test_a_list_with_other_marks_is_refused_with_the_list_as_it_should_be(self):
+        for words, hint in ((["1", "2"], "--orders 1,2"), (["1,", "2"], "--orders 1,2"), (["1 2"], "--orders 1,2"),
+                            (["1:2"], "--orders 1,2"), (["1;2;4"], "--orders 1,2,4"), (["1, 2"], "--orders 1,2")):
+            for command in (["track", MOVE], ["filter", MOVE, *LOW], ["compare", MOVE, *LOW],
+                            ["design", "--sample-rate", "1kHz", "--speed", "18:90:18"]):
+                with self.subTest(command=command[0], words=words):
+                    self.refused([*command, "--gear-ratio", "100", "--orders", *words],
+                                 "a list is written with commas and without spaces", hint)
+        self.refused(["track", MOVE, "--tones", "25Hz", "50Hz"], "--tones 25Hz,50Hz")
+
+    def test_a_log_whose_name_is_a_number_is_a_log(self):
+        (self.folder / "2").write_bytes(MOVE.read_bytes())
+        self.good("track", "--gear-ratio", "100", "--orders", "1", "2")
+
+    def test_a_list_inside_a_method_has_colons(self):
+        self.refused(["filter", MOVE, "--method", "fixed,centers=25Hz,50Hz"],
+                     "'50Hz' is not KEY=VALUE; a list is written with colons: centers=25Hz:50Hz")
+        self.refused(["filter", MOVE, "--method", "fixed,centers"], "'centers' is not KEY=VALUE\n")
+
+
+class Delays(Told):
+    DESIGN = ["design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:180"]
+
+    def test_a_bare_number_is_refused_by_every_command(self):
+        for words in ([*self.DESIGN, "--max-delay", "20"], ["filter", MOVE, *LOW, "--max-delay", "20"],
+                      ["compare", MOVE, *LOW, "--max-delay", "20"]):
+            self.refused(words, "--max-delay 20: ms or s? write --max-delay 20ms or --max-delay 20s")
+
+    def test_seconds_and_milliseconds_mean_what_they_say(self):
+        self.assertEqual(self.good(*self.DESIGN, "--max-delay", "40ms").stdout,
+                         self.good(*self.DESIGN, "--max-delay", "0.04s").stdout)
+
+    def test_where_bands_and_q_are_stated_the_table_is_written_and_what_is_too_slow_is_told(self):
+        stated = ["design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:180:18", "--q", 1, "--format", "csv"]
+        done = self.run_tool(*stated, "--max-delay", "20ms")
+        self.assertEqual((done.returncode, done.stdout), (1, self.good(*stated).stdout))
+        self.assertIn("band 1 (18-36 deg/s) delays by 31.8 ms, more than --max-delay 20ms", done.stderr)
+        self.assertNotIn("band 2", done.stderr)
+
+
+class Joints(Told):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "wide.csv").write_text(wide_log())
+
+    def test_identify_writes_each_joint_under_its_name(self):
+        self.good("identify", "wide.csv", "--joint", "all", "-o", "{joint}.json")
+        together = json.loads(self.good("identify", "wide.csv", "--joint", "all", "--json").stdout)["joints"]
+        self.assertEqual([one["joint"] for one in together], ["j1", "j2", "j3"])
+        for one in together:
+            alone = json.loads((self.folder / f"{one['joint']}.json").read_text())
+            self.assertEqual(alone["schema"], "ripplenotch/joint/1")
+            self.assertEqual(alone["gear_ratio"], one["gear_ratio"])
+        self.assertFalse((self.folder / "{joint}.json").exists())
+
+    def test_a_log_whose_joint_has_no_name_cannot_fill_the_mark(self):
+        self.refused(["identify", PAPER_90, "-o", "{joint}.json"], "{joint} stands for a joint's name")
+
+    def test_columns_that_are_added_one_after_another_bear_their_joints(self):
+        self.good("filter", "wide.csv", "--joint", "j1", *LOW, "--append", "-o", "once.csv")
+        self.good("filter", "once.csv", "--joint", "j2", *LOW, "--append", "-o", "twice.csv")
+        head = (self.folder / "twice.csv").read_text().splitlines()[0]
+        self.assertTrue(head.endswith(",j1_torque_filtered_nm,j2_torque_filtered_nm"), head)
+        together = self.good("filter", "wide.csv", "--joint", "all", *LOW, "--append").stdout.splitlines()
+        self.assertTrue(together[0].startswith(head))
+
+    def test_a_second_column_of_one_joint_gets_another_name(self):
+        self.good("filter", PAPER_90, *LOW, "--append", "-o", "once.csv")
+        self.good("filter", "once.csv", "--columns", "torque=torque_nm", "--method", "none", "--append", "-o", "twice.csv")
+        head = (self.folder / "twice.csv").read_text().splitlines()[0].split(",")
+        self.assertEqual(head[-2:], ["torque_filtered_nm", "torque_filtered_2_nm"])
+
+
+class RawLogs(Told):
+    def setUp(self):
+        super().setUp()
+        self.raw = PAPER_60.read_bytes()
+        (self.folder / "log.csv").write_bytes(self.raw)
+
+    def test_a_log_is_not_written_over_itself_even_by_force(self):
+        (self.folder / "alias.csv").symlink_to("log.csv")
+        for words in (["-o", "log.csv"], ["-o", "./log.csv"], ["-o", "alias.csv"], ["--out-dir", "."]):
+            self.refused(["filter", "log.csv", *LOW, *words, "--force"], "or say --in-place")
+            self.assertEqual((self.folder / "log.csv").read_bytes(), self.raw)
+
+    def test_in_place_writes_what_another_name_would_get(self):
+        expected = self.good("filter", "log.csv", *LOW).stdout.encode()
+        self.good("filter", "log.csv", *LOW, "--in-place")
+        self.assertEqual((self.folder / "log.csv").read_bytes(), expected)
+        (self.folder / "log.csv").write_bytes(self.raw)
+        (self.folder / "two.csv").write_bytes(self.raw)
+        self.good("filter", "log.csv", "two.csv", *LOW, "--in-place", "--metrics", "metrics")
+        for name in ("log", "two"):
+            self.assertEqual((self.folder / f"{name}.csv").read_bytes(), expected)
+            self.assertEqual(json.loads((self.folder / "metrics" / f"{name}.metrics.json").read_text())["source"], f"{name}.csv")
+
+    def test_in_place_is_for_files_and_for_nothing_else(self):
+        self.refused(["filter", "log.csv", *LOW, "--in-place", "-o", "other.csv"], "-o, --out-dir and --in-place: give one of them")
+        self.refused(["filter", "-", *LOW, "--in-place"], "standard input has no name")
+
+
+class Segments(Told):
+    def test_a_segment_longer_than_the_log_is_told(self):
+        for words in ([], ["--stretch", "all"]):
+            done = self.good("spectrum", PAPER_90, "--segment", "60s", *words, "-o", "s.csv", "--force")
+            self.assertIn("--segment 60 s:", done.stderr)
+            self.assertIn("s long, so all of it is one piece", done.stderr)
+        self.assertEqual(self.good("spectrum", PAPER_90, "--segment", "1s", "-o", "s.csv", "--force").stderr, "")
+
+
+class Belief(Told):
+    def test_a_ratio_that_the_log_contradicts_is_told(self):
+        for believed in (101, 99, 50.5, 120):
+            done = self.good("identify", PAPER_60, PAPER_90, "--gear-ratio", believed)
+            self.assertIn(f"{believed}", done.stdout.splitlines()[0] + done.stderr, done.stdout)
+        done = self.good("identify", PAPER_60, PAPER_90, "--gear-ratio", 100)
+        self.assertEqual(done.stderr, "")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/core/portable_math.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "ripplenotch/core/phasor.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+
+namespace {
+constexpr double radians = std::numbers::pi / 180.0;
+}
+
+TEST_CASE("cosine and sine in degrees are exact at multiples of 90 degrees") {
+    for (int turn = -1000; turn <= 1000; ++turn) {
+        const double base = 360.0 * turn;
+        CHECK(portable::cos_degrees(base) == 1.0);
+        CHECK(portable::cos_degrees(base + 90.0) == 0.0);
+        CHECK(portable::cos_degrees(base + 180.0) == -1.0);
+        CHECK(portable::cos_degrees(base + 270.0) == 0.0);
+        CHECK(portable::sin_degrees(base) == 0.0);
+        CHECK(portable::sin_degrees(base + 90.0) == 1.0);
+        CHECK(portable::sin_degrees(base + 270.0) == -1.0);
+    }
+}
+
+TEST_CASE("cosine and sine in degrees agree with the C library within 3e-16 of full scale") {
+    std::mt19937_64 engine(1);
+    std::uniform_real_distribution<double> angle(-360.0, 360.0);
+    for (int i = 0; i < 20000; ++i) {
+        const double a = angle(engine);
+        // The argument in radians is rounded: its own half unit in the last place is part of the tolerance.
+        const double slack = 3e-16 + 0.5e-15 * std::abs(a * radians);
+        CHECK(std::abs(portable::cos_degrees(a) - std::cos(a * radians)) < slack);
+        CHECK(std::abs(portable::sin_degrees(a) - std::sin(a * radians)) < slack);
+    }
+}
+
+TEST_CASE("cosine and sine have period 360 to the last bit and their symmetries, however large the angle") {
+    std::mt19937_64 engine(2);
+    std::uniform_int_distribution<int> eighth(-2880, 2880);
+    for (int i = 0; i < 5000; ++i) {
+        const double a = eighth(engine) / 8.0;
+        for (const double turns : {1.0, -7.0, 1e6, 1e9})
+            CHECK(portable::cos_degrees(a + 360.0 * turns) == portable::cos_degrees(a));
+        CHECK(portable::cos_degrees(-a) == portable::cos_degrees(a));
+        CHECK(portable::sin_degrees(-a) == -portable::sin_degrees(a));
+        CHECK(std::abs(portable::cos_degrees(a) * portable::cos_degrees(a) +
+                       portable::sin_degrees(a) * portable::sin_degrees(a) - 1.0) < 4e-16);
+    }
+    CHECK(portable::cos_degrees(0x1p60 * 360.0) == 1.0);
+}
+
+TEST_CASE("the natural logarithm agrees with the C library within 4e-16, relative or absolute") {
+    CHECK(portable::log(1.0) == 0.0);
+    std::mt19937_64 engine(3);
+    std::uniform_real_distribution<double> exponent(-300.0, 300.0);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (int i = 0; i < 20000; ++i) {
+        const double wide = std::pow(10.0, exponent(engine));
+        CHECK(std::abs(portable::log(wide) / std::log(wide) - 1.0) < 4e-16);
+        const double near = 1.0 - unit(engine) * 0.5;
+        CHECK(std::abs(portable::log(near) - std::log(near)) < 4e-16);
+    }
+}
+
+TEST_CASE("the exponential and the hyperbolic tangent agree with the C library") {
+    std::mt19937_64 engine(4);
+    std::uniform_real_distribution<double> wide(-700.0, 700.0), narrow(-25.0, 25.0);
+    for (int i = 0; i < 20000; ++i) {
+        const double x = wide(engine);
+        CHECK(std::abs(portable::exp(x) / std::exp(x) - 1.0) < 1e-15);
+        const double y = narrow(engine);
+        CHECK(std::abs(portable::tanh(y) - std::tanh(y)) < 1e-15);
+        CHECK(portable::tanh(-y) == -portable::tanh(y));
+    }
+    CHECK(portable::exp(0.0) == 1.0);
+    CHECK(portable::tanh(0.0) == 0.0);
+    CHECK_FALSE(std::signbit(portable::tanh(-0.0)));
+    CHECK(portable::tanh(1e300) == 1.0);
+}
+
+namespace {
+
+/// The largest |found - expected| over `count` random places in a range, in units of max(|expected|, floor).
+template <class Found, class Expected>
+double worst_error(double from, double to, double floor, Found found, Expected expected) {
+    std::mt19937_64 engine(5);
+    std::uniform_real_distribution<double> place(from, to);
+    double worst = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+        const double x = place(engine), reference = expected(x);
+        worst = std::max(worst, std::abs(found(x) - reference) / std::max(std::abs(reference), floor));
+    }
+    return worst;
+}
+
+}  // namespace
+
+// The C library's own functions are within one unit in the last place, 1.1e-16 to 2.2e-16 of the value.
+TEST_CASE("circle functions of radians agree with the C library within 3e-16 of full scale") {
+    for (const double reach : {1e-3, 1.0, 10.0, 1e3, 1e6}) {
+        CAPTURE(reach);
+        CHECK(worst_error(
+                  -reach, reach, 1.0, [](double x) { return portable::cos(x); },
+                  [](double x) { return std::cos(x); }) < 3e-16);
+        CHECK(worst_error(
+                  -reach, reach, 1.0, [](double x) { return portable::sin(x); },
+                  [](double x) { return std::sin(x); }) < 3e-16);
+        CHECK(worst_error(
+                  -reach, reach, 1.0, [](double x) { return portable::tan(x); },
+                  [](double x) { return std::tan(x); }) < 7e-16);
+    }
+    // Next to a multiple of pi the sine is what reduction leaves: its relative error tells how exact that is.
+    for (const int halves : {1, 2, 3, 1000, 99999}) {
+        const double at = halves * std::numbers::pi;
+        CHECK(portable::sin(at) == Approx(std::sin(at)).epsilon(1e-12));
+    }
+    // From 2^20 on the multiple of 2 pi is rounded: half a unit in the last place of the angle.
+    for (const double reach : {1e7, 1e9}) {
+        CHECK(worst_error(
+                  -reach, reach, 1.0, [](double x) { return portable::cos(x); },
+                  [](double x) { return std::cos(x); }) < 3e-16 * reach);
+    }
+    CHECK(std::signbit(portable::sin(-0.0)));
+    for (double angle = -1e4; angle < 1e4; angle += 1.37) {
+        CHECK(portable::phasor(angle) == std::complex<double>(portable::cos(angle), portable::sin(angle)));
+    }
+}
+
+TEST_CASE("inverse circle functions agree with the C library within 5e-16 and keep its quadrants") {
+    for (const double reach : {1e-3, 1.0, 8.0, 1e4}) {
+        CHECK(worst_error(
+                  -reach, reach, 0.0, [](double x) { return portable::atan(x); },
+                  [](double x) { return std::atan(x); }) < 5e-16);
+    }
+    CHECK(worst_error(
+              -1.0, 1.0, 0.0, [](double x) { return portable::asin(x); },
+              [](double x) { return std::asin(x); }) < 6e-16);
+    CHECK(worst_error(
+              -1.0, 1.0, 0.5, [](double x) { return portable::acos(x); },
+              [](double x) { return std::acos(x); }) < 6e-16);
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (const double y : {-infinity, -2.0, -0.0, 0.0, 1e-300, 3.0, infinity}) {
+        for (const double x : {-infinity, -1e300, -1.0, -0.0, 0.0, 5.0, infinity}) {
+            CAPTURE(y, x);
+            CHECK(portable::atan2(y, x) == Approx(std::atan2(y, x)).epsilon(5e-16).margin(0.0));
+            CHECK(std::signbit(portable::atan2(y, x)) == std::signbit(std::atan2(y, x)));
+        }
+    }
+    CHECK(std::isnan(portable::atan2(std::nan(""), 1.0)));
+    CHECK(std::isnan(portable::asin(1.5)));
+}
+
+TEST_CASE("logarithms, powers and roots agree with the C library") {
+    const auto wide = [](auto function) {
+        return [function](double x) { return function(std::pow(10.0, x)); };
+    };
+    CHECK(worst_error(-300.0, 300.0, 1.0, wide([](double x) { return portable::log10(x); }),
+                      wide([](double x) { return std::log10(x); })) < 5e-16);
+    CHECK(worst_error(-300.0, 300.0, 1.0, wide([](double x) { return portable::log2(x); }),
+                      wide([](double x) { return std::log2(x); })) < 5e-16);
+    CHECK(worst_error(
+              -0.9, 3.0, 0.0, [](double x) { return portable::log1p(x); },
+              [](double x) { return std::log1p(x); }) < 5e-16);
+    CHECK(worst_error(
+              -1000.0, 1000.0, 0.0, [](double x) { return portable::exp2(x); },
+              [](double x) { return std::exp2(x); }) < 1e-15);
+    CHECK(worst_error(
+              -300.0, 300.0, 0.0, [](double x) { return portable::pow(10.0, x); },
+              [](double x) { return std::pow(10.0, x); }) < 1e-15);
+    CHECK(worst_error(
+              0.01, 5.0, 0.0, [](double x) { return portable::pow(x, 2.7); },
+              [](double x) { return std::pow(x, 2.7); }) < 1e-14);
+    CHECK(worst_error(
+              -1e4, 1e4, 0.0, [](double x) { return portable::cbrt(x); },
+              [](double x) { return std::cbrt(x); }) < 5e-16);
+    CHECK(worst_error(
+              0.1, 200.0, 1.0, [](double x) { return portable::lgamma(x); },
+              [](double x) { return std::lgamma(x); }) < 1e-13);
+    CHECK(worst_error(
+              -5.0, 5.0, 0.0, [](double x) { return portable::hypot(x, 3.0 * x - 1.0); },
+              [](double x) { return std::hypot(x, 3.0 * x - 1.0); }) < 5e-16);
+}
+
+TEST_CASE("what has an exact answer gets it") {
+    for (int n = -22; n <= 22; ++n) {
+        CAPTURE(n);
+        const double power = portable::pow(10.0, n);
+        CHECK(power == (n < 0 ? 1.0 / std::pow(10.0, -n) : std::pow(10.0, n)));
+        CHECK(portable::log10(power) == n);
+    }
+    for (int n = -1000; n <= 1000; n += 7) CHECK(portable::log2(std::ldexp(1.0, n)) == n);
+    CHECK(portable::pow(3.0, 4.0) == 81.0);
+    CHECK(portable::pow(-2.0, 3.0) == -8.0);
+    CHECK(portable::pow(2.0, -2.0) == 0.25);
+    CHECK(portable::pow(2.25, 0.5) == 1.5);
+    CHECK(portable::pow(0.0, 1.5) == 0.0);
+    CHECK(portable::exp(0.0) == 1.0);
+    CHECK(portable::hypot(3.0, 4.0) == 5.0);
+    CHECK(portable::hypot(3e200, 4e200) == Approx(5e200).epsilon(3e-16));
+    CHECK(portable::hypot(3e-200, 4e-200) == Approx(5e-200).epsilon(3e-16));
+}
+
+TEST_CASE("outside of their domains the functions answer as those of the C library") {
+    const double infinity = std::numeric_limits<double>::infinity();
+    CHECK(portable::log(0.0) == -infinity);
+    CHECK(portable::log10(infinity) == infinity);
+    CHECK(std::isnan(portable::log2(-1.0)));
+    CHECK(std::isnan(portable::pow(-2.0, 0.3)));
+    CHECK(portable::exp(-800.0) == 0.0);
+    CHECK(portable::exp(800.0) == infinity);
+    CHECK(std::isnan(portable::exp(std::nan(""))));
+    CHECK(portable::pow(10.0, 400.0) == infinity);
+    CHECK(portable::log1p(-1.0) == -infinity);
+}
+
+// What a seed means rests on these bits. Reference in the comments: 40-digit arithmetic (Python 3.11, module
+// decimal).
+TEST_CASE("elementary functions keep their bits") {
+    CHECK(portable::cos_degrees(1.0) == 0x1.ffec097f5af8ap-1);   // 0.99984769515639123915701155881...
+    CHECK(portable::sin_degrees(1.0) == 0x1.1df0b2b89dd1ep-6);   // 0.01745240643728351281941897851...
+    CHECK(portable::cos_degrees(60.0) == 0x1.fffffffffffffp-2);  // 0.5, one unit in the last place below
+    CHECK(portable::log(2.0) == 0x1.62e42fefa39efp-1);           // 0.69314718055994530941723212145...
+    CHECK(portable::log(10.0) == 0x1.26bb1bbb55515p+1);  // 2.30258509299404568401799145468..., one unit below
+    CHECK(portable::exp(1.0) == 0x1.5bf0a8b14576ap+1);   // 2.71828182845904523536028747135..., one unit above
+    CHECK(portable::tanh(1.0) == Approx(0.76159415595576488812).epsilon(4e-16));
+}
