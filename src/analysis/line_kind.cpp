@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-
 #include "ripplenotch/analysis/identification.hpp"
+
+#include <algorithm>
 
 namespace ripplenotch {
 
