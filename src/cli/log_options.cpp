@@ -2,6 +2,7 @@
 // The options that every command with a log shares: what is declared, and what it asks of the reader.
 #include <string>
 
+#include "cli/number_list.hpp"
 #include "cli/options.hpp"
 #include "ripplenotch/core/error.hpp"
 

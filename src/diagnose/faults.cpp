@@ -8,6 +8,7 @@
 #include <map>
 
 #include "diagnose/spikes.hpp"
+#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -39,7 +40,7 @@ double step_of(const std::vector<double>& torque_nm) {
     }
     if (distances.empty() || distances.size() > values.size() / 4) return 0.0;
     // The smallest that is common: rarer levels leave multiples of it, rounding leaves crumbs.
-    const double step = median(distances);
+    const double step = median_of(distances);
     std::size_t fitting = 0;
     for (const double distance : distances) {
         const double steps = distance / step;
@@ -53,7 +54,7 @@ double noise_of(const std::vector<double>& torque_nm) {
     std::vector<double> off;
     for (std::size_t k = 1; k + 1 < torque_nm.size(); ++k)
         off.push_back(std::abs(torque_nm[k - 1] - 2.0 * torque_nm[k] + torque_nm[k + 1]));
-    return 1.4826 * median(off) / std::sqrt(6.0);
+    return 1.4826 * median_of(off) / std::sqrt(6.0);
 }
 
 class Detector {
@@ -146,12 +147,12 @@ class Detector {
             sizes.push_back(spike.size_nm);
         }
         const double per_sample = static_cast<double>(hit.size()) / static_cast<double>(torque_nm_.size());
-        Fault fault{term_of("spikes", {{"rate_percent", 100.0 * per_sample}, {"size_nm", median(sizes)}}),
+        Fault fault{term_of("spikes", {{"rate_percent", 100.0 * per_sample}, {"size_nm", median_of(sizes)}}),
                     hit.size(),
                     {},
                     {}};
         fault.words = fmt::format("{} single samples stand {} Nm off their neighbours", hit.size(),
-                                  rounded(median(sizes)));
+                                  rounded(median_of(sizes)));
         spoil(fault, hit);
         faults.push_back(fault);
     }

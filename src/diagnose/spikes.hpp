@@ -18,7 +18,4 @@ struct Spike {
 /// log's own noise or step, in which nothing is a spike. Samples that do not count are no neighbours.
 [[nodiscard]] std::vector<Spike> find_spikes(const Case& looked_at, double least_nm);
 
-/// 0 of no values; of an even number the upper one of the two in the middle.
-[[nodiscard]] double median(std::vector<double> values);
-
 }  // namespace ripplenotch
