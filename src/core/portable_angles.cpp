@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/circle_terms.hpp"
 #include "core/polynomial.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -16,23 +17,6 @@ namespace ripplenotch::portable {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-// Coefficients of 1 - z/2! + z^2/4! - ... and of 1 - z/3! + z^2/5! - ..., with z = x^2 <= (pi/4)^2: the first
-// term left out is below 3e-18.
-constexpr std::array<double, 9> cosine_terms = [] {
-    std::array<double, 9> terms{1.0};
-    for (std::size_t n = 1; n < terms.size(); ++n) {
-        terms[n] = -terms[n - 1] / static_cast<double>((2 * n - 1) * (2 * n));
-    }
-    return terms;
-}();
-constexpr std::array<double, 9> sine_terms = [] {
-    std::array<double, 9> terms{1.0};
-    for (std::size_t n = 1; n < terms.size(); ++n) {
-        terms[n] = -terms[n - 1] / static_cast<double>((2 * n) * (2 * n + 1));
-    }
-    return terms;
-}();
 
 // 1, -1/3, 1/5, ... of atan(t) / t, with |t| <= 1/16: the first term left out is below 1e-20.
 constexpr std::array<double, 8> arctangent_terms = [] {

@@ -2,11 +2,14 @@
 #include "ripplenotch/core/portable_math.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "ripplenotch/core/phasor.hpp"
 #include "support/catch.hpp"
@@ -55,6 +58,27 @@ TEST_CASE("cosine and sine have period 360 to the last bit and their symmetries,
                        portable::sin_degrees(a) * portable::sin_degrees(a) - 1.0) < 4e-16);
     }
     CHECK(portable::cos_degrees(0x1p60 * 360.0) == 1.0);
+}
+
+TEST_CASE("many angles at once have the bits of each angle alone") {
+    std::mt19937_64 random(11);
+    for (const double reach : {1.0, 400.0, 1e6, 1e12, 0x1p50, 1e300}) {
+        std::uniform_real_distribution<double> angle(-reach, reach);
+        for (const std::size_t count : {0u, 1u, 3u, 4u, 7u, 2000u}) {
+            std::vector<double> angles(count), cosines(count), sines(count);
+            for (double& value : angles) value = angle(random);
+            for (std::size_t k = 0; k < count / 4; ++k) angles[k] = 45.0 * std::round(angles[k] / 45.0);
+            portable::cos_degrees(angles, cosines);
+            portable::sin_degrees(angles, sines);
+            for (std::size_t k = 0; k < count; ++k) {
+                CAPTURE(angles[k]);
+                CHECK(std::bit_cast<std::uint64_t>(cosines[k]) ==
+                      std::bit_cast<std::uint64_t>(portable::cos_degrees(angles[k])));
+                CHECK(std::bit_cast<std::uint64_t>(sines[k]) ==
+                      std::bit_cast<std::uint64_t>(portable::sin_degrees(angles[k])));
+            }
+        }
+    }
 }
 
 TEST_CASE("the natural logarithm agrees with the C library within 4e-16, relative or absolute") {

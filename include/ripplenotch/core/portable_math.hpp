@@ -6,6 +6,7 @@
 // docs/decisions/0004-same-bytes.md.
 
 #include <complex>
+#include <span>
 
 namespace ripplenotch::portable {
 
@@ -19,6 +20,9 @@ namespace ripplenotch::portable {
 /// last bit. Any finite angle.
 [[nodiscard]] double cos_degrees(double angle_deg);
 [[nodiscard]] double sin_degrees(double angle_deg);
+/// The same bits for each of many angles, faster. The second span is as long as the first, or longer.
+void cos_degrees(std::span<const double> angle_deg, std::span<double> cosine);
+void sin_degrees(std::span<const double> angle_deg, std::span<double> sine);
 
 /// In radians, relative error below 4e-16; quadrants, zeros and infinities as in <cmath>.
 [[nodiscard]] double atan(double x);

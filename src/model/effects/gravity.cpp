@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
+#include "model/many_cosines.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -29,9 +29,10 @@ constexpr LookAlike look_alikes[] = {
 };
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        torque_nm[k] += values[0] * portable::cos_degrees(situation.motion.position_deg[k] + values[1]);
-    }
+    const auto& position_deg = situation.motion.position_deg;
+    with_cosines(
+        torque_nm.size(), [&](std::size_t k) { return position_deg[k] + values[1]; },
+        [&](std::size_t k, double cosine) { torque_nm[k] += values[0] * cosine; });
 }
 
 }  // namespace

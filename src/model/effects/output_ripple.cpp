@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
+#include "model/many_cosines.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -23,8 +23,9 @@ constexpr LookAlike look_alikes[] = {
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     const auto& position_deg = situation.motion.position_deg;
-    for (std::size_t k = 0; k < torque_nm.size(); ++k)
-        torque_nm[k] += values[1] * portable::cos_degrees(values[0] * position_deg[k] + values[2]);
+    with_cosines(
+        torque_nm.size(), [&](std::size_t k) { return values[0] * position_deg[k] + values[2]; },
+        [&](std::size_t k, double cosine) { torque_nm[k] += values[1] * cosine; });
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
+#include "model/many_cosines.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -25,20 +25,16 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     const double cycles_per_turn = values[0] * situation.ratio.value();
     const double amplitude_nm = values[1], phase_deg = values[2];
     const auto& position_deg = situation.motion.position_deg;
-    if (situation.ripple_gain.empty()) {
-        for (std::size_t k = 0; k < torque_nm.size(); ++k)
-            torque_nm[k] +=
-                amplitude_nm * portable::cos_degrees(cycles_per_turn * position_deg[k] + phase_deg);
+    const auto angle_deg = [&](std::size_t k) { return cycles_per_turn * position_deg[k] + phase_deg; };
+    const auto gain = situation.ripple_gain;
+    if (gain.empty()) {
+        with_cosines(torque_nm.size(), angle_deg,
+                     [&](std::size_t k, double cosine) { torque_nm[k] += amplitude_nm * cosine; });
         return;
     }
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        const double angle_deg = cycles_per_turn * position_deg[k] + phase_deg;
-        const auto gain = situation.ripple_gain[k];
-        const double along = gain.real() * portable::cos_degrees(angle_deg);
-        // Most changes of the ripple leave its phase as it is.
-        const double across = gain.imag() != 0.0 ? gain.imag() * portable::sin_degrees(angle_deg) : 0.0;
-        torque_nm[k] += amplitude_nm * (along - across);
-    }
+    with_cosines_and_sines(torque_nm.size(), angle_deg, [&](std::size_t k, double cosine, double sine) {
+        torque_nm[k] += amplitude_nm * (gain[k].real() * cosine - gain[k].imag() * sine);
+    });
 }
 
 }  // namespace

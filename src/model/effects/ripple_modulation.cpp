@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
+#include "model/many_cosines.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -31,8 +31,9 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
                    std::span<std::complex<double>> gain) {
     if (!concerns(order, values[3])) return;
     const auto& position_deg = situation.motion.position_deg;
-    for (std::size_t k = 0; k < gain.size(); ++k)
-        gain[k] *= 1.0 + 0.01 * values[1] * portable::cos_degrees(values[0] * position_deg[k] + values[2]);
+    with_cosines(
+        gain.size(), [&](std::size_t k) { return values[0] * position_deg[k] + values[2]; },
+        [&](std::size_t k, double cosine) { gain[k] *= 1.0 + 0.01 * values[1] * cosine; });
 }
 
 }  // namespace

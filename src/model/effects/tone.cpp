@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
+#include "model/many_cosines.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -34,10 +34,10 @@ constexpr LookAlike look_alikes[] = {
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     const auto& time_s = situation.motion.time_s;
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        const double turn_deg = 360.0 * values[0] * (time_s[k] - time_s.front());
-        torque_nm[k] += values[1] * portable::cos_degrees(turn_deg + values[2]);
-    }
+    with_cosines(
+        torque_nm.size(),
+        [&](std::size_t k) { return 360.0 * values[0] * (time_s[k] - time_s.front()) + values[2]; },
+        [&](std::size_t k, double cosine) { torque_nm[k] += values[1] * cosine; });
 }
 
 }  // namespace
