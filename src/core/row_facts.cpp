@@ -97,7 +97,7 @@ RepeatCounts count_pair(const RowChannels& rows, std::size_t k, double moving_de
 }  // namespace
 
 RIPPLENOTCH_FOR_AVX2_TOO
-void widen(SpeedRange& range, std::span<const double> velocity_deg_s) noexcept {
+void widen(SpeedExtent& range, std::span<const double> velocity_deg_s) noexcept {
     constexpr std::size_t groups = 2, step = groups * lane_count;
     const std::size_t n = velocity_deg_s.size(), even = n - n % step;
     Four slowest[groups], fastest[groups], speed;

@@ -8,11 +8,11 @@
 namespace ripplenotch {
 
 /// Of |velocity|.
-struct SpeedRange {
+struct SpeedExtent {
     double slowest_deg_s, fastest_deg_s;
 };
 /// A velocity that is not a number widens nothing; a range that is none stays as it is.
-void widen(SpeedRange& range, std::span<const double> velocity_deg_s) noexcept;
+void widen(SpeedExtent& range, std::span<const double> velocity_deg_s) noexcept;
 
 /// Pairs of a row and the next by what is equal in them; counted where both rows move.
 struct RepeatCounts {

@@ -16,7 +16,7 @@ constexpr double as_good = 0.1;
 
 class Shapes {
   public:
-    Shapes(const Bench& bench, const Model& stated, std::size_t term)
+    Shapes(const ModelBench& bench, const Model& stated, std::size_t term)
         : bench_(bench), term_(stated.terms[term]), rest_(without(stated, term), bench.looked_at().motion) {
         own_ = torque_at(term_);
     }
@@ -60,7 +60,7 @@ class Shapes {
         return both > 0.0 && square - both * both / others < as_good * as_good * square;
     }
 
-    const Bench& bench_;
+    const ModelBench& bench_;
     Term term_;
     Prediction rest_;
     std::vector<double> own_;
@@ -78,7 +78,7 @@ bool is_neutral(const Parameter& parameter, double value) {
 }
 
 // Held within its bound it does clearly worse.
-bool leans_on(const Bench& bench, const Candidate& model, const FittedValue& value) {
+bool leans_on(const ModelBench& bench, const Candidate& model, const FittedValue& value) {
     const Parameter& parameter = model.stated.terms[value.term].effect->parameters[value.parameter];
     const bool at_lower = value.value - parameter.lower < parameter.upper - value.value;
     const double inward = 0.05 * (parameter.upper - parameter.lower);
@@ -91,7 +91,7 @@ bool leans_on(const Bench& bench, const Candidate& model, const FittedValue& val
 
 }  // namespace
 
-std::string_view bent_parameter(const Bench& bench, const Candidate& model, std::size_t term) {
+std::string_view bent_parameter(const ModelBench& bench, const Candidate& model, std::size_t term) {
     const Effect& effect = *model.stated.terms[term].effect;
     const Shapes shapes(bench, model.stated, term);
     for (const FittedValue& value : model.values) {

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "diagnose/bench.hpp"
+#include "diagnose/model_bench.hpp"
 
 namespace ripplenotch {
 
@@ -12,6 +12,7 @@ namespace ripplenotch {
 /// at a bound; empty when there is none. Such an effect has lost what tells it from others: Stribeck friction
 /// of a Stribeck speed far above all speeds is Coulomb friction. A bound at which the effect is what it is at
 /// its neutral value, and one that the log hardly tells from a value within, bend nothing.
-[[nodiscard]] std::string_view bent_parameter(const Bench& bench, const Candidate& model, std::size_t term);
+[[nodiscard]] std::string_view bent_parameter(const ModelBench& bench, const Candidate& model,
+                                              std::size_t term);
 
 }  // namespace ripplenotch

@@ -49,7 +49,7 @@ std::vector<const Effect*> screened(const Model& model, std::span<const std::str
 }
 
 struct Searched {
-    std::unique_ptr<Bench> bench;  ///< on which the last model was found
+    std::unique_ptr<ModelBench> bench;  ///< on which the last model was found
     NoiseFloor noise;
     Candidate first, last;
 };
@@ -57,14 +57,14 @@ struct Searched {
 Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work) {
     const std::size_t own = model.terms.size();
     // The first fit knows nothing of the noise.
-    Bench rough(c, {1.0, 1.0, {}}, work);
+    ModelBench rough(c, {1.0, 1.0, {}}, work);
     Searched found;
     found.first = baseline(rough, model);
     found.last = found.first;
     for (int look = 0; look < most_looks; ++look) {
         found.noise = noise_floor(c, found.last.stated, found.last.open);
-        found.bench = std::make_unique<Bench>(c, found.noise, work);
-        Bench& bench = *found.bench;
+        found.bench = std::make_unique<ModelBench>(c, found.noise, work);
+        ModelBench& bench = *found.bench;
         bench.settle_on(found.last.stated);
         const Candidate start = bench.fitted(found.last.open, found.last.stated, found.last.prices);
         if (look == 0) found.first = start;
@@ -78,7 +78,7 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
 }
 
 // The gap after each addition, in the order of adoption.
-void tell_rounds(Diagnosis& diagnosis, const Bench& bench, const Candidate& last, std::size_t own) {
+void tell_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candidate& last, std::size_t own) {
     Candidate now = last;
     now.open.terms.resize(own);
     now.stated.terms.resize(own);
@@ -151,7 +151,7 @@ void measure_at_samples(std::vector<Leftover>& nameless, const Case& c, const Mo
 }
 
 // Without position an effect of the position may fit along the integral of the speed and be something else.
-std::vector<Undecidable> undecidable(const Bench& bench, const Candidate& model,
+std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& model,
                                      std::span<const Effect* const> examined,
                                      std::span<const std::string> without) {
     std::vector<const Effect*> others;
@@ -177,7 +177,7 @@ Searched search_rest(Case& part, const Model& model, std::span<const Effect* con
                      Diagnosis& diagnosis, std::vector<Leftover>& aside, Work& work) {
     Searched found = search_case(part, model, effects, work);
     {
-        Bench bench(part, found.noise, work);
+        ModelBench bench(part, found.noise, work);
         bench.settle_on(found.first.stated);
         diagnosis.disagreement = leftovers(bench, found.first.stated);
     }
@@ -196,7 +196,7 @@ Searched search_rest(Case& part, const Model& model, std::span<const Effect* con
 // What of the findings is believed, and what is left then. `other`: the validation log, if there is one.
 Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
                  std::span<const Effect* const> effects, const Case* other) {
-    const Bench& bench = *found.bench;
+    const ModelBench& bench = *found.bench;
     diagnosis.unexplained = leftovers(bench, found.last.stated);
     diagnosis.rounds = judge(bench, found.last, own, effects, diagnosis.unexplained);
     diagnosis.baseline = found.first.stated;
@@ -245,7 +245,7 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     // The excerpt chose; the whole log gives the values.
     if (part.size() < whole.size()) {
         (void)set_aside(whole, aside);
-        Bench all(whole, found.noise, work);
+        ModelBench all(whole, found.noise, work);
         all.settle_on(last.stated);
         last = all.fitted(last.open, last.stated, last.prices, 4);
         diagnosis.baseline = all.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;

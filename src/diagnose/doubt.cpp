@@ -82,7 +82,7 @@ struct Doubt {
     std::string reason;
 };
 
-Doubt doubt_of(const Bench& bench, const Candidate& model, std::size_t term, const Evidence& evidence) {
+Doubt doubt_of(const ModelBench& bench, const Candidate& model, std::size_t term, const Evidence& evidence) {
     const Term& stated = model.stated.terms[term];
     if (evidence.share_sigma < material_sigma(bench.looked_at()) ||
         within_a_sample(stated, bench.looked_at()))
@@ -109,18 +109,18 @@ Doubt doubt_of(const Bench& bench, const Candidate& model, std::size_t term, con
 
 }  // namespace
 
-void doubt_alone(Finding& finding, const Bench& bench, const Candidate& model, std::size_t term) {
+void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& model, std::size_t term) {
     Doubt doubt = doubt_of(bench, model, term, finding.evidence);
     finding.status = doubt.status;
     finding.reason = std::move(doubt.reason);
 }
 
-double excess_of(const Bench& bench, const Model& stated) {
+double excess_of(const ModelBench& bench, const Model& stated) {
     const double left_nm = rms(bench.cleared_residual(stated));
     return std::sqrt(std::max(left_nm * left_nm - portable::pow(bench.noise().rms_nm, 2), 0.0));
 }
 
-void doubt_for_leftovers(Finding& finding, double excess_nm, const Bench& bench,
+void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& bench,
                          const std::vector<Leftover>& unexplained) {
     if (excess_nm > outgrown * finding.evidence.share_nm && !unexplained.empty()) {
         finding.status = FindingStatus::tentative;
@@ -162,7 +162,7 @@ bool is_doubtful(const Finding& finding) {
            finding.status == FindingStatus::not_reproduced;
 }
 
-bool doubt_beside(const Bench& bench, const Candidate& kept, std::size_t own_terms,
+bool doubt_beside(const ModelBench& bench, const Candidate& kept, std::size_t own_terms,
                   std::vector<Finding>& findings) {
     const double excess_nm = excess_of(bench, kept.stated);
     bool changed = false;

@@ -28,7 +28,7 @@ struct Torques {
     bool changes = false;       ///< in the log, be it in rows that do not count
 };
 
-Torques torques_of(const Bench& bench, const Model& stated, std::size_t term) {
+Torques torques_of(const ModelBench& bench, const Model& stated, std::size_t term) {
     Model removed = stated;
     removed.terms.erase(removed.terms.begin() + static_cast<std::ptrdiff_t>(term));
     const auto added = Prediction(removed, bench.looked_at().motion).added(stated.terms[term]);
@@ -95,7 +95,7 @@ double within(const Torques& torques, const std::vector<std::size_t>& place, std
     return std::sqrt(std::max(off - chance, 0.0) / all);
 }
 
-std::vector<std::size_t> by_time(const Bench& bench, std::size_t count) {
+std::vector<std::size_t> by_time(const ModelBench& bench, std::size_t count) {
     const auto& time_s = bench.looked_at().motion.time_s;
     const double start_s = time_s.front(), length_s = (time_s.back() - start_s) / static_cast<double>(count);
     std::vector<std::size_t> place;
@@ -105,7 +105,7 @@ std::vector<std::size_t> by_time(const Bench& bench, std::size_t count) {
 }
 
 // Speeds in equal parts of the samples that move, each direction by itself.
-std::vector<std::size_t> by_speed(const Bench& bench, std::size_t count) {
+std::vector<std::size_t> by_speed(const ModelBench& bench, std::size_t count) {
     const auto& velocity = bench.looked_at().motion.velocity_deg_s;
     std::vector<double> speeds;
     for (const std::size_t k : bench.rows()) {
@@ -130,7 +130,7 @@ std::vector<std::size_t> by_speed(const Bench& bench, std::size_t count) {
 
 }  // namespace
 
-Unevenness unevenness(const Bench& bench, const Model& stated, std::size_t term) {
+Unevenness unevenness(const ModelBench& bench, const Model& stated, std::size_t term) {
     const Torques torques = torques_of(bench, stated, term);
     if (only_constant(torques)) return {1.0, "where it changes and where it does not"};
     Unevenness worst;

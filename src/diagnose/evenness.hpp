@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-#include "diagnose/bench.hpp"
+#include "diagnose/model_bench.hpp"
 
 namespace ripplenotch {
 
@@ -19,6 +19,6 @@ struct Unevenness {
 
 /// The worst of several ways of cutting the log into places: by time, by speed and direction, and within
 /// short stretches, where only the change of the torque counts and not its mean. `term` is of `stated`.
-[[nodiscard]] Unevenness unevenness(const Bench& bench, const Model& stated, std::size_t term);
+[[nodiscard]] Unevenness unevenness(const ModelBench& bench, const Model& stated, std::size_t term);
 
 }  // namespace ripplenotch

@@ -15,7 +15,7 @@ namespace {
 constexpr double stretches = 40.0;  ///< of the log, in which gains are compared
 
 // Part of the gain that is left when the stretch of the log that gives most of it is put aside.
-double gain_elsewhere(const Bench& bench, const Model& with, const Model& without) {
+double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& without) {
     const auto now = bench.residual(with), before = bench.residual(without);
     const auto& time_s = bench.looked_at().motion.time_s;
     const double start_s = time_s.front(), stretch_s = std::max((time_s.back() - start_s) / stretches, 0.25);
@@ -30,7 +30,7 @@ double gain_elsewhere(const Bench& bench, const Model& with, const Model& withou
     return total > 0.0 ? (total - most) / total : 0.0;
 }
 
-void find_rivals(const Bench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
+void find_rivals(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
                  std::span<const Effect* const> effects, Finding& finding) {
     const std::size_t most = bench.work().ended() ? 1 : 3;
     std::size_t tried = 0;
@@ -44,14 +44,14 @@ void find_rivals(const Bench& bench, const Candidate& model, const Candidate& fe
     }
 }
 
-double squares(const Bench& bench, const Model& stated) {
+double squares(const ModelBench& bench, const Model& stated) {
     const auto left = bench.raw_residual(stated);
     double sum = 0.0;
     for (const std::size_t k : bench.rows()) sum += left[k] * left[k];
     return sum;
 }
 
-Finding finding_of(const Bench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
+Finding finding_of(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
                    const std::vector<double>& torque_nm) {
     Finding finding;
     finding.term = model.stated.terms[term];
@@ -72,7 +72,7 @@ Finding finding_of(const Bench& bench, const Candidate& model, const Candidate& 
 
 }  // namespace
 
-std::vector<Finding> judge(const Bench& bench, const Candidate& found, std::size_t own_terms,
+std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std::size_t own_terms,
                            std::span<const Effect* const> effects, const std::vector<Leftover>& unexplained) {
     std::vector<Finding> findings;
     const Candidate model = bench.with_errors(found);
@@ -104,7 +104,7 @@ std::string what_would_tell(const Effect& one, const Effect& other) {
     return "a log with rests, both directions, several speeds and a travel of more than a revolution";
 }
 
-Candidate believed(const Bench& bench, const Candidate& model, std::size_t own_terms,
+Candidate believed(const ModelBench& bench, const Candidate& model, std::size_t own_terms,
                    std::vector<Finding>& findings) {
     while (true) {
         Candidate kept = model;

@@ -30,7 +30,7 @@ struct Window {
 
 class Residual {
   public:
-    Residual(const Bench& bench, const Model& stated)
+    Residual(const ModelBench& bench, const Model& stated)
         : bench_(bench), raw_nm_(bench.raw_residual(stated)), white_(bench.residual(stated)) {
         // Errors of the measured motion are no disagreement.
         const auto cleared = bench.cleared_residual(stated);
@@ -123,7 +123,7 @@ class Residual {
             // One at a time: what is beside a strong line is often its own foot.
             const auto lines = standing_out(bench_.looked_at(), left_nm, line_prominence, 1);
             if (lines.empty()) break;
-            const Line& line = lines[0];
+            const ResidualLine& line = lines[0];
             const double rms_nm = peel(line, left_nm);
             if (rms_nm < material_sigma(bench_.looked_at()) * sigma_nm()) break;
             Leftover leftover{line.by_angle ? "order" : "tone", {}, rms_nm, part(rms_nm, bench_.samples())};
@@ -139,7 +139,7 @@ class Residual {
 
   private:
     // Takes the line out of the rows that count; its rms in them.
-    [[nodiscard]] double peel(const Line& line, std::vector<double>& left_nm) const {
+    [[nodiscard]] double peel(const ResidualLine& line, std::vector<double>& left_nm) const {
         const Motion& motion = bench_.looked_at().motion;
         const auto& where = line.by_angle ? motion.position_deg : motion.time_s;
         double cc = 0.0, cs = 0.0, ss = 0.0, cy = 0.0, sy = 0.0;
@@ -236,14 +236,14 @@ class Residual {
         return found;
     }
 
-    const Bench& bench_;
+    const ModelBench& bench_;
     std::vector<double> raw_nm_, white_;
     double inflation_ = 1.0, matters_mean_ = matters_mean, matters_power_ = matters_power;
 };
 
 }  // namespace
 
-std::vector<Leftover> leftovers(const Bench& bench, const Model& stated) {
+std::vector<Leftover> leftovers(const ModelBench& bench, const Model& stated) {
     const Residual residual(bench, stated);
     std::vector<Leftover> found = residual.in_time();
     const Motion& motion = bench.looked_at().motion;

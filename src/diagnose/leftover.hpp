@@ -5,14 +5,14 @@
 
 #include <vector>
 
-#include "diagnose/bench.hpp"
+#include "diagnose/model_bench.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
 
 /// Disagreements of the model with the log that are both significant and large enough to matter, the largest
 /// first.
-[[nodiscard]] std::vector<Leftover> leftovers(const Bench& bench, const Model& stated);
+[[nodiscard]] std::vector<Leftover> leftovers(const ModelBench& bench, const Model& stated);
 
 /// True when the leftover is confined to less than a tenth of the log's time, so that the rest of the log can
 /// be diagnosed without it.

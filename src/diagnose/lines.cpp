@@ -109,7 +109,7 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t first, double l
 }
 
 void gather(const Case& c, const std::vector<double>& residual_nm, bool by_angle, double least,
-            std::vector<Line>& lines) {
+            std::vector<ResidualLine>& lines) {
     const auto samples =
         by_angle ? evenly_by_angle(c, residual_nm) : counted(c, c.motion.time_s, residual_nm);
     if (samples.where.size() < 50) return;
@@ -130,14 +130,14 @@ void gather(const Case& c, const std::vector<double>& residual_nm, bool by_angle
 
 }  // namespace
 
-std::vector<Line> standing_out(const Case& looked_at, const std::vector<double>& residual_nm, double least,
-                               std::size_t most) {
-    std::vector<Line> lines, by_angle;
+std::vector<ResidualLine> standing_out(const Case& looked_at, const std::vector<double>& residual_nm,
+                                       double least, std::size_t most) {
+    std::vector<ResidualLine> lines, by_angle;
     gather(looked_at, residual_nm, false, least, lines);
     gather(looked_at, residual_nm, true, least, by_angle);
     lines.insert(lines.end(), by_angle.begin(), by_angle.end());
     std::sort(lines.begin(), lines.end(),
-              [](const Line& a, const Line& b) { return a.prominence > b.prominence; });
+              [](const ResidualLine& a, const ResidualLine& b) { return a.prominence > b.prominence; });
     if (lines.size() > most) lines.resize(most);
     return lines;
 }

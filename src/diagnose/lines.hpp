@@ -8,7 +8,7 @@
 
 namespace ripplenotch {
 
-struct Line {
+struct ResidualLine {
     bool by_angle = false;
     double frequency = 0.0;     ///< Hz, or cycles per degree of output
     double amplitude_nm = 0.0;  ///< zero to peak
@@ -16,8 +16,9 @@ struct Line {
 };
 
 /// The strongest lines whose prominence is at least `least`, the strongest first, at most `most`.
-[[nodiscard]] std::vector<Line> standing_out(const Case& looked_at, const std::vector<double>& residual_nm,
-                                             double least, std::size_t most);
+[[nodiscard]] std::vector<ResidualLine> standing_out(const Case& looked_at,
+                                                     const std::vector<double>& residual_nm, double least,
+                                                     std::size_t most);
 
 /// Frequencies of the strongest tones of the residual, refined.
 [[nodiscard]] std::vector<double> strongest_tones_hz(const Case& looked_at,

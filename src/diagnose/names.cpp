@@ -10,7 +10,8 @@ std::string_view status_name(FindingStatus status) {
 }
 
 std::string_view verdict_name(DiagnosisVerdict verdict) {
-    constexpr std::string_view names[] = {"matches", "explained", "partly-explained", "unexplained", "undecided"};
+    constexpr std::string_view names[] = {"matches", "explained", "partly-explained", "unexplained",
+                                          "undecided"};
     return names[static_cast<std::size_t>(verdict)];
 }
 

@@ -209,7 +209,7 @@ VectorXd left_without_lines(Columns& columns, const Case& c, const std::vector<d
         const std::vector<double> values(left.data(), left.data() + left.size());
         const auto found = standing_out(c, values, stands_out, 2);
         if (found.empty()) break;
-        for (const Line& strong : found) {
+        for (const ResidualLine& strong : found) {
             const auto& where = strong.by_angle ? c.motion.position_deg : c.motion.time_s;
             add_wave(
                 columns, [&](std::size_t k) { return strong.frequency * where[k]; },

@@ -41,7 +41,7 @@ struct Check {
     bool acts = false;  ///< on the other log it brings a torque that would be seen
 };
 
-Check checked(const Bench& bench, const Case& other, const Candidate& with, const Candidate& without,
+Check checked(const ModelBench& bench, const Case& other, const Candidate& with, const Candidate& without,
               std::size_t term) {
     const Model own = with_own_phase(other, with.stated, term);
     const auto after = residual_nm(other, own), before = residual_nm(other, without.stated);
@@ -57,7 +57,7 @@ void note(Finding& finding, const Check& check) {
 }
 
 // What a finding that is in doubt would do beside the model.
-void note_doubtful(const Bench& bench, const Candidate& all, const Candidate& model, const Case& other,
+void note_doubtful(const ModelBench& bench, const Candidate& all, const Candidate& model, const Case& other,
                    std::size_t own_terms, std::vector<Finding>& findings) {
     for (std::size_t i = 0; i < findings.size(); ++i) {
         if (!is_doubtful(findings[i]) || findings[i].status == FindingStatus::not_reproduced) continue;
@@ -77,7 +77,7 @@ double rms_left(const Case& other, Model stated) {
 
 // Each finding may mend what the one before has spoiled: the newest go until the whole does no worse than
 // the model as given.
-void withdraw_newest(const Bench& bench, Candidate& kept, const Model& given, const Case& other,
+void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& given, const Case& other,
                      std::size_t own_terms, std::vector<Finding>& findings) {
     const double given_nm = rms_left(other, given);
     while (true) {
@@ -104,8 +104,9 @@ void withdraw_newest(const Bench& bench, Candidate& kept, const Model& given, co
 
 }  // namespace
 
-Candidate reproduced(const Bench& bench, const Candidate& all, const Candidate& model, const Model& given,
-                     const Case& other, std::size_t own_terms, std::vector<Finding>& findings) {
+Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candidate& model,
+                     const Model& given, const Case& other, std::size_t own_terms,
+                     std::vector<Finding>& findings) {
     Candidate kept = model;
     while (true) {
         Finding* worst = nullptr;

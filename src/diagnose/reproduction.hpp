@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "diagnose/bench.hpp"
+#include "diagnose/model_bench.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
@@ -14,7 +14,7 @@ namespace ripplenotch {
 /// of them; their status says so. `findings`: one a term from `own_terms` on of `all`, the model with the
 /// doubtful ones; `model` holds those of them that are not doubtful. Each finding gets the residual of
 /// `other` without and with it.
-[[nodiscard]] Candidate reproduced(const Bench& bench, const Candidate& all, const Candidate& model,
+[[nodiscard]] Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candidate& model,
                                    const Model& given, const Case& other, std::size_t own_terms,
                                    std::vector<Finding>& findings);
 

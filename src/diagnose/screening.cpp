@@ -63,7 +63,7 @@ bool is_there_already(const Term& tried, const Candidate& model) {
 
 class Screening {
   public:
-    Screening(const Bench& bench, const Candidate& model, Case some, const Hints& hints)
+    Screening(const ModelBench& bench, const Candidate& model, Case some, const Hints& hints)
         : model_(model),
           case_(std::move(some)),
           prediction_(model.stated, case_.motion),
@@ -212,9 +212,9 @@ class Screening {
 
 }  // namespace
 
-std::vector<Trial> screen(const Bench& bench, const Candidate& model,
+std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
                           std::span<const Effect* const> effects) {
-    for (const Bench::Screened& before : bench.screened()) {
+    for (const ModelBench::Screened& before : bench.screened()) {
         if (before.beside == model.stated) return before.trials;
     }
     const Hints hints = hints_of(bench, model.stated);

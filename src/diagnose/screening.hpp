@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "diagnose/bench.hpp"
+#include "diagnose/model_bench.hpp"
 
 namespace ripplenotch {
 
 /// The best trial of each effect in `effects`, the best first. Effects of which the log tells nothing beside
 /// the model are not in it.
-[[nodiscard]] std::vector<Trial> screen(const Bench& bench, const Candidate& model,
+[[nodiscard]] std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
                                         std::span<const Effect* const> effects);
 
 }  // namespace ripplenotch

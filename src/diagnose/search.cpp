@@ -33,13 +33,13 @@ bool same_place(const Term& a, const Term& b) {
     return true;
 }
 
-bool newest_is_bent(const Bench& bench, const Candidate& model) {
+bool newest_is_bent(const ModelBench& bench, const Candidate& model) {
     return !bent_parameter(bench, model, model.stated.terms.size() - 1).empty();
 }
 
 // A shape that is bent as far as it goes stands in for something else: before it is taken, whatever closes a
 // fair part of what it closes has its turn.
-std::optional<Candidate> best_addition(const Bench& bench, const Candidate& now,
+std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate& now,
                                        const std::vector<Trial>& trials) {
     std::vector<Candidate> tried;
     const double worth = trials.empty() ? 0.0 : std::max(within_reach * trials[0].score(), 0.0);
@@ -59,7 +59,7 @@ std::optional<Candidate> best_addition(const Bench& bench, const Candidate& now,
     return tried[0];
 }
 
-bool worth_it(const Bench& bench, const Candidate& now, const Candidate& next) {
+bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& next) {
     if (next.criterion() >= now.criterion()) return false;
     const double gain = now.gain_left - next.gain_left, samples = bench.samples();
     if (bench.share(next, now) < material_sigma(bench.looked_at())) return false;
@@ -68,7 +68,7 @@ bool worth_it(const Bench& bench, const Candidate& now, const Candidate& next) {
 }
 
 // `spared`: how many of the newest were judged a moment ago.
-void drop_needless(const Bench& bench, Candidate& now, std::size_t own_terms, std::size_t spared = 1) {
+void drop_needless(const ModelBench& bench, Candidate& now, std::size_t own_terms, std::size_t spared = 1) {
     while (now.stated.terms.size() > own_terms + spared) {
         std::optional<Candidate> best;
         for (std::size_t term = own_terms; term + spared < now.stated.terms.size(); ++term) {
@@ -81,7 +81,7 @@ void drop_needless(const Bench& bench, Candidate& now, std::size_t own_terms, st
     }
 }
 
-bool swap_once(const Bench& bench, Candidate& now, std::size_t own_terms,
+bool swap_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
                std::span<const Effect* const> effects) {
     for (std::size_t term = own_terms; term < now.stated.terms.size(); ++term) {
         if (bench.work().is_over()) return false;
@@ -103,11 +103,11 @@ bool swap_once(const Bench& bench, Candidate& now, std::size_t own_terms,
 
 }  // namespace
 
-Candidate baseline(const Bench& bench, const Model& model) {
+Candidate baseline(const ModelBench& bench, const Model& model) {
     return bench.fitted(model, model, std::vector<double>(model.terms.size(), 0.0), 30);
 }
 
-Candidate with_trial(const Bench& bench, const Candidate& model, const Trial& trial) {
+Candidate with_trial(const ModelBench& bench, const Candidate& model, const Trial& trial) {
     Model open = model.open, guess = model.stated;
     open.terms.push_back(trial.open);
     guess.terms.push_back(trial.start);
@@ -116,7 +116,7 @@ Candidate with_trial(const Bench& bench, const Candidate& model, const Trial& tr
     return bench.fitted(open, guess, std::move(prices), bench.work().ended() ? 4 : 12, finalist_settled);
 }
 
-Candidate without_term(const Bench& bench, const Candidate& model, std::size_t term) {
+Candidate without_term(const ModelBench& bench, const Candidate& model, std::size_t term) {
     Model open = model.open, guess = model.stated;
     std::vector<double> prices = model.prices;
     const auto at = static_cast<std::ptrdiff_t>(term);
@@ -128,7 +128,7 @@ Candidate without_term(const Bench& bench, const Candidate& model, std::size_t t
     return bench.fitted(open, guess, std::move(prices));
 }
 
-Candidate search(Bench& bench, const Candidate& start, std::size_t own_terms,
+Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
                  std::span<const Effect* const> effects) {
     Candidate now = start;
     const auto add_all = [&] {

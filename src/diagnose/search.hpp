@@ -11,14 +11,14 @@
 namespace ripplenotch {
 
 /// The user's terms and no others, fitted.
-[[nodiscard]] Candidate baseline(const Bench& bench, const Model& model);
+[[nodiscard]] Candidate baseline(const ModelBench& bench, const Model& model);
 
 /// `start` with what should be added. `own_terms`: how many of its terms are the user's and stay.
-[[nodiscard]] Candidate search(Bench& bench, const Candidate& start, std::size_t own_terms,
+[[nodiscard]] Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
                                std::span<const Effect* const> effects);
 
-[[nodiscard]] Candidate without_term(const Bench& bench, const Candidate& model, std::size_t term);
-[[nodiscard]] Candidate with_trial(const Bench& bench, const Candidate& model, const Trial& trial);
+[[nodiscard]] Candidate without_term(const ModelBench& bench, const Candidate& model, std::size_t term);
+[[nodiscard]] Candidate with_trial(const ModelBench& bench, const Candidate& model, const Trial& trial);
 
 /// A rival that explains the log as well but for this gain is not told from a finding.
 inline constexpr double tie_margin = 12.0;

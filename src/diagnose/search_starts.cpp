@@ -46,7 +46,7 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
 
 }  // namespace
 
-Hints hints_of(const Bench& bench, const Model& stated) {
+Hints hints_of(const ModelBench& bench, const Model& stated) {
     Hints hints;
     hints.tones_hz = strongest_tones_hz(bench.looked_at(), bench.raw_residual(stated), 3);
     StatedRipple ripple = stated_ripple(stated);

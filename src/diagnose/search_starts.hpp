@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "diagnose/bench.hpp"
 #include "diagnose/lines.hpp"
+#include "diagnose/model_bench.hpp"
 
 namespace ripplenotch {
 
@@ -17,7 +17,7 @@ struct Hints {
     RatioCandidates ratios;
 };
 
-[[nodiscard]] Hints hints_of(const Bench& bench, const Model& stated);
+[[nodiscard]] Hints hints_of(const ModelBench& bench, const Model& stated);
 
 /// The effect with every combination of the values at which its search may begin. `samples`: of the log.
 /// `cells` is multiplied by the number of places that were compared to choose them.

@@ -38,7 +38,7 @@ void leave_out_limited(Case& looked_at, const Model& stated, const std::vector<F
 Candidate told_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen,
                       const std::vector<Fault>& faults, Work& work) {
     leave_out_limited(looked_at, chosen.stated, faults, noise.rms_nm);
-    Bench bench(looked_at, noise, work);
+    ModelBench bench(looked_at, noise, work);
     bench.settle_on(chosen.stated);
     return bench.settled(chosen);
 }

@@ -2,8 +2,8 @@
 #pragma once
 // The values that are told in the end, with their intervals.
 
-#include "diagnose/bench.hpp"
 #include "diagnose/faults.hpp"
+#include "diagnose/model_bench.hpp"
 
 namespace ripplenotch {
 

@@ -32,7 +32,7 @@ void MotorPath::restart() noexcept {
     travelled_ += beyond_a_gap;
 }
 
-RippleWindows::RippleWindows(std::vector<double> orders, double sample_rate_hz, WindowRule rule)
+RippleWindows::RippleWindows(std::vector<double> orders, double sample_rate_hz, RippleWindowRule rule)
     : orders_(std::move(orders)), rate_hz_(sample_rate_hz), rule_(rule) {}
 
 void RippleWindows::begin(const MotorPath& path) {

@@ -38,7 +38,7 @@ struct RippleWindow {
     std::vector<double> background;
 };
 
-struct WindowRule {
+struct RippleWindowRule {
     double turns = 2.5, fewest_turns = 2.0;
     double longest_s = 2.0;  ///< a cubic follows the torque no longer
 };
@@ -47,7 +47,7 @@ struct WindowRule {
 /// and all orders, the middle counting most.
 class RippleWindows {
   public:
-    RippleWindows(std::vector<double> orders, double sample_rate_hz, WindowRule rule);
+    RippleWindows(std::vector<double> orders, double sample_rate_hz, RippleWindowRule rule);
     void add(const MotorPath& path, double torque_nm);
     void split();  ///< what comes next does not continue the window
     /// Closes the last window and gives up all of them.
@@ -62,7 +62,7 @@ class RippleWindows {
 
     std::vector<double> orders_;
     double rate_hz_;
-    WindowRule rule_;
+    RippleWindowRule rule_;
     std::vector<double> turns_, torque_nm_;  ///< of the window under way; turns from its first row
     double first_turns_ = 0.0, first_travelled_ = 0.0, furthest_ = 0.0;
     std::vector<RippleWindow> windows_;

@@ -66,7 +66,7 @@ void StreamPass::note_switches(const RowBlock& block, Lane& lane) {
 
 void StreamPass::note_motion(const JointRows& rows, Lane& lane) {
     StreamReport& report = lane.report;
-    SpeedRange range{report.slowest_deg_s, report.fastest_deg_s};
+    SpeedExtent range{report.slowest_deg_s, report.fastest_deg_s};
     if (lane.rows == 0 && !rows.velocity_deg_s.empty())
         range.slowest_deg_s = range.fastest_deg_s = std::abs(rows.velocity_deg_s.front());
     widen(range, rows.velocity_deg_s);

@@ -78,7 +78,7 @@ TEST_CASE("the range of speeds is that of a plain loop, and what is no number wi
     for (std::size_t size = 0; size < 60; ++size) {
         std::vector<double> values(size);
         for (double& value : values) value = engine() % 7 == 0 ? not_a_number : velocity(engine);
-        SpeedRange range{30.0, 40.0}, expected = range;
+        SpeedExtent range{30.0, 40.0}, expected = range;
         widen(range, values);
         for (const double value : values) {
             if (std::abs(value) < expected.slowest_deg_s) expected.slowest_deg_s = std::abs(value);

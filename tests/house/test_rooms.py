@@ -46,7 +46,29 @@ def sources():
                 yield path, room, re.findall(r'^\s*#include\s+[<"]([^>"]+)[>"]', path.read_text(), re.M)
 
 
+def types_defined_in(text):
+    """Types at the level of a namespace, with its name; those of an unnamed namespace are their file's own."""
+    spaces = []
+    for line in text.split("\n"):
+        if opened := re.match(r"(?:inline )?namespace\b([^={]*)\{", line):
+            spaces.append(opened[1].strip())
+        elif re.match(r"\}  // namespace", line):
+            spaces.pop()
+        elif "" not in spaces:
+            found = re.match(r"(?:template <.*> )?(?:struct|class|enum class|enum) ([\w:]+)[^;()]*$", line)
+            if found:
+                yield "::".join([*spaces, found[1]])
+
+
 class Rooms(unittest.TestCase):
+    def test_no_two_types_have_one_name(self):
+        files = {}
+        for path, _, _ in sources():
+            for name in types_defined_in(path.read_text()):
+                files.setdefault(name, set()).add(str(path.relative_to(SOURCE)))
+        self.assertGreater(len(files), 300)
+        self.assertEqual({name: where for name, where in files.items() if len(where) > 1}, {})
+
     def test_a_room_sees_only_the_rooms_it_may(self):
         looked_at = 0
         for path, room, includes in sources():

@@ -32,7 +32,7 @@ constexpr std::array keys = {
 
 struct Plan {
     RippleOrders ripple;
-    WindowRule rule;
+    RippleWindowRule rule;
     MotorAngle::Source source = MotorAngle::Source::best;
     double sample_rate_hz = 0.0;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/bench.hpp"
+#include "diagnose/model_bench.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,16 +15,16 @@ constexpr double stretch_s = 0.25;
 
 double Candidate::criterion() const { return gain_left + std::accumulate(prices.begin(), prices.end(), 0.0); }
 
-Bench::Bench(const Case& looked_at, const NoiseFloor& noise, Work& work)
+ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work)
     : case_(looked_at), noise_(noise), work_(work), weighing_(looked_at.size(), looked_at.use, noise.color) {}
 
-void Bench::settle_on(const Model& model) {
+void ModelBench::settle_on(const Model& model) {
     screened_.clear();
     weighing_.set_nuisance(motion_errors(case_, model), noise_.white_nm);
 }
 
-Candidate Bench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
-                        int most_iterations, double settled) const {
+Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
+                             int most_iterations, double settled) const {
     return fitted(open, std::move(prices),
                   {.first_guess = &first_guess,
                    .most_iterations = most_iterations,
@@ -33,7 +33,7 @@ Candidate Bench::fitted(const Model& open, const Model& first_guess, std::vector
                    .weighing = &weighing_});
 }
 
-Candidate Bench::with_errors(Candidate model) const {
+Candidate ModelBench::with_errors(Candidate model) const {
     const Fit there = fit(model.open, case_.motion, case_.torque_nm,
                           {.first_guess = &model.stated, .most_iterations = 0, .weighing = &weighing_});
     work_.add(there.applied, case_.size());
@@ -41,7 +41,7 @@ Candidate Bench::with_errors(Candidate model) const {
     return model;
 }
 
-Candidate Bench::settled(const Candidate& model) const {
+Candidate ModelBench::settled(const Candidate& model) const {
     return fitted(
         model.open, model.prices,
         {.first_guess = &model.stated,
@@ -50,7 +50,7 @@ Candidate Bench::settled(const Candidate& model) const {
          .weighing = &weighing_});
 }
 
-Candidate Bench::fitted(const Model& open, std::vector<double> prices, const FitOptions& options) const {
+Candidate ModelBench::fitted(const Model& open, std::vector<double> prices, const FitOptions& options) const {
     const Fit found = fit(open, case_.motion, case_.torque_nm, options);
     work_.add(found.applied, case_.size());
     const double squares = found.residual_rms_nm * found.residual_rms_nm * static_cast<double>(found.samples);
@@ -62,7 +62,7 @@ Candidate Bench::fitted(const Model& open, std::vector<double> prices, const Fit
             found.converged};
 }
 
-double Bench::share(const Candidate& with, const Candidate& without) const {
+double ModelBench::share(const Candidate& with, const Candidate& without) const {
     const auto left_with = raw_residual(with.stated), left_without = raw_residual(without.stated);
     double raw = 0.0, moved = 0.0;
     for (const std::size_t k : rows()) {
@@ -75,7 +75,7 @@ double Bench::share(const Candidate& with, const Candidate& without) const {
     return std::sqrt(std::max({std::min(white, moved), raw, 0.0})) / noise_.rms_nm;
 }
 
-std::vector<double> Bench::cleared_residual(const Model& stated) const {
+std::vector<double> ModelBench::cleared_residual(const Model& stated) const {
     Weighing plain(case_.size(), case_.use, {});
     plain.set_nuisance(motion_errors(case_, stated), noise_.rms_nm);
     const auto cleared = plain(raw_residual(stated));
@@ -86,7 +86,7 @@ std::vector<double> Bench::cleared_residual(const Model& stated) const {
     return told;
 }
 
-double Bench::floor_nm(const Model& stated) const {
+double ModelBench::floor_nm(const Model& stated) const {
     const auto left = raw_residual(stated), cleared = cleared_residual(stated);
     double all = 0.0, beside = 0.0;
     for (std::size_t r = 0; r < rows().size(); ++r) {
@@ -96,13 +96,13 @@ double Bench::floor_nm(const Model& stated) const {
     return std::sqrt(noise_.rms_nm * noise_.rms_nm + std::max(all - beside, 0.0) / samples());
 }
 
-std::vector<double> Bench::raw_residual(const Model& stated) const {
+std::vector<double> ModelBench::raw_residual(const Model& stated) const {
     std::vector<double> left = predict_nm(stated, case_.motion);
     for (std::size_t k = 0; k < left.size(); ++k) left[k] = case_.torque_nm[k] - left[k];
     return left;
 }
 
-std::vector<double> Bench::residual(const Model& stated) const {
+std::vector<double> ModelBench::residual(const Model& stated) const {
     std::vector<double> left = weighing_(raw_residual(stated));
     left.resize(weighing_.rows().size());
     for (double& value : left) value /= noise_.white_nm;

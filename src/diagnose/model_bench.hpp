@@ -33,9 +33,9 @@ struct Trial {
     [[nodiscard]] double score() const { return gain - price; }
 };
 
-class Bench {
+class ModelBench {
   public:
-    Bench(const Case& looked_at, const NoiseFloor& noise, Work& work);
+    ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work);
 
     /// Takes up the motion errors of this model: what can be blamed on them is no gap.
     void settle_on(const Model& model);
