@@ -37,6 +37,17 @@ Json assumptions_json(const std::vector<Assumption>& assumptions) {
     return json;
 }
 
+Json outside_json(const RowsOutside& outside) {
+    const auto number_or_null = [](std::optional<double> value) {
+        return value ? Json(*value) : Json(nullptr);
+    };
+    return {{"before", outside.before},
+            {"after", outside.after},
+            {"from_s", number_or_null(outside.from_s)},
+            {"to_s", number_or_null(outside.to_s)},
+            {"zero_s", outside.zero_s}};
+}
+
 Json recording_json(const Recording& recording) {
     Json json;
     json["source"] = recording.source;
@@ -49,6 +60,7 @@ Json recording_json(const Recording& recording) {
     if (recording.angle.contradicted) json["angle"]["until_row"] = recording.angle.contradicted->row;
     json["assumptions"] = assumptions_json(recording.assumptions);
     json["inferences"] = assumptions_json(recording.inferences);
+    if (recording.outside) json["rows_outside"] = outside_json(*recording.outside);
     return json;
 }
 

@@ -101,6 +101,10 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
         metrics.source, metrics.method, recording.rows(), metrics.sample_rate.value(),
         recording.clock.mean_rate.value(), recording.clock.gap_count, recording.held.count,
         source_name(recording.angle.source())));
+    if (recording.outside) {
+        lines.push_back(fmt::format("{}: {} rows before and {} after are left out, by --from and --to",
+                                    metrics.source, recording.outside->before, recording.outside->after));
+    }
     if (metrics.levels && metrics.levels->windows > 0) {
         const RippleLevels& levels = *metrics.levels;
         for (std::size_t i = 0; i < levels.orders.size(); ++i) lines.push_back(ripple_line(metrics, i));

@@ -109,6 +109,11 @@ std::string columns_table(const LogInfo& log) {
 std::string info_to_text(const LogInfo& log) {
     std::string text = first_sentence(log);
     text += fmt::format("\nclock     {}\n", clock_text(log));
+    if (log.layout.outside) {
+        const RowsOutside& outside = *log.layout.outside;
+        text += fmt::format("range     {}; left out are {} rows before and {} after\n",
+                            range_in_words(outside), outside.before, outside.after);
+    }
     text += fmt::format("read as   {}{}\n", log.layout.options,
                         log.joints.size() > 1 ? ", and the other joints alike" : "");
     if (log.bad_values_held > 0)

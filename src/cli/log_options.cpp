@@ -17,6 +17,11 @@ void attach_log(Options& options, LogOptions& log) {
 }
 
 void attach_log_columns(Options& options, LogOptions& log) {
+    options.text(
+        "--from", log.from, "TIME",
+        "rows before are as if they were not there: 2s, 500ms, 1.5min or 1:30 on the log's own time axis; "
+        "12:30:05 where it has times of day");
+    options.text("--to", log.to, "TIME", "rows after are as if they were not there; the row at TIME counts");
     options.text("--joint", log.joint, "NAME",
                  "which joint of a file that holds several; all runs each where possible");
     options.text(
@@ -71,6 +76,8 @@ ReadOptions LogOptions::resolve() const {
             read.units[piece.substr(0, equals)] = piece.substr(equals + 1);
         }
     }
+    if (from) read.range.from = parse_time_point(*from, "--from");
+    if (to) read.range.to = parse_time_point(*to, "--to");
     read.sample_rate = sample_rate;
     if (sample_rate && !(sample_rate->value() > 0.0)) raise<UsageError>("--sample-rate: must be above 0 Hz");
     const auto one_character = [](const std::string& text, std::string_view option) {

@@ -213,6 +213,7 @@ void say(const CommonOptions& common, std::string_view sentence) {
 
 void say_layout(const CommonOptions& common, const Layout& layout) {
     say(common, fmt::format("{}: read as if with {}", layout.source, layout.options));
+    if (layout.outside) say(common, fmt::format("{}: {}", layout.source, range_in_words(*layout.outside)));
     for (const Assumption& one : layout.inferences)
         say(common, fmt::format("{}: {} is {}: {}", layout.source, one.about, one.assumed, one.reason));
     say_warnings(common, layout.warnings);

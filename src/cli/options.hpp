@@ -90,8 +90,10 @@ void attach_common(Options& options, CommonOptions& common, JsonName by_name = J
 [[nodiscard]] bool ends_with_json(std::string_view path);
 
 /// How to read a log: --format, --joint, --columns, --unit, --sample-rate, --delimiter, --decimal,
-/// --no-header, --skip-lines, --side, --kt, --hold-bad-values. Call resolve() after parsing.
+/// --no-header, --skip-lines, --side, --kt, --hold-bad-values, and which rows of it: --from, --to. Call
+/// resolve() after parsing.
 struct LogOptions {
+    std::optional<std::string> from, to;
     std::optional<std::string> format, joint, columns, delimiter, decimal, kt;
     std::vector<std::string> units;
     std::optional<std::string> side;

@@ -67,6 +67,7 @@ Recording Account::recording(const Layout& layout, std::size_t joint) const {
     recording.angle = joints_[joint].angle.facts();
     recording.assumptions = layout.assumptions;
     recording.inferences = layout.inferences;
+    if (layout.outside) recording.outside = *layout.outside;
     recording.warnings = recording_warnings(recording);
     return recording;
 }

@@ -94,7 +94,7 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
 }
 
 void CsvReader::complain(std::size_t column, const std::string& sentence) const {
-    raise<DataError>("{}:{}:{}: {}", source_->name(), line_, column, sentence);
+    raise<DataError>("{}:{}:{}: {}", source_->name(), line_in_file(), column, sentence);
 }
 
 }  // namespace ripplenotch

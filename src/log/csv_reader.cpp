@@ -53,7 +53,7 @@ CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes
          !source_ended_ && line_ends(first_bytes) < 8 && size <= 8 * longest_line; size *= 2) {
         source_ended_ = read_up_to(*source_, first_bytes, size);
     }
-    dialect_ = sniff_text(first_bytes, source_ended_, source_->name(), options);
+    dialect_ = sniff_text(first_bytes, source_ended_, *source_, options);
     layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
     if (dialect_.head_lines > 0) {
         layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
@@ -168,7 +168,7 @@ std::size_t CsvReader::take_on(RowBlock& block, std::size_t begin) {
     if (end - begin > longest_line) {
         raise<DataError>(
             "{}:{}: read a line of more than 1 MiB, expected rows of {} cells; check that this is a text log",
-            source_->name(), line_, dialect_.columns);
+            source_->name(), line_in_file(), dialect_.columns);
     }
     const bool row = take_line(block, begin, end);
     bytes_without_row_ = row ? 0 : bytes_without_row_ + end - begin;
@@ -177,7 +177,7 @@ std::size_t CsvReader::take_on(RowBlock& block, std::size_t begin) {
     if (bytes_without_row_ > longest_line) {
         raise<DataError>(
             "{}:{}: read more than 1 MiB without a row, expected rows of numbers; remove the comments",
-            source_->name(), line_);
+            source_->name(), line_in_file());
     }
     // A row that needed care is seldom alone.
     if (!plain_row_ || end_mark_seen_ || next == block.bytes.size()) return next;

@@ -39,6 +39,7 @@ class CsvReader : public LogReader {
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
     double read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted, RowBlock& block);
     void append_row(RowBlock& block, ParsedRow& row);
+    [[nodiscard]] std::size_t line_in_file() const { return source_->number_in_file(line_); }
     [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
 
     std::unique_ptr<ByteSource> source_;

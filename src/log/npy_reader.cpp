@@ -252,7 +252,8 @@ void NpyReader::complain(std::size_t column, const std::string& sentence) const 
     if (header_.structured) {
         for (const NpyField& field : header_.fields) names.push_back(field.name);
     }
-    raise<DataError>("{}: row {}, {}: {}", source_->name(), rows_ + 1, column_label(names, column), sentence);
+    raise<DataError>("{}: row {}, {}: {}", source_->name(), source_->number_in_file(rows_ + 1),
+                     column_label(names, column), sentence);
 }
 
 }  // namespace ripplenotch

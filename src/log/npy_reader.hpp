@@ -27,6 +27,8 @@ class NpyReader : public LogReader {
     void accept(RowBlock& block) override;
 
     [[nodiscard]] const NpyHeader& header() const { return header_; }
+    /// What a record says, in the unit of its column, less the origin; only where there is a time column.
+    [[nodiscard]] double time_of(const char* record) const { return time_at(record, layout_); }
 
   private:
     void take_whole(std::string& first_bytes);

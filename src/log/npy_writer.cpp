@@ -105,21 +105,17 @@ void NpyTableWriter::begin(std::span<const std::string> names) {
     for (const std::string& name : names) fields.push_back(fmt::format("({}, '<f8')", python_string(name)));
     descr_ = fmt::format("[{}]", fmt::join(fields, ", "));
     if (!sink_.can_rewrite()) {
-        spool_.reset(std::tmpfile());
-        if (!spool_)
-            raise<FileError>(
-                "no temporary file for an array on its way into a pipe; check the temporary folder");
+        spool_.emplace();
         return;
     }
     sink_.write(make_npy_header(descr_, shape_of_rows(0), true));
 }
 
 void NpyTableWriter::put(std::string_view bytes) {
-    if (!spool_) {
+    if (spool_)
+        spool_->put(bytes);
+    else
         sink_.write(bytes);
-    } else if (std::fwrite(bytes.data(), 1, bytes.size(), spool_.get()) != bytes.size()) {
-        raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
-    }
 }
 
 void NpyTableWriter::rows(std::span<const std::span<const double>> columns) {
@@ -141,11 +137,10 @@ void NpyTableWriter::end() {
         return;
     }
     sink_.write(header);
-    std::rewind(spool_.get());
+    spool_->rewind();
     std::vector<char> buffer(std::size_t{1} << 20);
-    while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), spool_.get()))
+    while (const std::size_t got = spool_->read(buffer.data(), buffer.size()))
         sink_.write({buffer.data(), got});
-    if (std::ferror(spool_.get()) != 0) raise<FileError>("cannot read a temporary file back");
 }
 
 }  // namespace ripplenotch

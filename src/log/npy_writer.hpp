@@ -2,13 +2,14 @@
 #pragma once
 // NumPy array files out: rows of one that was read with other torque values, or new structured ones.
 
-#include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "log/npy_reader.hpp"
 #include "log/table_writer.hpp"
+#include "log/temporary_bytes.hpp"
 
 namespace ripplenotch {
 
@@ -43,11 +44,8 @@ class NpyTableWriter : public TableWriter {
 
   private:
     void put(std::string_view bytes);
-    struct Close {
-        void operator()(std::FILE* file) const { std::fclose(file); }
-    };
     ByteSink& sink_;
-    std::unique_ptr<std::FILE, Close> spool_;
+    std::optional<TemporaryBytes> spool_;
     std::string descr_, bytes_;
     std::size_t rows_ = 0;
 };

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The front door: which format a log has, and which writer fits it.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
 #include "log/derived_velocity.hpp"
 #include "log/formats.hpp"
+#include "log/stamp.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -29,6 +32,39 @@ constexpr std::array strangers = {
     Stranger{"\x89MCAP", "an MCAP file", "export the joint's topic as CSV"},
 };
 
+std::string clock_words(const Layout& layout) {
+    if (!layout.chosen.time) return "none";
+    const Column& column = layout.columns[*layout.chosen.time];
+    return fmt::format("'{}' {}{}", column.name, layout.time_as_text ? "as text" : "in " + column.unit,
+                       layout.time_fraction ? " and nanoseconds" : "");
+}
+
+// The range was put to the whole log; what is inside has to be read by the same clock.
+void check_clock(const Layout& whole, const Layout& inside) {
+    const std::string before = clock_words(whole), after = clock_words(inside);
+    if (before == after) return;
+    raise<DataError>(
+        "{}: --from and --to: the time is read as {} in the whole log, as {} in the rows inside; say "
+        "--columns time=NAME and --unit time=UNIT",
+        whole.source, before, after);
+}
+
+/// Rows outside the range are gone before anything is decided about the others.
+std::unique_ptr<LogReader> open_cut(const LogFormat& format, std::unique_ptr<ByteSource> source,
+                                    std::string first_bytes, const ReadOptions& options) {
+    LogCut cut = format.cut(std::move(source), std::move(first_bytes), options);
+    ReadOptions inside = options;
+    inside.outside = cut.outside;
+    auto reader = format.open(std::move(cut.bytes), {}, inside);
+    const Layout& layout = reader->layout();
+    check_clock(cut.whole, layout);
+    if (layout.time_origin != cut.whole.time_origin) {
+        cut.outside->zero_s =
+            since(layout.time_origin, cut.whole.time_origin) * layout.columns[*layout.chosen.time].factor;
+    }
+    return reader;
+}
+
 }  // namespace
 
 std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
@@ -51,7 +87,9 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
         }
     }
     if (format == nullptr) format = &formats::csv;  // its own messages say what is wrong with the bytes
-    auto reader = format->open(std::move(source), std::move(first_bytes), options);
+    auto reader = options.range.given()
+                      ? open_cut(*format, std::move(source), std::move(first_bytes), options)
+                      : format->open(std::move(source), std::move(first_bytes), options);
     if (reader->layout().velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
     return reader;
 }

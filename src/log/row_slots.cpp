@@ -3,13 +3,18 @@
 
 namespace ripplenotch {
 
-std::vector<WantedColumn> wanted_columns(const Layout& layout) {
+std::vector<WantedColumn> time_columns(const Layout& layout) {
     std::vector<WantedColumn> wanted;
+    if (layout.chosen.time) wanted.push_back({*layout.chosen.time, time_slot});
+    if (layout.time_fraction) wanted.push_back({*layout.time_fraction, time_slot, true});
+    return wanted;
+}
+
+std::vector<WantedColumn> wanted_columns(const Layout& layout) {
+    std::vector<WantedColumn> wanted = time_columns(layout);
     const auto want = [&wanted](std::optional<std::size_t> column, std::size_t slot) {
         if (column) wanted.push_back({*column, slot});
     };
-    want(layout.chosen.time, time_slot);
-    if (layout.time_fraction) wanted.push_back({*layout.time_fraction, time_slot, true});
     const std::vector<JointColumns> joints = layout.all_chosen();
     for (std::size_t j = 0; j < joints.size(); ++j) {
         want(joints[j].velocity, slot_of(velocity_slot, j));

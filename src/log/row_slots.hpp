@@ -42,6 +42,8 @@ inline std::vector<double>& numbers_of(RowBlock& block, std::size_t slot) {
 
 inline constexpr double seconds_per_nanosecond = 1e-9;
 
+/// Those that tell a row's time; none where a rate was stated.
+[[nodiscard]] std::vector<WantedColumn> time_columns(const Layout& layout);
 /// Every column that is wanted of a layout, with its slot, in the order of the slots.
 [[nodiscard]] std::vector<WantedColumn> wanted_columns(const Layout& layout);
 [[nodiscard]] StampRule stamp_rule(const Layout& layout, char decimal_mark);

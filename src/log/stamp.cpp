@@ -50,11 +50,9 @@ std::optional<std::int64_t> take_date(std::string_view& text) {
     return days_since_1970(*year, *month, *day);
 }
 
-/// "Z", "+02:00", "-0700" or nothing; in seconds.
+/// "Z", "+02:00", "-0700"; in seconds.
 std::optional<std::int64_t> take_zone(std::string_view& text) {
-    while (take(text, " ")) {
-    }
-    if (text.empty() || text == "Z" || text == "UTC") return 0;
+    if (text == "Z" || text == "UTC") return 0;
     const bool west = text.front() == '-';
     if (!take(text, "+-")) return std::nullopt;
     const auto hours = take_number(text, 2, 2);
@@ -75,7 +73,8 @@ std::optional<ClockTime> clock_text(std::string_view text) {
     if (!minutes || !take(text, ":")) return std::nullopt;
     const auto seconds = take_number(text, 2, 2);
     if (!seconds || *hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
-    ClockTime time{days.value_or(0) * 86400 + *hours * 3600 + *minutes * 60 + *seconds, 0.0};
+    ClockTime time{
+        days.value_or(0) * 86400 + *hours * 3600 + *minutes * 60 + *seconds, 0.0, days.has_value(), {}};
     // ISO 8601 allows the comma; LabVIEW puts a colon before the point.
     take(text, ":");
     if (take(text, ".,")) {
@@ -84,9 +83,12 @@ std::optional<ClockTime> clock_text(std::string_view text) {
         time.fraction_s = parse_number("0." + std::string(text.substr(0, digits))).value_or(0.0);
         text.remove_prefix(digits);
     }
-    const auto zone = take_zone(text);
-    if (!zone || (!days && *zone != 0)) return std::nullopt;
-    time.whole_s -= *zone;
+    while (take(text, " ")) {
+    }
+    if (text.empty()) return time;
+    time.zone_s = take_zone(text);
+    if (!time.zone_s || (!days && *time.zone_s != 0)) return std::nullopt;
+    time.whole_s -= *time.zone_s;
     return time;
 }
 

@@ -22,6 +22,8 @@ struct StampRule {
 struct ClockTime {
     std::int64_t whole_s = 0;
     double fraction_s = 0.0;  ///< 0 to 1
+    bool dated = false;
+    std::optional<std::int64_t> zone_s;  ///< east of Greenwich, where the text says it; taken off already
 };
 [[nodiscard]] std::optional<ClockTime> clock_text(std::string_view text);
 

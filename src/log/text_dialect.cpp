@@ -34,7 +34,7 @@ std::size_t lines_put_aside(std::string_view bytes, const std::vector<TextLine>&
         header.number);
 }
 
-GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& content, const std::string& source,
+GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& content, const ByteSource& source,
                       const ReadOptions& options) {
     const std::size_t aside = lines_put_aside(bytes, content);
     const auto last = static_cast<std::ptrdiff_t>(std::min(content.size(), lines_compared));
@@ -44,11 +44,11 @@ GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& conte
     if (rules.columns > 0 && rules.numbers > 0) return rules;
     const TextLine& first = content.front();
     if (content.size() <= 2 && has_letters(first.of(bytes)) && !has_digits(content.back().of(bytes)))
-        refuse_header_only(first, source);
+        refuse_header_only(first, source.name());
     raise<DataError>(
         "{}:{}:1: read '{}', expected numbers separated by comma, semicolon, tab or blanks; say how it "
         "is written with --delimiter and --decimal",
-        source, content[aside].number, content[aside].of(bytes).substr(0, 40));
+        source.name(), source.number_in_file(content[aside].number), content[aside].of(bytes).substr(0, 40));
 }
 
 void take_sample(std::string_view bytes, std::span<const TextLine> rows, TextDialect& dialect) {
@@ -96,7 +96,7 @@ TextPlace place_of(std::string_view bytes, std::size_t offset, char line_end) {
     return place;
 }
 
-TextDialect sniff_text(std::string_view bytes, bool whole, const std::string& source,
+TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& source,
                        const ReadOptions& options) {
     TextLines lines = opening_lines(bytes, whole, source, options.skip_lines);
     TextDialect dialect;
@@ -112,14 +112,14 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const std::string& so
     if (preamble.names.empty()) {
         lines.content.erase(lines.content.begin(),
                             lines.content.begin() + static_cast<std::ptrdiff_t>(preamble.lines));
-        row = read_header(bytes, lines, source, options, dialect);
+        row = read_header(bytes, lines, source.name(), options, dialect);
     } else {
         dialect.has_header = true;
         dialect.names = preamble.names;
         dialect.units = preamble.units;
         dialect.header_end = lines.content[preamble.names_line].end;
     }
-    if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source);
+    if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());
     dialect.data_offset = lines.content[row].begin;
     dialect.data_line = lines.content[row].number;
     take_sample(bytes, std::span(lines.content).subspan(row), dialect);

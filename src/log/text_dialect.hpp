@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "log/text_cells.hpp"
+#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {
@@ -38,8 +39,9 @@ struct TextDialect {
 inline constexpr std::size_t longest_line = std::size_t{1} << 20;
 
 /// `first_bytes` is the opening of the file, all of it when `whole`. Throws DataError that begins with
-/// `source`: for files that are empty, binary, UTF-16, only a header, or whose delimiter cannot be told.
-[[nodiscard]] TextDialect sniff_text(std::string_view first_bytes, bool whole, const std::string& source,
+/// the name of `source`: for files that are empty, binary, UTF-16, only a header, or whose delimiter cannot
+/// be told.
+[[nodiscard]] TextDialect sniff_text(std::string_view first_bytes, bool whole, const ByteSource& source,
                                      const ReadOptions& options);
 
 /// Writes a character as people type it at --delimiter: ",", "tab", "space".

@@ -13,14 +13,15 @@ namespace {
 constexpr std::size_t shortest_usual_line = 16, most_usual_lines = 4000;  // for room to begin with
 constexpr std::string_view utf8_mark = "\xef\xbb\xbf";
 
-void refuse_binary(std::string_view bytes, const std::string& source) {
+void refuse_binary(std::string_view bytes, const ByteSource& source) {
     if (bytes.empty())
-        raise<DataError>("{}: read an empty file, expected rows of numbers; check what wrote it", source);
+        raise<DataError>("{}: read an empty file, expected rows of numbers; check what wrote it",
+                         source.name());
     const std::string_view two = bytes.substr(0, 2);
     if (two == "\xff\xfe" || two == "\xfe\xff") {
         raise<DataError>(
             "{}:1:1: read UTF-16 text, expected UTF-8; convert it, e.g. with iconv -f UTF-16 -t UTF-8",
-            source);
+            source.name());
     }
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         const auto byte = static_cast<unsigned char>(bytes[i]);
@@ -29,7 +30,7 @@ void refuse_binary(std::string_view bytes, const std::string& source) {
         raise<DataError>(
             "{}:{}:{}: read the byte 0x{:02x}, expected text; this is not a text log, say which format it "
             "has with --format, or export it as CSV",
-            source, place.line, place.column, byte);
+            source.name(), source.number_in_file(place.line), place.column, byte);
     }
 }
 
@@ -61,7 +62,7 @@ std::optional<char> stated_delimiter(std::string_view line) {
 
 }  // namespace
 
-TextLines opening_lines(std::string_view bytes, bool whole, const std::string& source,
+TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& source,
                         std::size_t skip_lines) {
     refuse_binary(bytes, source);
     const std::size_t start = bytes.substr(0, 3) == utf8_mark ? 3 : 0;
@@ -72,7 +73,7 @@ TextLines opening_lines(std::string_view bytes, bool whole, const std::string& s
     if (!whole && bytes.size() - (lines.empty() ? start : lines.back().next) > longest_line) {
         raise<DataError>(
             "{}:{}: read a line of more than 1 MiB, expected rows of numbers; check that this is a text log",
-            source, lines.size() + 1);
+            source.name(), source.number_in_file(lines.size() + 1));
     }
     std::size_t kept = 0;
     for (const TextLine& line : lines) {
@@ -90,8 +91,8 @@ TextLines opening_lines(std::string_view bytes, bool whole, const std::string& s
     lines.resize(kept);
     opening.content = std::move(lines);
     if (opening.content.empty()) {
-        raise<DataError>("{}: read {} without a row of numbers, expected rows; check what wrote it", source,
-                         whole ? "a file" : "the first 64 kB");
+        raise<DataError>("{}: read {} without a row of numbers, expected rows; check what wrote it",
+                         source.name(), whole ? "a file" : "the first 64 kB");
     }
     return opening;
 }

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "ripplenotch/core/files.hpp"
+
 namespace ripplenotch {
 
 struct TextLine {
@@ -29,7 +31,7 @@ struct TextLines {
 /// `bytes` is the opening of a file, all of it when `whole`; its first `skip_lines` lines count for nothing.
 /// Throws DataError that begins with `source`: for an empty file, bytes that no text has, UTF-16, a line
 /// longer than longest_line, nothing but comments.
-[[nodiscard]] TextLines opening_lines(std::string_view bytes, bool whole, const std::string& source,
+[[nodiscard]] TextLines opening_lines(std::string_view bytes, bool whole, const ByteSource& source,
                                       std::size_t skip_lines = 0);
 
 }  // namespace ripplenotch

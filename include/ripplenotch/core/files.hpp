@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace ripplenotch {
 
@@ -23,17 +24,28 @@ class ByteSource {
     /// The same file under another name for messages.
     ByteSource(const std::string& path, std::string name);
     /// Bytes already in memory, under a name for messages, given out in pieces of at most `piece_size`.
-    ByteSource(std::string name, std::shared_ptr<const std::string> bytes, std::size_t piece_size = std::size_t(-1));
-    ~ByteSource();
+    ByteSource(std::string name, std::shared_ptr<const std::string> bytes,
+               std::size_t piece_size = std::size_t(-1));
+    virtual ~ByteSource();
     ByteSource(const ByteSource&) = delete;
     ByteSource& operator=(const ByteSource&) = delete;
 
     /// Reads up to `size` bytes, blocking until at least one is there; 0 means the end. Throws FileError.
-    std::size_t read(char* into, std::size_t size);
+    virtual std::size_t read(char* into, std::size_t size);
+    /// Of a source that leaves parts of a file out: the number in the file of its `number`th line or record,
+    /// for messages. Both count from 1.
+    [[nodiscard]] virtual std::size_t number_in_file(std::size_t number) const { return number; }
     /// As people should see it: the path, or "standard input".
     [[nodiscard]] const std::string& name() const { return name_; }
     /// Of a file in bytes when it was opened; 0 where nobody knows.
     [[nodiscard]] std::uint64_t size() const { return size_; }
+
+  protected:
+    struct Name {
+        std::string name;
+    };
+    /// Of bytes that an heir's read() gives.
+    explicit ByteSource(Name name) : name_(std::move(name.name)) {}
 
   private:
     std::string name_;
@@ -62,8 +74,8 @@ class ByteSink {
 
     /// What goes to a file may wait here until there are many pages of it, or until finish().
     void write(std::string_view bytes);
-    /// Asks the file system for room of about so many bytes at once, where it can: whole pages of reserved room
-    /// are written in half the time, and a full disk shows at the start. What is left over goes back.
+    /// Asks the file system for room of about so many bytes at once, where it can: whole pages of reserved
+    /// room are written in half the time, and a full disk shows at the start. What is left over goes back.
     void expect(std::uint64_t bytes);
     /// True when bytes already written can be replaced (a file, not a pipe).
     [[nodiscard]] bool can_rewrite() const { return !temporary_.empty(); }

@@ -91,6 +91,13 @@ struct WriteOptions {
 /// Filtered torque of a block, in newton-metres: one vector of block.size() entries for each of its joints.
 using Torques = std::span<const std::vector<double>>;
 
+/// The part of a log that a range asks for, as a log of its own: its head and the rows inside.
+struct LogCut {
+    std::unique_ptr<ByteSource> bytes;
+    Layout whole;  ///< how the times of the whole log were read
+    std::shared_ptr<RowsOutside> outside;
+};
+
 /// Writes rows that a reader gave, with other torque values, in the units of their columns.
 class LogWriter {
   public:
@@ -128,6 +135,10 @@ struct LogFormat {
     /// `first_bytes` have been read from `source` already and come before what it still holds.
     std::unique_ptr<LogReader> (*open)(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                        const ReadOptions& options) = nullptr;
+    /// The rows inside options.range, which is given; `first_bytes` as for open. Throws what open throws, and
+    /// UsageError where the range is none or keeps fewer than two rows.
+    LogCut (*cut)(std::unique_ptr<ByteSource> source, std::string first_bytes,
+                  const ReadOptions& options) = nullptr;
     /// A writer for rows of a log that was read in this same format: other columns pass byte for byte.
     std::unique_ptr<LogWriter> (*rewrite)(std::unique_ptr<ByteSink> sink, const LogReader& reader,
                                           const WriteOptions& options) = nullptr;

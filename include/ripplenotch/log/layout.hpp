@@ -5,11 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ripplenotch/core/units.hpp"
+#include "ripplenotch/log/time_range.hpp"
 
 namespace ripplenotch {
 
@@ -65,6 +67,8 @@ struct ReadOptions {
     std::optional<double> gear_ratio;     ///< for what is measured before the gear
     bool takes_motor_units = false;       ///< motion before a gear of unknown ratio is not refused
     bool needs_torque = true;             ///< false for info
+    TimeRange range;                      ///< rows outside are as if they were not there
+    std::shared_ptr<const RowsOutside> outside;  ///< what open_log left out of the bytes, by `range`
 };
 
 /// The columns of the joint chosen, by index into Layout::columns.
@@ -91,6 +95,8 @@ struct Layout {
     std::vector<std::string> warnings;    ///< one sentence each
     std::vector<Assumption> assumptions;  ///< what no rule decided
     std::vector<Assumption> inferences;   ///< what the log does not say and a rule decided, with its reason
+    std::shared_ptr<const RowsOutside>
+        outside;  ///< where a range was asked for; counted while the log is read
 
     /// All joints that are read.
     [[nodiscard]] std::vector<JointColumns> all_chosen() const {

@@ -3,6 +3,7 @@
 // The one account of a recording: what every command says of the log it read.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Recording {
     HeldSamples held;
     AngleFacts angle;
     std::vector<Assumption> assumptions, inferences;  ///< as in Layout
+    std::optional<RowsOutside> outside;               ///< where a range was asked for
     std::vector<std::string> warnings;  ///< about clock, held samples and angle, a sentence each
 
     [[nodiscard]] std::size_t rows() const { return clock.rows; }

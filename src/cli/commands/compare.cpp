@@ -221,6 +221,8 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
 
 ExitCode run(const Request& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
+    if (request.log.empty() && (request.log_options.from || request.log_options.to))
+        raise<UsageError>("--from and --to: there is no LOG to take rows of");
     Provenance provenance{{}, command_line};
     const Field field = load_contenders(request.methods, request.gear, provenance);
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation-db");

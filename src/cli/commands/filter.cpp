@@ -123,6 +123,8 @@ void check(const FilterRequest& request) {
     if (request.common.json && request.logs.size() > 1) {
         raise<UsageError>("--json prints the metrics of one log; for several use --metrics DIR");
     }
+    if (request.in_place && (request.log.from || request.log.to))
+        raise<UsageError>("--in-place with --from or --to: the rows outside would be lost; use -o FILE");
     check_plot(request.plot, request.common);
     if (request.plot.path == "-" && request.metrics == "-")
         raise<UsageError>(
@@ -234,6 +236,7 @@ const Command commands::filter = {
     .summary = "takes the ripple out of logs, streaming",
     .description =
         "Replaces the torque column by the filtered torque and leaves every other byte of the log as it is.\n"
+        "With --from or --to the rows outside are not written.\n"
         "ripplenotch filter log.csv --table table.json -o filtered.csv --metrics metrics.json\n"
         "cat log.csv | ripplenotch filter --method lowpass,cutoff=13rad/s,order=1 - | ripplenotch spectrum -",
     .attach = attach,

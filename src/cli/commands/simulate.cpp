@@ -125,6 +125,8 @@ void check_course(const SimulateOptions& options) {
             raise<UsageError>("--smoothing: {} s is below 0", shortest(options.smoothing.value()));
         return;
     }
+    if (options.log_options.from || options.log_options.to)
+        raise<UsageError>("--from and --to: there is no LOG to take rows of");
     if (options.motions.empty()) {
         raise<UsageError>(
             "--motion is missing, for example --motion constant,speed=60deg/s,duration=5s, or a LOG");

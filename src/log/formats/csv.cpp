@@ -10,6 +10,7 @@
 #include "log/formats.hpp"
 #include "log/printed_cells.hpp"
 #include "log/table_writer.hpp"
+#include "log/text_cut.hpp"
 #include "log/text_room.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -82,6 +83,7 @@ const LogFormat formats::csv{
     .binary = false,
     .sniff = sniff,
     .open = open_with<CsvReader>,
+    .cut = cut_text,
     .rewrite = rewrite_with<CsvWriter, CsvReader>,
     .convert = convert_with<CsvTableWriter>,
     .write_columns = write_columns_with<CsvTableWriter>,

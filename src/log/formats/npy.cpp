@@ -4,6 +4,7 @@
 #include <array>
 
 #include "log/formats.hpp"
+#include "log/npy_cut.hpp"
 #include "log/npy_reader.hpp"
 #include "log/npy_writer.hpp"
 
@@ -23,6 +24,7 @@ const LogFormat formats::npy{
     .binary = true,
     .sniff = sniff,
     .open = open_with<NpyReader>,
+    .cut = cut_npy,
     .rewrite = rewrite_with<NpyWriter, NpyReader>,
     .convert = convert_with<NpyTableWriter>,
     .write_columns = write_columns_with<NpyTableWriter>,
