@@ -1,14 +1,21 @@
-# A registry is a .def file of lines KIND(name). The C++ table includes it, and this reads the same file, so the
-# list of sources and the table cannot disagree; a line without its file stops the configure step.
-function(ripplenotch_add_registry target def_file kind source_dir)
+# A registry is a .def file of lines KIND(name), which the C++ table includes, beside one file a name. Whatever lies in a
+# room is compiled, so the two are held against each other here: a line without its file, and a file without its line,
+# stop the configure step.
+function(ripplenotch_check_registry def_file kind)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${def_file})
+    get_filename_component(folder ${def_file} DIRECTORY)
     file(STRINGS ${def_file} lines REGEX "^${kind}\\(")
-    foreach(line IN LISTS lines)
-        string(REGEX REPLACE "^${kind}\\(([a-z0-9_]+)\\).*" "\\1" name "${line}")
-        set(source ${source_dir}/${name}.cpp)
-        if(NOT EXISTS ${source})
-            message(FATAL_ERROR "${def_file} lists ${kind}(${name}), but ${source} does not exist")
+    list(TRANSFORM lines REPLACE "^${kind}\\(([a-z0-9_]+)\\).*" "\\1" OUTPUT_VARIABLE listed)
+    file(GLOB files RELATIVE ${folder} CONFIGURE_DEPENDS ${folder}/*.cpp)
+    list(TRANSFORM files REPLACE "[.]cpp$" "" OUTPUT_VARIABLE found)
+    foreach(name IN LISTS listed)
+        if(NOT name IN_LIST found)
+            message(FATAL_ERROR "${def_file} lists ${kind}(${name}), but ${folder}/${name}.cpp does not exist")
         endif()
-        target_sources(${target} PRIVATE ${source})
+    endforeach()
+    foreach(name IN LISTS found)
+        if(NOT name IN_LIST listed)
+            message(FATAL_ERROR "${folder}/${name}.cpp is no ${kind} of ${def_file}: add the line ${kind}(${name})")
+        endif()
     endforeach()
 endfunction()

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A command is a record: one file in src/cli/commands, one line in commands.def.
+// A command is a record: one folder in src/cli, one line in commands.def.
 
 #include <functional>
 #include <span>
 #include <string_view>
 
-#include "cli/options.hpp"
+#include "cli/options/options.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

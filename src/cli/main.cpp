@@ -14,7 +14,7 @@
 #include <optional>
 
 #include "cli/command.hpp"
-#include "cli/options_implementation.hpp"
+#include "cli/options/options_implementation.hpp"
 #include "cli/progress_bar.hpp"
 #include "core/unfinished_files.hpp"
 #include "ripplenotch/core/spec.hpp"

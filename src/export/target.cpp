@@ -11,7 +11,7 @@ namespace ripplenotch {
 namespace {
 constexpr const Target* list[] = {
 #define TARGET(name) &targets::name,
-#include "export/targets.def"
+#include "export/targets/targets.def"
 #undef TARGET
 };
 }  // namespace

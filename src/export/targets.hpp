@@ -4,6 +4,6 @@
 
 namespace ripplenotch::targets {
 #define TARGET(name) extern const Target name;
-#include "export/targets.def"
+#include "export/targets/targets.def"
 #undef TARGET
 }  // namespace ripplenotch::targets

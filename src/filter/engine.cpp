@@ -7,7 +7,7 @@
 
 #include "filter/block_pipeline.hpp"
 #include "filter/stream_pass.hpp"
-#include "log/account.hpp"
+#include "log/account/account.hpp"
 #include "log/opening.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -13,7 +13,7 @@ namespace ripplenotch {
 namespace {
 constexpr const Method* list[] = {
 #define METHOD(name) &filter_methods::name,
-#include "filter/methods.def"
+#include "filter/methods/methods.def"
 #undef METHOD
 };
 }  // namespace

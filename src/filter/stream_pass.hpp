@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "log/account.hpp"
+#include "log/account/account.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {

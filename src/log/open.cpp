@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 
-#include "log/derived_velocity.hpp"
+#include "log/clock/stamp.hpp"
+#include "log/columns/derived_velocity.hpp"
 #include "log/formats.hpp"
-#include "log/stamp.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "log/account.hpp"
-#include "log/clock_check.hpp"
-#include "log/unwrap.hpp"
+#include "log/account/account.hpp"
+#include "log/account/unwrap.hpp"
+#include "log/clock/clock_check.hpp"
 #include "ripplenotch/core/spool.hpp"
 #include "ripplenotch/log/log.hpp"
 

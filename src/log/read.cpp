@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "log/account.hpp"
-#include "log/clock_check.hpp"
-#include "log/unwrap.hpp"
+#include "log/account/account.hpp"
+#include "log/account/unwrap.hpp"
+#include "log/clock/clock_check.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {

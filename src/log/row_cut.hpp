@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "log/time_axis.hpp"
+#include "log/clock/time_axis.hpp"
 #include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "log/quick_rows.hpp"
+#include "log/text/quick_rows.hpp"
 
 namespace ripplenotch {
 

@@ -234,7 +234,8 @@ TEST_CASE(
 
 TEST_CASE(
     "the 95 % interval of the ratio holds it in some 95 of a hundred logs, in motion and at three speeds") {
-    constexpr int runs = 120;  // of each kind; scripts/prove-identify does five times as many with the command itself
+    constexpr int runs =
+        120;  // of each kind; scripts/prove-identify does five times as many with the command itself
     for (const bool steady : {false, true}) {
         int covered = 0, given = 0;
         for (int run = 0; run < runs; ++run) {
@@ -267,8 +268,8 @@ TEST_CASE(
         }
         INFO((steady ? "steady: " : "motion: ") << covered << " of " << given);
         CHECK(given >= 95 * runs / 100);
-        // Of 120 intervals that hold in 95 of a hundred, 103 and more hold in all but one of 10000 draws. Intervals
-        // that are too wide show in the script only.
+        // Of 120 intervals that hold in 95 of a hundred, 103 and more hold in all but one of 10000 draws.
+        // Intervals that are too wide show in the script only.
         CHECK(covered >= 103 * given / 120);
     }
 }

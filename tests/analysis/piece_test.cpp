@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/piece.hpp"
+#include "analysis/lines/piece.hpp"
 
-#include "analysis/line_meter.hpp"
-#include "analysis/piece_kernel.hpp"
-#include "analysis/power_kernel.hpp"
+#include "analysis/kernels/piece_kernel.hpp"
+#include "analysis/kernels/power_kernel.hpp"
+#include "analysis/lines/line_meter.hpp"
 #include "analysis/traces.hpp"
 #include "support/catch.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/running_median.hpp"
+#include "analysis/spectrum/running_median.hpp"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 
 #include "benchmark.hpp"
 #include "core/fixed_texts.hpp"
-#include "log/quick_rows.hpp"
+#include "log/text/quick_rows.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch::bench {

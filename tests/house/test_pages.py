@@ -12,11 +12,11 @@ TOOL = os.environ["RIPPLENOTCH"]
 
 REGISTRIES = {
     "commands": ("src/cli/commands.def", "COMMAND"),
-    "methods": ("src/filter/methods.def", "METHOD"),
-    "formats": ("src/log/formats.def", "FORMAT"),
-    "effects": ("src/model/effects.def", "EFFECT"),
-    "motions": ("src/model/motions.def", "MOTION"),
-    "export": ("src/export/targets.def", "TARGET"),
+    "methods": ("src/filter/methods/methods.def", "METHOD"),
+    "formats": ("src/log/formats/formats.def", "FORMAT"),
+    "effects": ("src/model/effects/effects.def", "EFFECT"),
+    "motions": ("src/model/motions/motions.def", "MOTION"),
+    "export": ("src/export/targets/targets.def", "TARGET"),
 }
 
 
@@ -26,12 +26,16 @@ def run(*words):
 
 def listed(kind):
     path, word = REGISTRIES[kind]
-    candidates = [SOURCE / path, *sorted((SOURCE / "src").rglob(pathlib.Path(path).name))]
-    text = next(c for c in candidates if c.is_file()).read_text()
+    text = (SOURCE / path).read_text()
     return [name.rstrip("_").replace("_", "-") for name in re.findall(rf"^{word}\((\w+)\)", text, re.M)]
 
 
 class Pages(unittest.TestCase):
+    def test_every_command_that_is_defined_is_listed(self):
+        defined = {name.rstrip("_") for path in (SOURCE / "src" / "cli").rglob("*.cpp")
+                   for name in re.findall(r"^const Command commands::(\w+)", path.read_text(), re.M)}
+        self.assertEqual(defined, set(listed("commands")))
+
     def test_everything_listed_has_a_page(self):
         for kind in REGISTRIES:
             names = listed(kind)

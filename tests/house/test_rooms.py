@@ -28,12 +28,12 @@ SEES = {
 
 # Third-party header -> the files that may include it.
 DOORS = {
-    r"fftw3": {"src/analysis/fourier.cpp"},
+    r"fftw3": {"src/analysis/spectrum/fourier.cpp"},
     r"nlohmann/": {"src/artifact/json.hpp"},
-    r"CLI/": {"src/cli/options_implementation.hpp"},
+    r"CLI/": {"src/cli/options/options_implementation.hpp"},
     r"fast_float/": {"src/core/number.cpp"},
     r"nettle/": {"src/core/sha256.cpp"},
-    r"Eigen/Sparse": {"src/analysis/envelope_kernel.cpp", "src/analysis/envelope_solver.cpp"},
+    r"Eigen/Sparse": {"src/analysis/kernels/envelope_kernel.cpp", "src/analysis/track/envelope_solver.cpp"},
     r"Eigen/(?!Sparse)": {"src/core/linear_algebra.hpp"},
 }
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "log/column_name.hpp"
-#include "log/unit_text.hpp"
+#include "log/columns/column_name.hpp"
+#include "log/columns/unit_text.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

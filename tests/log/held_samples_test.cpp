@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "log/held_samples.hpp"
+#include "log/account/held_samples.hpp"
 
 #include <random>
 #include "support/catch.hpp"

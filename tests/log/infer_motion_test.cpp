@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "log/conventions.hpp"
+#include "log/columns/conventions.hpp"
 #include "log_support.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "support/catch.hpp"

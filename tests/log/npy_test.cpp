@@ -3,7 +3,7 @@
 #include <cstring>
 #include <string>
 
-#include "log/npy_header.hpp"
+#include "log/npy/npy_header.hpp"
 #include "log_support.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"

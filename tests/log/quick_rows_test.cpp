@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "log/quick_rows.hpp"
+#include "log/text/quick_rows.hpp"
 
 #include <fmt/format.h>
 

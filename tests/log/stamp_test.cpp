@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "log/stamp.hpp"
+#include "log/clock/stamp.hpp"
 #include "log_support.hpp"
 #include "support/catch.hpp"
 

@@ -36,7 +36,8 @@ struct MotionLinesOptions {
     double least_share = 1e-4;     ///< of the torque's range: smaller lines are not reported
     double lowest_tone_hz = 10.0;  ///< slower tones are those of the motion itself
     std::size_t most_lines = 12;
-    std::vector<double> known_hz = {};  ///< tones that are known already: taken out before lines are looked for
+    std::vector<double> known_hz =
+        {};  ///< tones that are known already: taken out before lines are looked for
 };
 
 struct MotionLines {

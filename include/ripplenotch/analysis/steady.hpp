@@ -29,8 +29,8 @@ struct Stretch {
     bool rest = false;               ///< standstill
 };
 
-/// Speeds up to this are standstill: SteadyRule::rest_percent of the log's highest smoothed speed, or what the
-/// noise of the velocity leaves of a standstill after smoothing; all speeds in a log that moves nowhere.
+/// Speeds up to this are standstill: SteadyRule::rest_percent of the log's highest smoothed speed, or what
+/// the noise of the velocity leaves of a standstill after smoothing; all speeds in a log that moves nowhere.
 [[nodiscard]] double standstill_deg_s(const TraceView& trace, std::span<const double> smoothed_speed,
                                       const SteadyRule& rule);
 

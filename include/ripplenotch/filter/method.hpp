@@ -42,9 +42,9 @@ class CausalFilter {
     virtual ~CausalFilter() = default;
     /// Filters `in` into `out` (same length; may not overlap). Any split into blocks gives the same bytes.
     virtual void process(const Samples& in, std::span<double> out) = 0;
-    /// Before the first sample: takes a faster way to the same filter, where there is one and its outputs stay
-    /// within 1e-12 of the largest |torque| of those without this call. Says in words which way was taken, where
-    /// there was a choice.
+    /// Before the first sample: takes a faster way to the same filter, where there is one and its outputs
+    /// stay within 1e-12 of the largest |torque| of those without this call. Says in words which way was
+    /// taken, where there was a choice.
     virtual std::string hurry() { return {}; }
     /// Forgets the past: the next sample starts settled (after a gap in time).
     virtual void restart() = 0;
@@ -82,7 +82,8 @@ struct Method {
     /// The linear filter in force at a constant speed; empty function for methods that have none.
     FrozenFilter (*frozen)(const Settings& settings, Hertz sample_rate, const CandidateTable* table,
                            DegPerSec speed) = nullptr;
-    /// Null for causal methods. Where there is one, start() gives the filter that has learned nothing: it passes.
+    /// Null for causal methods. Where there is one, start() gives the filter that has learned nothing: it
+    /// passes.
     std::unique_ptr<Learner> (*learner)(const Settings& settings, Hertz sample_rate) = nullptr;
 };
 

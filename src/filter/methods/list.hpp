@@ -4,6 +4,6 @@
 
 namespace ripplenotch::filter_methods {
 #define METHOD(name) extern const Method name;
-#include "filter/methods.def"
+#include "filter/methods/methods.def"
 #undef METHOD
 }  // namespace ripplenotch::filter_methods

@@ -5,13 +5,13 @@
 #include <array>
 #include <vector>
 
-#include "log/csv_reader.hpp"
-#include "log/csv_writer.hpp"
 #include "log/formats.hpp"
-#include "log/printed_cells.hpp"
 #include "log/table_writer.hpp"
-#include "log/text_cut.hpp"
-#include "log/text_room.hpp"
+#include "log/text/csv_reader.hpp"
+#include "log/text/csv_writer.hpp"
+#include "log/text/printed_cells.hpp"
+#include "log/text/text_cut.hpp"
+#include "log/text/text_room.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/kernels/spreading_kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/lanes.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+double kernel(double x) {
+    return portable::exp(SpreadingKernel::beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0));
+}
+
+}  // namespace
+
+SpreadingKernel::SpreadingKernel() {
+    // Chebyshev's interpolation: c_m = 2/n sum f(z_j) T_m(z_j), and T_m by powers from T_m+1 = 2 z T_m -
+    // T_m-1.
+    std::array<double, terms> before{}, now{};
+    now[0] = 1.0;
+    for (std::size_t m = 0; m < terms; ++m) {
+        for (std::size_t i = 0; i < width; ++i) {
+            double sum = 0.0;
+            for (std::size_t j = 0; j < terms; ++j) {
+                const double angle = std::numbers::pi * (static_cast<double>(j) + 0.5) / terms;
+                const double offset = 0.5 * (portable::cos(angle) + 1.0);
+                const double x = (static_cast<double>(i) + offset) * 2.0 / width - 1.0;
+                sum += kernel(x) * portable::cos(static_cast<double>(m) * angle);
+            }
+            const double share = (m == 0 ? 1.0 : 2.0) / terms * sum;
+            for (std::size_t d = 0; d <= m; ++d) coefficients_[d][i] += share * now[d];
+        }
+        std::array<double, terms> next{};
+        for (std::size_t d = 0; d < terms; ++d) {
+            next[d] = -before[d];
+            if (d > 0) next[d] += (m == 0 ? 1.0 : 2.0) * now[d - 1];
+        }
+        before = now;
+        now = next;
+    }
+}
+
+/// Even and odd powers apart, so that half as many steps wait for each other.
+RIPPLENOTCH_FOR_AVX2_TOO
+void SpreadingKernel::at(double offset, Row& row) const {
+    constexpr std::size_t lanes = lane_count;
+    constexpr std::size_t groups = padded / lanes;
+    const double z = 2.0 * offset - 1.0, square = z * z;
+    Four even[groups], odd[groups], term;
+#pragma GCC unroll 3
+    for (std::size_t g = 0; g < groups; ++g) {
+        load(even[g], &coefficients_[terms - 2][g * lanes]);
+        load(odd[g], &coefficients_[terms - 1][g * lanes]);
+    }
+#pragma GCC unroll 7
+    for (std::size_t d = terms - 2; d > 0; d -= 2) {
+#pragma GCC unroll 3
+        for (std::size_t g = 0; g < groups; ++g) {
+            load(term, &coefficients_[d - 2][g * lanes]);
+            even[g] = even[g] * square + term;
+            load(term, &coefficients_[d - 1][g * lanes]);
+            odd[g] = odd[g] * square + term;
+        }
+    }
+#pragma GCC unroll 3
+    for (std::size_t g = 0; g < groups; ++g) store(&row[g * lanes], even[g] + odd[g] * z);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/lines/line_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "analysis/lines/place_error.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double tau = 2.0 * std::numbers::pi;
+constexpr double recurrence_chance = 0.01;
+constexpr double most_of_log = 0.6;
+
+double noise_at(const Stack& stack, std::size_t sweep, double place) {
+    const auto bin = static_cast<std::size_t>(std::lround(std::max(0.0, place / stack.spacing)));
+    const auto& floors = stack.floors[sweep];
+    return bin < floors.size() ? static_cast<double>(floors[bin]) : 0.0;
+}
+
+/// Power over noise of one sweep, or of a part of it, at a place; noise scaled from the whole sweep's floor
+/// there.
+struct Piece {
+    double ratio = 0.0, weight = 0.0;
+};
+
+Piece piece_at(const Sweep& part, const Sweep& whole, Axis axis, double noise, double place) {
+    const double scale = part.weight_square_sum / whole.weight_square_sum;
+    const double power = std::norm(fourier_point(places(part, axis), part.value, place).value);
+    return {power / (noise * scale), part.effective_samples()};
+}
+
+}  // namespace
+
+double gain_at(const Stack& stack, std::size_t bin) {
+    double most = 0.0, total = 0.0;
+    for (std::size_t i = 0; i < stack.floors.size(); ++i) {
+        if (bin >= stack.floors[i].size() || stack.floors[i][bin] <= 0.0F) continue;
+        most = std::max(most, stack.sweep_weights[i]);
+        total += stack.sweep_weights[i];
+    }
+    return most > 0.0 ? (stack.ratio[bin] - 1.0) * total / most : 0.0;
+}
+
+double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place) {
+    double most = 0.0, gain = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        const double noise = noise_at(stack, i, place);
+        if (!(noise > 0.0)) continue;
+        const Piece piece = piece_at(sweeps[i], sweeps[i], stack.axis, noise, place);
+        most = std::max(most, piece.weight);
+        gain += piece.weight * (piece.ratio - 1.0);
+    }
+    return most > 0.0 ? gain / most : 0.0;
+}
+
+bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {
+    std::vector<Piece> pieces;
+    std::size_t strongest = 0;
+    double total = 0.0;
+    std::vector<std::size_t> index;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        const double noise = noise_at(stack, i, place);
+        if (!(noise > 0.0)) continue;
+        pieces.push_back(piece_at(sweeps[i], sweeps[i], stack.axis, noise, place));
+        index.push_back(i);
+        total += pieces.back().weight;
+        const auto says = [&](std::size_t k) { return pieces[k].ratio * pieces[k].weight; };
+        if (says(pieces.size() - 1) > says(strongest)) strongest = pieces.size() - 1;
+    }
+    if (pieces.empty()) return false;
+    if (pieces[strongest].weight > most_of_log * total) {
+        const std::size_t i = index[strongest];
+        const std::size_t half = sweeps[i].turns.size() / 2;
+        pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(strongest));
+        for (const auto& [first, count] :
+             {std::pair{std::size_t{0}, half}, std::pair{half, sweeps[i].turns.size() - half}}) {
+            pieces.push_back(piece_at(part_of(sweeps[i], first, count), sweeps[i], stack.axis,
+                                      noise_at(stack, i, place), place));
+        }
+        strongest = pieces.size() - 1;
+        if (pieces[strongest - 1].ratio > pieces[strongest].ratio) --strongest;
+    }
+    pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(strongest));
+    double sum = 0.0, weights = 0.0, squares = 0.0;
+    for (const Piece& piece : pieces) {
+        sum += piece.weight * piece.ratio;
+        weights += piece.weight;
+        squares += piece.weight * piece.weight;
+    }
+    if (!(weights > 0.0)) return false;
+    return exceedance(sum / weights, weights * weights / squares, floor_cells) < recurrence_chance;
+}
+
+double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin) {
+    const double start = static_cast<double>(bin) * stack.spacing;
+    double place = start;
+    for (int round = 0; round < 8; ++round) {
+        double slope = 0.0, curve = 0.0;
+        for (std::size_t i = 0; i < sweeps.size(); ++i) {
+            const double noise = noise_at(stack, i, start);
+            if (!(noise > 0.0)) continue;
+            const FourierPoint at = fourier_point(places(sweeps[i], stack.axis), sweeps[i].value, place);
+            const double weight = stack.sweep_weights[i] / noise;
+            slope += weight * std::real(std::conj(at.value) * at.first);
+            curve += weight * (std::norm(at.first) + std::real(std::conj(at.value) * at.second));
+        }
+        if (!(curve < 0.0)) return place;
+        const double next = std::clamp(place - slope / curve, start - stack.spacing, start + stack.spacing);
+        const bool settled = std::abs(next - place) < 1e-7 * stack.spacing;
+        place = next;
+        if (settled) break;
+    }
+    return place;
+}
+
+void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, MotionLine& line) {
+    double weights = 0.0, power = 0.0, noise_power = 0.0, lengths = 0.0;
+    std::complex<double> together;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        const Sweep& sweep = sweeps[i];
+        const double noise = noise_at(stack, i, place);
+        if (!(noise > 0.0)) continue;
+        const std::complex<double> sum = fourier_point(places(sweep, stack.axis), sweep.value, place).value;
+        const std::complex<double> amplitude = 2.0 * sum / sweep.weight_sum;
+        const double floor = 4.0 * noise / (sweep.weight_sum * sweep.weight_sum);
+        const double weight = stack.sweep_weights[i];
+        weights += weight;
+        power += weight * std::norm(amplitude);
+        noise_power += weight * floor;
+        together += weight * amplitude;
+        lengths += weight * std::abs(amplitude);
+        const double order = stack.axis == Axis::angle ? place : 0.0;
+        const double hz = stack.axis == Axis::angle ? order * std::abs(sweep.mean_deg_s) / 360.0 : place;
+        line.by_speed.push_back(
+            {sweep.mean_deg_s, hz, std::abs(amplitude), std::abs(amplitude) / std::sqrt(floor)});
+    }
+    const double error = place_error(sweeps, stack, place);
+    if (stack.axis == Axis::angle) {
+        line.order_output = place;
+        line.order_stderr = error;
+        constexpr double agreement =
+            0.7;  // of random phases, two sweeps reach this by chance less than half the time
+        if (lengths > 0.0 && std::abs(together) > agreement * lengths) {
+            line.phase_deg = portable::arg(together) * degrees_per_radian;
+        }
+    } else {
+        line.hz = place;
+        line.hz_stderr = error;
+    }
+    line.floor_nm = std::sqrt(noise_power / weights);
+    line.amplitude_nm = std::sqrt(std::max(power - noise_power, 0.0) / weights);
+    line.snr = line.amplitude_nm / line.floor_nm;
+}
+
+void subtract(std::vector<Sweep>& sweeps, Axis axis, double place) {
+    for (Sweep& sweep : sweeps) {
+        const auto at = places(sweep, axis);
+        std::vector<double> cosine(at.size()), sine(at.size());
+        double cc = 0.0, cs = 0.0, ss = 0.0, xc = 0.0, xs = 0.0;
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const double angle = tau * place * at[k];
+            const std::complex<double> phasor = portable::phasor(angle);
+            cosine[k] = phasor.real();
+            sine[k] = phasor.imag();
+            cc += sweep.weight[k] * cosine[k] * cosine[k];
+            cs += sweep.weight[k] * cosine[k] * sine[k];
+            ss += sweep.weight[k] * sine[k] * sine[k];
+            xc += sweep.value[k] * cosine[k];
+            xs += sweep.value[k] * sine[k];
+        }
+        const double determinant = cc * ss - cs * cs;
+        if (!(determinant > 1e-6 * cc * ss)) continue;
+        const double a = (xc * ss - xs * cs) / determinant, b = (xs * cc - xc * cs) / determinant;
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const double line = a * cosine[k] + b * sine[k];
+            sweep.torque_nm[k] -= line;
+            sweep.value[k] -= sweep.weight[k] * line;
+        }
+    }
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/lines/line_meter.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "analysis/kernels/piece_kernel.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double tau = 2.0 * std::numbers::pi;
+constexpr double reach_bins = 0.5;  // of the moments
+constexpr int most_rounds = 8;
+constexpr double settled = 1e-9;  // bins
+
+/// S(x) = sum over d of (-i x)^d / d! M_d with its first two derivatives; x is 2 pi (f - start) half a piece.
+struct Point {
+    std::complex<double> value, first, second;
+
+    Point(const Moments& moments, double x) {
+        std::complex<double> term =
+            1.0;  // (-i)^d x^(d - j) / (d - j)! for j = 0; shifted for the derivatives
+        const std::complex<double> turn(0.0, -1.0);
+        for (std::size_t d = 0; d < moments.size(); ++d) {
+            value += term * moments[d];
+            if (d + 1 < moments.size()) first += turn * term * moments[d + 1];
+            if (d + 2 < moments.size()) second += turn * turn * term * moments[d + 2];
+            term *= turn * (x / static_cast<double>(d + 1));
+        }
+    }
+};
+
+}  // namespace
+
+void LineMeter::expect_even_pieces(std::span<const double> even_time_s) {
+    half_s_ = 0.5 / bin_hz_;
+    for (const double t : even_time_s) {
+        place_.push_back(t / half_s_);
+        cosine_.push_back(portable::cos(tau * start_hz_ * t));
+        sine_.push_back(-portable::sin(tau * start_hz_ * t));
+    }
+}
+
+bool LineMeter::search_moments(const Piece& piece, Maximum& found) const {
+    const Moments moments = turned_moments(piece.value, place_, cosine_, sine_);
+    const double bin = tau * bin_hz_ * half_s_;
+    double x = 0.0;
+    for (int round = 0; round < most_rounds; ++round) {
+        const Point at(moments, x);
+        const double curve = std::norm(at.first) + std::real(std::conj(at.value) * at.second);
+        if (!(curve < 0.0)) break;
+        const double step = std::real(std::conj(at.value) * at.first) / curve;
+        x -= step;
+        if (std::abs(x) > reach_bins * bin) return false;
+        if (std::abs(step) < settled * bin) break;
+    }
+    found = {start_hz_ + x / (tau * half_s_), Point(moments, x).value};
+    return true;
+}
+
+LineMeter::Maximum LineMeter::search(const Piece& piece) const {
+    Maximum found;
+    if (piece.even && half_s_ > 0.0 && search_moments(piece, found)) return found;
+    found.hz = refine_peak(piece.time_s, piece.value, start_hz_, bin_hz_);
+    found.sum = fourier_point(piece.time_s, piece.value, found.hz).value;
+    return found;
+}
+
+void LineMeter::add(const Piece& piece) {
+    const Maximum found = search(piece);
+    const std::complex<double> amplitude = 2.0 * found.sum / piece.window_sum;
+    const double weight = std::norm(amplitude);
+    ++pieces_;
+    power_ += weight;
+    weighted_hz_ += weight * found.hz;
+    if (weight <= std::norm(strongest_)) return;
+    strongest_ = amplitude;
+    strongest_middle_s_ = piece.middle_s;
+}
+
+double LineMeter::hz() const { return power_ > 0.0 ? weighted_hz_ / power_ : start_hz_; }
+
+double LineMeter::amplitude_nm() const { return std::sqrt(power_ / static_cast<double>(pieces_)); }
+
+double LineMeter::phase_rad() const { return portable::arg(strongest_) - tau * hz() * strongest_middle_s_; }
+
+}  // namespace ripplenotch

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/line_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/spectrum/running_median.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double guard_cells = 3.0;  // the main lobe of a Hann line and its first side lobe
+constexpr double near_cells = 12.0;
+constexpr double far_cells = 40.0;
+constexpr double inner_from_cells = 2.0;  // noise through a lightly damped resonance is only a few cells wide
+constexpr double inner_to_cells = 5.0;
+constexpr double fewest_cells = 4.0;
+// Maxima are looked for among correlated bins: about this many independent tries per cell. With it, white
+// noise raises a false alarm somewhat less often than allowed.
+constexpr double tries_per_cell = 1.6;
+
+/// Continued fraction of the incomplete beta function, by the modified method of Lentz.
+double beta_fraction(double x, double a, double b) {
+    constexpr double tiny = 1e-300;
+    double c = 1.0;
+    double d = 1.0 - (a + b) * x / (a + 1.0);
+    d = 1.0 / (std::abs(d) < tiny ? tiny : d);
+    double fraction = d;
+    for (int m = 1; m < 500; ++m) {
+        const double even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
+        const double odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
+        for (const double term : {even, odd}) {
+            d = 1.0 + term * d;
+            d = 1.0 / (std::abs(d) < tiny ? tiny : d);
+            c = 1.0 + term / c;
+            c = std::abs(c) < tiny ? tiny : c;
+            fraction *= d * c;
+        }
+        if (std::abs(d * c - 1.0) < 1e-13) break;
+    }
+    return fraction;
+}
+
+double incomplete_beta(double x, double a, double b) {
+    if (x <= 0.0) return 0.0;
+    if (x >= 1.0) return 1.0;
+    const double front = portable::exp(portable::lgamma(a + b) - portable::lgamma(a) - portable::lgamma(b) +
+                                       a * portable::log(x) + b * portable::log1p(-x));
+    if (x < (a + 1.0) / (a + b + 2.0)) return front * beta_fraction(x, a, b) / a;
+    return 1.0 - front * beta_fraction(1.0 - x, b, a) / b;
+}
+
+/// Near an end of the spectrum both sides of a window shrink alike: one flank of a steep floor would stand
+/// for too little or too much.
+std::size_t room_around(const PowerSpectrum& s, std::size_t bin) {
+    return std::min(bin - s.first, s.power.size() - 1 - bin);
+}
+
+/// Bins of the ring between `guard` and `reach` to both sides of `bin`, as far as there is room.
+void gather(const PowerSpectrum& s, std::size_t bin, double guard, double reach, std::vector<double>& into) {
+    into.clear();
+    const auto inner = static_cast<std::size_t>(std::ceil(guard));
+    const std::size_t outer = std::min(static_cast<std::size_t>(std::ceil(reach)), room_around(s, bin));
+    for (std::size_t d = inner; d <= outer; ++d) {
+        into.push_back(s.power[bin - d]);
+        if (d > 0) into.push_back(s.power[bin + d]);
+    }
+}
+
+/// The ring's lower side alone, as far as there are bins: spectra of motion fall steeply from their low end.
+void gather_below(const PowerSpectrum& s, std::size_t bin, double guard, double reach,
+                  std::vector<double>& into) {
+    into.clear();
+    const auto inner = static_cast<std::size_t>(std::ceil(guard));
+    const std::size_t outer = std::min(static_cast<std::size_t>(std::ceil(reach)), bin - s.first);
+    for (std::size_t d = inner; d <= outer; ++d) into.push_back(s.power[bin - d]);
+}
+
+struct LocalFloor {
+    double power = 0.0;
+    double cells = 0.0;
+};
+LocalFloor floor_around(const PowerSpectrum& s, std::size_t bin, double reach_cells,
+                        std::vector<double>& scratch) {
+    gather(s, bin, guard_cells * s.bins_per_cell, reach_cells * s.bins_per_cell, scratch);
+    const double cells = static_cast<double>(scratch.size()) / s.bins_per_cell;
+    return {median_in(scratch) / median_over_mean(s.averages_at(bin)), cells};
+}
+
+}  // namespace
+
+double median_over_mean(double averages) {
+    const double k = averages;
+    return (k - 1.0 / 3.0 + 8.0 / (405.0 * k) + 184.0 / (25515.0 * k * k) +
+            2248.0 / (3444525.0 * k * k * k)) /
+           k;
+}
+
+double exceedance(double ratio, double averages, double cells) {
+    if (!(ratio > 0.0)) return 1.0;
+    // A median of m exponentials knows their mean as well as 0.48 m of them averaged: (ln 2)^2.
+    const double knowledge = std::max(0.5, 0.48 * cells * averages);
+    return incomplete_beta(knowledge / (knowledge + averages * ratio), knowledge, averages);
+}
+
+std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
+    const std::size_t n = spectrum.power.size();
+    std::vector<double> floor(n, 0.0);
+    if (n <= spectrum.first) return floor;
+    const double reach_bins = far_cells * spectrum.bins_per_cell;
+    const auto stride = static_cast<std::size_t>(std::max(1.0, reach_bins / 8.0));
+    const auto reach = static_cast<std::size_t>(std::ceil(reach_bins));
+    RunningMedian median_around(spectrum.power);
+    const auto at = [&](std::size_t bin) {
+        const std::size_t inside =
+            std::clamp(bin, std::min(spectrum.first + stride, n - 1), n - 1 - std::min(stride, n - 1));
+        const std::size_t middle = std::max(inside, spectrum.first);
+        const std::size_t half = std::min(reach, room_around(spectrum, middle));
+        return std::max(
+            median_around.at(middle - half, 2 * half + 1) / median_over_mean(spectrum.averages_at(bin)),
+            1e-300);
+    };
+    // Between places a stride apart the floor runs on a straight line in log power.
+    double here = at(spectrum.first);
+    for (std::size_t from = spectrum.first; from < n; from += stride) {
+        const std::size_t to = std::min(from + stride, n - 1);
+        const double there = at(to);
+        const double factor =
+            to > from ? portable::exp(portable::log(there / here) / static_cast<double>(to - from)) : 1.0;
+        double level = here;
+        for (std::size_t k = from; k < std::min(from + stride, n); ++k, level *= factor) floor[k] = level;
+        here = there;
+    }
+    return floor;
+}
+
+std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, double false_alarm) {
+    return significant_peaks(spectrum, noise_floor(spectrum), false_alarm);
+}
+
+std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, std::span<const double> floor,
+                                               double false_alarm) {
+    std::vector<SignificantPeak> peaks;
+    const auto& power = spectrum.power;
+    if (power.size() < spectrum.first + 8) return peaks;
+    const double tries =
+        tries_per_cell * static_cast<double>(power.size() - spectrum.first) / spectrum.bins_per_cell;
+    std::vector<double> scratch;
+    for (std::size_t k = spectrum.first + 1; k + 1 < power.size(); ++k) {
+        if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
+        // A cheap sieve with a wide margin: the floors below are seldom less than a quarter of the running
+        // one.
+        if (tries * exceedance(4.0 * power[k] / floor[k], spectrum.averages_at(k), 1e6) > 1.0) continue;
+        const LocalFloor near = floor_around(spectrum, k, near_cells, scratch);
+        const LocalFloor far = floor_around(spectrum, k, far_cells, scratch);
+        gather_below(spectrum, k, guard_cells * spectrum.bins_per_cell, near_cells * spectrum.bins_per_cell,
+                     scratch);
+        const double below = median_in(scratch) / median_over_mean(spectrum.averages_at(k));
+        gather(spectrum, k, inner_from_cells * spectrum.bins_per_cell,
+               inner_to_cells * spectrum.bins_per_cell, scratch);
+        const double inner = median_in(scratch) / median_over_mean(spectrum.averages_at(k));
+        const double local = std::max({near.power, far.power, below, inner});
+        if (near.cells < fewest_cells || !(local > 0.0)) continue;
+        const double chance =
+            std::min(1.0, tries * exceedance(power[k] / local, spectrum.averages_at(k), far.cells));
+        if (chance <= false_alarm) peaks.push_back({k, local, chance});
+    }
+    return peaks;
+}
+
+}  // namespace ripplenotch

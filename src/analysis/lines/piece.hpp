@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Pieces of a log for spectra: a straight line taken out, a Hann window, the transform. One after another in
+// the same memory.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "analysis/kernels/piece_kernel.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+struct Piece {
+    std::span<const double> time_s;  ///< from the piece's middle
+    std::span<const double> value;   ///< detrended and windowed, Nm
+    bool even = false;               ///< time_s is PieceMaker::even_time_s()
+    double middle_s = 0.0;
+    double window_sum = 0.0, window_square_sum = 0.0;
+};
+
+/// Half-overlapping pieces of a log that is handed over a part at a time.
+class PieceMaker {
+  public:
+    PieceMaker(std::size_t length, Hertz rate);
+
+    /// Hands every whole piece of the samples (seconds and Nm) to `take`; what it gets holds until the next
+    /// one. Returns how many samples are done with: the others are to come again, in front of those that
+    /// follow them.
+    template <class Take>
+    std::size_t for_each(std::span<const double> time_s, std::span<const double> torque_nm, Take take) {
+        std::size_t done = 0;
+        for (; done + length_ <= time_s.size(); done += hop_) {
+            if (ahead_.empty()) look_ahead(time_s.subspan(done), torque_nm.subspan(done));
+            take(make(time_s.subspan(done, length_), torque_nm.subspan(done, length_)));
+        }
+        return done;
+    }
+    /// The next piece does not follow the one before.
+    void begin_again() { late_.reset(); }
+
+    /// Adds to power[k] the squared magnitude of the last piece's sum at k * rate / length, times `scale`;
+    /// 0 Hz to half the rate.
+    void add_power(double scale, std::span<double> power);
+
+    /// Whether all pieces were even, and surely would have been if the rate had been this one.
+    [[nodiscard]] bool even_at(Hertz rate) const;
+
+    [[nodiscard]] std::span<const double> even_time_s() const { return even_time_s_; }
+
+  private:
+    const Piece& make(std::span<const double> time_s, std::span<const double> torque_nm);
+    void look_ahead(std::span<const double> time_s, std::span<const double> torque_nm);
+    EvenPart look_at(std::span<const double> time_s, std::span<const double> torque_nm);
+    void make_even(std::span<const double> torque_nm, const EvenLine& line);
+    void make_uneven(std::span<const double> time_s, std::span<const double> torque_nm);
+
+    std::size_t length_, hop_;
+    double rate_, step_s_;
+    RealTransform transform_;
+    std::vector<double> even_time_s_, even_window_;
+    double even_sum_ = 0.0, even_square_sum_ = 0.0;
+    std::vector<double> time_s_, value_;
+    std::optional<EvenPart> late_;  // the last piece's second half, if that piece was even
+    std::vector<EvenPart> ahead_;   // those of the next pieces, last one first
+    double worst_s_ = 0.0;          // largest distance from its place of any sample
+    Piece piece_;
+};
+
+}  // namespace ripplenotch

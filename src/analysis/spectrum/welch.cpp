@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/spectrum/welch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double hann_noise_bandwidth = 1.5;  // bins
+constexpr double hann_error_factor =
+    1.5307;                           // standard error of a Hann-windowed frequency over the Cramer-Rao bound
+constexpr double skirt_margin = 2.0;  // a side lobe may be this much higher than the window's own
+constexpr std::size_t trend_bins = 3;  // main lobe of what the straight line leaves at zero
+
+/// Offset in bins of a Hann peak from the logs of three powers around it; within 0.02 bin, the rest is for
+/// Newton.
+double log_parabola(double left, double middle, double right) {
+    if (!(left > 0.0) || !(right > 0.0)) return 0.0;
+    const double a = portable::log(left), b = portable::log(middle), c = portable::log(right);
+    const double bend = a - 2.0 * b + c;
+    return bend < 0.0 ? std::clamp(0.5 * (a - c) / bend, -0.5, 0.5) : 0.0;
+}
+
+/// Largest amplitude that a line of amplitude 1 shows `bins` away through a Hann window, side lobes included.
+double leakage(double bins) {
+    const double d = std::abs(bins);
+    return d < 2.0 ? 1.0 : 1.0 / (std::numbers::pi * d * (d * d - 1.0));
+}
+
+/// Drops what is only the skirt of a stronger peak, and what lies 100 dB below the strongest, where rounding
+/// is the floor. `powers` by bin; strongest first on return.
+std::vector<SignificantPeak> without_skirts(std::vector<SignificantPeak> found,
+                                            std::span<const double> power) {
+    std::stable_sort(found.begin(), found.end(), [&](const SignificantPeak& a, const SignificantPeak& b) {
+        return power[a.bin] > power[b.bin];
+    });
+    std::vector<SignificantPeak> kept;
+    for (const SignificantPeak& peak : found) {
+        const double own = std::sqrt(power[peak.bin]);
+        const bool skirt = std::any_of(kept.begin(), kept.end(), [&](const SignificantPeak& strong) {
+            const double apart = static_cast<double>(peak.bin) - static_cast<double>(strong.bin);
+            const double other = std::sqrt(power[strong.bin]);
+            return own < skirt_margin * other * leakage(std::abs(apart) - 0.5) || own < 1e-5 * other;
+        });
+        if (!skirt) kept.push_back(peak);
+    }
+    return kept;
+}
+
+}  // namespace
+
+Welch::Welch(std::size_t length, Hertz rate)
+    : length_(length), rate_(rate.value()), maker_(length, rate), power_(length / 2 + 1, 0.0) {}
+
+std::size_t Welch::add(std::span<const double> time_s, std::span<const double> torque_nm) {
+    return maker_.for_each(time_s, torque_nm, [this](const Piece& piece) {
+        maker_.add_power(4.0 / (piece.window_sum * piece.window_sum), power_);
+        gain_ += 0.5 * piece.window_sum * piece.window_sum / piece.window_square_sum;
+        ++pieces_;
+    });
+}
+
+PowerSpectrum Welch::tested() const {
+    // Half-overlapping Hann pieces: neighbours share a sixth of their power in correlation, (1 + 2/36)^-1.
+    const double averages = std::max(1.0, static_cast<double>(pieces_) / (pieces_ > 1 ? 1.0556 : 1.0));
+    return {power_, averages, hann_noise_bandwidth, std::min(trend_bins, power_.size()), {}};
+}
+
+std::optional<Welch> Welch::at(Hertz rate) const {
+    if (!maker_.even_at(rate)) return std::nullopt;
+    Welch other(length_, rate);
+    other.pieces_ = pieces_;
+    other.power_ = power_;
+    other.gain_ = gain_;
+    return other;
+}
+
+bool Welch::find_lines(double false_alarm) {
+    maker_.begin_again();
+    const double share = 1.0 / static_cast<double>(pieces_);
+    for (double& power : power_) power *= share;
+    gain_ *= share;
+    floor_ = noise_floor(tested());
+    found_ = without_skirts(significant_peaks(tested(), floor_, false_alarm), power_);
+    const std::vector<double> rest = power_without_lines();
+    PowerSpectrum without_lines = tested();
+    without_lines.power = rest;
+    humps_ = significant_humps(without_lines, false_alarm);
+    for (const SignificantPeak& found : found_) {
+        const std::size_t k = found.bin;
+        const double between = log_parabola(power_[k - 1], power_[k], power_[k + 1]);
+        LineMeter& meter = meters_.emplace_back((static_cast<double>(k) + between) * bin_hz(), bin_hz());
+        if (pieces_ > 1) meter.expect_even_pieces(maker_.even_time_s());
+    }
+    return !found_.empty();
+}
+
+/// The noise in place of each line, as far as its skirt rises above it.
+std::vector<double> Welch::power_without_lines() const {
+    std::vector<double> rest = power_;
+    for (const SignificantPeak& found : found_) {
+        const double amplitude = skirt_margin * std::sqrt(power_[found.bin]);
+        const auto fill = [&](std::size_t bin, std::size_t apart) {
+            const double leaks = amplitude * leakage(static_cast<double>(apart) - 0.5);
+            if (apart > 2 && leaks * leaks < floor_[bin]) return false;
+            rest[bin] = floor_[bin];
+            return true;
+        };
+        for (std::size_t k = found.bin; k < rest.size() && fill(k, k - found.bin); ++k) {
+        }
+        for (std::size_t k = found.bin; k > tested().first && fill(k - 1, found.bin - k + 1); --k) {
+        }
+    }
+    return rest;
+}
+
+std::vector<SpectralHump> Welch::humps() const {
+    std::vector<SpectralHump> humps;
+    const std::vector<double> rest = power_without_lines();
+    for (const SignificantHump& found : humps_) {
+        SpectralHump hump;
+        double square = 0.0;
+        std::size_t highest = found.first;
+        for (std::size_t k = found.first; k < found.end; ++k) {
+            square += (rest[k] - found.floor) / (2.0 * hann_noise_bandwidth);
+            if (rest[k] > rest[highest]) highest = k;
+        }
+        // What widens a line, because its frequency or amplitude moves, is no hump beside it.
+        const bool of_a_line = std::any_of(found_.begin(), found_.end(), [&](const SignificantPeak& line) {
+            return line.bin + 1 >= found.first && line.bin <= found.end && power_[line.bin] > 2.0 * square;
+        });
+        if (of_a_line) continue;
+        hump.from_hz = static_cast<double>(found.first) * bin_hz();
+        hump.to_hz = static_cast<double>(found.end - 1) * bin_hz();
+        hump.peak_hz = static_cast<double>(highest) * bin_hz();
+        hump.peak_nm = std::sqrt(rest[highest]);
+        hump.rms_nm = std::sqrt(std::max(square, 0.0));
+        hump.floor_nm = std::sqrt(found.floor);
+        hump.false_alarm = found.false_alarm;
+        humps.push_back(hump);
+    }
+    std::stable_sort(humps.begin(), humps.end(),
+                     [](const SpectralHump& a, const SpectralHump& b) { return a.rms_nm > b.rms_nm; });
+    return humps;
+}
+
+std::size_t Welch::measure(std::span<const double> time_s, std::span<const double> torque_nm) {
+    return maker_.for_each(time_s, torque_nm, [this](const Piece& piece) {
+        for (LineMeter& meter : meters_) meter.add(piece);
+    });
+}
+
+SpectralPeak Welch::peak(std::size_t line) const {
+    const LineMeter& meter = meters_[line];
+    SpectralPeak peak;
+    peak.hz = meter.hz();
+    peak.amplitude_nm = meter.amplitude_nm();
+    peak.floor_nm = std::sqrt(floor_[found_[line].bin]);  // the test's own floor leans to the safe side
+    peak.snr = peak.amplitude_nm / peak.floor_nm;
+    peak.false_alarm = found_[line].false_alarm;
+    peak.phase_deg = std::remainder(meter.phase_rad() * degrees_per_radian, 360.0);
+    // var f = 3 S / (pi^2 A^2 T^3) for one-sided noise density S; floor^2 = 2 S * noise bandwidth.
+    const double duration = static_cast<double>(length_) / rate_;
+    const double density = peak.floor_nm * peak.floor_nm / (2.0 * hann_noise_bandwidth * bin_hz());
+    const double bound =
+        std::sqrt(3.0 * density / (peak.amplitude_nm * peak.amplitude_nm * duration * duration * duration)) /
+        std::numbers::pi;
+    peak.hz_stderr =
+        hann_error_factor * bound / std::sqrt(std::max(1.0, 0.5 * static_cast<double>(pieces_ + 1)));
+    return peak;
+}
+
+Spectrum Welch::spectrum() const {
+    Spectrum spectrum;
+    spectrum.bin_width = Hertz(bin_hz());
+    spectrum.resolution = Hertz(hann_noise_bandwidth * bin_hz());
+    spectrum.piece_duration = Seconds(static_cast<double>(length_) / rate_);
+    spectrum.pieces = pieces_;
+    const std::size_t bins = power_.size(), first = tested().first;
+    const bool even = length_ % 2 == 0;
+    for (std::size_t k = 0; k < bins; ++k) {
+        // At 0 Hz and at half the rate both halves of the two-sided spectrum fall on one bin.
+        const double single = k == 0 || (even && k + 1 == bins) ? 0.5 : 1.0;
+        spectrum.hz.push_back(static_cast<double>(k) * bin_hz());
+        spectrum.amplitude_nm.push_back(std::sqrt(power_[k]) * single);
+        spectrum.psd_nm2_hz.push_back(power_[k] * (gain_ / rate_) * single);
+        spectrum.floor_nm.push_back(k < first ? 0.0 : std::sqrt(floor_[k]));
+    }
+    spectrum.trend_removed_to_hz = static_cast<double>(first) * bin_hz();
+    spectrum.humps = humps();
+    for (std::size_t line = 0; line < found_.size(); ++line) spectrum.peaks.push_back(peak(line));
+    std::stable_sort(
+        spectrum.peaks.begin(), spectrum.peaks.end(),
+        [](const SpectralPeak& a, const SpectralPeak& b) { return a.amplitude_nm > b.amplitude_nm; });
+    return spectrum;
+}
+
+}  // namespace ripplenotch

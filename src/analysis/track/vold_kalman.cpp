@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/vold_kalman.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include "analysis/kernels/envelope_kernel.hpp"
+#include "analysis/lines/line_separation.hpp"
+#include "analysis/track/envelope_solver.hpp"
+#include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double points_per_width = 40.0;  ///< points of the envelope in 1/bandwidth
+constexpr double rows_per_width = 8.0;
+constexpr double shortest_run = 1.5;   ///< in 1/bandwidth
+constexpr double widest_share = 0.25;  ///< of the sample rate
+constexpr double worst_condition = 1e13;
+constexpr double trend_widths = 4.0;   ///< the trend's bandwidth over a line's
+constexpr double fewest_cycles = 1.0;  ///< of a line within 1/bandwidth, or it is one with its mirror image
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+void check(const TrackedSignal& signal, const VoldKalmanRule& rule) {
+    if (signal.lines.empty()) raise<UsageError>("there is no order to track");
+    for (const TrackedLine& line : signal.lines) {
+        if (!(line.order > 0.0)) raise<UsageError>("order {} is not above 0", shortest(line.order));
+    }
+    const double rate = signal.sample_rate.value(), width = rule.bandwidth.value();
+    if (!(width > 0.0) || width > widest_share * rate) {
+        raise<UsageError>(
+            "a bandwidth of {} Hz is not above 0 and at most a quarter of the sample rate, {:.6g} Hz",
+            shortest(width), rate);
+    }
+}
+
+/// Where the cycles that a line has turned, against nothing or against another one, stand at each point.
+std::vector<double> cycles_at_points(const EnvelopeGrid& grid, std::span<const double> time_s,
+                                     std::span<const double> cycles) {
+    std::vector<double> at(grid.points);
+    std::size_t k = 0;
+    for (std::size_t j = 0; j < grid.points; ++j) {
+        const double t = grid.start_s + grid.step_s * static_cast<double>(j);
+        while (k + 2 < time_s.size() && time_s[k + 1] < t) ++k;
+        const double span = time_s[k + 1] - time_s[k];
+        const double share = span > 0.0 ? std::clamp((t - time_s[k]) / span, 0.0, 1.0) : 0.0;
+        at[j] = cycles[k] + share * (cycles[k + 1] - cycles[k]);
+    }
+    return at;
+}
+
+/// One run: solved, written into the per-sample results, its rows appended.
+class RunTracker {
+  public:
+    RunTracker(const TrackedSignal& signal, const SampleRun& run, const EnvelopeSettings& settings)
+        : signal_(signal),
+          run_(run),
+          time_s_(signal.time_s.subspan(run.first, run.size())),
+          settings_(settings),
+          grid_(make_grid(time_s_, settings.step_s)),
+          envelopes_(solve_envelopes(signal, run, grid_, settings)) {}
+
+    /// Sum of squares of what is left.
+    double write_samples(VoldKalmanTracks& result) const {
+        double squares = 0.0;
+        for (std::size_t k = 0; k < run_.size(); ++k) {
+            const std::size_t at = run_.first + k;
+            double left = signal_.torque_nm[at];
+            for (std::size_t i = 0; i < signal_.lines.size(); ++i) {
+                const TrackedLine& line = signal_.lines[i];
+                const double angle = 2.0 * std::numbers::pi * line.order * line.turns[at];
+                const std::complex<double> phasor = portable::phasor(angle);
+                const double value = envelopes_.at(2 * i, time_s_[k]) * phasor.real() -
+                                     envelopes_.at(2 * i + 1, time_s_[k]) * phasor.imag();
+                result.waveform_nm[i][at] = value;
+                left -= value;
+            }
+            const double trend = settings_.trend ? envelopes_.at(2 * signal_.lines.size(), time_s_[k]) : 0.0;
+            result.trend_nm[at] = trend;
+            squares += (left - trend) * (left - trend);
+        }
+        return squares;
+    }
+
+    /// `error_factor` by the distance, in points, to the nearer end of the run.
+    void add_rows(OrderTracks& tracks, std::size_t stride, std::size_t width,
+                  const std::vector<double>& error_factor) const {
+        const std::size_t lines = signal_.lines.size();
+        std::vector<std::vector<double>> cycles(lines);
+        for (std::size_t i = 0; i < lines; ++i) cycles[i] = line_cycles(signal_.lines[i]);
+        const auto unknown = not_separable(cycles, width, settings_.trend ? trend_widths : fewest_cycles);
+        const double end = time_s_.back();
+        for (std::size_t j = 0; j < grid_.points; j += stride) {
+            const double t = grid_.start_s + grid_.step_s * static_cast<double>(j);
+            if (t > end) break;
+            const auto is_unknown = [&](const std::vector<bool>& line) { return line[j]; };
+            if (std::any_of(unknown.begin(), unknown.end(), is_unknown)) ++tracks.rows_not_separable;
+            if (std::all_of(unknown.begin(), unknown.end(), is_unknown)) continue;
+            tracks.time_s.push_back(t);
+            tracks.speed_deg_s.push_back(signal_.speed_deg_s[run_.first + nearest(t)]);
+            const std::size_t from_end = std::min(j, grid_.points - 1 - j);
+            const double error = error_factor[std::min(from_end, error_factor.size() - 1)];
+            bool folded = false;
+            for (std::size_t i = 0; i < lines; ++i) {
+                const double hz = rate_at(cycles[i], j, width);
+                folded = folded || hz > 0.5 * signal_.sample_rate.value();
+                add_value(tracks.lines[i], i, j, hz, error, unknown[i][j]);
+            }
+            tracks.rows_folded += folded ? 1 : 0;
+        }
+    }
+
+  private:
+    [[nodiscard]] std::vector<double> line_cycles(const TrackedLine& line) const {
+        std::vector<double> turned(run_.size());
+        for (std::size_t k = 0; k < run_.size(); ++k) turned[k] = line.order * line.turns[run_.first + k];
+        return cycles_at_points(grid_, time_s_, turned);
+    }
+
+    [[nodiscard]] double rate_at(const std::vector<double>& cycles, std::size_t j, std::size_t width) const {
+        const std::size_t reach = std::max<std::size_t>(1, width / 16);
+        const std::size_t from = j > reach ? j - reach : 0, to = std::min(j + reach, grid_.points - 1);
+        return std::abs(cycles[to] - cycles[from]) / (grid_.step_s * static_cast<double>(to - from));
+    }
+
+    [[nodiscard]] std::size_t nearest(double t) const {
+        const auto found = std::lower_bound(time_s_.begin(), time_s_.end(), t);
+        return std::min(static_cast<std::size_t>(found - time_s_.begin()), time_s_.size() - 1);
+    }
+
+    void add_value(LineTrack& track, std::size_t line, std::size_t point, double hz, double error,
+                   bool unknown) const {
+        const double a = envelopes_.value[2 * line][point], b = envelopes_.value[2 * line + 1][point];
+        track.amplitude_nm.push_back(unknown ? nan : portable::hypot(a, b));
+        track.phase_deg.push_back(unknown ? nan : portable::atan2(b, a) * degrees_per_radian);
+        track.standard_error_nm.push_back(unknown ? nan : error);
+        track.hz.push_back(hz);
+    }
+
+    const TrackedSignal& signal_;
+    SampleRun run_;
+    std::span<const double> time_s_;
+    EnvelopeSettings settings_;
+    EnvelopeGrid grid_;
+    Envelopes envelopes_;
+};
+
+EnvelopeSettings settings_of(const TrackedSignal& signal, const VoldKalmanRule& rule) {
+    const double rate = signal.sample_rate.value(), width = rule.bandwidth.value();
+    const double automatic = std::max(1.0, std::floor(rate / (points_per_width * width)));
+    EnvelopeSettings settings;
+    settings.samples_per_point =
+        rule.samples_per_point > 0 ? static_cast<double>(rule.samples_per_point) : automatic;
+    settings.step_s = settings.samples_per_point / rate;
+    settings.poles = rule.poles;
+    settings.weight = vold_kalman_weight(width * settings.step_s, rule.poles);
+    settings.trend = rule.trend;
+    if (rule.trend) {
+        settings.trend_weight =
+            vold_kalman_weight(std::min(0.9, trend_widths * width * settings.step_s), rule.poles);
+    }
+    settings.overlap_points = static_cast<std::size_t>(std::ceil(10.0 / (width * settings.step_s)));
+    return settings;
+}
+
+std::vector<SampleRun> long_runs(const TrackedSignal& signal, const VoldKalmanRule& rule,
+                                 std::size_t& too_short) {
+    const double needed = shortest_run / rule.bandwidth.value();
+    double longest = 0.0;
+    std::vector<SampleRun> runs;
+    for (const SampleRun& run : whole_runs(signal.time_s.size(), signal.run_starts)) {
+        const double duration = signal.time_s[run.end - 1] - signal.time_s[run.first];
+        longest = std::max(longest, duration);
+        if (duration >= needed) {
+            runs.push_back(run);
+        } else {
+            ++too_short;
+        }
+    }
+    if (runs.empty()) {
+        const double widest = widest_share * signal.sample_rate.value();
+        const double enough = 1.05 * shortest_run / std::max(longest, 1e-12);
+        raise<DataError>(
+            "a bandwidth of {} Hz needs {:.3g} s of torque without a gap, the longest run has {:.3g} s; use "
+            "{}",
+            shortest(rule.bandwidth.value()), needed, longest,
+            enough < widest
+                ? fmt::format("a bandwidth of at least {:.2g} Hz, or least squares (--method ls)", enough)
+                : "least squares (--method ls)");
+    }
+    return runs;
+}
+
+}  // namespace
+
+double vold_kalman_weight(double bandwidth_share, int poles) {
+    if (poles < 1 || poles > 4) raise<UsageError>("a Vold-Kalman filter has 1 to 4 poles, not {}", poles);
+    if (!(bandwidth_share > 0.0) || !(bandwidth_share < 1.0)) {
+        raise<UsageError>("a bandwidth of {} times the sample rate is not between 0 and 1",
+                          shortest(bandwidth_share));
+    }
+    const double gain = std::sqrt(std::numbers::sqrt2 - 1.0);
+    const double weight =
+        gain / portable::pow(2.0 * portable::sin(0.5 * std::numbers::pi * bandwidth_share), poles);
+    const double condition = 1.0 + portable::pow(4.0, poles) * weight * weight;
+    if (condition > worst_condition) {
+        const double narrowest_sine =
+            0.5 * portable::pow(gain * portable::pow(2.0, poles) / std::sqrt(worst_condition), 1.0 / poles);
+        raise<UsageError>(
+            "a bandwidth of {} times the sample rate with {} poles makes the equations ill-conditioned "
+            "({:.1g}); use at least {:.2g} times the sample rate, or fewer poles",
+            shortest(bandwidth_share), poles, condition,
+            1.01 * 2.0 * portable::asin(narrowest_sine) / std::numbers::pi);
+    }
+    return weight;
+}
+
+VoldKalmanTracks track_vold_kalman(const TrackedSignal& signal, const VoldKalmanRule& rule) {
+    check(signal, rule);
+    const EnvelopeSettings settings = settings_of(signal, rule);
+    VoldKalmanTracks result;
+    const std::vector<SampleRun> runs = long_runs(signal, rule, result.runs_too_short);
+    result.envelope_step = Seconds(settings.step_s);
+    result.waveform_nm.assign(signal.lines.size(), std::vector<double>(signal.time_s.size(), nan));
+    result.trend_nm.assign(signal.time_s.size(), nan);
+    result.tracks.lines.resize(signal.lines.size());
+
+    std::vector<RunTracker> trackers;
+    double squares = 0.0, longest_s = 0.0;
+    std::size_t samples = 0;
+    for (const SampleRun& run : runs) {
+        trackers.emplace_back(signal, run, settings);
+        squares += trackers.back().write_samples(result);
+        samples += run.size();
+        longest_s = std::max(longest_s, signal.time_s[run.end - 1] - signal.time_s[run.first]);
+    }
+    const EnvelopeKernel kernel(settings, longest_s, rule.bandwidth);
+    const double unknowns = static_cast<double>(2 * signal.lines.size()) + (rule.trend ? trend_widths : 0.0);
+    const double freedom =
+        static_cast<double>(samples) * (1.0 - std::min(0.9, unknowns * kernel.freedom_per_sample()));
+    result.tracks.residual_rms_nm = std::sqrt(squares / freedom);
+    result.bandwidth = kernel.bandwidth();
+    std::vector<double> errors = kernel.error_factors();
+    for (double& error : errors) error *= result.tracks.residual_rms_nm;
+    const double width_points = 1.0 / (rule.bandwidth.value() * settings.step_s);
+    const double rows = rule.rows_per_second.value() > 0.0 ? rule.rows_per_second.value()
+                                                           : rows_per_width * rule.bandwidth.value();
+    const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / (rows * settings.step_s))));
+    for (const RunTracker& tracker : trackers) {
+        tracker.add_rows(result.tracks, stride, static_cast<std::size_t>(std::ceil(width_points)), errors);
+    }
+    return result;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "cli/compare/contenders.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/filter/engine.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// The nearer to what the user typed outside the methods, the better.
+int rank_of(const Contender& contender) {
+    if (!contender.gear) return 3;
+    if (contender.table) return 2;
+    return contender.made_for() ? 1 : 0;
+}
+
+std::optional<GearAccount> common_gear(const std::vector<Contender>& contenders) {
+    const auto best =
+        std::min_element(contenders.begin(), contenders.end(),
+                         [](const Contender& a, const Contender& b) { return rank_of(a) < rank_of(b); });
+    if (!best->gear) return std::nullopt;
+    for (const Contender& contender : contenders) refuse_other_gear(contender, *best->gear);
+    return best->gear;
+}
+
+}  // namespace
+
+Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,
+                      Provenance& provenance) {
+    if (methods.empty()) {
+        raise<UsageError>(
+            "nothing to compare; give --method, for example --method fixed,centers=25Hz:50Hz,q=0.25 "
+            "--method lowpass,cutoff=13rad/s");
+    }
+    const GearChoice choice(gear);
+    Field field;
+    std::set<std::string> recorded;
+    const auto add = [&](const std::string& text) {
+        const Contender& added = field.contenders.emplace_back(choose_method(text, std::nullopt, choice));
+        if (!field.table) field.table = added.table;
+        for (const std::string& file : added.files)
+            if (recorded.insert(file).second) provenance.inputs.push_back(input_record(file));
+    };
+    const auto is_control = [](const std::string& text) { return parse_spec(text).name == "none"; };
+    if (std::none_of(methods.begin(), methods.end(), is_control)) add("none");
+    for (const std::string& text : methods) add(text);
+    field.gear = common_gear(field.contenders);
+    if (!field.gear && !gear.orders.empty()) raise_no_gear("--orders");
+    return field;
+}
+
+void check_table_rates(const Field& field, Hertz sample_rate, const std::string& source,
+                       const CommonOptions& common) {
+    for (const Contender& contender : field.contenders) {
+        if (!contender.table) continue;
+        const auto warning = compare_table_rate(contender.table->spec().sample_rate, sample_rate, source);
+        if (warning) say_warnings(common, {&*warning, 1});
+    }
+}
+
+}  // namespace ripplenotch

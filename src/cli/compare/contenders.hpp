@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The methods of a comparison and the ripple it looks at, from what was typed and the files it names.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/gear/chosen_method.hpp"
+#include "cli/options/options.hpp"
+#include "ripplenotch/artifact/document.hpp"
+
+namespace ripplenotch {
+
+struct Field {
+    std::vector<Contender> contenders;            ///< the control first, unless it was typed elsewhere
+    std::shared_ptr<const CandidateTable> table;  ///< of the first method that needs one
+    /// Whose ripple all of them are measured by: that of the options and the joint file, else of the first
+    /// method that follows the gear, else of the first table. Empty when nothing says where the ripple is.
+    std::optional<GearAccount> gear;
+};
+
+/// Throws UsageError when `methods` is empty, and what choose_method and refuse_other_gear throw.
+[[nodiscard]] Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,
+                                    Provenance& provenance);
+
+/// Warns when a method's table is for a slightly different rate, and throws DataError when it is for another.
+void check_table_rates(const Field& field, Hertz sample_rate, const std::string& source,
+                       const CommonOptions& common);
+
+}  // namespace ripplenotch

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch design: the table of candidate notch filters.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/design/design_request.hpp"
+#include "cli/design/frontier_text.hpp"
+#include "cli/design/table_text.hpp"
+#include "ripplenotch/artifact/frontier.hpp"
+#include "ripplenotch/artifact/table.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/report/table_figure.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 2> width_names = {"analog", "digital"};
+constexpr std::array<std::string_view, 3> rule_names = {"pass", "hold", "fade"};
+constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
+
+// The options that would give this table without a joint.json and without arithmetic.
+std::string option_line(const TableSpec& spec) {
+    std::string orders, bands;
+    for (const Order order : spec.orders) orders += (orders.empty() ? "" : ",") + shortest(order.value());
+    for (const auto& [from, to] : spec.bands) {
+        bands +=
+            fmt::format("{}{}:{}", bands.empty() ? "" : ",", shortest(from.value()), shortest(to.value()));
+    }
+    std::string line =
+        fmt::format("--gear-ratio {} --orders {} --sample-rate {}Hz --bands {}",
+                    shortest(spec.gear_ratio.value()), orders, shortest(spec.sample_rate.value()), bands);
+    if (spec.ratio_error > 0.0) line += fmt::format(" --ratio-error {}", shortest(100.0 * spec.ratio_error));
+    std::string amplitudes;
+    for (const double amplitude : spec.amplitude_nm)
+        amplitudes += (amplitudes.empty() ? " --amplitudes " : ",") + shortest(amplitude);
+    return line + amplitudes;
+}
+
+// Asked for by name, else by --json, else by the name of the output file.
+std::string form_of(const DesignRequest& request) {
+    if (request.common.json) {
+        if (!request.form.empty() && request.form != "json") {
+            raise<UsageError>("--json and --format {} ask for two different outputs", request.form);
+        }
+        return "json";
+    }
+    if (!request.form.empty()) return request.form;
+    const std::string& path = request.common.output;
+    return ends_with_json(path) ? "json" : path.ends_with(".csv") ? "csv" : "text";
+}
+
+// Limits that the caller set: what breaks them is said, and the table is written all the same.
+std::vector<std::string> violations(const DesignRequest& request, const CandidateTable& table) {
+    std::vector<std::string> sentences;
+    for (const Band& band : table.bands()) {
+        const std::string label =
+            fmt::format("band {} ({:.6g}-{:.6g} deg/s)", band.number, band.from.value(), band.to.value());
+        const double delay_ms = 1e3 * band.dc_delay.value();
+        if (request.checks_delay() && band.dc_delay > *request.max_delay) {
+            sentences.push_back(fmt::format("{} delays by {:.1f} ms, more than --max-delay {:.6g}ms", label,
+                                            delay_ms, 1e3 * request.max_delay->value()));
+        }
+        for (std::size_t i = 0; request.min_attenuation_db && i < band.notches.size(); ++i) {
+            const double worst_db = band.worst_attenuation_db[i];
+            if (worst_db >= *request.min_attenuation_db) continue;
+            sentences.push_back(
+                fmt::format("{} takes as little as {:.1f} dB off order {}, less than "
+                            "--min-attenuation-db {}",
+                            label, worst_db, shortest(band.notches[i].order.value()),
+                            shortest(*request.min_attenuation_db)));
+        }
+    }
+    return sentences;
+}
+
+struct Drawn {
+    CandidateTable table;
+    DesignNote note;
+};
+
+// By what the table has to hold, or as it was spelled out.
+Drawn draw(const DesignRequest& request, const TableSpec& spec, const GearChoice& gear) {
+    if (!request.has_goal()) {
+        if (request.max_bands)
+            raise<UsageError>("--max-bands needs something to hold: --min-attenuation or --max-delay");
+        return {CandidateTable::design(spec), {}};
+    }
+    const DesignGoal goal = design_goal(request, spec, gear);
+    DesignChoice choice = design_for(spec, goal);
+    DesignNote note{goal.min_attenuation_db, goal.max_delay, choice.reason, std::nullopt};
+    if (goal.max_delay) note.slowest = slowest_within(spec, *goal.max_delay);
+    return {std::move(choice.table), std::move(note)};
+}
+
+ExitCode print_frontier(const DesignRequest& request, const std::string& form, const TableSpec& spec,
+                        const GearChoice& gear, const Provenance& provenance) {
+    const Frontier frontier = design_frontier(spec, design_goal(request, spec, gear));
+    const std::string text = form == "json"  ? frontier_to_json(frontier, provenance)
+                             : form == "csv" ? frontier_to_csv(frontier)
+                                             : frontier_to_text(frontier);
+    write_all(request.common.output, text, request.common.overwrite());
+    draw_plot(request.plot, request.common, provenance, [&] {
+        std::vector<FrontierPoint> points;
+        for (std::size_t i = 0; i < frontier.points.size(); ++i) {
+            const TradePoint& point = frontier.points[i];
+            points.push_back(
+                {1e3 * point.delay.value(), point.attenuation_db, i == frontier.recommended, ""});
+        }
+        return frontier_figure("Attenuation against delay", "Recommended: " + frontier.reason + ".", points);
+    });
+    return ExitCode::done;
+}
+
+ExitCode run(const DesignRequest& request, const std::string& command_line) {
+    const std::string form = form_of(request);
+    check_plot(request.plot, request.common);
+    Provenance provenance{{}, command_line};
+    GearOptions options = request.gear;
+    if (!request.joint.empty()) {
+        if (options.joint_file) raise<UsageError>("JOINT and --joint-file: give one of them");
+        options.joint_file = request.joint;
+    }
+    const GearChoice gear(options);
+    if (gear.joint()) provenance.inputs.push_back(input_record(gear.joint()->path));
+    const TableSpec spec = design_spec(request, gear);
+    if (request.frontier) return print_frontier(request, form, spec, gear, provenance);
+    const auto [table, note] = draw(request, spec, gear);
+    say(request.common, fmt::format("designed as if with {}", option_line(table.spec())));
+    say_warnings(request.common, alias_warnings(table));
+    const std::string text = form == "json"  ? table_to_json(table, provenance, note)
+                             : form == "csv" ? table_to_csv(table)
+                                             : table_to_text(table, note);
+    write_all(request.common.output, text, request.common.overwrite());
+    draw_plot(request.plot, request.common, provenance, [&] { return table_figure(table); });
+    const auto broken = violations(request, table);
+    say_warnings(request.common, broken);
+    return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    auto request = std::make_shared<DesignRequest>();
+    options.argument("JOINT", request->joint, false, "the same as --joint-file; - is standard input");
+    attach_gear(options, request->gear);
+    options.numbers("--amplitudes", request->amplitudes_nm, Dimension::torque,
+                    "of the ripple, zero to peak, one per order (default: those in JOINT)");
+    options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
+                     "rate at which the filter will run");
+    options.text("--speed", request->speed, "FROM:TO[:WIDTH]",
+                 "bands of equal width in deg/s, e.g. 18:180:18; without WIDTH for a goal to divide");
+    options.quantity("--spacing", request->spacing, Dimension::frequency,
+                     "instead of WIDTH: distance of the lowest order's centres");
+    options.text("--bands", request->bands, "FROM:TO,...",
+                 "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
+    options.number("--min-attenuation", request->goal_attenuation_db, Dimension::decibel,
+                   "choose bands and Q that hold this at every speed of every band, e.g. 20dB");
+    options.duration("--max-delay", request->max_delay,
+                     "choose bands and Q whose DC delay is no longer, e.g. 20ms; where both are stated, exit "
+                     "code 1 when a band's is");
+    options.number("--max-bands", request->max_bands, Dimension::none, "no more bands than this are chosen");
+    options.flag("--frontier", request->frontier,
+                 "the trade-off curve between attenuation, delay and bands, instead of a table");
+    options.number("--ratio-error", request->ratio_error_percent, Dimension::none,
+                   "per cent by which the gear ratio may be off (default: the interval in JOINT, else 0)");
+    options.number(
+        "--quality,--q", request->q, Dimension::none,
+        "or --q: centre over -3 dB width (default: 0.25, the paper's twin-T, or what a goal takes)");
+    options.number("--depth", request->depth_db, Dimension::decibel,
+                   "attenuation at the centre; a full null when left out");
+    options.choice("--width", request->width, width_names,
+                   "whose width Q is: the analogue prototype's or the sampled "
+                   "filter's");
+    options.number("--settle-band", request->settle_band_percent, Dimension::none,
+                   "per cent of a step within which it counts as settled");
+    options.choice("--below", request->below, rule_names, "rule below the first band");
+    options.choice("--above", request->above, rule_names, "rule above the last band");
+    options.number("--min-attenuation-db", request->min_attenuation_db, Dimension::none,
+                   "exit code 1 when a line is attenuated less anywhere in its band");
+    options.choice("--format", request->form, form_names,
+                   "form of the result (default: by the name of -o, else text)");
+    attach_plot(options, request->plot);
+    attach_common(options, request->common, JsonName::is_own);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::design = {
+    .name = "design",
+    .summary = "the table of candidate notch filters",
+    .description =
+        "For each band of joint speed, one notch per order at the frequency f = order * gear ratio * speed / "
+        "360 of the\nband's middle speed, with the delay, settling time and worst attenuation that it "
+        "costs.\nTable 1 of the paper: ripplenotch design --gear-ratio 100 --orders 1,2 --sample-rate 1kHz "
+        "--speed 18:180:18",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "cli/design/frontier_text.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "cli/text_table.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::string plain(double value) { return fmt::format("{:.4g}", value); }
+
+std::string q_range(const TradePoint& point) {
+    if (point.least_q == point.largest_q) return fmt::format("{:.3g}", point.least_q);
+    return fmt::format("{:.3g}-{:.3g}", point.least_q, point.largest_q);
+}
+
+std::string heading(const Frontier& frontier) {
+    const DesignGoal& goal = frontier.goal;
+    std::string limits;
+    if (goal.min_attenuation_db) limits += fmt::format(", at least {} dB", plain(*goal.min_attenuation_db));
+    if (goal.max_delay) limits += fmt::format(", at most {} ms", plain(1e3 * goal.max_delay->value()));
+    if (!goal.min_attenuation_db && !goal.max_delay)
+        limits += fmt::format(", up to {} bands", goal.most_bands.value_or(frontier_bands));
+    const std::string doubt =
+        frontier.spec.ratio_error > 0.0
+            ? fmt::format(" (within {} %)", fmt::format("{:.2g}", 100.0 * frontier.spec.ratio_error))
+            : "";
+    return fmt::format("What a table for gear ratio {}{} can hold from {} to {} deg/s at {} Hz{}.\n\n",
+                       fmt::format("{:.6g}", frontier.spec.gear_ratio.value()), doubt,
+                       plain(goal.from.value()), plain(goal.to.value()),
+                       fmt::format("{:.6g}", frontier.spec.sample_rate.value()), limits);
+}
+
+}  // namespace
+
+std::string slowest_sentence(Seconds delay, DegPerSec slowest) {
+    return fmt::format("Below {} deg/s no notch of Q 5 or less is within {} ms.", plain(slowest.value()),
+                       plain(1e3 * delay.value()));
+}
+
+std::string frontier_to_text(const Frontier& frontier) {
+    std::vector<std::vector<std::string>> rows = {
+        {"attenuation", "delay", "bands", "Q", "settles", "overshoot", ""},
+        {"dB held", "ms", "", "", fmt::format("ms to {} %", plain(frontier.spec.settle_band_percent)), "%",
+         ""}};
+    for (std::size_t i = 0; i < frontier.points.size(); ++i) {
+        const TradePoint& point = frontier.points[i];
+        rows.push_back({fmt::format("{:.1f}", point.attenuation_db),
+                        fmt::format("{:.1f}", 1e3 * point.delay.value()), std::to_string(point.bands),
+                        q_range(point), fmt::format("{:.0f}", 1e3 * point.settle.value()),
+                        fmt::format("{:.1f}", point.overshoot_percent),
+                        i == frontier.recommended ? "<- recommended" : ""});
+    }
+    const TradePoint& chosen = frontier.points[frontier.recommended];
+    std::string text = heading(frontier) + text_table(rows, "r");
+    text +=
+        fmt::format("\nRecommended: {:.1f} dB with {:.1f} ms in {} band{}: {}.\n", chosen.attenuation_db,
+                    1e3 * chosen.delay.value(), chosen.bands, chosen.bands == 1 ? "" : "s", frontier.reason);
+    if (frontier.slowest) text += slowest_sentence(chosen.delay, *frontier.slowest) + "\n";
+    return text;
+}
+
+}  // namespace ripplenotch

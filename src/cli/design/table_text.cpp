@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "cli/design/table_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+
+#include "cli/design/frontier_text.hpp"
+#include "cli/text_table.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::string listed(const std::vector<Order>& orders) {
+    std::string text = orders.size() == 1 ? "order " : "orders ";
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        if (i > 0) text += i + 1 == orders.size() ? " and " : ", ";
+        text += shortest(orders[i].value());
+    }
+    return text;
+}
+
+std::string plain(double value) { return fmt::format("{:.6g}", value); }
+
+// Where no band applies, in the words of the rule.
+std::string outside_sentence(const CandidateTable& table) {
+    const TableSpec& spec = table.spec();
+    const Band &first = table.bands().front(), &last = table.bands().back();
+    const std::string low = plain(first.from.value()), high = plain(last.to.value());
+    std::string text = first.from.value() > 0.0 ? fmt::format("At {} deg/s and below ", low) : "At rest ";
+    switch (spec.below) {
+        case OutsideRule::pass:
+            text += "the torque passes unfiltered";
+            break;
+        case OutsideRule::hold:
+            text += "the filter last in force stays";
+            break;
+        case OutsideRule::fade:
+            text += fmt::format("band 1 fades out, down to {} deg/s", plain(0.5 * first.from.value()));
+            break;
+    }
+    text += fmt::format("; above {} deg/s ", high);
+    switch (spec.above) {
+        case OutsideRule::pass:
+            text += "it passes unfiltered.";
+            break;
+        case OutsideRule::hold:
+            text += fmt::format("band {} stays in force.", last.number);
+            break;
+        case OutsideRule::fade:
+            text +=
+                fmt::format("band {} fades out, up to {} deg/s.", last.number, plain(1.5 * last.to.value()));
+            break;
+    }
+    for (std::size_t i = 1; i < table.bands().size(); ++i) {
+        if (table.bands()[i - 1].to < table.bands()[i].from) {
+            return text + " Between bands that do not touch, the rule for low speed holds.";
+        }
+    }
+    return text;
+}
+
+// "0.25", or "0.62 to 1.9" where bands or orders differ.
+std::string q_text(const CandidateTable& table) {
+    double least = table.bands().front().notches.front().notch.q, largest = least;
+    for (const Band& band : table.bands()) {
+        for (const CandidateNotch& notch : band.notches) {
+            least = std::min(least, notch.notch.q);
+            largest = std::max(largest, notch.notch.q);
+        }
+    }
+    if (least == largest) return shortest(least);
+    return fmt::format("{:.3g} to {:.3g}", least, largest);
+}
+
+// Which columns there are besides those that every table has.
+struct Extra {
+    std::size_t qs = 0;  // Q per order, one for all, or none because it stands in the heading
+    bool held = false;   // where the orders count by their amplitudes, which the single lines do not say
+    bool left = false;   // predicted residual
+};
+
+Extra extra_of(const CandidateTable& table) {
+    const TableSpec& spec = table.spec();
+    Extra extra{0, spec.amplitude_nm.size() > 1, !spec.amplitude_nm.empty()};
+    const double q = table.bands().front().notches.front().notch.q;
+    for (const Band& band : table.bands())
+        for (const CandidateNotch& notch : band.notches)
+            if (notch.notch.q != q) extra.qs = one_q_a_band(table) ? 1 : spec.orders.size();
+    return extra;
+}
+
+std::vector<std::vector<std::string>> title_rows(const TableSpec& spec, const Extra& extra) {
+    std::vector<std::string> titles = {"band", "speed"}, units = {"", "deg/s"};
+    for (const Order order : spec.orders) {
+        titles.push_back(fmt::format("order {}", shortest(order.value())));
+        units.push_back("Hz");
+    }
+    for (std::size_t i = 0; i < extra.qs; ++i) {
+        titles.push_back(extra.qs == 1 ? "Q" : fmt::format("Q {}", shortest(spec.orders[i].value())));
+        units.push_back("");
+    }
+    titles.insert(titles.end(), {"DC delay", "settles", "overshoot"});
+    units.insert(units.end(), {"ms", fmt::format("ms to {} %", plain(spec.settle_band_percent)), "%"});
+    for (const Order order : spec.orders) {
+        titles.push_back(fmt::format("worst {}", shortest(order.value())));
+        units.push_back("dB");
+    }
+    if (extra.held) {
+        titles.push_back("together");
+        units.push_back("dB");
+    }
+    for (std::size_t i = 0; extra.left && i < spec.orders.size(); ++i) {
+        titles.push_back(fmt::format("left {}", shortest(spec.orders[i].value())));
+        units.push_back("Nm");
+    }
+    return {titles, units};
+}
+
+std::vector<std::string> band_row(const Band& band, const Extra& extra) {
+    std::vector<std::string> row = {std::to_string(band.number),
+                                    fmt::format("{:.5g}-{:.5g}", band.from.value(), band.to.value())};
+    for (const CandidateNotch& notch : band.notches) {
+        // A measured gear ratio makes 7.49999 of 7.5; the full digits are in the CSV and the JSON.
+        row.push_back(fmt::format("{:.5g}", notch.notch.center.value()));
+    }
+    for (std::size_t i = 0; i < extra.qs; ++i) row.push_back(fmt::format("{:.3g}", band.notches[i].notch.q));
+    row.push_back(fmt::format("{:.1f}", 1e3 * band.dc_delay.value()));
+    row.push_back(fmt::format("{:.0f}", 1e3 * band.settle.value()));
+    row.push_back(fmt::format("{:.1f}", band.overshoot_percent));
+    for (const double worst : band.worst_attenuation_db) row.push_back(fmt::format("{:.1f}", worst));
+    if (extra.held) row.push_back(fmt::format("{:.1f}", band.held_attenuation_db));
+    for (const double left : band.predicted_residual_nm) row.push_back(fmt::format("{:.3f}", left));
+    return row;
+}
+
+std::string delay_sentence(std::span<const Band> bands) {
+    const auto by_delay = [](const Band& a, const Band& b) { return a.dc_delay < b.dc_delay; };
+    const auto [least, most] = std::minmax_element(bands.begin(), bands.end(), by_delay);
+    const double least_ms = 1e3 * least->dc_delay.value(), most_ms = 1e3 * most->dc_delay.value();
+    if (bands.size() == 1) return fmt::format("The torque lags by {:.1f} ms.", least_ms);
+    if (most_ms - least_ms < 0.05) return fmt::format("The torque lags by {:.1f} ms in every band.", most_ms);
+    return fmt::format("The torque lags by {:.1f} ms (band {}) to {:.1f} ms (band {}).", least_ms,
+                       least->number, most_ms, most->number);
+}
+
+}  // namespace
+
+std::string table_to_text(const CandidateTable& table, const DesignNote& note) {
+    const TableSpec& spec = table.spec();
+    const Extra extra = extra_of(table);
+    std::string text = fmt::format(
+        "Candidate notches for gear ratio {}, {}, at {} Hz: {} band{}, Q {} ({}), {}.\n\n",
+        plain(spec.gear_ratio.value()), listed(spec.orders), plain(spec.sample_rate.value()),
+        table.bands().size(), table.bands().size() == 1 ? "" : "s", q_text(table),
+        width_rule_name(spec.width),
+        spec.depth_db >= infinite_depth_db ? "full null" : fmt::format("{} dB deep", plain(spec.depth_db)));
+    auto rows = title_rows(spec, extra);
+    for (const Band& band : table.bands()) rows.push_back(band_row(band, extra));
+    text += text_table(rows, "r");
+    text += "\nWorst: the least attenuation of that order's line anywhere in the band";
+    if (spec.ratio_error >= 5e-5)
+        text += fmt::format(", the gear ratio being up to {:.2g} % off", 100.0 * spec.ratio_error);
+    text += ". ";
+    if (extra.held) text += "Together: of all orders by their amplitudes. ";
+    if (extra.left) text += "Left: what that leaves of each at most. ";
+    text += delay_sentence(table.bands()) + "\n" + outside_sentence(table) + "\n";
+    if (!note.reason.empty()) text += fmt::format("Chosen: {}.\n", note.reason);
+    if (note.slowest) text += slowest_sentence(*note.max_delay, *note.slowest) + "\n";
+    return text;
+}
+
+std::vector<std::string> alias_warnings(const CandidateTable& table) {
+    const TableSpec& spec = table.spec();
+    std::vector<std::string> warnings;
+    for (const Band& band : table.bands()) {
+        const Order highest = spec.orders.back();
+        if (ripple_frequency(highest, spec.gear_ratio, band.to) < 0.5 * spec.sample_rate) continue;
+        const double limit = 180.0 * spec.sample_rate.value() / (highest.value() * spec.gear_ratio.value());
+        warnings.push_back(
+            fmt::format("band {} ({}-{} deg/s): order {} passes half the sample rate at {} deg/s and is "
+                        "seen at a lower frequency above that",
+                        band.number, plain(band.from.value()), plain(band.to.value()),
+                        shortest(highest.value()), plain(limit)));
+    }
+    return warnings;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "cli/diagnose/diagnosis_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_places = 4, most_of_a_kind = 3;
+
+std::string short_number(double value) {
+    const std::string text = fmt::format("{:.4g}", value);
+    return text == "-0" ? "0" : text;
+}
+
+std::string unit_after(std::string_view unit) { return unit.empty() ? "" : fmt::format(" {}", unit); }
+
+std::string spans_text(const std::vector<Span>& spans, std::string_view unit) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(spans.size(), most_places); ++i) {
+        text += fmt::format("{}{} to {}", i == 0 ? "" : ", ", short_number(spans[i].from),
+                            short_number(spans[i].to));
+    }
+    if (spans.size() > most_places) text += ", ...";
+    return text + unit_after(unit);
+}
+
+std::string where_text(const Place& place) {
+    std::vector<std::string> parts;
+    if (!place.time_s.empty()) parts.push_back("at " + spans_text(place.time_s, "s"));
+    if (!place.speed_deg_s.empty()) parts.push_back("at speeds of " + spans_text(place.speed_deg_s, "deg/s"));
+    if (!place.position_deg.empty())
+        parts.push_back("at positions of " + spans_text(place.position_deg, "deg"));
+    for (const double hz : place.hz) parts.push_back(fmt::format("at {} Hz", short_number(hz)));
+    for (const double order : place.order) parts.push_back(fmt::format("at order {}", short_number(order)));
+    if (place.direction == "both") parts.emplace_back("while it moves");
+    if (place.direction == "positive" || place.direction == "negative")
+        parts.push_back(fmt::format("in {} direction", place.direction));
+    std::string text;
+    for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
+    return text.empty() ? "all over the log" : text;
+}
+
+std::string value_text(const Term& term, const FittedValue& value) {
+    const Parameter& parameter = term.effect->parameters[value.parameter];
+    std::string text = fmt::format("{} = {}", parameter.name, short_number(value.value));
+    if (value.at_bound) text += " (at its bound)";
+    if (value.ci95)
+        text += fmt::format(" [{}, {}]", short_number(value.ci95->low), short_number(value.ci95->high));
+    return text;
+}
+
+std::string round_text(const Finding& finding, std::size_t number) {
+    const Term& term = finding.term;
+    std::string text =
+        fmt::format("round {}: {}, {}\n", number, term.effect->name, status_name(finding.status));
+    if (!finding.reason.empty()) text += fmt::format("  {}\n", finding.reason);
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        if (term.effect->parameters[p].left_out == LeftOut::refused)
+            text +=
+                fmt::format("  {} = {}\n", term.effect->parameters[p].name, short_number(*term.values[p]));
+    }
+    for (const FittedValue& value : finding.values) text += fmt::format("  {}\n", value_text(term, value));
+    text += fmt::format("  acts {}\n", where_text(finding.where));
+    text +=
+        fmt::format("  gap {} -> {} Nm; alone it explains {} Nm rms\n", short_number(finding.gap_before_nm),
+                    short_number(finding.gap_after_nm), short_number(finding.evidence.share_nm));
+    if (finding.validation_before_nm) {
+        text += fmt::format("  on the validation log {} -> {} Nm with it\n",
+                            short_number(*finding.validation_before_nm),
+                            short_number(*finding.validation_after_nm));
+    }
+    for (const RivalFinding& rival : finding.alternatives)
+        text += fmt::format("  instead of it, {} would leave {} more (a tie below 12)\n", rival.effect,
+                            short_number(rival.margin));
+    return text;
+}
+
+std::string leftover_text(const Leftover& leftover) {
+    return fmt::format("{} Nm rms {} ({:.0f} % of the squared residual)", short_number(leftover.rms_nm),
+                       where_text(leftover.where), 100.0 * std::min(leftover.part, 1.0));
+}
+
+// Places of one kind are told together beyond the largest: a log may disagree in dozens of stretches of time.
+std::string leftovers_text(const std::vector<Leftover>& leftovers, std::string_view verb) {
+    std::string text;
+    std::map<std::string, std::pair<std::size_t, double>> more;  // number and part
+    std::map<std::string, std::size_t> told;
+    for (const Leftover& leftover : leftovers) {
+        if (told[leftover.kind]++ < most_of_a_kind) {
+            text += fmt::format("{} {}\n", verb, leftover_text(leftover));
+        } else {
+            ++more[leftover.kind].first;
+            more[leftover.kind].second += leftover.part;
+        }
+    }
+    for (const auto& [kind, rest] : more)
+        text += fmt::format("{} in {} further places by {} ({:.0f} %)\n", verb, rest.first, kind,
+                            100.0 * std::min(rest.second, 1.0));
+    return text;
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view between) {
+    std::string text;
+    for (const std::string& word : words) text += fmt::format("{}{}", text.empty() ? "" : between, word);
+    return text;
+}
+
+std::string closing(const Diagnosis& diagnosis) {
+    switch (diagnosis.verdict) {
+        case DiagnosisVerdict::matches:
+            return "the model explains this log: nothing is missing";
+        case DiagnosisVerdict::explained:
+            return "explained";
+        case DiagnosisVerdict::partly_explained:
+            return "partly explained: something is left";
+        case DiagnosisVerdict::unexplained:
+            return "unexplained: no effect of the catalogue accounts for what is left";
+        case DiagnosisVerdict::undecided:
+            return "cannot tell";
+    }
+    return {};
+}
+
+}  // namespace
+
+std::string diagnosis_story(const Diagnosis& diagnosis) {
+    if (diagnosis.verdict == DiagnosisVerdict::undecided) return diagnosis.doubt + "\n";
+    const DiagnosisGap& gap = diagnosis.gap;
+    std::string text = fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,
+                                   diagnosis.samples_used, short_number(gap.noise_floor_nm));
+    text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
+    for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
+        text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));
+    for (const Fault& fault : diagnosis.faults)
+        text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
+    for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) text += round_text(diagnosis.rounds[i], i + 1);
+    for (const Tie& tie : diagnosis.ambiguous)
+        text += fmt::format("{}: this log cannot tell; {} would\n", joined(tie.effects, " or "), tie.advice);
+    text += leftovers_text(diagnosis.unexplained, "unexplained:");
+    for (const Undecidable& entry : diagnosis.undecidable) {
+        text += fmt::format("not examined: {}: {}", entry.effect, entry.reason);
+        if (entry.would_explain_nm > 0.0)
+            text += fmt::format("; along the integral of the speed it would explain {} Nm rms",
+                                short_number(entry.would_explain_nm));
+        text += "\n";
+    }
+    text += fmt::format("gap {} -> {} Nm", short_number(gap.before_nm), short_number(gap.after_nm));
+    if (gap.closed_percent) text += fmt::format(", {:.1f} % of it closed", *gap.closed_percent);
+    text += "\n";
+    if (gap.validation_before_nm) {
+        text += fmt::format("on the validation log {} -> {} Nm", short_number(*gap.validation_before_nm),
+                            short_number(*gap.validation_after_nm));
+        if (gap.validation_closed_percent)
+            text += fmt::format(", {:.1f} % of it closed", *gap.validation_closed_percent);
+        text += "\n";
+    }
+    if (diagnosis.search_ended)
+        text += fmt::format(
+            "the search was ended after {:.0f} evaluations of the model; what is left is unexplained\n",
+            diagnosis.evaluations);
+    text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
+    return text + fmt::format("verdict: {}\n", closing(diagnosis));
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+// `export`: tables and filters to firmware and tools, read back and run there. The trailing underscore is
+// C++'s: export is a keyword.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "cli/command.hpp"
+#include "cli/export/export_text.hpp"
+#include "cli/gear/chosen_method.hpp"
+#include "cli/gear/joint_facts.hpp"
+#include "ripplenotch/artifact/export_report.hpp"
+#include "ripplenotch/artifact/table.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/version.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_violations_said = 5;
+
+struct Request {
+    std::string table, to;
+    std::optional<std::string> method;
+    std::optional<Hertz> sample_rate;
+    int band = 0;
+    bool verify = false;
+    ExportLimits limits;
+    CommonOptions common;
+};
+
+void check(const Request& request) {
+    if (request.to.empty()) {
+        std::string known;
+        for (const Target* target : export_targets())
+            known += fmt::format("{}{}", known.empty() ? "" : ", ", target->name);
+        raise<UsageError>("--to is missing; targets: {}", known);
+    }
+    if (request.table.empty() == !request.method) {
+        raise<UsageError>("{}", request.method
+                                    ? "a table and --method: give one of them"
+                                    : "nothing to export; name a table.json, or give --method, for example "
+                                      "--method fixed,centers=25Hz:50Hz --sample-rate 1kHz");
+    }
+    if (request.method && !request.sample_rate)
+        raise<UsageError>(
+            "--method needs --sample-rate, the rate at which the filter will run, for example 1kHz");
+    if (!request.method && request.sample_rate)
+        raise<UsageError>("a table has its own sample rate; --sample-rate goes with --method");
+    if (request.common.json && request.common.output == "-")
+        raise<UsageError>(
+            "the exported file and --json would both go to standard output; name a file with -o");
+    for (const auto& [name, value] : {std::pair{"--max-centre-shift-percent", request.limits.shift_percent},
+                                      std::pair{"--min-depth-db", request.limits.depth_db},
+                                      std::pair{"--max-dc-error-db", request.limits.dc_error_db},
+                                      std::pair{"--max-pole-radius", request.limits.pole_radius}}) {
+        if (value && !(*value >= 0.0)) raise<UsageError>("{} {} is below 0", name, shortest(*value));
+    }
+    if (request.limits.depth_db && *request.limits.depth_db > deepest_measured_db) {
+        raise<UsageError>("--min-depth-db {}: no more than {} dB is measured",
+                          shortest(*request.limits.depth_db), shortest(deepest_measured_db));
+    }
+}
+
+FilterSet filters_of_method(const Request& request) {
+    const Spec spec = parse_spec(*request.method);
+    if (spec.name != "fixed" && spec.name != "lowpass") {
+        raise<UsageError>(
+            "method {} is no set of coefficients; export takes a table.json, --method fixed,... or "
+            "--method lowpass,...",
+            spec.name);
+    }
+    const Contender chosen = choose_method(*request.method);
+    const Settings& settings = chosen.settings;
+    if (spec.name == "lowpass") {
+        // Asking the method for its filter refuses an order that is no whole number, in the method's words.
+        static_cast<void>(chosen.frozen(*request.sample_rate, DegPerSec(0.0)));
+        return filter_set(
+            LowPassSpec{Hertz(settings.number("cutoff")), static_cast<int>(settings.number("order"))},
+            *request.sample_rate);
+    }
+    std::vector<NotchSpec> notches;
+    for (const double center_hz : settings.list("centers")) {
+        NotchSpec notch{Hertz(center_hz), settings.number("q")};
+        if (settings.has("depth")) notch.depth_db = settings.number("depth");
+        if (settings.text("width") == "digital") notch.width = WidthRule::digital;
+        notches.push_back(notch);
+    }
+    return filter_set(notches, *request.sample_rate);
+}
+
+std::vector<std::string> heading_of(const Provenance& provenance) {
+    std::vector<std::string> lines = {fmt::format("Made by {} {}:", tool_name, version()),
+                                      provenance.command};
+    for (const InputRecord& input : provenance.inputs) {
+        lines.push_back(input.sha256.empty() ? fmt::format("from {}", input.name)
+                                             : fmt::format("from {}, SHA-256 {}", input.name, input.sha256));
+    }
+    return lines;
+}
+
+// Reads the file that was written, not the text in memory; a pipe or device cannot be read again, so there it
+// is the text.
+void verify(const Request& request, const Target& target, const Settings& settings, const FilterSet& filters,
+            const std::string& bytes, ExportReport& report) {
+    const bool pipe = !std::filesystem::is_regular_file(request.common.output);
+    const std::string again = pipe ? bytes : read_all(request.common.output);
+    const std::string source = request.common.output == "-" ? "standard output" : request.common.output;
+    const LoadedFilters loaded = target.read(again, source, filters, settings);
+    report.checks = verify_export(filters, loaded, source);
+    report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
+    report.verified = true;
+    report.violations = export_violations(report.checks, request.limits);
+}
+
+void say_violations(const ExportReport& report) {
+    for (std::size_t i = 0; i < std::min(report.violations.size(), most_violations_said); ++i) {
+        fmt::print(stderr, "ripplenotch export: {}\n", report.violations[i]);
+    }
+    if (report.violations.size() > most_violations_said) {
+        fmt::print(stderr, "ripplenotch export: and {} more past a limit\n",
+                   report.violations.size() - most_violations_said);
+    }
+}
+
+ExitCode run(const Request& request, const std::string& command_line) {
+    check(request);
+    const Spec spec = parse_spec(request.to);
+    const Target& target = find_target(spec.name);
+    if (ends_with_json(request.common.output) && target.name != "json")
+        raise<UsageError>("-o {}: {} is no JSON; use --to json, or name the file otherwise",
+                          request.common.output, target.name);
+    const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
+    Provenance provenance{{}, command_line};
+    FilterSet filters = request.method ? filters_of_method(request) : filter_set(load_table(request.table));
+    if (!request.method) provenance.inputs.push_back(input_record(request.table));
+    if (request.band != 0) filters = only_band(filters, request.band);
+
+    const Written written = target.write(filters, settings, heading_of(provenance));
+    ByteSink sink(request.common.output, request.common.overwrite(), target.binary);
+    sink.write(written.bytes);
+    sink.finish();
+
+    ExportReport report{spec.text(),
+                        request.common.output,
+                        written.bytes.size(),
+                        filters.sample_rate,
+                        filters.bands.size(),
+                        filters.sections_per_band(),
+                        written.warnings,
+                        {},
+                        false,
+                        {},
+                        {},
+                        {}};
+    if (target.usage != nullptr)
+        report.usage =
+            target.usage(filters, settings, request.common.output == "-" ? "FILE" : request.common.output);
+    say_warnings(request.common, written.warnings);
+    if (!report.usage.empty()) say(request.common, report.usage);
+    if (request.verify || request.limits.any())
+        verify(request, target, settings, filters, written.bytes, report);
+
+    if (request.common.json) {
+        write_all("-", export_report_to_json(report, provenance), ByteSink::Overwrite::no);
+    } else if (report.verified && request.common.output != "-") {
+        write_all("-", export_report_to_text(report), ByteSink::Overwrite::no);
+    } else if (report.verified && !request.common.quiet) {
+        fmt::print(stderr, "{}", export_report_to_text(report));
+    }
+    say_violations(report);
+    return report.violations.empty() ? ExitCode::done : ExitCode::limit_violated;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    auto request = std::make_shared<Request>();
+    options.argument("TABLE", request->table, false, "table.json from design; - is standard input");
+    options.text(
+        "--to", request->to, "TARGET[,KEY=VALUE...]",
+        "c-header, cmsis-dsp, scipy, matlab, ros-filters, servo-drive, betaflight, ardupilot, json; see "
+        "docs/export");
+    options.text("--method", request->method, "SPEC",
+                 "instead of a table: fixed,centers=25Hz:50Hz,q=1 or lowpass,cutoff=13rad/s,order=1");
+    options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
+                     "with --method: rate at which the filter will run");
+    options.count("--band", request->band, 0, 1000000,
+                  "only this band of the table, to run at every speed; 0 is the whole table");
+    options.flag("--verify", request->verify,
+                 "read the file again, run it in the target's arithmetic, and print what came through");
+    options.number("--max-centre-shift-percent", request->limits.shift_percent, Dimension::none,
+                   "exit code 1 when a centre has moved by more");
+    options.number("--min-depth-db", request->limits.depth_db, Dimension::decibel,
+                   "exit code 1 when a notch is less deep at its designed centre");
+    options.number("--max-dc-error-db", request->limits.dc_error_db, Dimension::decibel,
+                   "exit code 1 when the gain at 0 Hz is off by more");
+    options.number("--max-pole-radius", request->limits.pole_radius, Dimension::none,
+                   "exit code 1 when a pole is further out; 1 and beyond is always refused");
+    attach_common(options, request->common, JsonName::is_own);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::export_ = {
+    .name = "export",
+    .summary = "tables and filters to firmware and tools, re-read and re-measured",
+    .description =
+        "Writes a table of design, or one filter, in the form that a target takes: a C header, CMSIS-DSP, "
+        "SciPy, "
+        "MATLAB,\nROS, servo drives, Betaflight- and ArduPilot-style parameters, JSON. With --verify the "
+        "written "
+        "file is read again,\nrun in the target's arithmetic, and measured.\n"
+        "ripplenotch export table.json --to c-header -o notch.h --verify --min-depth-db 60",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch filter: logs through a method, streaming.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/filter/filter_work.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr int most_threads = 64;
+
+// One number of digits for the whole column: a log's own cells may leave out trailing zeros.
+WriteOptions write_options(const FilterRequest& request, std::optional<int> log_decimals) {
+    WriteOptions options;
+    options.append = request.append;
+    if (request.decimals == "input") {
+        if (!log_decimals) return options;
+        options.decimals = WriteOptions::Decimals::fixed;
+        options.fixed_decimals = *log_decimals;
+    } else if (request.decimals != "shortest") {
+        const auto number = parse_number(request.decimals);
+        if (!number || *number < 0.0 || *number > 17.0 || *number != static_cast<int>(*number)) {
+            raise<UsageError>("--decimals: '{}' is none of shortest, input, 0 ... 17", request.decimals);
+        }
+        options.decimals = WriteOptions::Decimals::fixed;
+        options.fixed_decimals = static_cast<int>(*number);
+    }
+    return options;
+}
+
+// Several logs have each a file of metrics in the folder.
+bool metrics_in_folder(const FilterRequest& request) {
+    return request.metrics && (request.out_directory || request.logs.size() > 1);
+}
+
+FilterJob job_of(const FilterRequest& request, const std::filesystem::path& log) {
+    FilterJob job{log.string(), request.common.output, request.metrics};
+    if (request.in_place) job.output = job.log;
+    if (request.out_directory)
+        job.output = (std::filesystem::path(*request.out_directory) / log.filename()).string();
+    if (metrics_in_folder(request)) {
+        job.metrics = (std::filesystem::path(*request.metrics) / log.stem()).string() +
+                      (request.every_joint() ? ".{joint}" : "") + ".metrics.json";
+    }
+    return job;
+}
+
+void check_jobs(const FilterRequest& request, const std::vector<FilterJob>& jobs) {
+    const bool own_names = request.in_place || request.out_directory;
+    if (request.in_place + request.out_directory.has_value() + (request.common.output != "-") > 1)
+        raise<UsageError>("-o, --out-dir and --in-place: give one of them");
+    if (jobs.size() > 1 && !own_names)
+        raise<UsageError>("{} logs need --out-dir DIR, where each gets a file of its own name", jobs.size());
+    std::set<std::string> outputs;
+    for (const FilterJob& job : jobs) {
+        std::error_code failed;
+        if (own_names && job.log == "-")
+            raise<UsageError>("--out-dir and --in-place: standard input has no name; use -o FILE");
+        if (!outputs.insert(job.output).second)
+            raise<UsageError>("two logs would be written to {}; filter them into different folders",
+                              job.output);
+        // A raw log that its filtered torque replaces is gone for good.
+        if (!request.in_place && job.log != "-" && job.output != "-" &&
+            std::filesystem::equivalent(job.log, job.output, failed)) {
+            raise<UsageError>(
+                "{}: the filtered log would take the place of the raw one; name another file, or say "
+                "--in-place",
+                job.output);
+        }
+    }
+}
+
+std::vector<FilterJob> jobs_of(const FilterRequest& request) {
+    std::vector<FilterJob> jobs;
+    for (const std::string& log : request.logs) jobs.push_back(job_of(request, log));
+    check_jobs(request, jobs);
+    std::error_code failed;
+    for (const auto& folder :
+         {request.out_directory, metrics_in_folder(request) ? request.metrics : std::nullopt}) {
+        if (folder) std::filesystem::create_directories(*folder, failed);
+        if (failed) raise<FileError>("{}: cannot make the folder: {}", *folder, failed.message());
+    }
+    return jobs;
+}
+
+void check_joints(const FilterRequest& request) {
+    if (request.common.json)
+        raise<UsageError>(
+            "--json prints the metrics of one joint; for all of them use --metrics 'NAME-{}.json'",
+            joint_mark);
+    if (request.plot.wanted()) raise<UsageError>("--plot draws one joint; say which with --joint");
+    if (request.metrics && !request.out_directory && !names_joint(*request.metrics)) {
+        raise<UsageError>("--metrics {}: each joint has metrics of its own; put {} into the name",
+                          *request.metrics, joint_mark);
+    }
+}
+
+void check(const FilterRequest& request) {
+    if (request.method.empty() && !request.table) {
+        raise<UsageError>(
+            "--method is missing, for example --method lowpass,cutoff=13rad/s or --table table.json");
+    }
+    if (request.every_joint()) check_joints(request);
+    if (!(request.gap_steps > 1.0))
+        raise<UsageError>("--gap: {} median steps is not above 1", shortest(request.gap_steps));
+    const bool log_on_stdout = request.common.output == "-" && !request.out_directory && !request.in_place &&
+                               request.plot.path != "-";
+    if (log_on_stdout && (request.common.json || request.metrics == "-")) {
+        raise<UsageError>(
+            "the filtered log and its metrics would both go to standard output; name a file with -o");
+    }
+    if (request.common.json && request.logs.size() > 1) {
+        raise<UsageError>("--json prints the metrics of one log; for several use --metrics DIR");
+    }
+    if (request.in_place && (request.log.from || request.log.to))
+        raise<UsageError>("--in-place with --from or --to: the rows outside would be lost; use -o FILE");
+    check_plot(request.plot, request.common);
+    if (request.plot.path == "-" && request.metrics == "-")
+        raise<UsageError>(
+            "--plot - and --metrics - would both go to standard output; name a file for one of them");
+    if (request.plot.wanted() && request.logs.size() > 1)
+        raise<UsageError>("--plot draws one log, and {} are given; filter them one by one",
+                          request.logs.size());
+    if (request.crossover && !(request.crossover->value() > 0.0))
+        raise<UsageError>("--crossover {} Hz is not above 0", shortest(request.crossover->value()));
+    if (request.common.json && request.metrics) raise<UsageError>("--json is --metrics -; give one of them");
+}
+
+std::size_t threads_of(const FilterRequest& request) {
+    constexpr unsigned enough = 4;  // reading, filtering and writing take one block at a time
+    if (request.threads > 0) return static_cast<std::size_t>(request.threads);
+    return std::clamp(std::thread::hardware_concurrency(), 1U, enough);
+}
+
+/// True when everything is within the limits.
+bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& methods,
+             const std::string& command_line) {
+    std::optional<Spool> spool;
+    if (methods.learns()) spool.emplace(job.log);
+    LogStream stream(
+        spool ? open_log(spool->open(), request.read_options()) : open_log(job.log, request.read_options()),
+        request.gap_steps);
+    say_layout(request.common, stream.reader().layout());
+    std::vector<JointWork> works = start_works(request, job, stream, methods, spool);
+    std::unique_ptr<LogWriter> writer;
+    if (!request.plot.instead_of(job.output)) {
+        writer = rewrite_log(job.output, stream.reader(), output_format(job.output, request.output_format),
+                             write_options(request, stream.torque_decimals()),
+                             request.in_place ? ByteSink::Overwrite::yes : request.common.overwrite());
+    }
+    const WatchedWriter* watched = nullptr;
+    if (request.plot.wanted()) {
+        auto watching = std::make_unique<WatchedWriter>(std::move(writer));
+        watched = watching.get();
+        writer = std::move(watching);
+    }
+    std::vector<JointRun> runs;
+    for (JointWork& work : works) runs.push_back({work.filter.get(), work.meter ? &*work.meter : nullptr});
+    std::vector<StreamReport> reports = stream.run(runs, writer.get(), threads_of(request));
+    bool within = true;
+    for (std::size_t j = 0; j < works.size(); ++j) {
+        works[j].metrics.stream = std::move(reports[j]);
+        if (!tell(request, job, works[j], command_line)) within = false;
+    }
+    if (watched != nullptr) {
+        const FilterMetrics& metrics = works.front().metrics;
+        draw_plot(request.plot, request.common, provenance_of(job, works.front(), command_line),
+                  [&] { return watched->course().figure(metrics.source, metrics.method, metrics.stream); });
+    }
+    return within;
+}
+
+ExitCode run(const FilterRequest& request, const std::string& command_line) {
+    check(request);
+    JointMethods methods({request.method.empty() ? "switching" : request.method, request.table, request.gear,
+                          request.gates.min_attenuation_db.has_value()});
+    bool within = true;
+    for (const FilterJob& job : jobs_of(request)) {
+        if (!run_job(request, job, methods, command_line)) within = false;
+    }
+    return within ? ExitCode::done : ExitCode::limit_violated;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    auto request = std::make_shared<FilterRequest>();
+    options.arguments("LOG", request->logs, true, "logs to filter; - is standard input");
+    options.text("--method", request->method, "SPEC",
+                 "name,key=value,...: switching, tracking, oscillator, subtract, fixed, lowpass, none; see "
+                 "docs/methods");
+    options.text("--table", request->table, "FILE",
+                 "table.json of method switching, which is then the default");
+    options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");
+    options.text("--output-format", request->output_format, "NAME",
+                 "format of the output: csv, npy (default: by the name of -o, else csv)");
+    options.flag("--in-place", request->in_place, "the filtered log takes the place of the raw one");
+    options.flag("--append", request->append,
+                 "add the filtered torque as a column instead of replacing the torque");
+    options.flag("--exact", request->exact,
+                 "filter sample by sample where fixed and lowpass would go in blocks of eight, whose output "
+                 "may differ "
+                 "by 1e-12 of the largest torque");
+    options.text("--decimals", request->decimals, "HOW",
+                 "digits of the filtered torque: shortest (reads back exactly), input (as many as the "
+                 "log's), or a number");
+    options.text("--metrics", request->metrics, "FILE",
+                 "JSON about attenuation, residual, delays, switches, gaps; with --out-dir a folder");
+    attach_gear(options, request->gear);
+    options.quantity("--crossover", request->crossover, Dimension::frequency,
+                     "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");
+    attach_gates(options, request->gates);
+    options.number("--gap", request->gap_steps, Dimension::none,
+                   "a step in time of more than this many median steps starts a new run");
+    options.count("--threads", request->threads, 0, most_threads,
+                  "threads for long logs; the output is the same for any number; 0 is one a core, at most 4");
+    attach_plot(options, request->plot);
+    attach_log(options, request->log);
+    attach_common(options, request->common, JsonName::is_own);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::filter = {
+    .name = "filter",
+    .summary = "takes the ripple out of logs, streaming",
+    .description =
+        "Replaces the torque column by the filtered torque and leaves every other byte of the log as it is.\n"
+        "With --from or --to the rows outside are not written.\n"
+        "ripplenotch filter log.csv --table table.json -o filtered.csv --metrics metrics.json\n"
+        "cat log.csv | ripplenotch filter --method lowpass,cutoff=13rad/s,order=1 - | ripplenotch spectrum -",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

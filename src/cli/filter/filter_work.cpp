@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "cli/filter/filter_work.hpp"
+
+#include <fmt/format.h>
+
+#include <complex>
+
+#include "cli/filter/filter_summary.hpp"
+#include "cli/gear/joint_facts.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+namespace {
+
+/// Whether something about the ripple is told, and whether it is measured.
+bool tells(const FilterRequest& request, const FilterJob& job) {
+    return job.metrics || request.common.json || request.common.verbose || request.crossover;
+}
+bool measures(const FilterRequest& request, const FilterJob& job) {
+    return tells(request, job) || request.gates.min_attenuation_db;
+}
+
+/// Sentences about one joint among several say which.
+std::string about(const JointWork& work, const std::string& sentence) {
+    return work.metrics.joint.empty() ? sentence : fmt::format("joint {}: {}", work.metrics.joint, sentence);
+}
+
+/// The complex gains of the method's filter for the lines of its gear, by speed.
+LineGains gains_of(const Contender& method, Hertz sample_rate) {
+    return [method, sample_rate](double speed, std::span<std::complex<double>> gains) {
+        const auto frozen = method.frozen(sample_rate, DegPerSec(speed));
+        for (std::size_t i = 0; i < gains.size(); ++i) {
+            const Hertz at = ripple_frequency(method.gear->orders[i], method.gear->ratio, DegPerSec(speed));
+            gains[i] = frozen ? response(frozen->cascade, at, sample_rate) : 1.0;
+        }
+    };
+}
+
+/// Whether what is left of the ripple is predicted along a log: not for methods that look at the whole log
+/// first, and not for the oscillator, whose filter at a speed is the solution of a Riccati equation: too dear
+/// for every window of a log.
+bool predictable(const Contender& method) {
+    return method.method->learner == nullptr && method.method->frozen != nullptr &&
+           method.method->name != "oscillator";
+}
+
+/// All but the filter, which may have to learn from the log first.
+JointWork start_work(const FilterRequest& request, const FilterJob& job, const LogStream& stream,
+                     const std::string& joint, JointMethods& methods) {
+    JointWork work;
+    work.method = methods.of(joint);
+    const Contender& method = *work.method;
+    const auto& gear = method.gear;
+    FilterMetrics& metrics = work.metrics;
+    metrics.source = stream.reader().layout().source;
+    if (method.table != nullptr) {
+        metrics.table_rate = method.table->spec().sample_rate;
+        refuse_table_rate(*metrics.table_rate, stream.design_rate(), metrics.source);
+    }
+    metrics.joint = joint;
+    metrics.method = method.text;
+    metrics.sample_rate = stream.design_rate();
+    metrics.gear = gear;
+    if (gear) say(request.common, about(work, gear_in_words(*gear)));
+    if (measures(request, job) && gear) {
+        work.meter.emplace(gear->ratio, gear->orders, stream.design_rate(), 2);
+        if (predictable(method)) work.meter->expect(gains_of(method, stream.design_rate()));
+    }
+    if (tells(request, job)) {
+        metrics.crossover = request.crossover;
+        metrics.delays = delay_ledger(method, stream.design_rate(), {request.crossover, true});
+    }
+    if (job.metrics) work.metrics_path = with_joint(*job.metrics, joint);
+    if (request.common.json) work.metrics_path.emplace(1, '-');
+    return work;
+}
+
+// The filters of a method that looks at the whole log first, from a pass of its own.
+void learn(const FilterRequest& request, const Spool& spool, std::vector<JointWork>& works) {
+    LogStream stream(open_log(spool.open(), request.read_options()), request.gap_steps);
+    std::vector<std::unique_ptr<Learner>> learners;
+    std::vector<JointRun> runs;
+    for (const JointWork& work : works) {
+        learners.push_back(work.method->learner(stream.design_rate()));
+        runs.push_back({learners.back().get()});
+    }
+    static_cast<void>(stream.run(runs, nullptr));
+    for (std::size_t j = 0; j < works.size(); ++j) {
+        works[j].filter = learners[j]->learned();
+        for (const std::string& note : learners[j]->notes())
+            say(request.common, fmt::format("{}: {}", works[j].metrics.source, about(works[j], note)));
+    }
+}
+
+void start_filter(const FilterRequest& request, JointWork& work) {
+    if (!work.filter) work.filter = work.method->start(work.metrics.sample_rate);
+    if (request.exact) return;
+    if (const std::string way = work.filter->hurry(); !way.empty())
+        say(request.common, fmt::format("{}: {}", work.metrics.source, about(work, way)));
+}
+
+}  // namespace
+
+ReadOptions FilterRequest::read_options() const {
+    ReadOptions options = log.resolve();
+    options.gear_ratio = gear.ratio;
+    options.every_joint = every_joint();
+    if (options.every_joint) options.joint.reset();
+    return options;
+}
+
+Provenance provenance_of(const FilterJob& job, const JointWork& work, const std::string& command_line) {
+    Provenance provenance;
+    provenance.command = command_line;
+    provenance.inputs.push_back(input_record(job.log));
+    provenance.inputs.back().rows = work.metrics.stream.recording.rows();
+    provenance.recordings.push_back({work.metrics.stream.recording});
+    for (const std::string& file : work.method->files) provenance.inputs.push_back(input_record(file));
+    return provenance;
+}
+
+bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
+          const std::string& command_line) {
+    FilterMetrics& metrics = work.metrics;
+    if (work.meter) metrics.levels = work.meter->levels();
+    std::vector<std::string> warnings = filter_warnings(metrics);
+    if (measures(request, job) && !metrics.gear) {
+        warnings.emplace_back(
+            "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file");
+    }
+    const auto broken = filter_violations(request.gates, *work.method, metrics);
+    for (std::string& warning : warnings) warning = request.every_joint() ? about(work, warning) : warning;
+    say_warnings(request.common, warnings);
+    for (const std::string& line : filter_summary(metrics))
+        say(request.common, request.every_joint() ? about(work, line) : line);
+    if (work.metrics_sink) {
+        work.metrics_sink->write(metrics_to_json(metrics, provenance_of(job, work, command_line)));
+        work.metrics_sink->finish();
+    }
+    for (const std::string& one : broken) {
+        const std::string sentence = request.every_joint() ? about(work, one) : one;
+        say_warnings(request.common, {&sentence, 1});
+    }
+    return broken.empty();
+}
+
+std::vector<JointWork> start_works(const FilterRequest& request, const FilterJob& job,
+                                   const LogStream& stream, JointMethods& methods,
+                                   const std::optional<Spool>& spool) {
+    std::vector<JointWork> works;
+    for (const JointColumns& joint : stream.reader().layout().all_chosen())
+        works.push_back(start_work(request, job, stream, joint.joint, methods));
+    if (spool) learn(request, *spool, works);
+    for (JointWork& work : works) {
+        start_filter(request, work);
+        // Outputs are opened before the work, so that a name that is taken costs nobody an hour.
+        if (work.metrics_path)
+            work.metrics_sink = std::make_unique<ByteSink>(*work.metrics_path, request.common.overwrite());
+    }
+    return works;
+}
+
+}  // namespace ripplenotch

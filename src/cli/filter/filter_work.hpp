@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What filter is asked to do, and what it does to each joint of a log.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/gear/joint_methods.hpp"
+#include "cli/options/gates.hpp"
+#include "cli/options/options.hpp"
+#include "cli/options/plot_request.hpp"
+#include "ripplenotch/artifact/metrics.hpp"
+#include "ripplenotch/core/spool.hpp"
+#include "ripplenotch/filter/engine.hpp"
+
+namespace ripplenotch {
+
+/// What the command line asks of filter.
+struct FilterRequest {
+    CommonOptions common;
+    PlotRequest plot;
+    LogOptions log;
+    std::vector<std::string> logs;
+    std::string method, decimals = "shortest";
+    std::optional<std::string> table, output_format, metrics, out_directory;
+    GearOptions gear;
+    std::optional<Hertz> crossover;
+    Gates gates;
+    double gap_steps = default_gap_steps;
+    int threads = 0;
+    bool append = false, exact = false, in_place = false;
+
+    [[nodiscard]] bool every_joint() const { return log.joint == "all"; }
+    [[nodiscard]] ReadOptions read_options() const;
+};
+
+/// Where one log comes from and what is made of it.
+struct FilterJob {
+    std::string log, output;
+    std::optional<std::string> metrics;
+};
+
+/// One joint of a log on its way through its filter.
+struct JointWork {
+    std::shared_ptr<const Contender> method;
+    std::unique_ptr<CausalFilter> filter;
+    std::optional<RippleMeter> meter;
+    FilterMetrics metrics;
+    std::optional<std::string> metrics_path;
+    std::unique_ptr<ByteSink> metrics_sink;
+};
+
+/// The work of each joint that `stream` reads, with its filter ready and its outputs open. `spool` holds the
+/// log for a method that looks at all of it first.
+[[nodiscard]] std::vector<JointWork> start_works(const FilterRequest& request, const FilterJob& job,
+                                                 const LogStream& stream, JointMethods& methods,
+                                                 const std::optional<Spool>& spool);
+
+/// The log, the method's files and the command, for what is made of this joint.
+[[nodiscard]] Provenance provenance_of(const FilterJob& job, const JointWork& work,
+                                       const std::string& command_line);
+
+/// Says and writes what became of a joint; true when everything is within the limits.
+bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
+          const std::string& command_line);
+
+}  // namespace ripplenotch

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "cli/gear/chosen_method.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/artifact/table.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double same_ratio_share = 0.005;  // 100 and 101 are two gears
+
+bool has_key(const Method& method, std::string_view key) {
+    return std::any_of(method.keys.begin(), method.keys.end(),
+                       [key](const Key& entry) { return entry.name == key; });
+}
+
+auto entry_of(Spec& spec, std::string_view key) {
+    return std::find_if(spec.values.begin(), spec.values.end(),
+                        [key](const auto& entry) { return entry.first == key; });
+}
+
+bool given(Spec& spec, std::string_view key) { return entry_of(spec, key) != spec.values.end(); }
+
+void fill(Spec& spec, const Method& method, std::string_view key, const std::vector<double>& values) {
+    if (values.empty() || !has_key(method, key) || given(spec, key)) return;
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : ":") + shortest(value);
+    spec.values.emplace_back(key, std::move(text));
+}
+
+void fill_gear(Spec& spec, const Method& method, const GearAccount& gear) {
+    fill(spec, method, "gear-ratio", {gear.ratio.value()});
+    if (given(spec, "orders")) return;  // amplitudes and phases would be those of other orders
+    std::vector<double> orders;
+    for (const Order order : gear.orders) orders.push_back(order.value());
+    fill(spec, method, "orders", orders);
+    fill(spec, method, "amplitudes", gear.amplitude_nm);
+    fill(spec, method, "phases", gear.phase_deg);
+}
+
+void take_table(Spec& spec, const Method& method, const std::optional<std::string>& table) {
+    if (!table) return;
+    if (!method.needs_table) {
+        raise<UsageError>("--table is for methods that switch between bands; method {} has no table",
+                          spec.name);
+    }
+    if (given(spec, "table")) raise<UsageError>("--table and table=... in --method: give one of them");
+    spec.values.insert(spec.values.begin(), {"table", *table});
+}
+
+// What the text says about the gear, checked in the words in which all of it will be; joint=FILE goes.
+MethodGear stated_gear(Spec& spec, const Method& method, const GearChoice& choice) {
+    MethodGear stated;
+    stated.name = fmt::format("method {}", spec.name);
+    Spec part{spec.name, {}};
+    std::vector<Key> keys;
+    for (Key key : method.keys) {
+        if (key.name != "gear-ratio" && key.name != "orders") continue;
+        key.required = false;
+        keys.push_back(key);
+        if (given(spec, key.name)) part.values.push_back(*entry_of(spec, key.name));
+    }
+    const Settings settings(stated.name, part, keys);
+    if (settings.has("gear-ratio")) stated.ratio = settings.number("gear-ratio");
+    if (settings.has("orders")) stated.orders = settings.list("orders");
+    if (has_key(method, "joint") && given(spec, "joint")) {
+        const auto entry = entry_of(spec, "joint");
+        const bool same = choice.joint() && choice.joint()->path == entry->second;
+        stated.joint = same ? choice.joint() : load_joint(entry->second);
+        spec.values.erase(entry);
+    }
+    return stated;
+}
+
+std::vector<std::string> files_of(const MethodGear& gear, const GearChoice& choice) {
+    std::vector<std::string> files;
+    if (gear.table != nullptr) files.push_back(gear.table_path);
+    if (gear.joint) files.push_back(gear.joint->path);
+    if (choice.joint() && (!gear.joint || gear.joint->path != choice.joint()->path))
+        files.push_back(choice.joint()->path);
+    return files;
+}
+
+}  // namespace
+
+Contender choose_method(const std::string& spec_text, const std::optional<std::string>& table,
+                        const GearChoice& choice) {
+    Spec spec = parse_spec(spec_text);
+    const Method& method = find_method(spec.name);
+    take_table(spec, method, table);
+    MethodGear stated = stated_gear(spec, method, choice);
+    std::shared_ptr<const CandidateTable> loaded;
+    if (method.needs_table && given(spec, "table")) {
+        stated.table_path = entry_of(spec, "table")->second;
+        loaded = std::make_shared<const CandidateTable>(load_table(stated.table_path));
+        stated.table = &loaded->spec();
+    }
+    std::optional<GearAccount> gear = choice.of(stated);
+    if (gear) fill_gear(spec, method, *gear);
+    if (!gear && has_key(method, "gear-ratio")) raise_no_gear(stated.name);
+    Contender chosen = make_contender(spec, std::move(loaded));
+    chosen.gear = std::move(gear);
+    chosen.files = files_of(stated, choice);
+    if (chosen.gear) refuse_other_gear(chosen, *chosen.gear);
+    return chosen;
+}
+
+void refuse_other_gear(const Contender& method, const GearAccount& measured) {
+    const auto made_for = method.made_for();
+    if (!made_for) return;
+    const double doubt = method.table ? method.table->spec().ratio_error : 0.0;
+    if (std::abs(measured.ratio / *made_for - 1.0) <= std::max(same_ratio_share, doubt)) return;
+    raise<UsageError>(
+        "method {}: its filter is for gear ratio {:.6g}{}, and the ripple would be measured for {:.6g} ({}); "
+        "leave "
+        "one of them out{}",
+        method.method->name, made_for->value(),
+        method.table ? fmt::format(" ({})", method.settings.text("table")) : "", measured.ratio.value(),
+        measured.source, method.table ? ", or design a table for this gear" : "");
+}
+
+}  // namespace ripplenotch

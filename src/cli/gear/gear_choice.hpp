@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The gear of a command: which of its sources is believed. Options first, then keys of the method, the joint
+// file, the method's table.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/gear/joint_facts.hpp"
+#include "cli/options/options.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/design/candidate_table.hpp"
+
+namespace ripplenotch {
+
+/// --gear-ratio, --orders and --joint-file as they were typed.
+struct GearOptions {
+    std::optional<double> ratio;
+    std::vector<double> orders;
+    std::optional<std::string> joint_file;
+
+    [[nodiscard]] bool any() const { return ratio || !orders.empty() || joint_file; }
+};
+
+/// What an option is for in a command, where that differs; a command has no option whose help is empty.
+struct GearHelp {
+    std::string_view ratio = "motor turns per joint turn";
+    std::string_view orders =
+        "ripple lines in cycles per motor turn (default: where a gear ratio is known, 1,2)";
+    std::string_view joint_file = "joint.json of identify: gear ratio, orders and amplitudes from there";
+};
+void attach_gear(Options& options, GearOptions& gear, const GearHelp& help = {});
+
+/// Throws UsageError on a ratio or an order that is none, and on an order that is given twice.
+void check_gear(const GearOptions& gear);
+
+/// What a method says about its gear.
+struct MethodGear {
+    std::string name;             ///< "method tracking"
+    std::optional<double> ratio;  ///< its keys gear-ratio ...
+    std::vector<double> orders;   ///< ... and orders
+    std::optional<JointFile> joint;
+    const TableSpec* table = nullptr;
+    std::string table_path;
+};
+
+/// Checked options with their joint file read, once.
+class GearChoice {
+  public:
+    /// Throws what check_gear and load_joint throw.
+    explicit GearChoice(GearOptions options);
+
+    /// The gear of a method, or of a command without one. Orders that no source states are default_orders().
+    /// Empty when no source states a ratio. Throws DataError when a joint file that is asked has no ratio or
+    /// no line that follows the motor.
+    [[nodiscard]] std::optional<GearAccount> of(const MethodGear& method = {}) const;
+    [[nodiscard]] const std::optional<JointFile>& joint() const { return joint_; }
+    /// What the joint file says under --gear-ratio, where that is given.
+    [[nodiscard]] std::optional<JointFacts> facts() const;
+
+  private:
+    GearOptions options_;
+    std::optional<JointFile> joint_;
+};
+
+/// Throws the one UsageError for whoever needs the gear and is not told it: "--orders", "method tracking".
+[[noreturn]] void raise_no_gear(std::string_view who);
+
+/// "gear ratio 100, orders 1, 2 (joint.json)", for -v.
+[[nodiscard]] std::string gear_in_words(const GearAccount& gear);
+
+}  // namespace ripplenotch

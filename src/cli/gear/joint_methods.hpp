@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The methods of a log's joints: one for all of them, or one each.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/gear/chosen_method.hpp"
+
+namespace ripplenotch {
+
+/// Stands for a joint's name in the names of files and in the keys of a method.
+inline constexpr std::string_view joint_mark = "{joint}";
+[[nodiscard]] bool names_joint(std::string_view text);
+/// `text` with the joint's name in place of each mark; a name that is no file's, like arm/1, gets _ for /.
+/// Throws UsageError when there is a mark and the joint has no name.
+[[nodiscard]] std::string with_joint(std::string text, const std::string& joint);
+
+/// As the command line has it; "{joint}" may stand in the names of methods and files.
+struct MethodRequest {
+    std::string method;
+    std::optional<std::string> table;
+    GearOptions gear;
+    bool needs_gear = false;  ///< something was asked about the ripple's place
+};
+
+class JointMethods {
+  public:
+    /// Chooses at once where no text names the joint, so that what is wrong is said before a log is opened.
+    /// Throws what choose_method throws, UsageError when a gear is needed and not known.
+    explicit JointMethods(MethodRequest request);
+
+    /// Throws the same, and what with_joint throws.
+    [[nodiscard]] std::shared_ptr<const Contender> of(const std::string& joint);
+    /// Whether the method looks at the whole log before it filters.
+    [[nodiscard]] bool learns() const;
+
+  private:
+    [[nodiscard]] std::shared_ptr<const Contender> choose(const std::string& joint) const;
+
+    MethodRequest request_;
+    std::shared_ptr<const Contender> common_;  ///< null when each joint has its own
+};
+
+}  // namespace ripplenotch

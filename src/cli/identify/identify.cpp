@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch identify: ripple lines and gear ratio from one or many logs of a joint.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/gear/gear_choice.hpp"
+#include "cli/gear/joint_methods.hpp"
+#include "cli/identify/identify_text.hpp"
+#include "cli/options/plot_request.hpp"
+#include "cli/readings/readings.hpp"
+#include "ripplenotch/artifact/identification.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/log/log.hpp"
+#include "ripplenotch/report/identification_figure.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 3> evidence_names = {"automatic", "steady", "order"};
+
+struct Request {
+    CommonOptions common;
+    PlotRequest plot;
+    LogOptions log;
+    std::vector<std::string> logs;
+    std::string evidence = "automatic";
+    GearOptions gear;  ///< a ratio to check
+    std::vector<double> order_hint;
+    IdentifyOptions identify;
+    bool require_conclusive = false;
+};
+
+/// All logs of one joint.
+struct Joint {
+    std::string name;
+    std::vector<Log> logs;
+};
+
+std::vector<Joint> read_all_joints(const Request& request, Provenance& provenance) {
+    std::vector<Joint> joints;
+    ReadOptions read = request.log.resolve();
+    read.gear_ratio = request.gear.ratio;
+    read.takes_motor_units = true;
+    const bool each = read.joint && *read.joint == "all";
+    for (const std::string& path : request.logs) {
+        std::vector<Log> logs;
+        if (each) {
+            logs = read_joints(path, read);
+        } else {
+            logs.push_back(read_log(path, read));
+        }
+        provenance.inputs.push_back(
+            {path, path == "-" ? "" : sha256_of_file(path), logs.front().recording.rows()});
+        for (Log& log : logs) {
+            say_layout(request.common, log.layout);
+            say_warnings(request.common, log.recording.warnings);
+            provenance.recordings.push_back({log.recording});
+            const std::string name = each ? log.trace.joint : logs.front().trace.joint;
+            auto joint = std::find_if(joints.begin(), joints.end(),
+                                      [&](const Joint& j) { return !each || j.name == name; });
+            if (joint == joints.end()) joint = joints.insert(joints.end(), Joint{name, {}});
+            joint->logs.push_back(std::move(log));
+        }
+    }
+    return joints;
+}
+
+/// That filters for this joint are designed for: of the log with the most rows.
+Hertz controller_rate(const Joint& joint) {
+    const auto longest =
+        std::max_element(joint.logs.begin(), joint.logs.end(),
+                         [](const Log& a, const Log& b) { return a.recording.rows() < b.recording.rows(); });
+    return longest->recording.clock.nominal_rate;
+}
+
+Identification identified(const Joint& joint, const Request& request) {
+    for (const Log& log : joint.logs) {
+        if (log.trace.size() < fewest_identify_samples) {
+            raise<DataError>("{}: {} samples, at least {} are needed to look for lines; leave this log out",
+                             log.layout.source, log.trace.size(), fewest_identify_samples);
+        }
+    }
+    Identification found = identify_readings(joint.logs, request.identify);
+    found.joint = joint.name;
+    found.sample_rate = controller_rate(joint);
+    return found;
+}
+
+// What was believed and turned out otherwise is told, and not left to the notes.
+void say_other_ratio(const Request& request, const Identification& found) {
+    constexpr double rounding = 0.001;
+    const GearRatioFit& fit = found.gear_ratio;
+    if (!request.gear.ratio || !fit.value) return;
+    const double doubt = std::max(fit.ci95_high - *fit.value, rounding * *request.gear.ratio);
+    if (std::abs(*fit.value - *request.gear.ratio) <= doubt) return;
+    say_warnings(
+        request.common,
+        std::vector{fmt::format("{}--gear-ratio {}: the lines say {:.6g} (95 %: {:.6g} to {:.6g})",
+                                found.joint.empty() ? "" : "joint " + found.joint + ": ",
+                                shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high)});
+}
+
+void check(Request& request) {
+    request.identify.way = request.evidence == "steady"  ? IdentifyOptions::Way::steady
+                           : request.evidence == "order" ? IdentifyOptions::Way::order
+                                                         : IdentifyOptions::Way::automatic;
+    check_gear(request.gear);
+    if (request.gear.ratio) request.identify.hint = GearRatio(*request.gear.ratio);
+    for (const double n : request.order_hint) {
+        if (n < 1.0 || n > 16.0 || n != std::floor(n))
+            raise<UsageError>("--order-hint {} is not a whole number from 1 to 16", n);
+        request.identify.hinted_orders.push_back(static_cast<int>(n));
+    }
+    const double rate = request.identify.false_alarm;
+    if (!(rate > 0.0) || rate > 0.5) raise<UsageError>("--false-alarm {} is not between 0 and 0.5", rate);
+    if (!(request.identify.steady_for.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
+    if (!(request.identify.steady_band_percent >= 0.0))
+        raise<UsageError>("--steady-band must not be negative");
+}
+
+std::vector<std::string> names_of(const Joint& joint) {
+    std::vector<std::string> names;
+    for (const Log& log : joint.logs) names.push_back(log.layout.source);
+    return names;
+}
+
+std::string logs_in_words(const std::vector<std::string>& logs) {
+    return logs.size() == 1 ? logs.front() : fmt::format("{} and {} more", logs.front(), logs.size() - 1);
+}
+
+ExitCode run(Request& request, const std::string& command_line) {
+    check(request);
+    check_plot(request.plot, request.common);
+    Provenance provenance{{}, command_line};
+    std::vector<Identification> found;
+    const std::vector<Joint> joints = read_all_joints(request, provenance);
+    // How long one joint takes cannot be told beforehand.
+    Progress::current().begin("looking for lines", "joints", joints.size() > 1 ? joints.size() : 0);
+    for (const Joint& joint : joints) {
+        found.push_back(identified(joint, request));
+        say_other_ratio(request, found.back());
+        if (joints.size() > 1) Progress::current().add(1);
+    }
+
+    if (request.plot.wanted() && found.size() > 1)
+        raise<UsageError>("--plot draws one joint, and --joint all found {}; name one", found.size());
+    std::string text;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        text += (text.empty() ? "" : "\n") + identification_report(found[i], names_of(joints[i]));
+    const bool json_file = ends_with_json(request.common.output);
+    if (request.common.json || json_file) {
+        if (names_joint(request.common.output)) {
+            for (const Identification& one : found)
+                write_all(with_joint(request.common.output, one.joint), identification_text(one, provenance),
+                          request.common.overwrite());
+        } else {
+            const std::string json = found.size() == 1 ? identification_text(found.front(), provenance)
+                                                       : identifications_text(found, provenance);
+            write_all(request.common.output, json, request.common.overwrite());
+        }
+        // The file is for the next command; people still want to read what came out.
+        if (json_file && !request.common.json) write_all("-", text, ByteSink::Overwrite::yes);
+    } else {
+        write_all(request.common.output, text, request.common.overwrite());
+    }
+    draw_plot(request.plot, request.common, provenance,
+              [&] { return identification_figure(logs_in_words(request.logs), found.front()); });
+    const bool conclusive =
+        std::all_of(found.begin(), found.end(), [](const Identification& one) { return one.conclusive; });
+    return conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    const auto request = std::make_shared<Request>();
+    options.arguments("LOG", request->logs, true, "logs of one joint; several are fitted together");
+    attach_gear(options, request->gear,
+                {.ratio = "what you believe the ratio is; checked against the lines, not believed",
+                 .orders = "",
+                 .joint_file = ""});
+    options.numbers("--order-hint", request->order_hint, Dimension::none,
+                    "which multiple of the motor's turn you believe the strongest line to be, 1 to 16");
+    options.choice("--evidence", request->evidence, evidence_names,
+                   "steady stretches (the paper's way), order spectrum (any motion), or what suffices");
+    options.number("--false-alarm", request->identify.false_alarm, Dimension::none,
+                   "chance that a log of mere noise gives any line");
+    options.number("--steady-band", request->identify.steady_band_percent, Dimension::none,
+                   "a stretch is steady while its speed stays within this many per cent ...");
+    options.number("--steady-band-speed", request->identify.steady_band_deg_s, Dimension::speed,
+                   "... or within this speed, whichever is wider; none by default");
+    options.quantity("--steady-for", request->identify.steady_for, Dimension::time, "for at least this long");
+    options.flag("--require-conclusive", request->require_conclusive,
+                 "exit with code 5 when the logs do not settle it");
+    attach_plot(options, request->plot);
+    attach_log(options, request->log);
+    attach_common(options, request->common, JsonName::is_own);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::identify{
+    .name = "identify",
+    .summary = "ripple lines and the gear ratio, from steady speeds or any motion",
+    .description =
+        "Reads logs of time, velocity and torque (position helps) and finds the lines in the torque: orders, "
+        "which turn\n"
+        "with the joint, and fixed tones. Fits f = n * ratio * |v| / 360 to the orders. The answer may be "
+        "that there is\n"
+        "no line, or that these logs cannot tell.\n"
+        "Example: ripplenotch identify 60.csv 120.csv 180.csv -o joint.json",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch info: what is in a log, and what can be done with it.
+
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/info/info_text.hpp"
+#include "cli/info/survey.hpp"
+#include "ripplenotch/artifact/info.hpp"
+
+namespace ripplenotch {
+namespace {
+
+struct Request {
+    CommonOptions common;
+    LogOptions log;
+    std::vector<std::string> paths;
+};
+
+ExitCode run(const Request& request, const std::string& command_line) {
+    const ReadOptions options = request.log.resolve();
+    std::vector<LogInfo> logs;
+    Provenance provenance{{}, command_line};
+    for (const std::string& path : request.paths) {
+        logs.push_back(survey_log(path, options));
+        const LogInfo& log = logs.back();
+        // A pipe cannot be read a second time for its hash.
+        provenance.inputs.push_back(
+            {path, request.common.json && path != "-" ? sha256_of_file(path) : "", log.rows});
+        say(request.common, log.source + ": read as if with " + log.layout.options);
+    }
+    std::string text;
+    if (request.common.json) {
+        text = info_to_json(logs, provenance);
+    } else {
+        for (const LogInfo& log : logs) text += (text.empty() ? "" : "\n") + info_to_text(log);
+    }
+    write_all(request.common.output, text, request.common.overwrite());
+    return ExitCode::done;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    auto request = std::make_shared<Request>();
+    options.arguments("LOG", request->paths, true, "logs to look at; - is standard input");
+    attach_log(options, request->log);
+    attach_common(options, request->common);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::info = {
+    .name = "info",
+    .summary = "what is in a log and what can be done with it",
+    .description =
+        "Columns with their roles, units and joints; the measured sample rate, jitter, gaps, held samples; "
+        "whether position\n"
+        "agrees with integrated velocity; steady stretches. Example: ripplenotch info run7.csv",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

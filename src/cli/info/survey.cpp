@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "cli/info/survey.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "ripplenotch/analysis/steady.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::optional<Range> range_of(const std::vector<double>& values) {
+    if (values.empty() || !std::isfinite(values.front())) return std::nullopt;
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return Range{*low, *high};
+}
+
+// Turns of the joint, back and forth added up: from position, else from velocity over time. Position is
+// thinned to hundredths of a second, so that its noise at rest does not add up to turns.
+double turns_of(const Trace& trace, double sample_rate) {
+    double degrees = 0.0;
+    const auto stride = static_cast<std::size_t>(std::max(1.0, 0.01 * sample_rate));
+    if (!trace.position_deg.empty()) {
+        for (std::size_t i = 0; i + 1 < trace.size(); i += stride) {
+            const std::size_t next = std::min(i + stride, trace.size() - 1);
+            degrees += std::abs(trace.position_deg[next] - trace.position_deg[i]);
+        }
+    } else if (sample_rate > 0.0 && std::isfinite(trace.velocity_deg_s.front())) {
+        for (std::size_t i = 0; i < trace.size(); ++i)
+            degrees += std::abs(trace.velocity_deg_s[i]) / sample_rate;
+    }
+    return degrees / 360.0;
+}
+
+std::vector<SteadyStretch> stretches_of(const Log& log) {
+    std::vector<SteadyStretch> stretches;
+    const bool usable = log.trace.sample_rate.value() > 0.0 &&
+                        std::isfinite(log.trace.velocity_deg_s.front()) &&
+                        std::isfinite(log.trace.time_s.front());
+    if (!usable) return stretches;
+    for (const Stretch& stretch : steady_stretches(log.trace.view(), SteadyRule{})) {
+        stretches.push_back(
+            {log.trace.time_s[stretch.first], stretch.duration.value(), stretch.speed.value(), stretch.rest});
+    }
+    return stretches;
+}
+
+JointInfo joint_info(const Log& log) {
+    JointInfo joint;
+    joint.joint = log.layout.chosen.joint;
+    joint.speed_deg_s = range_of(log.trace.velocity_deg_s);
+    joint.torque_nm = range_of(log.trace.torque_nm);
+    if (log.position_range_deg)
+        joint.position_deg = Range{log.position_range_deg->first, log.position_range_deg->second};
+    joint.recording = log.recording;
+    joint.clock_factor = log.clock_factor;
+    joint.turns = turns_of(log.trace, log.trace.sample_rate.value());
+    joint.stretches = stretches_of(log);
+    joint.options = log.layout.options;
+    return joint;
+}
+
+// A warning without its names and figures: what two joints' warnings have in common when they say the same.
+std::string gist(const std::string& warning) {
+    std::string text;
+    bool quoted = false;
+    for (const char c : warning) {
+        if (c == '\'') quoted = !quoted;
+        if (!quoted && std::isdigit(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') text += c;
+    }
+    return text;
+}
+
+// Each warning once: of several joints that are warned alike, the first one's text stands for all.
+void add_warnings(LogInfo& info, const std::vector<Log>& logs) {
+    struct Entry {
+        std::string text, gist;
+        std::vector<std::string> joints;
+    };
+    std::vector<Entry> entries;
+    for (const Log& log : logs) {
+        for (const std::vector<std::string>& list : {log.layout.warnings, log.recording.warnings}) {
+            for (const std::string& warning : list) {
+                const std::string key = gist(warning);
+                auto same = std::find_if(entries.begin(), entries.end(),
+                                         [&](const Entry& e) { return e.gist == key; });
+                if (same == entries.end()) same = entries.insert(same, {warning, key, {}});
+                same->joints.push_back(log.layout.chosen.joint);
+            }
+        }
+    }
+    for (const Entry& entry : entries) {
+        const bool all = entry.joints.size() == logs.size();
+        std::string text = entry.text;
+        if (logs.size() > 1 && (!all || text.find('\'') != std::string::npos)) {
+            const auto others = std::vector<std::string>(entry.joints.begin() + 1, entry.joints.end());
+            text = fmt::format("joint {}{}: {}", entry.joints.front(),
+                               others.empty() ? "" : fmt::format(" (and {} alike)", fmt::join(others, ", ")),
+                               text);
+        }
+        info.warnings.push_back(text);
+    }
+}
+
+std::string speeds_text(const std::vector<SteadyStretch>& stretches) {
+    std::string text;
+    std::size_t shown = 0;
+    for (const SteadyStretch& stretch : stretches) {
+        if (stretch.rest) continue;
+        if (++shown > 4) return text + ", ...";
+        text += fmt::format("{}{:.3g} deg/s ({:.3g} s)", text.empty() ? "" : ", ", stretch.speed_deg_s,
+                            stretch.duration_s);
+    }
+    return text;
+}
+
+// The joint that turned most decides what the whole log is good for.
+void state_uses(LogInfo& info) {
+    const auto most =
+        std::max_element(info.joints.begin(), info.joints.end(),
+                         [](const JointInfo& a, const JointInfo& b) { return a.turns < b.turns; });
+    const JointInfo none;
+    const JointInfo& joint = most == info.joints.end() ? none : *most;
+    const std::string missing = !joint.torque_nm     ? "no torque column"
+                                : !joint.speed_deg_s ? "no velocity column"
+                                                     : info.clock.refusal;
+    const std::string speeds = speeds_text(joint.stretches);
+    const std::string of_joint = info.joints.size() > 1 ? fmt::format("joint {}: ", joint.joint) : "";
+
+    Use spectrum{"spectrum", missing.empty(), missing};
+    if (missing.empty()) {
+        spectrum.reason = speeds.empty() ? of_joint +
+                                               "no speed is held for 1 s: a spectrum of the whole log, lines "
+                                               "smeared by its speed range"
+                                         : of_joint + "steady at " + speeds;
+    }
+    Use identify{"identify", missing.empty() && joint.turns > 0.05, missing};
+    if (missing.empty()) {
+        const double top = 0.5 * info.clock.nominal_rate.value();
+        const double speed = std::max(std::abs(joint.speed_deg_s->min), std::abs(joint.speed_deg_s->max));
+        identify.reason = fmt::format(
+            "{}{:.3g} turns of the joint at up to {:.3g} deg/s; lines below {:.0f} cycles per turn stay "
+            "under half the "
+            "sample rate at that speed",
+            of_joint, joint.turns, speed, 360.0 * top / std::max(speed, 1e-9));
+        if (!identify.possible)
+            identify.reason = fmt::format("{}the joint turns by {:.3g} of a turn: too little for any line",
+                                          of_joint, joint.turns);
+    }
+    Use filter{"filter", missing.empty(), missing};
+    if (missing.empty()) {
+        filter.reason = info.clock.gap_count == 0
+                            ? "the clock runs without gaps"
+                            : fmt::format("in {} runs, one between gaps", info.clock.gap_count + 1);
+        if (info.clock.rows_left_out > 0)
+            filter.reason +=
+                fmt::format("; {} rows at another rate pass unfiltered", info.clock.rows_left_out);
+    }
+    Use clock{"clock-check", joint.clock_factor.has_value(), "position and velocity can be compared"};
+    if (!clock.possible) {
+        clock.reason = !joint.position_deg
+                           ? "no position column"
+                           : "too few rows, too little motion, or position and velocity of different things";
+    }
+    info.uses = {spectrum, identify, filter, clock};
+}
+
+}  // namespace
+
+LogInfo survey_log(const std::string& path, ReadOptions options) {
+    options.needs_torque = false;
+    const bool one = options.joint && *options.joint != "all";
+    std::vector<Log> logs;
+    if (one) {
+        logs.push_back(read_log(path, options));
+    } else {
+        logs = read_joints(path, options);
+    }
+    LogInfo info;
+    const Log& first = logs.front();
+    info.source = first.layout.source;
+    info.layout = first.layout;
+    info.rows = first.recording.rows();
+    info.clock = first.recording.clock;
+    if (first.layout.chosen.time || first.layout.stated_rate)
+        info.duration_s = info.clock.last_s - info.clock.first_s;
+    for (const Log& log : logs) {
+        info.joints.push_back(joint_info(log));
+        info.bad_values_held = std::max(info.bad_values_held, log.held_bad_values);
+        // What a joint chose among its columns is known by its own reading.
+        const std::string& name = log.layout.chosen.joint;
+        for (std::size_t c = 0; c < info.layout.columns.size(); ++c) {
+            const Column& own = log.layout.columns[c];
+            if (own.role == Role::time) continue;
+            if (own.joint == name || info.layout.columns[c].joint == name) info.layout.columns[c] = own;
+        }
+    }
+    add_warnings(info, logs);
+    state_uses(info);
+    return info;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "cli/options/options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+#include "cli/options/number_list.hpp"
+#include "cli/options/options_implementation.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/version.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::string owned(std::string_view text) { return std::string(text); }
+
+std::string unit_type_name(Dimension dimension) {
+    const std::string_view unit = base_unit(dimension);
+    return unit.empty() ? "NUMBER" : owned(unit);
+}
+
+// CLI11 lets an option of one value swallow positionals only when it may take several; these never do.
+CLI::Option* single(CLI::Option* option, std::string_view type_name) {
+    return option->type_name(owned(type_name))
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+}
+
+std::string shell_quoted(const std::string& word) {
+    const auto plain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+               std::string_view("-_=./:,@+%").find(c) != std::string_view::npos;
+    };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+}  // namespace
+
+std::string Options::Implementation::names_for_parser(std::string_view names) {
+    std::vector<std::string> known, one_letter;
+    for (const std::string& name : split_commas(owned(names))) {
+        (name.size() == 3 && name.starts_with("--") ? one_letter : known).push_back(name);
+    }
+    for (const std::string& name : one_letter) spelled_out[name] = known.back();
+    return fmt::format("{}", fmt::join(known, ","));
+}
+
+void Options::Implementation::spell_out(std::vector<std::string>& command_line) const {
+    for (std::string& word : command_line) {
+        if (word == "--") return;
+        const std::size_t name_end = std::min(word.find('='), word.size());
+        const auto entry = spelled_out.find(word.substr(0, name_end));
+        if (entry != spelled_out.end()) word.replace(0, name_end, entry->second);
+    }
+}
+
+void Options::flag(std::string_view names, bool& target, std::string_view help) {
+    implementation_.command->add_flag(owned(names), target, owned(help));
+}
+
+void Options::text(std::string_view names, std::string& target, std::string_view type_name,
+                   std::string_view help) {
+    CLI::Option* option =
+        single(implementation_.command->add_option(owned(names), target, owned(help)), type_name);
+    if (!target.empty()) option->default_str(target);
+}
+
+void Options::text(std::string_view names, std::optional<std::string>& target, std::string_view type_name,
+                   std::string_view help) {
+    single(implementation_.command->add_option_function<std::string>(
+               owned(names), [&target](const std::string& value) { target = value; }, owned(help)),
+           type_name);
+}
+
+void Options::texts(std::string_view names, std::vector<std::string>& target, std::string_view type_name,
+                    std::string_view help) {
+    implementation_.command->add_option(owned(names), target, owned(help))
+        ->type_name(owned(type_name))
+        ->allow_extra_args(false);
+}
+
+void Options::choice(std::string_view names, std::string& target, std::span<const std::string_view> choices,
+                     std::string_view help) {
+    const std::vector<std::string> allowed(choices.begin(), choices.end());
+    CLI::Option* option = single(implementation_.command->add_option(owned(names), target, owned(help)),
+                                 fmt::format("{}", fmt::join(choices, "|")));
+    option->check([allowed](const std::string& value) {
+        if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return std::string();
+        return fmt::format("'{}' is none of {}", value, fmt::join(allowed, ", "));
+    });
+    if (!target.empty()) option->default_str(target);
+}
+
+void Options::count(std::string_view names, int& target, int lowest, int highest, std::string_view help) {
+    single(implementation_.command->add_option(owned(names), target, owned(help)), "INTEGER")
+        ->check(CLI::Range(lowest, highest))
+        ->default_str(std::to_string(target));
+}
+
+void Options::parsed_number(std::string_view names, Dimension dimension, std::string_view help,
+                            double default_value, bool has_default, std::function<void(double)> assign) {
+    const std::string label =
+        owned(names.substr(names.rfind(',') == std::string_view::npos ? 0 : names.rfind(',') + 1));
+    CLI::Option* option = single(implementation_.command->add_option_function<std::string>(
+                                     implementation_.names_for_parser(names),
+                                     [dimension, label, assign](const std::string& value) {
+                                         assign(parse_quantity(value, dimension, label));
+                                     },
+                                     owned(help)),
+                                 unit_type_name(dimension));
+    if (has_default) option->default_str(shortest(default_value));
+}
+
+void Options::number(std::string_view names, double& target, Dimension dimension, std::string_view help) {
+    parsed_number(names, dimension, help, target, true, [&target](double value) { target = value; });
+}
+
+void Options::number(std::string_view names, std::optional<double>& target, Dimension dimension,
+                     std::string_view help) {
+    parsed_number(names, dimension, help, 0.0, false, [&target](double value) { target = value; });
+}
+
+void Options::duration(std::string_view names, std::optional<Seconds>& target, std::string_view help) {
+    const std::string label = owned(names);
+    single(implementation_.command->add_option_function<std::string>(
+               owned(names),
+               [&target, label](const std::string& value) {
+                   target = Seconds(parse_quantity(value, Dimension::time, label));
+                   if (parse_number(value) && *target != Seconds(0.0))
+                       raise<UsageError>("{0} {1}: ms or s? write {0} {1}ms or {0} {1}s", label, value);
+               },
+               owned(help)),
+           "TIME");
+}
+
+void Options::numbers(std::string_view names, std::vector<double>& target, Dimension dimension,
+                      std::string_view help) {
+    const std::string label = owned(names);
+    single(implementation_.command->add_option_function<std::string>(
+               owned(names),
+               [&target, dimension, label, &words = implementation_.words](const std::string& value) {
+                   refuse_split_list(words, label, dimension);
+                   if (value.find_first_of(" :;") != std::string::npos)
+                       refuse_other_marks(label, value, dimension);
+                   target.clear();
+                   for (const std::string& piece : split_commas(value)) {
+                       target.push_back(parse_quantity(piece, dimension, label));
+                   }
+               },
+               owned(help)),
+           unit_type_name(dimension) + ",...");
+}
+
+void Options::argument(std::string_view name, std::string& target, bool required, std::string_view help) {
+    implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
+}
+
+void Options::arguments(std::string_view name, std::vector<std::string>& target, bool required,
+                        std::string_view help) {
+    implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
+}
+
+void Options::after_parse(std::function<void()> check) {
+    implementation_.after_parse.push_back(std::move(check));
+}
+
+std::string Options::command_line() const {
+    std::string line = owned(tool_name);
+    const auto& words = implementation_.words;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] == "-o" || words[i] == "--output" || words[i] == "--plot") {
+            ++i;
+        } else if (words[i].rfind("--output=", 0) != 0 && words[i].rfind("--plot=", 0) != 0 &&
+                   words[i] != "--force" && words[i] != "-q" && words[i] != "--quiet" && words[i] != "-v" &&
+                   words[i] != "--verbose" && words[i] != "--json") {
+            line += " " + shell_quoted(words[i]);
+        }
+    }
+    return line;
+}
+
+bool ends_with_json(std::string_view path) { return path.size() > 5 && path.ends_with(".json"); }
+
+void attach_common(Options& options, CommonOptions& common, JsonName by_name) {
+    if (by_name == JsonName::asks_for_json)
+        options.after_parse([&common] { common.json = common.json || ends_with_json(common.output); });
+    options.text("-o,--output", common.output, "FILE", "where the result goes; - is standard output");
+    options.flag("--json", common.json, "one JSON object instead of text");
+    options.flag("--force", common.force, "overwrite existing files");
+    options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
+    options.flag("-v,--verbose", common.verbose, "say on standard error what was decided");
+}
+
+void say_warnings(const CommonOptions& common, std::span<const std::string> warnings) {
+    if (common.quiet) return;
+    Progress::current().step_aside();
+    for (const std::string& warning : warnings) fmt::print(stderr, "{}: warning: {}\n", tool_name, warning);
+}
+
+void say(const CommonOptions& common, std::string_view sentence) {
+    Progress::current().step_aside();
+    if (common.verbose && !common.quiet) fmt::print(stderr, "{}: {}\n", tool_name, sentence);
+}
+
+void say_layout(const CommonOptions& common, const Layout& layout) {
+    say(common, fmt::format("{}: read as if with {}", layout.source, layout.options));
+    if (layout.outside) say(common, fmt::format("{}: {}", layout.source, range_in_words(*layout.outside)));
+    for (const Assumption& one : layout.inferences)
+        say(common, fmt::format("{}: {} is {}: {}", layout.source, one.about, one.assumed, one.reason));
+    say_warnings(common, layout.warnings);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Shared by options.cpp and main.cpp only: the parsing library behind Options.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/options/options.hpp"
+
+namespace ripplenotch {
+
+struct Options::Implementation {
+    CLI::App* command = nullptr;
+    std::vector<std::string> words;  ///< the command line after the program's name
+    std::vector<std::function<void()>> after_parse = {};
+    /// "--q" -> "--quality": what stands on the command line, and what CLI11 knows it as. CLI11 from 2.2 on
+    /// takes a long name of one letter for the short name too, so that `--q` would be refused beside `-q`.
+    std::map<std::string, std::string> spelled_out = {};
+
+    /// The names for CLI11: "--quality" of "--quality,--q", which goes to `spelled_out`.
+    [[nodiscard]] std::string names_for_parser(std::string_view names);
+    /// Rewrites the options before "--" as CLI11 knows them.
+    void spell_out(std::vector<std::string>& command_line) const;
+};
+
+}  // namespace ripplenotch

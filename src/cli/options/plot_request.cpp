@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "cli/options/plot_request.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "ripplenotch/artifact/figure.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/figure/gnuplot.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+std::optional<PictureKind> picture_kind(const std::string& path) {
+    const std::string extension = extension_of(path);
+    if (extension == ".svg") return PictureKind::svg;
+    if (extension == ".png") return PictureKind::png;
+    if (extension == ".pdf") return PictureKind::pdf;
+    return std::nullopt;
+}
+
+// A pipe gets 80 columns whoever reads it, so that the same input gives the same bytes.
+int terminal_columns() {
+    winsize size{};
+    if (::isatty(STDOUT_FILENO) == 1 && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
+        return size.ws_col;
+    return 80;
+}
+
+std::string data_path(const std::string& path) {
+    return std::filesystem::path(path).replace_extension(".json").string();
+}
+
+constexpr const char* how_to_install = "install gnuplot (on Debian: apt-get install gnuplot-nox)";
+
+}  // namespace
+
+std::string joint_in_words(const std::string& path, const std::string& joint) {
+    return joint.empty() ? path : path + ", joint " + joint;
+}
+
+void attach_plot(Options& options, PlotRequest& request) {
+    options.text("--plot", request.path, "FILE",
+                 "the result as a picture: FILE.svg, .png or .pdf by gnuplot, FILE.json for the data of the "
+                 "figure; - draws it in the terminal");
+}
+
+void check_plot(const PlotRequest& request, const CommonOptions& common) {
+    if (!request.path) return;
+    const std::string& path = *request.path;
+    if (path == "-") {
+        if (common.json && common.output == "-") {
+            raise<UsageError>(
+                "--plot - and --json would both go to standard output; name a file with -o or --plot");
+        }
+        return;
+    }
+    if (!picture_kind(path) && extension_of(path) != ".json") {
+        raise<UsageError>(
+            "--plot {}: the name says neither .svg, .png, .pdf nor .json (the figure's data); - is the "
+            "terminal",
+            path);
+    }
+    if (path == common.output) raise<UsageError>("--plot and -o both name {}", path);
+    if (!common.force && std::filesystem::exists(path)) {
+        raise<FileError>("{}: exists already; choose another name or overwrite it with --force", path);
+    }
+}
+
+void draw_plot(const PlotRequest& request, const CommonOptions& common, const Provenance& provenance,
+               const std::function<Figure()>& make) {
+    if (!request.path) return;
+    const std::string& path = *request.path;
+    const Figure figure = make();
+    const auto data = [&] { return figure_text(figure, provenance); };
+    if (extension_of(path) == ".json") {
+        write_all(path, data(), common.overwrite());
+        return;
+    }
+    const auto drawn =
+        path == "-" ? draw_text(figure, terminal_columns()) : draw_picture(figure, *picture_kind(path));
+    if (drawn) {
+        write_all(path, *drawn, common.overwrite());
+        return;
+    }
+    if (path == "-") raise<FileError>("--plot -: there is no gnuplot to draw with; {}", how_to_install);
+    write_all(data_path(path), data(), common.overwrite());
+    raise<FileError>("{}: there is no gnuplot to draw it with, its data are in {}; {}", path, data_path(path),
+                     how_to_install);
+}
+
+std::string_view WatchedWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
+    return writer_ ? writer_->prepare(block, torque_nm, room) : std::string_view{};
+}
+
+void WatchedWriter::put(const RowBlock& block, Torques torque_nm, std::string_view bytes) {
+    const JointRows& joint = block.joints.front();
+    for (std::size_t k = 0; k < block.size(); ++k)
+        course_.add(block.time_s[k], joint.velocity_deg_s[k], joint.torque_nm[k], torque_nm.front()[k]);
+    if (writer_) writer_->put(block, torque_nm, bytes);
+}
+
+void WatchedWriter::finish() {
+    if (writer_) writer_->finish();
+}
+
+}  // namespace ripplenotch

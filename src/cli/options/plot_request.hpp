@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// --plot FILE: a command's result as a picture, or in the terminal.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/options/options.hpp"
+#include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/figure/figure.hpp"
+#include "ripplenotch/log/format.hpp"
+#include "ripplenotch/report/torque_course.hpp"
+
+namespace ripplenotch {
+
+struct PlotRequest {
+    std::optional<std::string> path;
+
+    [[nodiscard]] bool wanted() const { return path.has_value(); }
+    /// The figure takes the place of data that would go to standard output.
+    [[nodiscard]] bool instead_of(const std::string& output) const { return path == "-" && output == "-"; }
+};
+
+/// "wide.csv, joint j4": for the title of a figure.
+[[nodiscard]] std::string joint_in_words(const std::string& path, const std::string& joint);
+
+void attach_plot(Options& options, PlotRequest& request);
+
+/// Before any work is done: throws UsageError for a name that is no picture's or --json and the figure both
+/// on standard output, FileError for a file that exists and may not be overwritten.
+void check_plot(const PlotRequest& request, const CommonOptions& common);
+
+/// Draws what make() gives; does nothing when no plot is asked for. Call it after everything else is written:
+/// without gnuplot it writes the figure's data beside where the picture would be and throws FileError.
+void draw_plot(const PlotRequest& request, const CommonOptions& common, const Provenance& provenance,
+               const std::function<Figure()>& make);
+
+/// Passes rows on to `writer` (which may be null) and keeps what a figure of them needs.
+class WatchedWriter : public LogWriter {
+  public:
+    explicit WatchedWriter(std::unique_ptr<LogWriter> writer) : writer_(std::move(writer)) {}
+    std::string_view prepare(RowBlock& block, Torques torque_nm, std::string& room) const override;
+    void put(const RowBlock& block, Torques torque_nm, std::string_view bytes) override;
+    void finish() override;
+    [[nodiscard]] const TorqueCourse& course() const { return course_; }
+
+  private:
+    std::unique_ptr<LogWriter> writer_;
+    TorqueCourse course_;
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "cli/readings/readings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <utility>
+
+#include "cli/readings/log_doubts.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double same_ratio = 0.02;
+constexpr double least_ratio = 3.0;  // less is no gear: what was logged turns with the motor
+
+std::string lower_first(std::string text) {
+    // "Ripple", "No ripple"; not "UR5e ...".
+    if (text.size() > 1 && std::islower(static_cast<unsigned char>(text[1])) != 0)
+        text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+    while (!text.empty() && text.back() == '.') text.pop_back();
+    return text;
+}
+
+std::string first_clause(const std::string& verdict) {
+    return lower_first(verdict.substr(0, verdict.find(';')));
+}
+
+bool in_motor_units(std::span<const Log> logs) {
+    return std::any_of(logs.begin(), logs.end(), [](const Log& log) { return log.layout.motor_units; });
+}
+
+std::vector<OtherReading> readings_of(std::span<const Log> logs, std::vector<Assumption> Layout::*list) {
+    std::vector<OtherReading> found;
+    for (const Log& log : logs) {
+        for (const Assumption& assumption : log.layout.*list) {
+            for (const OtherReading& other : assumption.others) {
+                const auto same = [&](const OtherReading& known) { return known.words == other.words; };
+                if (std::none_of(found.begin(), found.end(), same)) found.push_back(other);
+            }
+        }
+    }
+    return found;
+}
+
+// Lines at orders of a joint behind a gear of this ratio are lines at orders of the motor.
+Identification of_the_motor(Identification found, double ratio) {
+    std::string lines;
+    for (Line& line : found.lines) {
+        if (!line.order_output) continue;
+        line.order = *line.order_output / ratio;
+        line.order_output.reset();
+        line.order_output_stderr.reset();
+        line.could_be.clear();
+        if (line.kind == LineKind::order)
+            lines += fmt::format("{}{:.4g} ({:.2g} Nm)", lines.empty() ? "" : ", ", *line.order,
+                                 line.amplitude_nm);
+    }
+    found.gear_ratio = {};
+    found.conclusive = false;
+    found.verdict = lines.empty()
+                        ? "Cannot tell: the motion is measured before the gear and its ratio is not known; "
+                          "--gear-ratio settles it."
+                        : fmt::format(
+                              "Cannot tell the gear ratio: the motion is measured before the gear. Ripple at "
+                              "{} cycles per turn of the motor; --gear-ratio settles it.",
+                              lines);
+    return found;
+}
+
+Identification identified(std::span<const Log> logs, const IdentifyOptions& options,
+                          const OtherReading& reading) {
+    const bool motor = in_motor_units(logs) != reading.changes_side;
+    OtherReading read = reading;
+    if (motor) {
+        read.velocity_factor /= stand_in_ratio;
+        read.position_factor /= stand_in_ratio;
+    }
+    const bool as_taken =
+        read.time_factor == 1.0 && read.velocity_factor == 1.0 && read.position_factor == 1.0;
+    std::vector<Trace> traces;
+    std::vector<TraceView> views;
+    for (const Log& log : logs) {
+        if (!as_taken) traces.push_back(read_otherwise(log.trace, read));
+    }
+    for (std::size_t i = 0; i < logs.size(); ++i)
+        views.push_back(as_taken ? logs[i].trace.view() : traces[i].view());
+    IdentifyOptions doubting = options;
+    for (const Log& log : logs) {
+        for (Doubt& doubt : log_doubts(log, read)) doubting.doubts.push_back(std::move(doubt));
+    }
+    Identification found = identify(views, doubting);
+    return motor ? of_the_motor(std::move(found), stand_in_ratio) : found;
+}
+
+bool shows_order(const Identification& found) {
+    return std::any_of(found.lines.begin(), found.lines.end(),
+                       [](const Line& line) { return line.kind == LineKind::order; });
+}
+
+bool agree(const Identification& a, const Identification& b) {
+    if (a.conclusive != b.conclusive || a.gear_ratio.value.has_value() != b.gear_ratio.value.has_value())
+        return false;
+    if (a.gear_ratio.value) return std::abs(*a.gear_ratio.value / *b.gear_ratio.value - 1.0) < same_ratio;
+    return shows_order(a) == shows_order(b);
+}
+
+Identification cannot_tell(Identification found, const std::string& assumed,
+                           const std::vector<std::pair<OtherReading, Identification>>& others,
+                           const std::string& options) {
+    std::string verdict = fmt::format("Cannot tell: {}, {}", assumed, first_clause(found.verdict));
+    for (const auto& [reading, other] : others) {
+        verdict += fmt::format("; if {}, {}", reading.words, first_clause(other.verdict));
+        found.notes.push_back(fmt::format("if {} ({}): {}", reading.words, reading.option, other.verdict));
+    }
+    found.notes.insert(found.notes.end() - static_cast<std::ptrdiff_t>(others.size()),
+                       fmt::format("{}: {}", assumed, found.verdict));
+    found.verdict = fmt::format("{}; {} settles it.", verdict, options);
+    found.conclusive = false;
+    found.gear_ratio = {};
+    found.lines.clear();
+    return found;
+}
+
+}  // namespace
+
+std::vector<OtherReading> open_readings(std::span<const Log> logs) {
+    return readings_of(logs, &Layout::assumptions);
+}
+
+std::string assumed_reading(std::span<const Log> logs) {
+    for (const Log& log : logs) {
+        for (const Assumption& one : log.layout.assumptions)
+            if (!one.others.empty()) return fmt::format("if it is {}, as assumed", one.assumed);
+    }
+    for (const Log& log : logs) {
+        for (const Assumption& one : log.layout.inferences)
+            if (!one.others.empty()) return fmt::format("if it is {} ({})", one.assumed, one.reason);
+    }
+    return "as read";
+}
+
+std::string settling_options(std::span<const Log> logs) {
+    std::vector<std::string> options;
+    for (const auto list : {&Layout::assumptions, &Layout::inferences}) {
+        for (const Log& log : logs) {
+            for (const Assumption& one : log.layout.*list) {
+                if (one.others.empty()) continue;
+                if (std::find(options.begin(), options.end(), one.settle_with) == options.end())
+                    options.push_back(one.settle_with);
+                for (const OtherReading& other : one.others) {
+                    if (std::find(options.begin(), options.end(), other.option) == options.end())
+                        options.push_back(other.option);
+                }
+            }
+        }
+        if (!options.empty()) break;
+    }
+    return fmt::format("{}", fmt::join(options, " or "));
+}
+
+Trace read_otherwise(const Trace& trace, const OtherReading& reading) {
+    Trace read = trace;
+    for (double& value : read.time_s) value *= reading.time_factor;
+    for (double& value : read.velocity_deg_s) value *= reading.velocity_factor;
+    for (double& value : read.position_deg) value *= reading.position_factor;
+    read.sample_rate = Hertz(trace.sample_rate.value() / reading.time_factor);
+    return read;
+}
+
+Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options) {
+    Identification taken = identified(logs, options, {});
+    if (taken.gear_ratio.value.value_or(stand_in_ratio) < least_ratio)
+        taken = of_the_motor(std::move(taken), 1.0);
+    std::vector<OtherReading> readings = open_readings(logs);
+    const bool open = !readings.empty();
+    // What a rule decided is doubted only where nothing came of it.
+    if (!taken.gear_ratio.value) {
+        for (OtherReading& other : readings_of(logs, &Layout::inferences))
+            readings.push_back(std::move(other));
+    }
+    std::vector<std::pair<OtherReading, Identification>> others;
+    for (const OtherReading& reading : readings) {
+        Identification other = identified(logs, options, reading);
+        const bool matters = open ? !agree(taken, other)
+                                  : other.conclusive && other.gear_ratio.value.value_or(0.0) > least_ratio;
+        if (matters) others.emplace_back(reading, std::move(other));
+    }
+    if (others.empty()) return taken;
+    return cannot_tell(taken, assumed_reading(logs), others, settling_options(logs));
+}
+
+namespace {
+
+std::string in_words(const Diagnosis& diagnosis) {
+    const std::string named = fmt::format("{}", fmt::join(diagnosis.named, ", "));
+    return fmt::format("the log is {}{}{}", verdict_name(diagnosis.verdict), named.empty() ? "" : " with ",
+                       named);
+}
+
+}  // namespace
+
+Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* validation,
+                            const DiagnosisOptions& options) {
+    const auto under = [&](const OtherReading& reading) {
+        const Trace read = read_otherwise(log.trace, reading);
+        const Trace second = validation == nullptr ? Trace{} : read_otherwise(validation->trace, reading);
+        const TraceView view = second.view();
+        return diagnose(model, read.view(), validation == nullptr ? nullptr : &view, options);
+    };
+    const TraceView other = validation == nullptr ? TraceView{} : validation->trace.view();
+    Diagnosis taken = diagnose(model, log.trace.view(), validation == nullptr ? nullptr : &other, options);
+    std::string doubt;
+    for (const OtherReading& reading : open_readings({&log, 1})) {
+        if (reading.changes_side) continue;
+        const Diagnosis then = under(reading);
+        if (then.verdict == taken.verdict && then.named == taken.named) continue;
+        doubt += fmt::format("; if {}, {}", reading.words, in_words(then));
+    }
+    if (doubt.empty()) return taken;
+    taken.doubt = fmt::format("Cannot tell: {}, {}{}; {} settles it.", assumed_reading({&log, 1}),
+                              in_words(taken), doubt, settling_options({&log, 1}));
+    taken.verdict = DiagnosisVerdict::undecided;
+    taken.model = taken.baseline;
+    taken.values.clear();
+    taken.rounds.clear();
+    taken.named.clear();
+    taken.ambiguous.clear();
+    return taken;
+}
+
+}  // namespace ripplenotch

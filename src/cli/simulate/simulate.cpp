@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch simulate: a log from a joint model and a motion.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/gear/joint_facts.hpp"
+#include "cli/simulate/joint_model.hpp"
+#include "ripplenotch/artifact/simulation.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/log/log.hpp"
+#include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/motion.hpp"
+#include "ripplenotch/model/noise.hpp"
+
+namespace ripplenotch {
+namespace {
+
+struct SimulateOptions {
+    CommonOptions common;
+    JointModelOptions joint;
+    LogOptions log_options;
+    std::string log;  ///< empty: motions are given
+    std::optional<std::string> format;
+    std::vector<std::string> motions;
+    std::optional<Hertz> sample_rate;
+    Seconds smoothing = default_smoothing;
+    NewtonMeters noise;
+    double noise_correlation = 0.0;
+    DegPerSec velocity_noise;
+    int seed = 1;
+    std::optional<double> decimals;
+    bool no_position = false, faults = false;
+    std::function<std::string()> command_line;
+
+    [[nodiscard]] bool along_log() const { return !log.empty(); }
+};
+
+/// What the model is moved along, and what the log that is written shows of it.
+struct Course {
+    Motion motion;
+    std::vector<double> velocity_deg_s;  ///< of a log: as logged, not smoothed
+    std::vector<double> measured_nm;     ///< empty without a log
+    bool has_position = true;
+    std::vector<Recording> recordings = {};  ///< of a log
+};
+
+// Up to this, an angle of thousands of degrees times 10^decimals is still a whole number that a double holds.
+constexpr double most_decimals = 12.0;
+
+// The double nearest to the decimal, so that its shortest text has no more decimals than asked for. No
+// negative zero.
+void round_to(std::vector<double>& values, const std::optional<double>& decimals) {
+    if (!decimals) return;
+    double scale = 1.0;
+    for (int i = 0; i < static_cast<int>(*decimals); ++i) scale *= 10.0;
+    for (double& value : values) value = std::round(value * scale) / scale + 0.0;
+}
+
+double rms(std::span<const double> values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+Course course_of(const SimulateOptions& options) {
+    if (!options.along_log()) {
+        Motion motion = make_motion(options.motions, *options.sample_rate);
+        std::vector<double> velocity_deg_s = motion.velocity_deg_s;
+        return {std::move(motion), std::move(velocity_deg_s), {}, true};
+    }
+    LogOptions reading = options.log_options;
+    reading.sample_rate = options.sample_rate;
+    const Log log = read_log(options.log, reading.resolve());
+    say_layout(options.common, log.layout);
+    say_warnings(options.common, log.recording.warnings);
+    return {motion_along(log.trace.view(), options.smoothing),
+            log.trace.velocity_deg_s,
+            log.trace.torque_nm,
+            log.trace.view().has_position(),
+            {{log.recording}}};
+}
+
+// Along a log the result is a prediction, and which samples spikes and dropouts hit cannot be predicted.
+Chance chance_of(const SimulateOptions& options) {
+    return options.along_log() && !options.faults ? Chance::left_out : Chance::acts;
+}
+
+std::vector<NumberColumn> make_columns(const SimulateOptions& options, const Model& model, Course course) {
+    const auto seed = static_cast<std::uint64_t>(options.seed);
+    std::vector<double> noise_nm(course.motion.size(), 0.0);
+    add_noise(noise_nm, options.noise.value(), options.noise_correlation, seed, NoiseChannel::torque);
+    std::vector<double> torque_nm = measure_nm(model, course.motion, noise_nm, chance_of(options));
+    add_white_noise(course.velocity_deg_s, options.velocity_noise.value(), seed, NoiseChannel::velocity);
+    std::vector<NumberColumn> columns;
+    columns.push_back({"time_s", std::move(course.motion.time_s)});
+    columns.push_back({"velocity_deg_s", std::move(course.velocity_deg_s)});
+    columns.push_back({"torque_nm", std::move(torque_nm)});
+    if (!options.no_position && course.has_position)
+        columns.push_back({"position_deg", std::move(course.motion.position_deg)});
+    for (std::size_t i = 1; i < columns.size(); ++i) round_to(columns[i].values, options.decimals);
+    return columns;
+}
+
+std::optional<Followed> followed(const SimulateOptions& options, const Model& model, const Course& course) {
+    if (!options.along_log()) return std::nullopt;
+    std::vector<double> residual_nm = course.measured_nm;
+    const auto predicted_nm = predict_nm(model, course.motion);
+    for (std::size_t k = 0; k < residual_nm.size(); ++k) residual_nm[k] -= predicted_nm[k];
+    return Followed{options.smoothing, rms(course.measured_nm), rms(residual_nm)};
+}
+
+void check_course(const SimulateOptions& options) {
+    if (options.along_log()) {
+        if (!options.motions.empty())
+            raise<UsageError>("--motion and a LOG: the motion is that of the log; give one of them");
+        if (options.log == "-" && options.joint.model == "-")
+            raise<UsageError>("--model - and LOG -: standard input holds one of them");
+        if (options.smoothing.value() < 0.0)
+            raise<UsageError>("--smoothing: {} s is below 0", shortest(options.smoothing.value()));
+        return;
+    }
+    if (options.log_options.from || options.log_options.to)
+        raise<UsageError>("--from and --to: there is no LOG to take rows of");
+    if (options.motions.empty()) {
+        raise<UsageError>(
+            "--motion is missing, for example --motion constant,speed=60deg/s,duration=5s, or a LOG");
+    }
+    if (!options.sample_rate) raise<UsageError>("--sample-rate is missing, for example --sample-rate 1kHz");
+}
+
+void check(const SimulateOptions& options) {
+    check_course(options);
+    if (options.noise.value() < 0.0)
+        raise<UsageError>("--noise: {} Nm is below 0", shortest(options.noise.value()));
+    if (!(options.noise_correlation >= 0.0 && options.noise_correlation < 1.0)) {
+        raise<UsageError>("--noise-correlation: {} is not from 0 to below 1",
+                          shortest(options.noise_correlation));
+    }
+    if (options.velocity_noise.value() < 0.0) {
+        raise<UsageError>("--velocity-noise: {} deg/s is below 0", shortest(options.velocity_noise.value()));
+    }
+    if (options.decimals && (*options.decimals < 0.0 || *options.decimals > most_decimals ||
+                             *options.decimals != std::floor(*options.decimals))) {
+        raise<UsageError>("--decimals: {} is not a whole number from 0 to {}", shortest(*options.decimals),
+                          shortest(most_decimals));
+    }
+    if (options.common.json && options.common.output == "-") {
+        raise<UsageError>("--json puts a summary on standard output; say where the log goes with -o FILE");
+    }
+}
+
+std::string summary(const SimulateOptions& options, const Model& model, Hertz sample_rate,
+                    std::vector<Recording> recordings, const std::optional<Followed>& followed,
+                    const std::vector<NumberColumn>& columns) {
+    Simulation made{.model = model,
+                    .motions = options.motions,
+                    .sample_rate = sample_rate,
+                    .seed = static_cast<std::uint64_t>(options.seed),
+                    .followed = followed,
+                    .noise_rms = options.noise,
+                    .noise_correlation = options.noise_correlation,
+                    .velocity_noise_rms = options.velocity_noise,
+                    .rows = columns[0].values.size(),
+                    .columns = {},
+                    .output = options.common.output,
+                    .output_sha256 = sha256_of_file(options.common.output)};
+    for (const NumberColumn& column : columns) made.columns.push_back(column.name);
+    const auto slower = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    const auto [slow, fast] = std::minmax_element(columns[1].values.begin(), columns[1].values.end(), slower);
+    const auto [low, high] = std::minmax_element(columns[2].values.begin(), columns[2].values.end());
+    made.speed_min_deg_s = std::abs(*slow);
+    made.speed_max_deg_s = std::abs(*fast);
+    made.torque_min_nm = *low;
+    made.torque_max_nm = *high;
+    Provenance provenance{{}, options.command_line(), std::move(recordings)};
+    if (options.joint.model && *options.joint.model != "-")
+        provenance.inputs.push_back(input_record(*options.joint.model));
+    if (options.along_log() && options.log != "-") {
+        provenance.inputs.push_back(input_record(options.log));
+        provenance.inputs.back().rows = made.rows;
+    }
+    return write_simulation(made, provenance);
+}
+
+ExitCode simulate(const SimulateOptions& options) {
+    check(options);
+    const LogFormat& format = output_format(options.common.output, options.format);
+    const Model model = assemble_model(options.joint);
+    ByteSink sink(options.common.output, options.common.overwrite(), format.binary);
+    Course course = course_of(options);
+    std::vector<Recording> recordings = std::move(course.recordings);
+    const Hertz sample_rate =
+        recordings.empty() ? course.motion.sample_rate : recordings.front().clock.nominal_rate;
+    Progress::current().begin("simulating", "", 0);
+    const auto gap = followed(options, model, course);
+    const auto columns = make_columns(options, model, std::move(course));
+    format.write_columns(sink, columns);
+    sink.finish();
+    say(options.common, fmt::format("{} rows of {} columns at {} Hz as {}", columns[0].values.size(),
+                                    columns.size(), shortest(sample_rate.value()), format.name));
+    if (gap) {
+        say(options.common, fmt::format("measured less modelled torque: {} Nm rms of {} Nm rms",
+                                        shortest(gap->residual_rms_nm), shortest(gap->measured_rms_nm)));
+    }
+    if (options.common.json)
+        write_all("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),
+                  ByteSink::Overwrite::no);
+    return ExitCode::done;
+}
+
+template <class Entry>
+std::string names(std::span<const Entry* const> entries) {
+    std::string joined;
+    for (const Entry* entry : entries) joined += fmt::format("{}{}", joined.empty() ? "" : ", ", entry->name);
+    return joined;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    auto o = std::make_shared<SimulateOptions>();
+    options.argument("LOG", o->log, false, "log whose measured motion is used in place of --motion");
+    attach_joint_model(options, o->joint);
+    options.texts(
+        "--motion", o->motions, "NAME,KEY=VALUE,...",
+        fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one "
+                    "another; motions: {}",
+                    names(motion_kinds())));
+    options.quantity("--sample-rate", o->sample_rate, Dimension::frequency,
+                     "samples per second; with a LOG, in place of its own time");
+    options.quantity("--smoothing", o->smoothing, Dimension::time,
+                     "window in which a LOG's velocity is fitted to give speed and acceleration");
+    options.quantity("--noise", o->noise, Dimension::torque, "rms of noise on the torque");
+    options.number("--noise-correlation", o->noise_correlation, Dimension::none,
+                   "of the torque's noise with that of the sample before; 0 is white");
+    options.quantity("--velocity-noise", o->velocity_noise, Dimension::speed,
+                     "rms of white noise on the velocity");
+    options.count("--seed", o->seed, 0, 2147483647, "which noise; the same seed gives the same bytes");
+    options.number(
+        "--decimals", o->decimals, Dimension::none,
+        "decimals of every column but time (default: as many as needed to read the same number back)");
+    options.flag("--faults", o->faults, "let spikes and dropouts of the model act along a LOG too");
+    options.flag("--no-position", o->no_position, "leave the position column out");
+    options.text("--format", o->format, "NAME",
+                 "format of what is written: csv, npy (default: by the extension of -o, else csv)");
+    attach_log_columns(options, o->log_options);
+    attach_common(options, o->common, JsonName::is_own);
+    o->command_line = [&options] { return options.command_line(); };
+    return [o] { return simulate(*o); };
+}
+
+}  // namespace
+
+const Command commands::simulate{
+    .name = "simulate",
+    .summary = "a log from a joint model and a motion",
+    .description =
+        "Writes a log with the columns time_s, velocity_deg_s, torque_nm, position_deg. The torque is the "
+        "sum of the\n"
+        "model's effects along the motion, with noise on top. The motion is given, or that of a LOG.\n"
+        "Example: ripplenotch simulate --gear-ratio 100 --ripple 1:0.8Nm --motion "
+        "constant,speed=60deg/s,duration=5s \\\n"
+        "           --sample-rate 1kHz --noise 0.05Nm --seed 1 -o log.csv",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

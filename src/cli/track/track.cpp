@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch track: amplitude and phase of each order against time or speed.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/gear/gear_choice.hpp"
+#include "cli/options/plot_request.hpp"
+#include "cli/track/track_words.hpp"
+#include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/analysis/vold_kalman.hpp"
+#include "ripplenotch/artifact/track.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/log/log.hpp"
+#include "ripplenotch/report/track_figure.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 2> method_names = {"ls", "vold-kalman"};
+constexpr std::array<std::string_view, 3> amplitude_names = {"peak", "rms", "peak-to-peak"};
+constexpr std::array<std::string_view, 2> against_names = {"time", "speed"};
+
+struct Request {
+    CommonOptions common;
+    PlotRequest plot;
+    LogOptions log;
+    std::string path, method = "ls", amplitude = "peak", against = "time";
+    std::vector<double> output_orders, tones_hz;
+    GearOptions gear_options;
+    std::optional<GearAccount> gear;  ///< chosen
+    std::optional<double> window_turns;
+    std::optional<Seconds> window;
+    std::optional<Hertz> bandwidth, rows_per_second;
+    std::optional<DegPerSec> speed_step;
+    int poles = 2;
+};
+
+bool by_vold_kalman(const Request& request) { return request.method == "vold-kalman"; }
+
+void check(const Request& request) {
+    const bool vold_kalman = by_vold_kalman(request);
+    if (vold_kalman && (request.window_turns || request.window)) {
+        raise<UsageError>("--window and --window-turns belong to --method ls; vold-kalman has a --bandwidth");
+    }
+    if (!vold_kalman && (request.bandwidth || request.rows_per_second)) {
+        raise<UsageError>(
+            "--bandwidth and --rows-per-second belong to --method vold-kalman; ls has a --window");
+    }
+    if (request.window_turns && request.window)
+        raise<UsageError>("--window and --window-turns exclude each other");
+    if (request.window && !(request.window->value() > 0.0)) raise<UsageError>("--window must be above 0 s");
+    if (request.window_turns && !(*request.window_turns > 0.0))
+        raise<UsageError>("--window-turns must be above 0");
+    if (request.rows_per_second && !(request.rows_per_second->value() > 0.0))
+        raise<UsageError>("--rows-per-second must be above 0 Hz");
+    if (request.speed_step && !(request.speed_step->value() > 0.0))
+        raise<UsageError>("--speed-step must be above 0 deg/s");
+    if (request.speed_step && request.against != "speed")
+        raise<UsageError>("--speed-step belongs to --against speed");
+    if (request.log.joint == "all") raise<UsageError>("--joint all: track looks at one joint; name it");
+}
+
+void take_gear(Request& request, Provenance& provenance) {
+    const GearChoice choice(request.gear_options);
+    if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
+    request.gear = choice.of();
+    const bool orders_stated = !request.gear_options.orders.empty() || request.gear_options.joint_file;
+    const bool other_lines = !request.output_orders.empty() || !request.tones_hz.empty();
+    // Whoever lists other lines and no orders asks for those lines alone.
+    if (request.gear && other_lines && !orders_stated)
+        request.gear = GearAccount{request.gear->ratio, {}, {}, {}, "--gear-ratio"};
+    if (request.gear) say(request.common, gear_in_words(*request.gear));
+    if (!request.gear && !request.gear_options.orders.empty()) raise_no_gear("--orders");
+    if (!request.gear && !other_lines) {
+        raise<UsageError>(
+            "nothing to track; give --gear-ratio, for example 100, --joint-file joint.json, --output-orders, "
+            "or --tones");
+    }
+}
+
+/// The signal that is tracked, with the angles and speeds that it borrows.
+struct Prepared {
+    OutputAngle angle;
+    std::vector<double> motor_turns, speed;
+    TrackedSignal signal;
+    std::vector<TrackLabel> labels;
+    std::vector<double> reference_orders;  ///< of the lines that turn, per turn of the reference shaft
+};
+
+std::unique_ptr<Prepared> prepare(const Request& request, const TraceView& trace) {
+    auto p = std::make_unique<Prepared>();
+    p->angle = output_angle(trace);
+    p->speed = smoothed_speed(trace);
+    const double ratio = request.gear ? request.gear->ratio.value() : 1.0;
+    p->motor_turns = p->angle.turns;
+    for (double& turns : p->motor_turns) turns *= ratio;
+    p->signal = {trace.sample_rate, trace.time_s, trace.torque_nm, p->speed,
+                 p->motor_turns,    {},           trace.run_starts};
+    const auto add = [&](TrackLabel::Kind kind, double value, std::span<const double> turns) {
+        p->labels.push_back({kind, value});
+        p->signal.lines.push_back({value, turns});
+    };
+    for (const Order order : request.gear ? request.gear->orders : std::vector<Order>{}) {
+        add(TrackLabel::Kind::order, order.value(), p->motor_turns);
+        p->reference_orders.push_back(order.value());
+    }
+    for (const double order : request.output_orders) {
+        add(TrackLabel::Kind::order_output, order, p->angle.turns);
+        p->reference_orders.push_back(order / ratio);
+    }
+    for (const double hz : request.tones_hz) add(TrackLabel::Kind::tone, hz, trace.time_s);
+    return p;
+}
+
+void track_by_least_squares(const Request& request, const Prepared& prepared, TrackReport& report) {
+    WindowRule rule;
+    if (request.window) {
+        rule.seconds = *request.window;
+        report.window = rule.seconds;
+    } else if (request.window_turns) {
+        rule.turns = *request.window_turns;
+    } else if (prepared.reference_orders.empty()) {
+        raise<UsageError>("tones alone need --window, for example --window 0.5s");
+    } else {
+        rule.turns = separating_window_turns(prepared.reference_orders);
+    }
+    if (!request.window) report.window_turns = rule.turns;
+    report.tracks = track_orders(prepared.signal, rule);
+}
+
+void track_by_vold_kalman(const Request& request, const Prepared& prepared, TrackReport& report) {
+    VoldKalmanRule rule;
+    if (request.bandwidth) rule.bandwidth = *request.bandwidth;
+    if (request.rows_per_second) rule.rows_per_second = *request.rows_per_second;
+    rule.poles = request.poles;
+    VoldKalmanTracks found = track_vold_kalman(prepared.signal, rule);
+    report.bandwidth = rule.bandwidth;
+    report.bandwidth_obtained = found.bandwidth;
+    report.poles = rule.poles;
+    report.tracks = std::move(found.tracks);
+}
+
+void write_columns(const Request& request, const TrackReport& report) {
+    const LogFormat& format = output_format(request.common.output, std::nullopt);
+    std::vector<NumberColumn> columns;
+    for (TrackColumn& column : track_columns(report)) {
+        if (!column.name.ends_with("time_s")) {
+            for (double& value : column.values) value = to_digits(value);
+        }
+        columns.push_back({column.name, std::move(column.values)});
+    }
+    ByteSink sink(request.common.output, request.common.overwrite(), format.binary);
+    format.write_columns(sink, columns);
+    sink.finish();
+}
+
+Figure figure_of(const Request& request, const TrackReport& report) {
+    std::vector<std::string> names;
+    for (const TrackLabel& label : report.labels) names.push_back(label.words());
+    const TrackScale scale{amplitude_factor(report.kind), request.amplitude == "rms" ? "rms"
+                                                          : request.amplitude == "peak-to-peak"
+                                                              ? "peak to peak"
+                                                              : "amplitude, zero to peak"};
+    const std::string source = joint_in_words(request.path, report.joint);
+    Figure figure = report.by_speed ? track_figure(source, *report.by_speed, names, scale)
+                                    : track_figure(source, report.tracks, names, scale);
+    figure.sentence = track_verdict(report);
+    return figure;
+}
+
+TrackReport report_of(const Request& request, const Prepared& prepared, const std::string& joint) {
+    TrackReport report;
+    report.joint = joint;
+    report.method = request.method;
+    report.kind = request.amplitude == "rms"            ? AmplitudeKind::rms
+                  : request.amplitude == "peak-to-peak" ? AmplitudeKind::peak_to_peak
+                                                        : AmplitudeKind::peak;
+    report.gear = request.gear;
+    report.angle_from_position = prepared.angle.absolute;
+    report.labels = prepared.labels;
+    try {
+        (by_vold_kalman(request) ? track_by_vold_kalman : track_by_least_squares)(request, prepared, report);
+    } catch (const DataError& error) {  // the library knows no file
+        raise<DataError>("{}: {}", request.path, error.what());
+    }
+    return report;
+}
+
+ExitCode run(Request& request, const std::string& command_line) {
+    check(request);
+    check_plot(request.plot, request.common);
+    Provenance provenance{{}, command_line};
+    take_gear(request, provenance);
+    const Log log = read_log(request.path, request.log.resolve());
+    say_layout(request.common, log.layout);
+    say_warnings(request.common, log.recording.warnings);
+    provenance.inputs.push_back(input_record(request.path));
+    provenance.inputs.back().rows = log.recording.rows();
+    provenance.recordings.push_back({log.recording});
+
+    const auto prepared = prepare(request, log.trace.view());
+    TrackReport report = report_of(request, *prepared, log.trace.joint);
+    say_warnings(request.common, track_warnings(report));
+    if (report.tracks.time_s.empty())
+        raise<DataError>("{}: no row could be measured: {}", request.path, why_nothing_tracked(report));
+    if (request.against == "speed")
+        report.by_speed = gather_by_speed(report.tracks, request.speed_step.value_or(DegPerSec(0.0)));
+    if (request.common.json) {
+        write_all(request.common.output, track_text(report, provenance), request.common.overwrite());
+    } else {
+        say(request.common, track_verdict(report));
+        if (!request.plot.instead_of(request.common.output)) write_columns(request, report);
+    }
+    draw_plot(request.plot, request.common, provenance, [&] { return figure_of(request, report); });
+    return ExitCode::done;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    const auto request = std::make_shared<Request>();
+    options.argument("LOG", request->path, true, "a log; - is standard input");
+    attach_gear(options, request->gear_options);
+    options.numbers("--output-orders", request->output_orders, Dimension::none,
+                    "lines to track along with them, in cycles per output turn");
+    options.numbers("--tones", request->tones_hz, Dimension::frequency,
+                    "lines of fixed frequency to keep apart: 50Hz");
+    options.choice("--method", request->method, method_names,
+                   "least squares over sliding windows, or Vold-Kalman");
+    options.number(
+        "--window-turns", request->window_turns, Dimension::none,
+        "ls: window in motor turns (output turns without a gear ratio); 8 periods of the lowest order, or 2 "
+        "beats of the closest");
+    options.quantity("--window", request->window, Dimension::time, "ls: window in time instead");
+    options.quantity("--bandwidth", request->bandwidth, Dimension::frequency,
+                     "vold-kalman: -3 dB width of each line's envelope; 1 Hz");
+    options.count("--poles", request->poles, 1, 4, "vold-kalman: steepness");
+    options.quantity("--rows-per-second", request->rows_per_second, Dimension::frequency,
+                     "vold-kalman: rows of the result; 8 in 1/bandwidth");
+    options.choice("--amplitude", request->amplitude, amplitude_names,
+                   "what amplitudes are; the column names say it");
+    options.choice("--against", request->against, against_names, "rows by time, or gathered by signed speed");
+    options.quantity("--speed-step", request->speed_step, Dimension::speed,
+                     "width of a row's speeds; about 24 rows when left out");
+    attach_plot(options, request->plot);
+    attach_log(options, request->log);
+    options.after_parse([request] { request->log.gear_ratio = request->gear_options.ratio; });
+    attach_common(options, request->common);
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::track{
+    .name = "track",
+    .summary = "amplitude and phase of each order against time or speed",
+    .description =
+        "Writes CSV (.npy by -o's extension): time_s, speed_deg_s, and per line amplitude, phase and "
+        "standard error.\n"
+        "All lines are fitted at once, so that close and crossing ones are told apart.\n"
+        "Example: ripplenotch track log.csv --orders 1,2 --gear-ratio 100 --against speed",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "log/account/held_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/core/median.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double moving_deg_s = 0.2;
+constexpr std::size_t judged_changes = 16384;  ///< enough to know how coarse a torque is
+constexpr std::size_t fewest_changes = 8;
+constexpr double coarse_steps = 10.0;  ///< a usual change of fewer smallest ones
+
+}  // namespace
+
+HeldCounter::Row HeldCounter::row_of(const TraceView& rows, std::size_t k) {
+    return {rows.velocity_deg_s[k], rows.torque_nm[k], rows.has_position() ? rows.position_deg[k] : 0.0};
+}
+
+void HeldCounter::take(const TraceView& rows, bool begins_run) {
+    if (rows.size() == 0) return;
+    has_position_ = rows.has_position();
+    if (any_ && !begins_run) {
+        const Row now = row_of(rows, 0);
+        const std::array velocity = {last_.velocity, now.velocity}, torque = {last_.torque, now.torque},
+                         position = {last_.position, now.position};
+        take_pairs({velocity.data(), torque.data(), has_position_ ? position.data() : nullptr}, 1);
+    } else {
+        run_ = {};
+    }
+    take_pairs({rows.velocity_deg_s.data(), rows.torque_nm.data(),
+                has_position_ ? rows.position_deg.data() : nullptr},
+               rows.size() - 1);
+    last_ = row_of(rows, rows.size() - 1);
+    any_ = true;
+}
+
+void HeldCounter::take_pairs(const RowChannels& rows, std::size_t pairs) {
+    const RepeatCounts counts = count_repeats(rows, pairs, moving_deg_s);
+    counts_ += counts;
+    if (counts.torque > 0)
+        measure_runs(rows, pairs);
+    else if (pairs > 0)
+        run_ = {};
+    if (changes_.size() < judged_changes) note_changes(rows, pairs);
+}
+
+void HeldCounter::measure_runs(const RowChannels& rows, std::size_t pairs) {
+    const auto same = [](const double* values, std::size_t k) {
+        return values != nullptr && values[k] == values[k + 1];
+    };
+    for (std::size_t k = 0; k < pairs; ++k) {
+        const double speed = std::min(std::abs(rows.velocity_deg_s[k]), std::abs(rows.velocity_deg_s[k + 1]));
+        const bool torque = speed > moving_deg_s && same(rows.torque_nm, k);
+        const bool velocity = torque && same(rows.velocity_deg_s, k);
+        const bool position = torque && same(rows.position_deg, k);
+        const std::array held = {torque, velocity, position, velocity && position};
+        for (std::size_t way = 0; way < held.size(); ++way) {
+            run_[way] = held[way] ? run_[way] + 1 : 0;
+            longest_[way] = std::max(longest_[way], run_[way]);
+        }
+    }
+}
+
+void HeldCounter::note_changes(const RowChannels& rows, std::size_t pairs) {
+    for (std::size_t k = 0; k < pairs && changes_.size() < judged_changes; ++k) {
+        const double speed = std::min(std::abs(rows.velocity_deg_s[k]), std::abs(rows.velocity_deg_s[k + 1]));
+        const double change = std::abs(rows.torque_nm[k + 1] - rows.torque_nm[k]);
+        if (speed > moving_deg_s && change > 0.0) changes_.push_back(change);
+    }
+}
+
+HeldCounter::Way HeldCounter::way() const {
+    const bool velocity_tells = 2 * counts_.velocity < counts_.moving;
+    const bool position_tells = has_position_ && 2 * counts_.position < counts_.moving;
+    if (velocity_tells) return position_tells ? with_both : with_velocity;
+    return position_tells ? with_position : torque_alone;
+}
+
+bool HeldCounter::torque_is_coarse() const {
+    if (changes_.size() < fewest_changes) return true;
+    std::vector<double> changes = changes_;
+    return median_in(changes) < coarse_steps * *std::min_element(changes.begin(), changes.end());
+}
+
+HeldSamples HeldCounter::held() const {
+    const std::array counts = {counts_.torque, counts_.velocity_and_torque, counts_.position_and_torque,
+                               counts_.all};
+    const Way chosen = way();
+    if (chosen == torque_alone && counts_.torque > 0 && torque_is_coarse()) return {};
+    return {counts[chosen], longest_[chosen]};
+}
+
+}  // namespace ripplenotch

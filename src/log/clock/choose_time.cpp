@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+// Which column is the clock. A name is not enough: a column called "time" that counts rows is a counter, and
+// a log read by it would be wrong without anybody noticing.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "log/columns/column_name.hpp"
+#include "log/columns/conventions.hpp"
+#include "log/columns/decide_layout.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch::layout_detail {
+namespace {
+
+std::vector<double> finite_values(const ColumnFacts& facts, std::size_t column) {
+    std::vector<double> values;
+    if (column >= facts.sample.size()) return values;
+    for (const double value : facts.sample[column]) {
+        if (std::isfinite(value)) values.push_back(value);
+    }
+    return values;
+}
+
+// Whole numbers that go up by one each row.
+bool counts_rows(const std::vector<double>& values) {
+    constexpr double most_rows = 1e9;  // what begins beyond counts something else, from long ago
+    if (values.size() < 3 || values.front() != std::floor(values.front()) || values.front() > most_rows)
+        return false;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        if (values[i] - values[i - 1] != 1.0) return false;
+    }
+    return true;
+}
+
+bool runs_forward(const std::vector<double>& values) {
+    return values.size() > 1 && std::is_sorted(values.begin(), values.end()) &&
+           values.front() < values.back();
+}
+
+std::string labels(const ColumnFacts& facts, const std::vector<std::size_t>& columns) {
+    std::vector<std::string> texts;
+    for (const std::size_t c : columns) texts.push_back(column_label(facts.names, c));
+    return fmt::format("{}", fmt::join(texts, " and "));
+}
+
+std::string lower(std::string_view text) {
+    std::string out;
+    for (const char c : text) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return out;
+}
+
+// "header.stamp." of "header.stamp.nanosec", when the name ends in one of the words.
+std::optional<std::string> name_before(const std::string& name, std::span<const std::string_view> words) {
+    const std::string text = lower(name);
+    std::size_t begin = text.size();
+    while (begin > 0 && std::isalpha(static_cast<unsigned char>(text[begin - 1])) != 0) --begin;
+    if (std::find(words.begin(), words.end(), std::string_view(text).substr(begin)) == words.end())
+        return std::nullopt;
+    return text.substr(0, begin);
+}
+
+/// Seconds and nanoseconds of one stamp, as ROS writes them.
+struct StampPair {
+    std::size_t seconds, nanoseconds;
+};
+std::optional<StampPair> find_stamp_pair(const ColumnFacts& facts, const Forced& forced) {
+    constexpr std::array<std::string_view, 4> whole = {"sec", "secs", "seconds", "s"};
+    constexpr std::array<std::string_view, 5> parts = {"nanosec", "nsec", "nsecs", "nanosecs", "nanoseconds"};
+    for (std::size_t n = 0; n < facts.names.size(); ++n) {
+        const auto before = name_before(facts.names[n], parts);
+        if (!before || forced.roles[n]) continue;
+        for (std::size_t s = 0; s < facts.names.size(); ++s) {
+            if (forced.roles[s].value_or(Role::time) != Role::time ||
+                name_before(facts.names[s], whole) != before)
+                continue;
+            std::vector<double> values = finite_values(facts, s);
+            const std::vector<double> below = finite_values(facts, n);
+            for (std::size_t i = 0; i < std::min(values.size(), below.size()); ++i)
+                values[i] += 1e-9 * below[i];
+            if (runs_forward(values)) return StampPair{s, n};
+        }
+    }
+    return std::nullopt;
+}
+
+/// Columns that could be the clock: by name, and by what their values do.
+struct Clocks {
+    std::vector<std::size_t> forward, texts, counters, broken;
+};
+Clocks find_clocks(const ColumnFacts& facts, const Forced& forced, const ReadOptions& options) {
+    Clocks found;
+    int best_rank = 1000;
+    for (std::size_t c = 0; !forced.by_place && c < facts.names.size(); ++c) {
+        const ColumnName name = read_column_name(facts.names[c]);
+        const Convention* const known = convention_of(facts.names[c], Role::time, facts.names);
+        if ((name.role != Role::time && known == nullptr) || name.reference || forced.roles[c]) continue;
+        const auto values = finite_values(facts, c);
+        if (!facts.clock_texts.empty() && facts.clock_texts[c]) {
+            if (runs_forward(values)) found.texts.push_back(c);
+            continue;
+        }
+        if (name.rank > best_rank) continue;
+        if (name.rank < best_rank) found = {{}, found.texts, {}, {}}, best_rank = name.rank;
+        const bool has_unit = known != nullptr || !name.unit.empty() ||
+                              (!facts.units.empty() && !facts.units[c].empty()) ||
+                              options.units.count("time") + options.units.count(facts.names[c]) > 0;
+        if (!has_unit && counts_rows(values)) {
+            found.counters.push_back(c);
+        } else if (runs_forward(values) || facts.sample.empty() || facts.sample[c].size() < 2) {
+            found.forward.push_back(c);
+        } else {
+            found.broken.push_back(c);
+        }
+    }
+    return found;
+}
+
+// No column is the clock: an error that says what to state, or a warning where a log may go without.
+void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOptions& options,
+                   Layout& layout) {
+    std::string why = facts.names.empty()
+                          ? "the columns have no names, say what they are with --columns time,velocity,torque"
+                          : "no column is named as a time";
+    if (!clocks.counters.empty()) {
+        why = fmt::format(
+            "{} only counts rows (1, 2, 3, ...), which is a row number, or a time whose unit is not "
+            "stated",
+            labels(facts, clocks.counters));
+    }
+    if (clocks.broken.size() > 1)
+        why = fmt::format("neither of {} runs forward in numbers", labels(facts, clocks.broken));
+    if (!options.needs_torque) {
+        layout.warnings.push_back(fmt::format(
+            "{}: no sample rate; say --sample-rate 1kHz, --unit time=ms, or --columns time=NAME", why));
+        return;
+    }
+    raise<DataError>("{}: {}, expected a time column; say --sample-rate 1kHz, {}or --columns time=NAME",
+                     layout.source, why, clocks.counters.empty() ? "" : "--unit time=ms, ");
+}
+
+}  // namespace
+
+bool varies(const std::vector<double>& values) {
+    double first = std::numeric_limits<double>::quiet_NaN();
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        if (std::isnan(first)) first = value;
+        if (value != first) return true;
+    }
+    return false;
+}
+
+void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptions& options, Layout& layout) {
+    if (options.sample_rate) return;
+    layout.chosen.time = forced.column_of(Role::time);
+    const auto pair = forced.by_place ? std::nullopt : find_stamp_pair(facts, forced);
+    if (pair && layout.chosen.time.value_or(pair->seconds) == pair->seconds) {
+        layout.chosen.time = pair->seconds;
+        layout.time_fraction = pair->nanoseconds;
+    }
+    if (layout.chosen.time) return;
+    std::vector<std::string>& warnings = layout.warnings;
+    const Clocks found = find_clocks(facts, forced, options);
+    const auto& [clocks, texts, counters, broken] = found;
+    if (clocks.size() > 1) {
+        raise<DataError>("{}: {} could each be the time; say which, with --columns time={}", layout.source,
+                         labels(facts, clocks),
+                         facts.names[clocks[0]] == facts.names[clocks[1]] ? std::to_string(clocks[0] + 1)
+                                                                          : facts.names[clocks[0]]);
+    }
+    if (clocks.size() == 1) {
+        layout.chosen.time = clocks[0];
+        if (!counters.empty()) {
+            warnings.push_back(fmt::format(
+                "{} only counts rows; the time is taken from {}; --columns time=NAME decides otherwise",
+                labels(facts, counters), column_label(facts.names, clocks[0])));
+        }
+        // A date written as text beside a numeric clock is common; a numeric time that stands still or jumps
+        // back means that the columns are not what their names say.
+        for (const std::size_t column : broken) {
+            if (!finite_values(facts, column).empty()) {
+                raise<DataError>(
+                    "{}: {} and {} are both named as times, and the first does not run forward; check the "
+                    "header, or say which is the time with --columns time={}",
+                    layout.source, column_label(facts.names, column), column_label(facts.names, clocks[0]),
+                    facts.names[clocks[0]]);
+            }
+            warnings.push_back(
+                fmt::format("{} is not a number of seconds; the time is taken from {}; --columns time=NAME "
+                            "decides otherwise",
+                            column_label(facts.names, column), column_label(facts.names, clocks[0])));
+        }
+        return;
+    }
+    if (!texts.empty()) {
+        layout.chosen.time = texts[0];
+        return;
+    }
+    // One column called time that is no clock: the reader's own message names the row where it fails.
+    if (counters.empty() && broken.size() == 1) {
+        layout.chosen.time = broken[0];
+        return;
+    }
+    refuse_clocks(facts, found, options, layout);
+}
+
+}  // namespace ripplenotch::layout_detail

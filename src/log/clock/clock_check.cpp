@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "log/clock/clock_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "ripplenotch/core/median.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_pieces = 64;    // many enough for a median, long enough to average noise
+constexpr std::size_t shortest_piece = 4;  // rows
+constexpr double agreement = 0.02;         // a factor within 2 % of 1, or of a named one, is that one
+constexpr double widest_doubt = 0.05;      // a factor less certain than 5 % is not stated
+
+using Piece = MotionPieces::Piece;
+
+struct Fit {
+    double factor = 0.0, lag_s = 0.0, doubt = 0.0;  // doubt: standard error of the factor
+};
+
+// Weighted least squares of position change on integrated velocity and change of velocity.
+Fit weighted_fit(const std::vector<Piece>& pieces, const std::vector<double>& weights) {
+    double xx = 0.0, xz = 0.0, zz = 0.0, xy = 0.0, zy = 0.0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const Piece& p = pieces[i];
+        xx += weights[i] * p.integrated_velocity * p.integrated_velocity;
+        xz += weights[i] * p.integrated_velocity * p.velocity_change;
+        zz += weights[i] * p.velocity_change * p.velocity_change;
+        xy += weights[i] * p.integrated_velocity * p.position_change;
+        zy += weights[i] * p.velocity_change * p.position_change;
+    }
+    const double determinant = xx * zz - xz * xz;
+    // A steady motion has no change of velocity to learn a lag from.
+    const bool lag_known = determinant > 1e-6 * xx * zz;
+    Fit fit;
+    fit.factor = lag_known ? (xy * zz - zy * xz) / determinant : xy / xx;
+    fit.lag_s = lag_known ? (zy * xx - xy * xz) / determinant : 0.0;
+    double square = 0.0, weight = 0.0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const Piece& p = pieces[i];
+        const double left =
+            p.position_change - fit.factor * p.integrated_velocity - fit.lag_s * p.velocity_change;
+        square += weights[i] * left * left;
+        weight += weights[i];
+    }
+    const double freedom = std::max(1.0, weight - (lag_known ? 2.0 : 1.0));
+    fit.doubt = std::sqrt(square / freedom * (lag_known ? zz / determinant : 1.0 / xx));
+    return fit;
+}
+
+// The usual size of a piece's motion: the upper quartile, which neither rest nor a spike moves.
+double usual_motion(const std::vector<Piece>& pieces) {
+    std::vector<double> sizes;
+    for (const Piece& piece : pieces) sizes.push_back(std::abs(piece.integrated_velocity));
+    const auto quartile = sizes.begin() + static_cast<std::ptrdiff_t>(3 * sizes.size() / 4);
+    std::nth_element(sizes.begin(), quartile, sizes.end());
+    return *quartile;
+}
+
+// Tukey's biweight from a start that no spike moves, the median of the pieces' ratios: a spike in the
+// velocity is far out in the regressor too, where an estimate that only bounds residuals would follow it (P.
+// J. Rousseeuw, A. M. Leroy, Robust Regression and Outlier Detection, 1987). 4.685 deviations: 95 % efficient
+// for normal errors.
+Fit robust_fit(const std::vector<Piece>& pieces) {
+    const double usual = usual_motion(pieces);
+    std::vector<double> ratios;
+    for (const Piece& p : pieces) {
+        if (std::abs(p.integrated_velocity) > 0.3 * usual)
+            ratios.push_back(p.position_change / p.integrated_velocity);
+    }
+    Fit fit;
+    fit.doubt = std::numeric_limits<double>::infinity();
+    if (ratios.empty()) return fit;
+    fit.factor = median_of(std::move(ratios));
+    std::vector<double> weights(pieces.size()), left(pieces.size());
+    for (int round = 0; round < 50; ++round) {
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const Piece& p = pieces[i];
+            left[i] = std::abs(p.position_change - fit.factor * p.integrated_velocity -
+                               fit.lag_s * p.velocity_change);
+        }
+        // Where most pieces fit exactly, rounding alone is left as a deviation.
+        const double deviation = std::max(1.4826 * median_of(left), 1e-9 * std::abs(fit.factor) * usual);
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const double far = left[i] / (4.685 * deviation);
+            weights[i] = far < 1.0 ? (1.0 - far * far) * (1.0 - far * far) : 0.0;
+        }
+        const double before = fit.factor;
+        fit = weighted_fit(pieces, weights);
+        if (std::abs(fit.factor - before) <= 1e-12 * std::abs(before)) break;
+    }
+    return fit;
+}
+
+// Residuals of neighbouring pieces are alike, so the fit believes itself too much. Half the difference
+// between the two halves of the motion, each of the same path, is an error estimate that does not.
+double difference_of_halves(const std::vector<Piece>& pieces) {
+    const double usual = usual_motion(pieces);
+    const auto size = [usual](const Piece& piece) {
+        return std::min(std::abs(piece.integrated_velocity), 3.0 * usual);
+    };
+    double path = 0.0, so_far = 0.0;
+    for (const Piece& piece : pieces) path += size(piece);
+    std::vector<Piece> early, late;
+    for (const Piece& piece : pieces) {
+        (so_far < 0.5 * path ? early : late).push_back(piece);
+        so_far += size(piece);
+    }
+    if (early.size() < 3 || late.size() < 3) return 0.0;
+    return 0.5 * std::abs(robust_fit(early).factor - robust_fit(late).factor);
+}
+
+struct NamedFactor {
+    double factor;
+    std::string_view cause;
+};
+
+constexpr double pi = std::numbers::pi;
+constexpr std::array named_factors = {
+    NamedFactor{180.0 / pi,
+                "57.3 = 180/pi: the velocity is in rad/s and was taken as deg/s, or the position is in "
+                "degrees and was taken as rad"},
+    NamedFactor{pi / 180.0,
+                "0.01745 = pi/180: the velocity is in deg/s and was taken as rad/s, or the position is in "
+                "radians and was taken as deg"},
+    NamedFactor{60.0, "60: the time is in minutes, or the velocity per second and was taken per minute"},
+    NamedFactor{1.0 / 60.0, "1/60: the velocity is per minute and was taken per second"},
+    NamedFactor{6.0, "6: the velocity is in rpm and was taken as deg/s"},
+    NamedFactor{1.0 / 6.0, "1/6: the velocity is in deg/s and was taken as rpm"},
+    NamedFactor{2.0 * pi,
+                "2 pi: the velocity is in turns a second and was taken as rad/s, or the position in radians "
+                "and was taken as turns"},
+    NamedFactor{0.5 / pi, "1/(2 pi): the velocity is in rad/s and was taken as turns a second"},
+    NamedFactor{1000.0, "1000: the time is in seconds and was taken as ms"},
+    NamedFactor{0.001, "0.001: the time is in milliseconds and was taken as s"},
+    NamedFactor{1e6, "1e6: the time is in seconds and was taken as us"},
+    NamedFactor{1e-6, "1e-6: the time is in microseconds and was taken as s"},
+    NamedFactor{360.0, "360: the velocity is in turns a second and was taken as deg/s"},
+    NamedFactor{1.0 / 360.0, "1/360: the position is in turns and was taken as deg"},
+};
+
+std::string start_of(double factor) {
+    return fmt::format("position changes {:.4g} times as much as velocity and time say", factor);
+}
+
+std::string explain(double factor, Hertz sample_rate) {
+    const bool wrong_clock = factor > 0.5 && factor < 2.0;
+    if (!wrong_clock) return factor_in_words(factor);
+    return fmt::format(
+        "{}: the clock is wrong by this factor (the sample rate is then {:.4g} Hz, not {:.4g} Hz), or one of "
+        "the two is not in the unit stated",
+        start_of(factor), sample_rate.value() / factor, sample_rate.value());
+}
+
+}  // namespace
+
+std::string factor_in_words(double factor) {
+    const std::string start = start_of(factor);
+    if (factor < 0.0) return fmt::format("{}: velocity and position have opposite signs", start);
+    for (const NamedFactor& named : named_factors) {
+        if (std::abs(factor / named.factor - 1.0) < agreement)
+            return fmt::format("{}; {}", start, named.cause);
+    }
+    if (factor >= 5.0) {
+        return fmt::format(
+            "{}: the position may be that of the motor, {:.4g} being the gear ratio, or a unit is wrong",
+            start, factor);
+    }
+    if (factor <= 0.2) {
+        return fmt::format(
+            "{}: the velocity may be that of the motor, {:.4g} being the gear ratio, or a unit is wrong",
+            start, 1.0 / factor);
+    }
+    return fmt::format("{}: the position may be another joint's, or the clock or a unit is wrong", start);
+}
+
+MotionPieces::MotionPieces(std::size_t rows)
+    : rows_(rows), rows_in_piece_(std::max(shortest_piece, rows / most_pieces)) {}
+
+void MotionPieces::end_piece() {
+    if (in_piece_ >= shortest_piece) pieces_.push_back(piece_);
+    piece_ = {};
+    in_piece_ = 0;
+}
+
+void MotionPieces::take(const Row& row) {
+    const double step = row.time_s - before_->time_s;
+    piece_.position_change += row.position_deg - before_->position_deg;
+    piece_.velocity_change += row.velocity_deg_s - before_->velocity_deg_s;
+    piece_.integrated_velocity += 0.5 * (before_->velocity_deg_s + row.velocity_deg_s) * step;
+    if (++in_piece_ == rows_in_piece_) end_piece();
+}
+
+void MotionPieces::take(const TraceView& rows) {
+    if (!rows.has_position()) return;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Row row{rows.time_s[i], rows.velocity_deg_s[i], rows.position_deg[i]};
+        if (before_ && rows.starts_run(i)) end_piece();
+        if (before_ && !rows.starts_run(i)) take(row);
+        before_ = row;
+    }
+}
+
+ClockCheck MotionPieces::check(Hertz sample_rate) {
+    end_piece();
+    if (rows_ < 2 * shortest_piece || pieces_.size() < 3 || !(usual_motion(pieces_) > 0.0)) return {};
+    const Fit fit = robust_fit(pieces_);
+    const double doubt = std::max(fit.doubt, difference_of_halves(pieces_));
+    // A log at rest, or one whose position is of something else: no factor is better than a wrong one.
+    if (!std::isfinite(fit.factor) || fit.factor == 0.0 || !(doubt < widest_doubt * std::abs(fit.factor)))
+        return {};
+    ClockCheck check{fit.factor, {}};
+    if (std::abs(fit.factor - 1.0) > std::max(agreement, 3.0 * doubt))
+        check.warning = explain(fit.factor, sample_rate);
+    return check;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "log/clock/stamp.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Takes digits off the front of `text`: at least `fewest`, at most `most` of them.
+std::optional<int> take_number(std::string_view& text, std::size_t fewest, std::size_t most) {
+    std::size_t length = 0;
+    while (length < text.size() && length < most && is_digit(text[length])) ++length;
+    if (length < fewest) return std::nullopt;
+    int value = 0;
+    std::from_chars(text.data(), text.data() + length, value);
+    text.remove_prefix(length);
+    return value;
+}
+
+bool take(std::string_view& text, std::string_view one_of) {
+    if (text.empty() || one_of.find(text.front()) == std::string_view::npos) return false;
+    text.remove_prefix(1);
+    return true;
+}
+
+// Days from 1970-01-01 in the Gregorian calendar, by counting the leap years before the first of March.
+std::int64_t days_since_1970(int year, int month, int day) {
+    const std::int64_t y = month > 2 ? year : year - 1;
+    const std::int64_t months = month > 2 ? month - 3 : month + 9;
+    return y * 365 + y / 4 - y / 100 + y / 400 + (153 * months + 2) / 5 + day - 1 - 719468;
+}
+
+/// "2024-05-01T" or "2024/05/01 ", and "2024:05:01:" as some loggers write it.
+std::optional<std::int64_t> take_date(std::string_view& text) {
+    std::string_view rest = text;
+    const auto year = take_number(rest, 4, 4);
+    if (!year || !take(rest, "-/:")) return std::nullopt;
+    const auto month = take_number(rest, 1, 2);
+    if (!month || !take(rest, "-/:")) return std::nullopt;
+    const auto day = take_number(rest, 1, 2);
+    if (!day || !take(rest, "T :_")) return std::nullopt;
+    if (*month < 1 || *month > 12 || *day < 1 || *day > 31) return std::nullopt;
+    text = rest;
+    return days_since_1970(*year, *month, *day);
+}
+
+/// "Z", "+02:00", "-0700"; in seconds.
+std::optional<std::int64_t> take_zone(std::string_view& text) {
+    if (text == "Z" || text == "UTC") return 0;
+    const bool west = text.front() == '-';
+    if (!take(text, "+-")) return std::nullopt;
+    const auto hours = take_number(text, 2, 2);
+    take(text, ":");
+    const auto minutes = text.empty() ? std::optional<int>(0) : take_number(text, 2, 2);
+    if (!hours || !minutes || !text.empty()) return std::nullopt;
+    const std::int64_t offset = 3600 * *hours + 60 * *minutes;
+    return west ? -offset : offset;
+}
+
+}  // namespace
+
+std::optional<ClockTime> clock_text(std::string_view text) {
+    const auto days = take_date(text);
+    const auto hours = take_number(text, 1, 2);
+    if (!hours || !take(text, ":")) return std::nullopt;
+    const auto minutes = take_number(text, 2, 2);
+    if (!minutes || !take(text, ":")) return std::nullopt;
+    const auto seconds = take_number(text, 2, 2);
+    if (!seconds || *hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
+    ClockTime time{
+        days.value_or(0) * 86400 + *hours * 3600 + *minutes * 60 + *seconds, 0.0, days.has_value(), {}};
+    // ISO 8601 allows the comma; LabVIEW puts a colon before the point.
+    take(text, ":");
+    if (take(text, ".,")) {
+        const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+        if (digits == 0) return std::nullopt;
+        time.fraction_s = parse_number("0." + std::string(text.substr(0, digits))).value_or(0.0);
+        text.remove_prefix(digits);
+    }
+    while (take(text, " ")) {
+    }
+    if (text.empty()) return time;
+    time.zone_s = take_zone(text);
+    if (!time.zone_s || (!days && *time.zone_s != 0)) return std::nullopt;
+    time.whole_s -= *time.zone_s;
+    return time;
+}
+
+std::optional<double> read_stamp(std::string_view text, const StampRule& rule) {
+    if (rule.text) {
+        const auto time = clock_text(text);
+        if (!time) return std::nullopt;
+        return since(time->whole_s, rule.origin) + time->fraction_s;
+    }
+    std::int64_t whole = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), whole);
+    const auto digits = static_cast<std::size_t>(end - text.data());
+    const bool decimals =
+        digits < text.size() && text[digits] == rule.decimal_mark &&
+        std::all_of(text.begin() + static_cast<std::ptrdiff_t>(digits) + 1, text.end(), is_digit);
+    if (error != std::errc() || whole < 0 || (digits < text.size() && !decimals)) {
+        // Something else than digits, as in 1.7e18: rounded as it was written.
+        const auto number = parse_number(text, rule.decimal_mark);
+        if (!number) return std::nullopt;
+        return *number - static_cast<double>(rule.origin);
+    }
+    double fraction = 0.0;
+    if (decimals && digits + 1 < text.size())
+        fraction = parse_number("0." + std::string(text.substr(digits + 1))).value_or(0.0);
+    return since(whole, rule.origin) + fraction;
+}
+
+}  // namespace ripplenotch

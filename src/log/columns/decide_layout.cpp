@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#include "log/columns/decide_layout.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "log/columns/column_name.hpp"
+#include "log/columns/conventions.hpp"
+#include "log/columns/infer_motion.hpp"
+#include "log/columns/joint_groups.hpp"
+#include "log/columns/stated_units.hpp"
+#include "log/columns/unit_text.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using layout_detail::JointGroup;
+using layout_detail::motion_roles;
+
+class Decision {
+  public:
+    Decision(const std::string& source, const ColumnFacts& facts, const ReadOptions& options)
+        : source_(source),
+          facts_(facts),
+          options_(options),
+          forced_(layout_detail::read_columns_option(source, facts, options)),
+          stated_(facts.columns) {}
+
+    Layout run(const std::string& format) {
+        layout_.source = source_;
+        layout_.format = format;
+        layout_.stated_rate = options_.sample_rate;
+        layout_.outside = options_.outside;
+        name_columns();
+        layout_detail::choose_time(facts_, forced_, options_, layout_);
+        if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
+        if (layout_.time_fraction) give_role(*layout_.time_fraction, Role::time, "");
+        layout_detail::settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
+        groups_ = layout_detail::group_joints(known(), options_.joint.has_value());
+        for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
+        choose_joint();
+        layout_detail::infer_motion(facts_, options_,
+                                    layout_detail::motions_of(known(), groups_, stated_, options_, layout_),
+                                    layout_);
+        layout_detail::state_derived_velocity(layout_, facts_);
+        layout_detail::state_units(layout_, facts_, options_);
+        report_repeated_names();
+        layout_.options = layout_detail::options_line(layout_, facts_, options_);
+        return std::move(layout_);
+    }
+
+  private:
+    void name_columns() {
+        for (std::size_t c = 0; c < facts_.columns; ++c) {
+            Column column;
+            column.name = facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c];
+            layout_.columns.push_back(column);
+            names_.push_back(facts_.names.empty() ? ColumnName{} : read_column_name(facts_.names[c]));
+            if (names_[c].unit.empty() && !facts_.units.empty()) {
+                names_[c].unit = facts_.units[c];
+                names_[c].unit_is_sure = !facts_.units[c].empty();
+            }
+            if (forced_.roles[c]) {
+                names_[c].role = *forced_.roles[c];
+                names_[c].reference = false;
+                names_[c].rank = 0;
+                names_[c].current = names_[c].current || is_current_unit(names_[c].unit);
+            }
+        }
+    }
+
+    void choose_joint() {
+        const JointGroup* group = nullptr;
+        if (options_.joint) {
+            for (const JointGroup& candidate : groups_) {
+                if (candidate.key == joint_key(*options_.joint)) group = &candidate;
+            }
+            if (group == nullptr && groups_.size() == 1 && groups_[0].name.empty()) {
+                raise<UsageError>("--joint {}: {} holds one joint without a name; leave --joint out",
+                                  *options_.joint, source_);
+            }
+            if (group == nullptr) {
+                raise<UsageError>("--joint {}: {} has no such joint; it has {}", *options_.joint, source_,
+                                  layout_.joints.empty()
+                                      ? "none with velocity and torque"
+                                      : fmt::format("{}", fmt::join(layout_.joints, ", ")));
+            }
+        } else if (groups_.size() == 1) {
+            group = &groups_.front();
+        } else if (groups_.size() > 1 && forced_.column_of(Role::torque)) {
+            const std::string key = joint_key(names_[*forced_.column_of(Role::torque)].joint);
+            for (const JointGroup& candidate : groups_) {
+                if (candidate.key == key) group = &candidate;
+            }
+        }
+        if (options_.every_joint) {
+            choose_every_joint();
+            return;
+        }
+        if (group == nullptr && groups_.size() > 1 && options_.needs_torque) {
+            raise<DataError>(
+                "{}: read {} joints ({}), expected one; say which with --joint {} (info, identify and filter "
+                "also take --joint all)",
+                source_, groups_.size(), fmt::join(layout_.joints, ", "), layout_.joints.front());
+        }
+        if (group != nullptr) layout_.chosen = columns_of(*group);
+        for (const JointGroup& each : groups_) give_roles(each, group == &each ? &layout_.chosen : nullptr);
+        if (options_.needs_torque) require_torque_and_velocity();
+    }
+
+    // The slope of a position needs times.
+    bool may_derive(const JointColumns& joint) const {
+        return joint.position && (layout_.chosen.time || layout_.stated_rate);
+    }
+
+    layout_detail::KnownColumns known() const { return {source_, facts_, forced_, names_}; }
+
+    JointColumns columns_of(const JointGroup& group) {
+        const auto choose = [&](Role role) {
+            return layout_detail::choose_column(known(), group, role, layout_.warnings);
+        };
+        JointColumns columns{group.name, layout_.chosen.time, {}, {}, {}};
+        columns.velocity = choose(Role::velocity);
+        columns.torque = choose(Role::torque);
+        columns.position = choose(Role::position);
+        return columns;
+    }
+
+    // Joints without a velocity or without a torque have nothing to be filtered.
+    void choose_every_joint() {
+        for (const Role role : motion_roles) {
+            if (!forced_.column_of(role)) continue;
+            raise<UsageError>("--joint all: --columns names one joint's {}; leave one of the two out",
+                              role_name(role));
+        }
+        std::vector<const JointGroup*> groups;
+        for (const JointGroup& group : groups_) {
+            const JointColumns columns = columns_of(group);
+            if ((!columns.velocity && !may_derive(columns)) || !columns.torque) continue;
+            groups.push_back(&group);
+            (groups.size() == 1 ? layout_.chosen : layout_.others.emplace_back()) = columns;
+        }
+        for (const JointGroup& group : groups_) {
+            const auto place = std::find(groups.begin(), groups.end(), &group) - groups.begin();
+            const auto number = static_cast<std::size_t>(place);
+            give_roles(group, number == groups.size() ? nullptr
+                              : number == 0           ? &layout_.chosen
+                                                      : &layout_.others[number - 1]);
+        }
+        require_torque_and_velocity();
+    }
+
+    void give_roles(const JointGroup& group, const JointColumns* chosen) {
+        for (const Role role : motion_roles) {
+            if (chosen != nullptr) {
+                const auto column = role == Role::velocity ? chosen->velocity
+                                    : role == Role::torque ? chosen->torque
+                                                           : chosen->position;
+                if (column) give_role(*column, role, group.name);
+                continue;
+            }
+            const auto found = group.candidates.find(role);
+            if (found == group.candidates.end()) continue;
+            for (const std::size_t c : found->second) {
+                if (!names_[c].reference) give_role(c, role, group.name);
+            }
+        }
+    }
+
+    void require_torque_and_velocity() const {
+        const auto names = facts_.names.empty()
+                               ? fmt::format("{} columns without names", facts_.columns)
+                               : fmt::format("{}", fmt::join(facts_.names, ", ")).substr(0, 400);
+        for (const auto& [column, role] : {std::pair{layout_.chosen.torque, Role::torque},
+                                           std::pair{layout_.chosen.velocity, Role::velocity}}) {
+            if (column || (role == Role::velocity && may_derive(layout_.chosen))) continue;
+            raise<DataError>(
+                "{}: read {}, expected a {} column; say which it is, with --columns {}=NAME{}", source_,
+                names, role_name(role), role_name(role),
+                facts_.names.empty() ? ", or all by place, with --columns time,velocity,torque" : "");
+        }
+    }
+
+    void give_role(std::size_t c, Role role, const std::string& joint) {
+        Column& column = layout_.columns[c];
+        column.role = role;
+        column.joint = joint;
+        std::string written = names_[c].unit;
+        stated_[c] = !written.empty();
+        if (const auto asked = layout_detail::asked_unit(options_, column.name, role)) {
+            const auto usual = usual_unit(*asked, role);
+            if (!usual || !role_factor(role, *usual, 1.0)) {
+                raise<UsageError>("--unit: '{}' is no unit of {}; write one of {}", *asked, role_name(role),
+                                  layout_detail::unit_list(role));
+            }
+            written = *usual;
+            stated_[c] = true;
+        }
+        if (written.empty()) {
+            const Convention* const known =
+                facts_.names.empty() ? nullptr : convention_of(facts_.names[c], role, facts_.names);
+            column.unit_assumed = known == nullptr;
+            written = known != nullptr ? std::string(known->unit)
+                      : role == Role::torque && names_[c].current
+                          ? "A"
+                          : std::string(base_unit(dimension_of(role)));
+            stated_[c] = known != nullptr && role == Role::time;
+        }
+        const auto usual = usual_unit(written, role);
+        const auto factor =
+            usual ? role_factor(role, *usual, options_.nm_per_ampere.value_or(1.0)) : std::nullopt;
+        if (factor) {
+            column.unit = *usual;
+            column.factor = *factor;
+            column.unit_assumed = column.unit_assumed && !stated_[c];
+        } else if (is_chosen(c)) {
+            raise<DataError>(
+                "{}: read {} in '{}', expected a {} in {}; if the header is wrong, say --unit {}={}", source_,
+                column_label(facts_.names, c), written, role_name(role), layout_detail::unit_list(role),
+                role_name(role), base_unit(dimension_of(role)));
+        } else {
+            column.role = Role::other;
+            column.joint.clear();
+        }
+    }
+
+    bool is_chosen(std::size_t c) const {
+        const auto all = layout_.all_chosen();
+        return std::any_of(all.begin(), all.end(), [c](const JointColumns& chosen) {
+            return chosen.time == c || chosen.velocity == c || chosen.torque == c || chosen.position == c;
+        });
+    }
+
+    void report_repeated_names() {
+        std::set<std::string> seen, told;
+        for (const std::string& name : facts_.names) {
+            if (name.empty() || seen.insert(name).second || !told.insert(name).second) continue;
+            layout_.warnings.push_back(fmt::format("several columns are named '{}'", name));
+        }
+    }
+
+    const std::string& source_;
+    const ColumnFacts& facts_;
+    const ReadOptions& options_;
+    layout_detail::Forced forced_;
+    Layout layout_;
+    std::vector<ColumnName> names_;
+    std::vector<bool> stated_;  ///< by column: the log or an option says its unit
+    std::vector<JointGroup> groups_;
+};
+
+}  // namespace
+
+std::string_view role_name(Role role) {
+    switch (role) {
+        case Role::time:
+            return "time";
+        case Role::velocity:
+            return "velocity";
+        case Role::torque:
+            return "torque";
+        case Role::position:
+            return "position";
+        case Role::other:
+            break;
+    }
+    return "other";
+}
+
+Layout decide_layout(const std::string& source, const std::string& format, const ColumnFacts& facts,
+                     const ReadOptions& options) {
+    return Decision(source, facts, options).run(format);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "log/columns/motion_reading.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch::layout_detail {
+namespace {
+
+constexpr double within_family = 0.5;
+constexpr double agreement = 0.03;                            // scales within 3 % are one
+constexpr double lowest_ratio = 20.0, highest_ratio = 400.0;  // of gears that a position may tell
+constexpr double fastest_joint_deg_s = 1200.0;                // 200 rpm behind the gear
+// What speaks against a reading; below open_margin alone, it settles nothing.
+constexpr double unusual_size = 0.25, motor_side_unnamed = 1.5, joint_side_of_motor_name = 1.0;
+constexpr double against_convention = 2.0, against_wrap = 3.0, too_fast = 3.0, header_wrong = 1.5;
+constexpr double families_mixed = 1.0;
+// Speeds and angles of joints in radians stay below these; in degrees such a joint would hardly move.
+constexpr double usual_rad_s = 7.0, usual_rad = 6.6;
+
+enum class Family { degrees, radians, turns };
+struct MotionUnit {
+    std::string_view name;
+    double factor;
+    Family family;
+    double cost;  // turns are rare where nothing names them
+};
+constexpr std::array velocity_units = {MotionUnit{"deg/s", 1.0, Family::degrees, 0.0},
+                                       MotionUnit{"rad/s", degrees_per_radian, Family::radians, 0.0},
+                                       MotionUnit{"rpm", 6.0, Family::turns, 0.8},
+                                       MotionUnit{"rev/s", 360.0, Family::turns, 1.5}};
+constexpr std::array position_units = {MotionUnit{"deg", 1.0, Family::degrees, 0.0},
+                                       MotionUnit{"rad", degrees_per_radian, Family::radians, 0.0},
+                                       MotionUnit{"rev", 360.0, Family::turns, 1.0}};
+
+/// A unit that a column may have, and whether the header says another.
+struct Candidate {
+    MotionUnit unit;
+    bool against_header = false;
+};
+
+std::vector<Candidate> candidates(const std::optional<MotionColumn>& column, const Layout& layout,
+                                  std::span<const MotionUnit> units) {
+    if (!column) return {{{"", 1.0, Family::degrees, 0.0}, false}};
+    std::vector<Candidate> found;
+    const Column& read = layout.columns[column->column];
+    const auto known =
+        std::find_if(units.begin(), units.end(), [&](const MotionUnit& u) { return u.name == read.unit; });
+    if (column->unit_is_stated)
+        found.push_back(
+            {{read.unit, read.factor, known == units.end() ? Family::degrees : known->family, 0.0}, false});
+    for (MotionUnit unit : units) {
+        if (column->unit_is_stated && unit.name == read.unit) continue;
+        if (column->unit_is_stated) unit.cost = header_wrong;
+        if (column->convention != nullptr)
+            unit.cost = column->convention->unit == unit.name ? 0.0 : unit.cost + against_convention;
+        found.push_back({unit, column->unit_is_stated});
+    }
+    return found;
+}
+
+Family family_of(const ReadColumn& column) {
+    const std::string_view unit = column.unit;
+    return unit.find("deg") != std::string_view::npos   ? Family::degrees
+           : unit.find("rad") != std::string_view::npos ? Family::radians
+                                                        : Family::turns;
+}
+
+double side_cost(const std::optional<MotionColumn>& column, Shaft side) {
+    if (!column) return 0.0;
+    const bool named =
+        column->named_motor || (column->convention != nullptr && column->convention->side == Shaft::motor);
+    if (side == Shaft::motor) return named ? 0.0 : motor_side_unnamed;
+    return named ? joint_side_of_motor_name : 0.0;
+}
+
+bool allowed(const std::optional<MotionColumn>& column, Shaft side) {
+    if (!column) return true;
+    return !column->stated_side || *column->stated_side == side;
+}
+
+class Scoring {
+  public:
+    Scoring(const MotionQuestion& question, bool with_scale)
+        : question_(question), scale_(with_scale ? question.evidence.scale : std::nullopt) {}
+
+    std::vector<MotionReading> run() {
+        const MotionColumns& columns = question_.columns;
+        for (const Candidate& v : candidates(columns.velocity, question_.layout, velocity_units)) {
+            for (const Candidate& q : candidates(columns.position, question_.layout, position_units)) {
+                for (const Shaft vs : {Shaft::joint, Shaft::motor}) {
+                    for (const Shaft qs : {Shaft::joint, Shaft::motor}) add(v, q, vs, qs);
+                }
+            }
+        }
+        std::stable_sort(found_.begin(), found_.end(), [](const MotionReading& a, const MotionReading& b) {
+            return a.against_header != b.against_header ? b.against_header : a.cost < b.cost;
+        });
+        return std::move(found_);
+    }
+
+  private:
+    // The velocity of a log without one is the slope of its position.
+    void add(const Candidate& v, const Candidate& q, Shaft vs, Shaft qs) {
+        const MotionColumns& columns = question_.columns;
+        if ((!columns.velocity && vs != qs) || (!columns.position && qs != vs)) return;
+        if (!allowed(columns.velocity, vs) || !allowed(columns.position, qs)) return;
+        if (v.against_header && q.against_header) return;
+        MotionReading reading;
+        reading.against_header = v.against_header || q.against_header;
+        if (reading.against_header && !scale_) return;
+        reading.velocity = {v.unit.name, columns.velocity ? v.unit.factor : q.unit.factor, vs, 1.0};
+        reading.position = {q.unit.name, q.unit.factor, qs, 1.0};
+        if (!find_ratio(reading)) return;
+        for (ReadColumn* column : {&reading.velocity, &reading.position})
+            column->factor =
+                column->unit_factor / (column->side == Shaft::motor ? reading.ratio.value_or(1.0) : 1.0);
+        reading.cost = v.unit.cost + q.unit.cost + side_cost(columns.velocity, vs) +
+                       side_cost(columns.position, qs) + mixture(v, q, vs != qs) +
+                       magnitude_cost(reading, v, q);
+        found_.push_back(reading);
+    }
+
+    /// False where the scale is neither 1 nor a gear's.
+    bool find_ratio(MotionReading& reading) const {
+        const bool motor = reading.velocity.side == Shaft::motor || reading.position.side == Shaft::motor;
+        if (motor) reading.ratio = question_.gear_ratio;
+        if (!scale_) return true;
+        const double faster = *scale_ * reading.position.unit_factor / reading.velocity.unit_factor;
+        if (reading.velocity.side == reading.position.side) {
+            // Of one family, neither a unit nor a gear makes a small factor: a clock does, or a short log.
+            const bool alike = family_of(reading.velocity) == family_of(reading.position);
+            return std::abs(faster - 1.0) < (alike ? within_family : agreement);
+        }
+        const double ratio = reading.position.side == Shaft::motor ? faster : 1.0 / faster;
+        if (question_.gear_ratio) return std::abs(ratio / *question_.gear_ratio - 1.0) < agreement;
+        reading.ratio = ratio;
+        return ratio >= lowest_ratio && ratio <= highest_ratio;
+    }
+
+    // Where position and velocity agree in these units, that they are of one family says nothing more.
+    double mixture(const Candidate& v, const Candidate& q, bool through_gear) const {
+        const MotionColumns& columns = question_.columns;
+        if (!columns.velocity || !columns.position || (scale_ && !through_gear)) return 0.0;
+        return v.unit.family == q.unit.family ? 0.0 : families_mixed;
+    }
+
+    double magnitude_cost(const MotionReading& reading, const Candidate& v, const Candidate& q) const {
+        const MotionEvidence& evidence = question_.evidence;
+        double cost = 0.0;
+        const bool motor_units = reading.velocity.side == Shaft::motor && !reading.ratio;
+        if (!motor_units && evidence.fastest * reading.velocity.factor > fastest_joint_deg_s)
+            cost += too_fast;
+        if (evidence.wrap && question_.columns.position && reading.position.side == Shaft::joint) {
+            const double turn = *evidence.wrap * reading.position.unit_factor;
+            if (std::abs(turn / 360.0 - 1.0) > agreement) cost += against_wrap;
+        }
+        const bool small = evidence.fastest <= usual_rad_s && evidence.farthest <= usual_rad;
+        const Family family = question_.columns.velocity ? v.unit.family : q.unit.family;
+        if (family == Family::degrees && small) cost += unusual_size;
+        if (family == Family::radians && !small) cost += unusual_size;
+        return cost;
+    }
+
+    const MotionQuestion& question_;
+    std::optional<double> scale_;
+    std::vector<MotionReading> found_;
+};
+
+}  // namespace
+
+std::vector<MotionReading> motion_readings(const MotionQuestion& question, bool with_scale) {
+    return Scoring(question, with_scale).run();
+}
+
+}  // namespace ripplenotch::layout_detail

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include "log/columns/unit_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+namespace ripplenotch {
+namespace {
+
+struct Spelling {
+    std::string_view written;  // lower case, without blanks
+    std::string_view usual;
+};
+
+// Only spellings that do not depend on case; "Nm" and "mNm" are looked up as they stand before this table is
+// asked.
+constexpr std::array spellings = {
+    Spelling{"sec", "s"},
+    Spelling{"secs", "s"},
+    Spelling{"second", "s"},
+    Spelling{"seconds", "s"},
+    Spelling{"msec", "ms"},
+    Spelling{"millisecond", "ms"},
+    Spelling{"milliseconds", "ms"},
+    Spelling{"usec", "us"},
+    Spelling{"\xc2\xb5s", "us"},
+    Spelling{"\xce\xbcs", "us"},
+    Spelling{"microseconds", "us"},
+    Spelling{"nsec", "ns"},
+    Spelling{"nanoseconds", "ns"},
+    Spelling{"deg/sec", "deg/s"},
+    Spelling{"degs", "deg/s"},
+    Spelling{"degps", "deg/s"},
+    Spelling{"deg_per_s", "deg/s"},
+    Spelling{"deg_per_sec", "deg/s"},
+    Spelling{"degpersec", "deg/s"},
+    Spelling{"degree/s", "deg/s"},
+    Spelling{"degrees/s", "deg/s"},
+    Spelling{"deg*s^-1", "deg/s"},
+    Spelling{"degs^-1", "deg/s"},
+    Spelling{"degs-1", "deg/s"},
+    Spelling{"\xc2\xb0/s", "deg/s"},
+    Spelling{"\xc2\xb0/sec", "deg/s"},
+    Spelling{"grad/s", "deg/s"},
+    Spelling{"deg_s", "deg/s"},
+    Spelling{"dps", "deg/s"},
+    Spelling{"rad/sec", "rad/s"},
+    Spelling{"rads", "rad/s"},
+    Spelling{"radps", "rad/s"},
+    Spelling{"rad_s", "rad/s"},
+    Spelling{"rad_per_s", "rad/s"},
+    Spelling{"rad_per_sec", "rad/s"},
+    Spelling{"radpersec", "rad/s"},
+    Spelling{"radian/s", "rad/s"},
+    Spelling{"radians/s", "rad/s"},
+    Spelling{"rad*s^-1", "rad/s"},
+    Spelling{"rads^-1", "rad/s"},
+    Spelling{"rads-1", "rad/s"},
+    Spelling{"rad.s-1", "rad/s"},
+    Spelling{"rad/s", "rad/s"},
+    Spelling{"deg/s", "deg/s"},
+    Spelling{"rpm", "rpm"},
+    Spelling{"u/min", "rpm"},
+    Spelling{"1/min", "rpm"},
+    Spelling{"rev/min", "rpm"},
+    Spelling{"min-1", "rpm"},
+    Spelling{"min^-1", "rpm"},
+    Spelling{"r/min", "rpm"},
+    Spelling{"rps", "rev/s"},
+    Spelling{"deg", "deg"},
+    Spelling{"degree", "deg"},
+    Spelling{"degrees", "deg"},
+    Spelling{"\xc2\xb0", "deg"},
+    Spelling{"rad", "rad"},
+    Spelling{"radian", "rad"},
+    Spelling{"radians", "rad"},
+    Spelling{"revs", "rev"},
+    Spelling{"turns", "turn"},
+    Spelling{"n*m", "Nm"},
+    Spelling{"n.m", "Nm"},
+    Spelling{"n-m", "Nm"},
+    Spelling{"n\xc2\xb7m", "Nm"},
+    Spelling{"newtonmeter", "Nm"},
+    Spelling{"newton_meter", "Nm"},
+    Spelling{"newton_meters", "Nm"},
+    Spelling{"newtonmeters", "Nm"},
+    Spelling{"amp", "A"},
+    Spelling{"amps", "A"},
+    Spelling{"ampere", "A"},
+    Spelling{"amperes", "A"},
+    Spelling{"mamp", "mA"},
+};
+
+std::string lower_without_blanks(std::string_view text) {
+    std::string lower;
+    for (const char c : text) {
+        if (c != ' ') lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return lower;
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '_')) text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '_')) text.remove_suffix(1);
+    return text;
+}
+
+constexpr std::array measured_roles = {Role::time, Role::velocity, Role::torque, Role::position};
+
+bool any_role_knows(std::string_view unit) {
+    return std::any_of(measured_roles.begin(), measured_roles.end(),
+                       [&](Role role) { return role_factor(role, unit, 1.0).has_value(); });
+}
+
+}  // namespace
+
+Dimension dimension_of(Role role) {
+    switch (role) {
+        case Role::time:
+            return Dimension::time;
+        case Role::velocity:
+            return Dimension::speed;
+        case Role::torque:
+            return Dimension::torque;
+        case Role::position:
+            return Dimension::angle;
+        case Role::other:
+            break;
+    }
+    return Dimension::none;
+}
+
+bool is_current_unit(std::string_view unit) { return unit_factor(Dimension::current, unit).has_value(); }
+
+std::optional<double> role_factor(Role role, std::string_view unit, double nm_per_ampere) {
+    if (role == Role::torque) {
+        if (const auto amperes = unit_factor(Dimension::current, unit)) return *amperes * nm_per_ampere;
+    }
+    return unit_factor(dimension_of(role), unit);
+}
+
+std::optional<std::string> usual_unit(std::string_view written, Role role) {
+    const std::string_view text = trimmed(written);
+    if (text.empty()) return std::nullopt;
+    const std::string lower = lower_without_blanks(text);
+    if (role == Role::torque && lower == "nm") return "Nm";
+    if (role == Role::torque && lower == "mnm") return "mNm";
+    for (const Spelling& spelling : spellings) {
+        if (lower == spelling.written) return std::string(spelling.usual);
+    }
+    // What is left depends on case: mNm, Nm, ms, A.
+    if (role == Role::other ? any_role_knows(text) : role_factor(role, text, 1.0).has_value())
+        return std::string(text);
+    return std::nullopt;
+}
+
+NameAndUnit split_unit(std::string_view column_name) {
+    const std::string_view whole = trimmed(column_name);
+    for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+        const std::size_t from = whole.rfind(open);
+        if (from == std::string_view::npos || from == 0 || whole.empty() || whole.back() != close) continue;
+        const std::string_view inside = trimmed(whole.substr(from + 1, whole.size() - from - 2));
+        const bool index = !inside.empty() && std::all_of(inside.begin(), inside.end(), [](unsigned char c) {
+            return std::isdigit(c) != 0;
+        });
+        if (!index) return {std::string(trimmed(whole.substr(0, from))), std::string(inside), true};
+    }
+    // The longest unit that follows an underscore or a blank: "_deg_s" before "_s".
+    for (std::size_t at = 1; at < whole.size(); ++at) {
+        if (whole[at] != '_' && whole[at] != ' ') continue;
+        const std::string_view rest = whole.substr(at + 1);
+        if (rest == "nm" || rest == "mnm" || usual_unit(rest, Role::other)) {
+            return {std::string(trimmed(whole.substr(0, at))), std::string(rest), false};
+        }
+    }
+    return {std::string(whole), "", false};
+}
+
+}  // namespace ripplenotch

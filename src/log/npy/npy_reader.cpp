@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include "log/npy/npy_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t piece_size = std::size_t{1} << 18;
+constexpr std::size_t largest_header = std::size_t{1} << 20;
+constexpr std::size_t sample_size = std::size_t{1} << 16;
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
+    : source_(std::move(source)), hold_bad_values_(options.hold_bad_values) {
+    read_up_to(first_bytes, 12);
+    if (first_bytes.substr(0, npy_magic.size()) != npy_magic) {
+        raise<DataError>(
+            "{}: read '{}...', expected a NumPy file, which begins with \\x93NUMPY; leave out --format",
+            source_->name(), first_bytes.substr(0, 6));
+    }
+    const std::size_t header_size = npy_header_size(first_bytes);
+    if (header_size <= largest_header) read_up_to(first_bytes, header_size);
+    header_ = parse_npy_header(first_bytes, source_->name());
+    if (header_.by_columns || header_.transposed) take_whole(first_bytes);
+    read_up_to(first_bytes, header_.data_offset + std::min(sample_size, header_.rows * header_.record_size));
+    head_ = first_bytes.substr(0, header_.data_offset);
+    carry_ = first_bytes.substr(header_.data_offset);
+    if (header_.rows == 0)
+        raise<DataError>("{}: read an array without rows, expected rows of numbers; check what wrote it",
+                         source_->name());
+    decide(options);
+}
+
+void NpyReader::read_up_to(std::string& bytes, std::size_t size) {
+    bytes.resize(read_behind(bytes, bytes.size(), size));
+}
+
+// Behind the first `have` bytes, until there are `size`; returns how many there are.
+std::size_t NpyReader::read_behind(std::string& bytes, std::size_t have, std::size_t size) {
+    if (bytes.size() < size) bytes.resize(size);
+    for (std::size_t got = 1; have < size && got > 0; have += got)
+        got = source_->read(bytes.data() + have, size - have);
+    return have;
+}
+
+void NpyReader::decide(const ReadOptions& options) {
+    ColumnFacts facts;
+    facts.columns = header_.fields.size();
+    facts.sample.resize(facts.columns);
+    const std::size_t rows = std::min(header_.rows, carry_.size() / header_.record_size);
+    for (std::size_t c = 0; c < facts.columns; ++c) {
+        if (header_.structured) facts.names.push_back(header_.fields[c].name);
+        for (std::size_t r = 0; r < rows; ++r) {
+            const bool number = header_.fields[c].kind != '\0';
+            facts.sample[c].push_back(
+                number ? load_field(carry_.data() + r * header_.record_size, header_.fields[c])
+                       : not_a_number);
+        }
+    }
+    ReadOptions with_default = options;
+    const bool by_place =
+        !header_.structured && options.columns.empty() && (facts.columns == 3 || facts.columns == 4);
+    if (by_place) {
+        with_default.columns = {"time", "velocity", "torque"};
+        with_default.every_joint = false;  // there is one
+        if (facts.columns == 4) with_default.columns.emplace_back("position");
+    }
+    for (std::size_t c = 0; c < facts.columns; ++c)
+        facts.first_counts.push_back(rows > 0 ? load_count(carry_.data(), header_.fields[c]) : 0);
+    facts.motion_sample = [this](const MotionPlaces& places, std::size_t bytes) {
+        read_up_to(carry_, std::max(carry_.size(), std::min(bytes, header_.rows * header_.record_size)));
+        return motion_sample(places);
+    };
+    layout_ = decide_layout(source_->name(), "npy", facts, with_default);
+    if (by_place) {
+        layout_.warnings.insert(
+            layout_.warnings.begin(),
+            fmt::format(
+                "the array names no columns: took time, velocity, torque{} by place; --columns settles it",
+                facts.columns == 4 ? ", position" : ""));
+    }
+    plan_columns(facts.names);
+}
+
+void NpyReader::plan_columns(const std::vector<std::string>& names) {
+    wanted_ = wanted_columns(layout_);
+    // time_at() adds the fraction of a second.
+    wanted_.erase(
+        std::remove_if(wanted_.begin(), wanted_.end(), [](const auto& one) { return one.fraction; }),
+        wanted_.end());
+    factors_ = slot_factors(layout_, wanted_);
+    before_.assign(factors_.size(), not_a_number);
+    for (const WantedColumn& wanted : wanted_) {
+        if (header_.fields[wanted.column].kind != '\0') continue;
+        raise<DataError>("{}: {} holds no numbers, expected a {}; say which column with --columns",
+                         source_->name(), column_label(names, wanted.column),
+                         role_name(layout_.columns[wanted.column].role));
+    }
+}
+
+bool NpyReader::next(RowBlock& block) {
+    if (!fetch(block)) return false;
+    parse(block);
+    accept(block);
+    if (block.failure) std::rethrow_exception(block.failure);
+    return true;
+}
+
+// Whole records into block.bytes, the rest into carry_. The block's old bytes and numbers are read over: what
+// is made longer is filled first.
+bool NpyReader::fetch(RowBlock& block) {
+    block.forget_verdict();
+    block.joints.resize(1 + layout_.others.size());
+    std::string& bytes = block.bytes;
+    const std::size_t size = header_.record_size, left = header_.rows - fetched_;
+    std::size_t have = carry_.size();
+    if (bytes.size() < have) bytes.resize(have);
+    std::copy(carry_.begin(), carry_.end(), bytes.begin());
+    carry_.clear();
+    if (left == 0) {
+        if (have == 0) have = read_behind(bytes, have, 1);
+        if (have > 0) {
+            raise<DataError>(
+                "{}: read more bytes after the {} rows of the array, expected the end; save one array a file",
+                source_->name(), header_.rows);
+        }
+        block.clear();
+        return false;
+    }
+    const std::size_t wanted = std::min(left, std::max<std::size_t>(1, piece_size / size));
+    if (have < size) have = read_behind(bytes, have, wanted * size);
+    const std::size_t rows = std::min(left, have / size);
+    if (rows == 0) {
+        raise<DataError>(
+            "{}: read {} rows and a part of one, expected {} rows; the file is cut off, save the array again",
+            source_->name(), fetched_, header_.rows);
+    }
+    carry_.assign(bytes, rows * size, have - rows * size);
+    bytes.resize(rows * size);
+    fetched_ += rows;
+    return true;
+}
+
+void NpyReader::parse(RowBlock& block) const {
+    if (take_columns(block))
+        block.parsed_bytes = block.bytes.size();
+    else
+        block.drop_rows();
+}
+
+void NpyReader::accept(RowBlock& block) {
+    block.first_row = rows_;
+    if (block.parsed_bytes > 0 && continues(block)) {
+        count_rows(block);
+        return;
+    }
+    block.drop_rows();
+    std::size_t at = 0;
+    try {
+        for (; at < block.bytes.size(); at += header_.record_size) take_row(block, at);
+    } catch (const Error&) {
+        block.failure = std::current_exception();
+        block.bytes.resize(at);
+    }
+}
+
+// False where a number is not finite or time runs backward: the careful way has the place and the words.
+bool NpyReader::take_columns(RowBlock& block) const {
+    const std::size_t rows = block.bytes.size() / header_.record_size;
+    for (const WantedColumn& wanted : wanted_) {
+        std::vector<double>& numbers = numbers_of(block, wanted.slot);
+        numbers.resize(rows);
+        if (!take_column(block.bytes.data(), wanted, numbers)) return false;
+        if (wanted.slot == time_slot && !std::is_sorted(numbers.begin(), numbers.end())) return false;
+        const double factor = factors_[wanted.slot];
+        if (factor != 1.0)
+            for (double& number : numbers) number *= factor;
+    }
+    // Columns that the log has not.
+    for (std::size_t slot = 0; slot < factors_.size(); ++slot) {
+        const bool wanted =
+            std::any_of(wanted_.begin(), wanted_.end(), [slot](const auto& one) { return one.slot == slot; });
+        if (!wanted && !is_position(slot)) numbers_of(block, slot).resize(rows, not_a_number);
+    }
+    return true;
+}
+
+bool NpyReader::continues(const RowBlock& block) const {
+    if (!layout_.chosen.time) return true;
+    return !(time_at(block.bytes.data(), layout_) < before_[time_slot]);
+}
+
+void NpyReader::count_rows(RowBlock& block) {
+    const std::size_t count = block.size();
+    if (!layout_.chosen.time && layout_.stated_rate) {
+        for (std::size_t i = 0; i < count; ++i)
+            block.time_s[i] = static_cast<double>(rows_ + i) / layout_.stated_rate->value();
+    }
+    const char* const last = block.bytes.data() + (count - 1) * header_.record_size;
+    for (const WantedColumn& wanted : wanted_) before_[wanted.slot] = value_at(last, wanted);
+    rows_ += count;
+}
+
+double NpyReader::take_value(RowBlock& block, const char* record, const WantedColumn& wanted) {
+    const double value = value_at(record, wanted);
+    const bool time = wanted.slot == time_slot;
+    if (time && value < before_[time_slot]) {
+        complain(
+            wanted.column,
+            fmt::format("read the time {} after {}, expected time to run forward; sort or split the log, or "
+                        "say --sample-rate if the clock is of no use",
+                        shortest(value), shortest(before_[time_slot])));
+    }
+    if (std::isfinite(value)) return value;
+    if (std::isnan(value) && hold_bad_values_ && !time && rows_ > 0) {
+        ++block.held_bad_values;
+        return before_[wanted.slot];
+    }
+    complain(wanted.column,
+             fmt::format("read {}, expected a finite number; {}", shortest(value),
+                         std::isnan(value) && !time && !hold_bad_values_
+                             ? "remove the row, or say --hold-bad-values to repeat the value before"
+                             : "remove the row"));
+}
+
+void NpyReader::take_row(RowBlock& block, std::size_t offset) {
+    std::vector<double> row = before_;
+    for (const WantedColumn& wanted : wanted_)
+        row[wanted.slot] = take_value(block, block.bytes.data() + offset, wanted);
+    before_ = row;
+    for (std::size_t slot = 0; slot < row.size(); ++slot) row[slot] *= factors_[slot];
+    if (!layout_.chosen.time && layout_.stated_rate)
+        row[time_slot] = static_cast<double>(rows_) / layout_.stated_rate->value();
+    for (std::size_t slot = 0; slot < row.size(); ++slot) {
+        if (!is_position(slot) || !std::isnan(row[slot])) numbers_of(block, slot).push_back(row[slot]);
+    }
+    ++rows_;
+}
+
+void NpyReader::complain(std::size_t column, const std::string& sentence) const {
+    std::vector<std::string> names;
+    if (header_.structured) {
+        for (const NpyField& field : header_.fields) names.push_back(field.name);
+    }
+    raise<DataError>("{}: row {}, {}: {}", source_->name(), source_->number_in_file(rows_ + 1),
+                     column_label(names, column), sentence);
+}
+
+}  // namespace ripplenotch

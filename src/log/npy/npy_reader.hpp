@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Rows of a NumPy array file, a block at a time, in bounded memory.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "log/columns/decide_layout.hpp"
+#include "log/npy/npy_header.hpp"
+#include "log/text/row_parser.hpp"
+#include "ripplenotch/log/format.hpp"
+
+namespace ripplenotch {
+
+class NpyReader : public LogReader {
+  public:
+    NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);
+
+    [[nodiscard]] const Layout& layout() const override { return layout_; }
+    [[nodiscard]] std::string_view head() const override { return head_; }
+    /// Of the whole log; 0 where nobody knows.
+    [[nodiscard]] std::uint64_t source_bytes() const { return source_->size(); }
+    bool next(RowBlock& block) override;
+    bool fetch(RowBlock& block) override;
+    void parse(RowBlock& block) const override;
+    void accept(RowBlock& block) override;
+
+    [[nodiscard]] const NpyHeader& header() const { return header_; }
+    /// What a record says, in the unit of its column, less the origin; only where there is a time column.
+    [[nodiscard]] double time_of(const char* record) const { return time_at(record, layout_); }
+
+  private:
+    void take_whole(std::string& first_bytes);
+    void decide(const ReadOptions& options);
+    [[nodiscard]] double time_at(const char* record, const Layout& layout) const;
+    [[nodiscard]] double value_at(const char* record, const WantedColumn& wanted) const;
+    [[nodiscard]] MotionSample motion_sample(const MotionPlaces& places) const;
+    bool take_column(const char* records, const WantedColumn& wanted, std::span<double> numbers) const;
+    void read_up_to(std::string& bytes, std::size_t size);
+    std::size_t read_behind(std::string& bytes, std::size_t have, std::size_t size);
+    void plan_columns(const std::vector<std::string>& names);
+    bool take_columns(RowBlock& block) const;
+    [[nodiscard]] bool continues(const RowBlock& block) const;
+    void count_rows(RowBlock& block);
+    void take_row(RowBlock& block, std::size_t offset);
+    double take_value(RowBlock& block, const char* record, const WantedColumn& wanted);
+    [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
+
+    std::unique_ptr<ByteSource> source_;
+    NpyHeader header_;
+    Layout layout_;
+    std::string head_, carry_;
+    bool hold_bad_values_ = false;
+    std::size_t fetched_ = 0, rows_ = 0;
+    std::vector<WantedColumn> wanted_;
+    std::vector<double> factors_, before_;  ///< by slot; before: the row before, as in the file
+};
+
+}  // namespace ripplenotch

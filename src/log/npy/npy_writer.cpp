@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include "log/npy/npy_writer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+#include "log/text/csv_writer.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::string python_string(const std::string& text) {
+    std::string quoted(1, '\'');
+    for (const char c : text) {
+        if (c == '\'' || c == '\\') quoted += '\\';
+        quoted += c;
+    }
+    quoted += '\'';
+    return quoted;
+}
+
+std::string shape_of_rows(std::size_t rows) { return fmt::format("{},", rows); }
+
+}  // namespace
+
+NpyWriter::NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, const WriteOptions& options)
+    : sink_(std::move(sink)),
+      record_in_(reader.header().record_size),
+      record_out_(record_in_),
+      append_(options.append) {
+    const Layout& layout = reader.layout();
+    const NpyHeader& header = reader.header();
+    for (const JointColumns& joint : layout.all_chosen()) {
+        if (!joint.torque) raise<UsageError>("{}: there is no torque column to write", layout.source);
+        fields_.push_back(header.fields[*joint.torque]);
+        factors_.push_back(layout.columns[*joint.torque].factor);
+        if (fields_.back().kind == 'f' || (append_ && header.structured)) continue;
+        raise<UsageError>(
+            "{}: the torque is stored in integers, which would round the result; write it as CSV with -o "
+            "NAME.csv{}",
+            layout.source, header.structured ? ", or add a column with --append" : "");
+    }
+    sink_->expect(reader.source_bytes());
+    if (append_)
+        append_head(reader, options);
+    else
+        sink_->write(reader.head());
+}
+
+void NpyWriter::append_head(const NpyReader& reader, const WriteOptions& options) {
+    const NpyHeader& header = reader.header();
+    const std::vector<std::string> names = appended_names(reader.layout(), options);
+    std::string fields;
+    for (std::size_t j = 0; j < fields_.size(); ++j) {
+        NpyField& field = fields_[j];
+        if (field.kind != 'f') field = {"", 'f', 8, false, 0};
+        field.offset = record_out_;
+        record_out_ += field.size;
+        fields +=
+            fmt::format(", ({}, '{}f{}')", python_string(names[j]), field.big_endian ? '>' : '<', field.size);
+    }
+    if (!header.structured) {
+        const auto shape = fmt::format("{}, {}", header.rows, header.fields.size() + fields_.size());
+        sink_->write(make_npy_header(header.descr, shape, false));
+        return;
+    }
+    std::string_view before = std::string_view(header.descr).substr(0, header.descr.rfind(']'));
+    while (before.back() == ' ' || before.back() == ',') before.remove_suffix(1);
+    sink_->write(make_npy_header(fmt::format("{}{}]", before, fields), shape_of_rows(header.rows), false));
+}
+
+std::string_view NpyWriter::prepare(RowBlock& block, Torques torque_nm, std::string& room) const {
+    char* records = block.bytes.data();
+    std::size_t size = block.bytes.size();
+    if (append_) {
+        size = block.size() * record_out_;
+        if (room.size() < size) room.resize(size);
+        records = room.data();
+        for (std::size_t i = 0; i < block.size(); ++i)
+            block.bytes.copy(records + i * record_out_, record_in_, i * record_in_);
+    }
+    // A value that nobody changed keeps its bits, whatever the unit.
+    const bool as_written = !append_ && block.held_bad_values == 0;
+    for (std::size_t j = 0; j < fields_.size(); ++j) {
+        const std::vector<double>& raw = block.joints[j].torque_nm;
+        for (std::size_t i = 0; i < block.size(); ++i) {
+            if (as_written && torque_nm[j][i] == raw[i]) continue;
+            store_float(records + i * record_out_, fields_[j], torque_nm[j][i] / factors_[j]);
+        }
+    }
+    return {records, size};
+}
+
+void NpyWriter::put(const RowBlock& /*block*/, Torques /*torque_nm*/, std::string_view bytes) {
+    sink_->write(bytes);
+}
+
+void NpyWriter::finish() { sink_->finish(); }
+
+void NpyTableWriter::begin(std::span<const std::string> names) {
+    std::vector<std::string> fields;
+    for (const std::string& name : names) fields.push_back(fmt::format("({}, '<f8')", python_string(name)));
+    descr_ = fmt::format("[{}]", fmt::join(fields, ", "));
+    if (!sink_.can_rewrite()) {
+        spool_.emplace();
+        return;
+    }
+    sink_.write(make_npy_header(descr_, shape_of_rows(0), true));
+}
+
+void NpyTableWriter::put(std::string_view bytes) {
+    if (spool_)
+        spool_->put(bytes);
+    else
+        sink_.write(bytes);
+}
+
+void NpyTableWriter::rows(std::span<const std::span<const double>> columns) {
+    const std::size_t count = columns.empty() ? 0 : columns[0].size();
+    const std::size_t width = 8 * columns.size();
+    bytes_.resize(count * width);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+        const NpyField field{"", 'f', 8, false, 8 * c};
+        for (std::size_t r = 0; r < count; ++r) store_float(bytes_.data() + r * width, field, columns[c][r]);
+    }
+    put(bytes_);
+    rows_ += count;
+}
+
+void NpyTableWriter::end() {
+    const std::string header = make_npy_header(descr_, shape_of_rows(rows_), true);
+    if (!spool_) {
+        sink_.rewrite(0, header);
+        return;
+    }
+    sink_.write(header);
+    spool_->rewind();
+    std::vector<char> buffer(std::size_t{1} << 20);
+    while (const std::size_t got = spool_->read(buffer.data(), buffer.size()))
+        sink_.write({buffer.data(), got});
+}
+
+}  // namespace ripplenotch

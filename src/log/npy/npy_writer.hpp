@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// NumPy array files out: rows of one that was read with other torque values, or new structured ones.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "log/npy/npy_reader.hpp"
+#include "log/npy/temporary_bytes.hpp"
+#include "log/table_writer.hpp"
+
+namespace ripplenotch {
+
+/// Records of a reader with another torque; every other byte passes as it is.
+class NpyWriter : public LogWriter {
+  public:
+    /// Throws UsageError when the torque is an integer and would be rounded (--append adds a float instead).
+    NpyWriter(std::unique_ptr<ByteSink> sink, const NpyReader& reader, const WriteOptions& options);
+    std::string_view prepare(RowBlock& block, Torques torque_nm, std::string& room) const override;
+    void put(const RowBlock& block, Torques torque_nm, std::string_view bytes) override;
+    void finish() override;
+
+  private:
+    void append_head(const NpyReader& reader, const WriteOptions& options);
+
+    std::unique_ptr<ByteSink> sink_;
+    std::vector<NpyField> fields_;  ///< by joint: where the new torque goes, in a record of the output
+    std::vector<double> factors_;   ///< by joint
+    std::size_t record_in_, record_out_;
+    bool append_;
+};
+
+/// A structured array of float64 columns whose length is known only at the end: the header is patched in a
+/// file, and the rows are spooled when the target is a pipe.
+class NpyTableWriter : public TableWriter {
+  public:
+    /// Arrays hold every digit: of the options none concerns them.
+    NpyTableWriter(ByteSink& sink, const WriteOptions& /*options*/) : sink_(sink) {}
+    void begin(std::span<const std::string> names) override;
+    void rows(std::span<const std::span<const double>> columns) override;
+    void end() override;
+
+  private:
+    void put(std::string_view bytes);
+    ByteSink& sink_;
+    std::optional<TemporaryBytes> spool_;
+    std::string descr_, bytes_;
+    std::size_t rows_ = 0;
+};
+
+}  // namespace ripplenotch

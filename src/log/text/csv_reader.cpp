@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+#include "log/text/csv_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "log/columns/decide_layout.hpp"
+#include "log/text/text_sample.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t piece_size = std::size_t{1} << 17;
+constexpr std::size_t sniff_size = std::size_t{1} << 16;
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+// Reads on until `size` bytes are there; true when the source ended before.
+bool read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
+    std::size_t have = bytes.size();
+    bytes.resize(size);
+    std::size_t got = 1;
+    while (have < size && got > 0) {
+        got = source.read(bytes.data() + have, size - have);
+        have += got;
+    }
+    bytes.resize(have);
+    return got == 0;
+}
+
+std::size_t line_ends(std::string_view bytes) {
+    return static_cast<std::size_t>(
+        std::count_if(bytes.begin(), bytes.end(), [](char c) { return c == '\n' || c == '\r'; }));
+}
+
+std::string dialect_options(const TextDialect& dialect) {
+    const std::string name = delimiter_name(dialect.rules.delimiter);
+    return fmt::format("--delimiter {} --decimal {}{}", name == ";" ? "';'" : name,
+                       dialect.rules.decimal_mark, dialect.has_header ? "" : " --no-header");
+}
+
+}  // namespace
+
+CsvReader::CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
+    : source_(std::move(source)), options_(options) {
+    source_ended_ = read_up_to(*source_, first_bytes, sniff_size);
+    // Lines may be long: a verdict on them needs a few whole ones.
+    for (std::size_t size = 2 * sniff_size;
+         !source_ended_ && line_ends(first_bytes) < 8 && size <= 8 * longest_line; size *= 2) {
+        source_ended_ = read_up_to(*source_, first_bytes, size);
+    }
+    dialect_ = sniff_text(first_bytes, source_ended_, *source_, options);
+    layout_ = decide_layout(source_->name(), "csv", facts_of(first_bytes), options);
+    if (dialect_.head_lines > 0) {
+        layout_.inferences.push_back({fmt::format("the first {} lines", dialect_.head_lines),
+                                      "a head, passed on and not read",
+                                      "they are no rows, and the names do not stand in the first of them",
+                                      fmt::format("--skip-lines {}", dialect_.head_lines),
+                                      {}});
+    }
+    head_ = first_bytes.substr(0, dialect_.data_offset);
+    ahead_ = std::move(first_bytes);
+    ahead_at_ = dialect_.data_offset;
+    line_ = dialect_.data_line;
+    plan_columns();
+}
+
+// `opening` may be read on while the layout is decided.
+ColumnFacts CsvReader::facts_of(std::string& opening) {
+    ColumnFacts facts;
+    facts.names = dialect_.names;
+    facts.units = dialect_.units;
+    facts.columns = dialect_.columns;
+    facts.sample = std::move(dialect_.sample);
+    facts.first_counts = dialect_.first_counts;
+    facts.clock_texts = dialect_.clock_texts;
+    facts.dialect_options = dialect_options(dialect_);
+    facts.motion_sample = [this, &opening](const MotionPlaces& places, std::size_t bytes) {
+        if (!source_ended_ && opening.size() < bytes) source_ended_ = read_up_to(*source_, opening, bytes);
+        return text_motion_sample(std::string_view(opening).substr(dialect_.data_offset), dialect_, places);
+    };
+    return facts;
+}
+
+// What was read ahead first, then the source.
+std::size_t CsvReader::read_on(char* into, std::size_t size) {
+    if (ahead_at_ < ahead_.size()) {
+        const std::size_t taken = ahead_.copy(into, size, ahead_at_);
+        ahead_at_ += taken;
+        if (ahead_at_ == ahead_.size()) std::string().swap(ahead_);
+        return taken;
+    }
+    return source_ended_ ? 0 : source_->read(into, size);
+}
+
+void CsvReader::plan_columns() {
+    before_ = row_ = ParsedRow(1 + layout_.others.size());
+    std::fill(before_.values.begin(), before_.values.end(), not_a_number);
+    wanted_ = wanted_columns(layout_);
+    factors_ = slot_factors(layout_, wanted_);
+    std::sort(wanted_.begin(), wanted_.end(),
+              [](const auto& a, const auto& b) { return a.column < b.column; });
+    stamp_ = stamp_rule(layout_, dialect_.rules.decimal_mark);
+    quick_.emplace(RowPlan{dialect_.rules, dialect_.line_end, dialect_.columns, wanted_, factors_, stamp_});
+}
+
+bool CsvReader::next(RowBlock& block) {
+    if (!fetch(block)) {
+        if (rows_ == 0) raise<DataError>("{}: read no row, expected rows of numbers", source_->name());
+        return false;
+    }
+    parse(block);
+    accept(block);
+    if (block.failure) std::rethrow_exception(block.failure);
+    return true;
+}
+
+// Whole lines into block.bytes, the rest into carry_. The block's own bytes, of lines long gone, are read
+// over: a string that is made longer is filled first.
+bool CsvReader::fetch(RowBlock& block) {
+    std::string bytes = std::move(block.bytes);
+    block.clear();
+    block.joints.resize(1 + layout_.others.size());
+    std::size_t have = carry_.size();
+    if (bytes.size() < have) bytes.resize(have);
+    std::copy(carry_.begin(), carry_.end(), bytes.begin());
+    carry_.clear();
+    const auto whole_lines = [&] {
+        return std::string_view(bytes.data(), have).rfind(dialect_.line_end) + 1;  // npos + 1 is 0
+    };
+    std::size_t lines = whole_lines();
+    for (; lines == 0 && !at_end_ && have <= longest_line; lines = whole_lines()) {
+        if (bytes.size() < have + piece_size) bytes.resize(have + piece_size);
+        const std::size_t got = read_on(bytes.data() + have, piece_size);
+        at_end_ = got == 0;
+        have += got;
+    }
+    if (lines > 0) carry_.assign(bytes, lines, have - lines);
+    bytes.resize(lines > 0 ? lines : have);
+    block.bytes = std::move(bytes);
+    return !block.bytes.empty();  // a line that is too long is accept()'s, which has its number
+}
+
+void CsvReader::parse(RowBlock& block) const { block.parsed_bytes = quick_->take(block, 0, not_a_number); }
+
+void CsvReader::accept(RowBlock& block) {
+    block.first_row = rows_;
+    if (!continues(block)) block.drop_rows();
+    note_quick_rows(block, 0);
+    std::size_t begin = block.parsed_bytes;
+    try {
+        while (begin < block.bytes.size()) begin = take_on(block, begin);
+    } catch (const Error&) {
+        block.failure = std::current_exception();
+        block.bytes.resize(begin);
+    }
+}
+
+// The line at `begin`, and what can be taken at once behind it; returns where the next line begins.
+std::size_t CsvReader::take_on(RowBlock& block, std::size_t begin) {
+    const std::size_t found = block.bytes.find(dialect_.line_end, begin);
+    last_line_complete_ = found != std::string::npos;
+    const std::size_t end = last_line_complete_ ? found : block.bytes.size();
+    if (end - begin > longest_line) {
+        raise<DataError>(
+            "{}:{}: read a line of more than 1 MiB, expected rows of {} cells; check that this is a text log",
+            source_->name(), line_in_file(), dialect_.columns);
+    }
+    const bool row = take_line(block, begin, end);
+    bytes_without_row_ = row ? 0 : bytes_without_row_ + end - begin;
+    ++line_;
+    const std::size_t next = std::min(end + 1, block.bytes.size());
+    if (bytes_without_row_ > longest_line) {
+        raise<DataError>(
+            "{}:{}: read more than 1 MiB without a row, expected rows of numbers; remove the comments",
+            source_->name(), line_in_file());
+    }
+    // A row that needed care is seldom alone.
+    if (!plain_row_ || end_mark_seen_ || next == block.bytes.size()) return next;
+    const std::size_t before = block.size();
+    const std::size_t taken = quick_->take(block, next, before_.values[time_slot]);
+    note_quick_rows(block, before);
+    return taken;
+}
+
+// True when the rows that were parsed on their own may follow those before. Where not, the careful way finds
+// the place and the words.
+bool CsvReader::continues(const RowBlock& block) const {
+    if (block.size() == 0) return true;
+    if (end_mark_seen_) return false;
+    if (!layout_.chosen.time) return true;
+    ParsedRow first(block.joints.size());
+    static_cast<void>(quick_->parse(std::string_view(block.bytes).substr(0, block.row_end[0]), first));
+    return !(first.values[time_slot] < before_.values[time_slot]);
+}
+
+// What the next line, and messages about it, need to know of rows that were taken at once.
+void CsvReader::note_quick_rows(RowBlock& block, std::size_t before) {
+    const std::size_t count = block.size() - before;
+    if (count == 0) return;
+    if (!layout_.chosen.time && layout_.stated_rate) {
+        for (std::size_t i = 0; i < count; ++i)
+            block.time_s[before + i] = static_cast<double>(rows_ + i) / layout_.stated_rate->value();
+    }
+    rows_ += count;
+    line_ += count;
+    bytes_without_row_ = 0;
+    const std::string_view bytes(block.bytes.data(), block.row_end.back());
+    const std::size_t line_end = bytes.rfind(dialect_.line_end);
+    if (quick_->parse(bytes.substr(line_end == std::string_view::npos ? 0 : line_end + 1), row_))
+        std::swap(before_, row_);
+}
+
+// False for a comment, a blank line and the end mark.
+bool CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
+    const char* const base = block.bytes.data();
+    if (end > begin && base[end - 1] == '\r') --end;
+    const std::string_view line(base + begin, end - begin);
+    plain_row_ = quick_->parse(line, row_);
+    if (!plain_row_) {
+        if (is_blank_line(line) || is_comment_line(line)) return false;
+        if (line == "EOF") {
+            end_mark_seen_ = true;
+            return false;
+        }
+        parse_carefully(line, block, row_);
+    }
+    if (end_mark_seen_)
+        complain(1,
+                 "read a row after the line EOF, expected the end; remove the line EOF or what follows it");
+    append_row(block, row_);
+    const auto place = [base](const char* at) { return static_cast<std::uint32_t>(at - base); };
+    for (std::size_t j = 0; j < block.joints.size(); ++j) {
+        const auto& [torque_begin, torque_end] = before_.torques[j];
+        block.joints[j].torque_begin.push_back(place(torque_begin == nullptr ? line.data() : torque_begin));
+        block.joints[j].torque_end.push_back(place(torque_begin == nullptr ? line.data() : torque_end));
+    }
+    block.row_end.push_back(place(before_.content_end));
+    return true;
+}
+
+void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
+    const double time = row.values[time_slot], before = before_.values[time_slot];
+    if (layout_.chosen.time && time < before) {
+        complain(1,
+                 fmt::format(
+                     "read the time {} after {}, expected time to run forward; sort or split the log, or say "
+                     "--sample-rate if the clock is of no use",
+                     shortest(time), shortest(before)));
+    }
+    if (layout_.chosen.time)
+        block.time_s.push_back(time * factors_[time_slot]);
+    else
+        block.time_s.push_back(layout_.stated_rate ? static_cast<double>(rows_) / layout_.stated_rate->value()
+                                                   : not_a_number);
+    for (std::size_t j = 0; j < block.joints.size(); ++j) {
+        const auto number = [&](RowSlot of_first) {
+            const std::size_t slot = slot_of(of_first, j);
+            return row.values[slot] * factors_[slot];
+        };
+        const JointColumns& columns = j == 0 ? layout_.chosen : layout_.others[j - 1];
+        JointRows& joint = block.joints[j];
+        joint.velocity_deg_s.push_back(columns.velocity ? number(velocity_slot) : not_a_number);
+        joint.torque_nm.push_back(columns.torque ? number(torque_slot) : not_a_number);
+        if (columns.position) joint.position_deg.push_back(number(position_slot));
+    }
+    std::swap(before_, row);
+    ++rows_;
+}
+
+}  // namespace ripplenotch

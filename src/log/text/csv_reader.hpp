@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Rows of a text log, a block at a time, in bounded memory.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "log/columns/decide_layout.hpp"
+#include "log/text/quick_rows.hpp"
+#include "log/text/text_dialect.hpp"
+#include "ripplenotch/log/format.hpp"
+
+namespace ripplenotch {
+
+class CsvReader : public LogReader {
+  public:
+    CsvReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);
+
+    [[nodiscard]] const Layout& layout() const override { return layout_; }
+    [[nodiscard]] std::string_view head() const override { return head_; }
+    /// Of the whole log; 0 where nobody knows.
+    [[nodiscard]] std::uint64_t source_bytes() const { return source_->size(); }
+    bool next(RowBlock& block) override;
+    bool fetch(RowBlock& block) override;
+    void parse(RowBlock& block) const override;
+    void accept(RowBlock& block) override;
+
+    [[nodiscard]] const TextDialect& dialect() const { return dialect_; }
+
+  private:
+    [[nodiscard]] ColumnFacts facts_of(std::string& opening);
+    std::size_t read_on(char* into, std::size_t size);
+    void plan_columns();
+    void note_quick_rows(RowBlock& block, std::size_t before);
+    [[nodiscard]] bool continues(const RowBlock& block) const;
+    std::size_t take_on(RowBlock& block, std::size_t begin);
+    bool take_line(RowBlock& block, std::size_t begin, std::size_t end);
+    void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
+    double read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted, RowBlock& block);
+    void append_row(RowBlock& block, ParsedRow& row);
+    [[nodiscard]] std::size_t line_in_file() const { return source_->number_in_file(line_); }
+    [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
+
+    std::unique_ptr<ByteSource> source_;
+    ReadOptions options_;
+    TextDialect dialect_;
+    Layout layout_;
+    std::string head_;
+    std::string ahead_;               ///< read to decide on the layout, before the first row was asked for
+    std::size_t ahead_at_ = 0;        ///< what of it has been fetched
+    bool source_ended_ = false;       ///< the source has no more bytes
+    std::string carry_;               ///< bytes after the last complete line
+    bool at_end_ = false;             ///< there is nothing left to fetch
+    bool last_line_complete_ = true;  ///< the line being taken has its line end
+    bool plain_row_ = false;          ///< the line taken last was a row that needed no care
+    bool end_mark_seen_ = false;      ///< a line "EOF"
+    std::size_t line_ = 1;            ///< number of the line being read
+    std::size_t rows_ = 0;
+    std::size_t bytes_without_row_ = 0;
+    std::optional<QuickRows> quick_;
+    std::vector<WantedColumn> wanted_;
+    std::vector<double> factors_;  ///< by slot
+    StampRule stamp_;
+    ParsedRow before_, row_;  ///< as in the file; `before_` is the row before
+    CellSplit split_;
+};
+
+}  // namespace ripplenotch

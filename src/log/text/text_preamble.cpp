@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+#include "log/text/text_preamble.hpp"
+
+#include <algorithm>
+
+#include "log/clock/stamp.hpp"
+#include "log/columns/unit_text.hpp"
+#include "log/text/text_header.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t rows_in_a_row = 3;  // so many rows make a table
+
+class Lines {
+  public:
+    Lines(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
+          std::size_t columns)
+        : bytes_(bytes), content_(content), rules_(rules), columns_(columns) {}
+
+    [[nodiscard]] std::vector<std::string> cells(std::size_t line) const {
+        const std::string_view text = content_[line].of(bytes_);
+        CellSplit split;
+        split_cells(text, rules_.delimiter, split);
+        std::vector<std::string> cells;
+        for (const Cell& cell : split.cells) cells.push_back(cell_text(text, cell));
+        return cells;
+    }
+
+    /// As many cells as a row, numbers in most of them, words in few.
+    [[nodiscard]] bool is_row(std::size_t line) const {
+        const std::vector<std::string> texts = cells(line);
+        const auto numbers = std::count_if(texts.begin(), texts.end(), [this](const std::string& text) {
+            return parse_number(text, rules_.decimal_mark).has_value() || clock_text(text).has_value();
+        });
+        return texts.size() == columns_ && 2 * static_cast<std::size_t>(numbers) > columns_;
+    }
+
+    [[nodiscard]] std::size_t first_row() const {
+        std::size_t run = 0;
+        for (std::size_t line = 0; line < content_.size(); ++line) {
+            run = is_row(line) ? run + 1 : 0;
+            if (run == rows_in_a_row || (run > 0 && line + 1 == content_.size())) return line + 1 - run;
+        }
+        return content_.size();
+    }
+
+    /// Words over the columns; a writer may end one of both with a delimiter, LabVIEW adds a comment.
+    [[nodiscard]] bool may_be_names(std::size_t line) const {
+        const std::vector<std::string> texts = cells(line);
+        const auto words = std::count_if(texts.begin(), texts.end(),
+                                         [](const std::string& text) { return has_letters(text); });
+        const auto numbers = std::count_if(texts.begin(), texts.end(), [this](const std::string& text) {
+            return parse_number(text, rules_.decimal_mark).has_value();
+        });
+        return texts.size() + 1 >= columns_ && texts.size() <= columns_ + 1 && words > 0 && numbers == 0 &&
+               2 * static_cast<std::size_t>(words) >= texts.size();
+    }
+
+    [[nodiscard]] bool is_units(std::size_t line) const {
+        const std::vector<std::string> texts = cells(line);
+        return std::any_of(texts.begin(), texts.end(),
+                           [](const std::string& text) { return usual_unit(text, Role::other).has_value(); });
+    }
+
+  private:
+    std::string_view bytes_;
+    const std::vector<TextLine>& content_;
+    const CellRules& rules_;
+    std::size_t columns_;
+};
+
+/// "Name A Name B" over pairs of time and value: every other cell says the same.
+bool speaks_of_channels(const std::vector<std::string>& cells, std::string_view key) {
+    if (cells.size() < 4) return false;
+    for (std::size_t i = 0; i + 1 < cells.size(); i += 2) {
+        if (cells[i] != key) return false;
+    }
+    return true;
+}
+
+// TwinCAT Scope: a line of "Name", channel, "Name", channel, ...; times are milliseconds since the start, or
+// FILETIME.
+void read_channels(const Lines& lines, std::size_t columns, Preamble& found) {
+    for (std::size_t line = 0; line < found.first_row; ++line) {
+        const std::vector<std::string> cells = lines.cells(line);
+        if (speaks_of_channels(cells, "Name")) {
+            const auto first = parse_number(lines.cells(found.first_row).front());
+            found.names.assign(columns, "");
+            for (std::size_t c = 0; c < std::min(columns, cells.size()); ++c) {
+                if (c % 2 == 1) found.names[c] = cells[c];
+            }
+            found.names[0] = first && *first > 1e16 ? "time [100ns]" : "time [ms]";
+            found.names_line = line;
+        }
+        if (speaks_of_channels(cells, "Unit")) {
+            found.units.assign(columns, "");
+            for (std::size_t c = 1; c < std::min(columns, cells.size()); c += 2) {
+                if (usual_unit(cells[c], Role::other)) found.units[c] = cells[c];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
+                       std::size_t columns) {
+    const Lines lines(bytes, content, rules, columns);
+    Preamble found;
+    if (lines.cells(0).size() == columns) return found;
+    found.first_row = lines.first_row();
+    const bool names_then_rows = lines.may_be_names(0) && found.first_row <= 2;
+    if (found.first_row == 0 || found.first_row == content.size() || names_then_rows) return {};
+    read_channels(lines, columns, found);
+    found.lines = found.first_row;
+    if (!found.names.empty()) return found;
+    const std::size_t above = found.first_row - 1;
+    if (above > 0 && lines.is_units(above) && lines.may_be_names(above - 1))
+        found.lines = above - 1;
+    else if (lines.may_be_names(above))
+        found.lines = above;
+    return found;
+}
+
+}  // namespace ripplenotch

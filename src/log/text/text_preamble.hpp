@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What some programs write above a table: the heads of LabVIEW measurement files and TwinCAT Scope exports,
+// and any other lines that are no row of it.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "log/text/text_cells.hpp"
+#include "log/text/text_lines.hpp"
+
+namespace ripplenotch {
+
+struct Preamble {
+    std::size_t lines = 0;  ///< of content, before the names or, without names, the first row
+    std::size_t names_line = 0, first_row = 0;
+    /// From a head that says them channel by channel; empty where a line over the rows holds them.
+    std::vector<std::string> names, units;
+};
+
+/// `content` with rows of `columns` cells somewhere below. None where the first line may be names or a row.
+[[nodiscard]] Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& content,
+                                     const CellRules& rules, std::size_t columns);
+
+}  // namespace ripplenotch
