@@ -11,6 +11,7 @@
 #include "log/log_support.hpp"
 #include "support/catch.hpp"
 #include "support/places.hpp"
+#include "support/skipped.hpp"
 
 using namespace ripplenotch;
 
@@ -255,7 +256,7 @@ TEST_CASE("real: a streamed spectrum is that of the log in memory") {
     const std::string folder = logs_folder();
     for (const std::string name : {"gpl3/panda_gaz_j1.csv", "neura_lara8_j3.csv"}) {
         if (!std::filesystem::exists(folder + "/" + name)) {
-            WARN("skipped: " << name << " is not in the folder of real logs");
+            test::skipped(name + " is not in the folder of real logs");
             continue;
         }
         check_same(folder + "/" + name, {}, 1.0);

@@ -109,8 +109,10 @@ class Laws(Case):
             with self.subTest(name):
                 self.one_account(log)
 
-    @unittest.skipUnless(LOGS.is_dir(), "the folder of real logs is not here")
-    def test_all_commands_say_the_same_of_real_logs(self):
+
+@unittest.skipUnless(LOGS.is_dir(), "the folder of real logs is not here")
+class RealLogs(Case):
+    def test_all_commands_say_the_same(self):
         for name, joint in (("gpl3/panda_gaz_j1.csv", None), ("kuka_kr300_trajA_all.csv", "j4"), ("neura_lara8_j3.csv", None),
                             ("ur10_unisa_exciting_all.csv", "shoulder_pan_joint")):
             if not (LOGS / name).is_file():

@@ -17,6 +17,7 @@
 #include "ripplenotch/log/log.hpp"
 #include "support/catch.hpp"
 #include "support/places.hpp"
+#include "support/skipped.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;
@@ -109,7 +110,7 @@ std::vector<double> result(const std::string& text, const Log& log, Hertz rate) 
 void check_log(const std::string& name, const std::string& orders, const std::vector<double>& lines) {
     const std::filesystem::path path = std::filesystem::path(logs_folder()) / "gpl3" / name;
     if (!std::filesystem::exists(path)) {
-        WARN("skipped: no log " << name << " in the folder of real logs");
+        test::skipped("no log " + name + " in the folder of real logs");
         return;
     }
     const Log log = read_log(path.string(), {});

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+"""Tests of a Python file, class by class, so that each is one ctest that fails, passes or is skipped by itself.
+
+usage: cases.py list FILE           names of the classes that have tests, a line each
+       cases.py run FILE CLASS      exit code 77 where all that was to run was skipped
+"""
+
+import ast
+import importlib.util
+import pathlib
+import sys
+import unittest
+
+SKIPPED = 77
+
+
+def classes_with_tests(path):
+    for node in ast.parse(path.read_text()).body:
+        if isinstance(node, ast.ClassDef) and any(
+                isinstance(item, ast.FunctionDef) and item.name.startswith("test_") for item in node.body):
+            yield node.name
+
+
+def run(path, name):
+    sys.path.insert(0, str(path.parent))
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    spec.loader.exec_module(module)
+    tests = unittest.defaultTestLoader.loadTestsFromTestCase(getattr(module, name))
+    result = unittest.TextTestRunner(verbosity=2).run(tests)
+    if not result.wasSuccessful() or result.testsRun == 0:
+        return 1
+    return SKIPPED if len(result.skipped) == result.testsRun else 0
+
+
+if __name__ == "__main__":
+    file = pathlib.Path(sys.argv[2]).resolve()
+    if sys.argv[1] == "list":
+        print("\n".join(classes_with_tests(file)))
+    else:
+        sys.exit(run(file, sys.argv[3]))
