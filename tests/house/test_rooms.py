@@ -4,6 +4,7 @@
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import unittest
 
@@ -124,6 +125,20 @@ class Repository(unittest.TestCase):
             text = path.read_bytes()
             for forbidden in (b"/ho" b"me/", b"/ro" b"ot/", b"/wo" b"rk/"):
                 self.assertNotIn(forbidden, text, f"{name} holds an absolute path")
+
+
+def clang_format_14():
+    done = subprocess.run(["clang-format", "--version"], capture_output=True, text=True) if shutil.which("clang-format") else None
+    return done is not None and " version 14." in done.stdout
+
+
+@unittest.skipUnless(clang_format_14(), "no clang-format 14 here; other versions break lines elsewhere")
+class Format(unittest.TestCase):
+    def test_every_file_is_as_clang_format_leaves_it(self):
+        files = [str(path) for top in ("include", "src", "tests", "cmake") for path in sorted((SOURCE / top).rglob("*.[ch]pp"))]
+        self.assertGreater(len(files), 600)
+        done = subprocess.run(["clang-format", "--dry-run", "-Werror", *files], cwd=SOURCE, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 
 if __name__ == "__main__":
