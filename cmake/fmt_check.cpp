@@ -12,8 +12,8 @@ int main(int argc, char** argv) {
     const double number = argc;
     const auto whole = static_cast<std::size_t>(argc);
     fmt::memory_buffer buffer;
-    fmt::format_to(std::back_inserter(buffer), "{:>{}} {:.6g} {} {:.3e} {:.2f}", words.front(), argc, number, number,
-                   number, number);
+    fmt::format_to(std::back_inserter(buffer), "{:>{}} {:.6g} {} {:.3e} {:.2f}", words.front(), argc, number,
+                   number, number, number);
     fmt::print(stderr, "{}: {}, {:+d} {:013x} {}\n", std::string_view(buffer.data(), buffer.size()),
                fmt::join(words, ", "), argc, whole, argc > 0);
     fmt::print("{} {} {:.9g}\n", 'c', static_cast<float>(number), static_cast<float>(number));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What fmt's shared library defines, from the header that it is made of, for a program linked without shared
-// libraries. Templates are instantiated for what our own files leave to the library. Another version of fmt may
-// leave more to it: cmake/static_program.cmake links cmake/fmt_check.cpp with this file, and does without it then.
+// libraries. Templates are instantiated for what our own files leave to the library. Another version of fmt
+// may leave more to it: cmake/static_program.cmake links cmake/fmt_check.cpp with this file, and does without
+// it then.
 #include <fmt/format-inl.h>
 
 namespace fmt::detail {
