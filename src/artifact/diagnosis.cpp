@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "artifact/gear_json.hpp"
 #include "artifact/json.hpp"
 #include "artifact/model_json.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -127,10 +128,12 @@ Json baseline_json(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::string write_diagnosis(const Diagnosis& diagnosis, const Provenance& provenance) {
+std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
+                            const Provenance& provenance) {
     Json json = document_head("diagnosis", provenance);
     json["verdict"] = verdict_name(diagnosis.verdict);
     if (!diagnosis.doubt.empty()) json["doubt"] = diagnosis.doubt;
+    json["gear"] = gear_to_json(gear);
     json["named"] = diagnosis.named;
     json["rounds"] = Json::array();
     for (const Finding& finding : diagnosis.rounds) json["rounds"].push_back(round_json(finding));

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "artifact/gear_json.hpp"
 #include "artifact/json.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -22,12 +23,14 @@ Json point_to_json(const TradePoint& point) {
 
 }  // namespace
 
-std::string frontier_to_json(const Frontier& frontier, const Provenance& provenance) {
+std::string frontier_to_json(const Frontier& frontier, const GearAccount& gear,
+                             const Provenance& provenance) {
     const TableSpec& spec = frontier.spec;
     const DesignGoal& goal = frontier.goal;
     Json json = document_head("frontier", provenance);
     json["sample_rate_hz"] = spec.sample_rate.value();
     json["gear_ratio"] = spec.gear_ratio.value();
+    json["gear"] = gear_to_json(gear);
     json["gear_ratio_error_percent"] = 100.0 * spec.ratio_error;
     json["orders"] = Json::array();
     for (const Order order : spec.orders) json["orders"].push_back(order.value());

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "artifact/gear_json.hpp"
 #include "artifact/json.hpp"
 
 namespace ripplenotch {
@@ -99,6 +100,7 @@ void add_fields(Json& json, const Identification& identification) {
     json["sample_rate_hz"] = identification.sample_rate.value();
     json["evidence"] = evidence_name(identification.evidence);
     json["gear_ratio"] = ratio_to_json(identification.gear_ratio);
+    json["gear"] = gear_to_json(found_gear(identification));
     json["lines"] = Json::array();
     for (const Line& line : identification.lines) json["lines"].push_back(line_to_json(line));
     add_besides(json, identification);

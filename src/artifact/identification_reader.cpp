@@ -176,7 +176,7 @@ void besides_from_json(Fields& fields, const std::string& source, Identification
 Identification identification_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "joint");
     Fields fields(json, source, "");
-    fields.ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings"});
+    fields.ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings", "gear"});
     Identification found;
     found.verdict = fields.text("verdict");
     // Older files tell the finding in words alone.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/artifact/simulation.hpp"
 
+#include "artifact/gear_json.hpp"
 #include "artifact/json.hpp"
 #include "artifact/model_json.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -25,6 +26,7 @@ std::string write_simulation(const Simulation& simulation, const Provenance& pro
     json["velocity_noise_rms_deg_s"] = simulation.velocity_noise_rms.value();
     json["torque_nm"] = {{"min", simulation.torque_min_nm}, {"max", simulation.torque_max_nm}};
     json["speed_deg_s"] = {{"min", simulation.speed_min_deg_s}, {"max", simulation.speed_max_deg_s}};
+    json["gear"] = gear_to_json(simulation.gear);
     json["model"] = Json::object();
     put_model(json["model"], simulation.model);
     json["output"] = {{"name", simulation.output}, {"sha256", simulation.output_sha256}};

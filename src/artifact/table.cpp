@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "artifact/gear_json.hpp"
 #include "artifact/json.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -180,6 +181,7 @@ std::string table_to_json(const CandidateTable& table, const Provenance& provena
     json["gear_ratio"] = spec.gear_ratio.value();
     json["orders"] = Json::array();
     for (const Order order : spec.orders) json["orders"].push_back(order.value());
+    if (note.gear) json["gear"] = gear_to_json(note.gear);
     if (spec.ratio_error > 0.0) json["gear_ratio_error_percent"] = 100.0 * spec.ratio_error;
     if (!spec.amplitude_nm.empty()) json["amplitude_nm"] = spec.amplitude_nm;
     if (!note.reason.empty()) json["designed_for"] = note_to_json(note);
@@ -194,8 +196,8 @@ std::string table_to_json(const CandidateTable& table, const Provenance& provena
 CandidateTable table_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "table");
     Fields fields(json, source, "");
-    fields.ignore(
-        {"schema", "tool", "version", "command", "inputs", "recording", "recordings", "designed_for"});
+    fields.ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings", "gear",
+                   "designed_for"});
     TableSpec spec;
     spec.sample_rate = Hertz(fields.number("sample_rate_hz"));
     spec.gear_ratio = GearRatio(fields.number("gear_ratio"));

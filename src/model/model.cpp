@@ -3,6 +3,9 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/spec.hpp"
@@ -47,6 +50,17 @@ std::vector<double> values_of(const Term& term) {
                                                                 : term.values[p].value());
     }
     return values;
+}
+
+GearAccount gear_of(const Model& model, std::string source) {
+    std::vector<Order> orders;
+    for (const Term& term : model.terms) {
+        const auto place = term.effect->ripple_order;
+        if (place && term.values[*place]) orders.emplace_back(*term.values[*place]);
+    }
+    std::sort(orders.begin(), orders.end());
+    orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
+    return {model.gear_ratio, std::move(orders), {}, {}, std::move(source)};
 }
 
 std::vector<std::string> missing_values(const Model& model) {

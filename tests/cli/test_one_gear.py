@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """One gear for every command: the same sources give the same ratio and orders, and the same refusals in the same words."""
 
+import csv
 import json
 import unittest
 
 from test_gear_methods import DATA, MOVE, Case, joint
 
-PAPER_90 = DATA / "paper_90deg_s.csv"
-
-
+PAPER_60, PAPER_90 = DATA / "paper_60deg_s.csv", DATA / "paper_90deg_s.csv"
+MODEL = DATA / "paper_model.json"
 
 
 class Commands(Case):
@@ -32,11 +32,7 @@ class Commands(Case):
 
     def designed(self, words):
         done = self.run_tool("design", *words, "--sample-rate", "1kHz", "--speed", "18:90:18", "--json")
-
-        def gear():
-            table = json.loads(done.stdout)
-            return {"ratio": table["gear_ratio"], "orders": table["orders"]}
-        return done, gear
+        return done, lambda: json.loads(done.stdout)["gear"]
 
     def every(self, words):
         """Each command with these words: its name, the run, and what it says the gear is."""
@@ -74,8 +70,8 @@ class SameSources(Commands):
                     self.assertEqual(done.returncode, 0, done.stderr)
                     said = gear()
                     self.assertEqual((said["ratio"], said["orders"]), (ratio, orders))
-                    sources.add(said.get("source"))
-            self.assertEqual(len(sources - {None}), 1, f"{words}: {sources}")
+                    sources.add(said["source"])
+            self.assertEqual(len(sources), 1, f"{words}: {sources}")
 
     def test_the_source_of_each_half_is_named(self):
         for words, source in (
@@ -179,6 +175,103 @@ class OtherGears(Commands):
         (self.folder / "near.json").write_text(joint(ratio=100.1, orders=(1.0, 3.0)))
         _, gear = self.filtered_by("switching,table=table.json", ["--joint-file", "near.json"])
         self.assertEqual((gear()["ratio"], gear()["orders"]), (100.1, [1, 3]))
+
+
+class InEveryDocument(Commands):
+    """Each command that knows a gear says it in its JSON as `gear`: ratio, orders, source."""
+
+    def said(self, *words):
+        return json.loads(self.good(*words).stdout)["gear"]
+
+    def test_the_block_has_the_same_keys_everywhere(self):
+        self.good("simulate", MOVE, "--model", MODEL, "-o", "copy.csv", "--json")
+        gears = {name: gear() for name, _, gear in self.every(["--gear-ratio", 100])}
+        gears["identify"] = self.said("identify", PAPER_90, PAPER_60, "--json")
+        gears["simulate"] = self.said("simulate", MOVE, "--model", MODEL, "-o", "copy.csv", "--force", "--json")
+        gears["diagnose"] = self.said("diagnose", MOVE, "--model", MODEL, "--json")
+        gears["design --frontier"] = self.said("design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90",
+                                               "--frontier", "--json")
+        for name, gear in gears.items():
+            with self.subTest(command=name):
+                self.assertEqual(list(gear), ["ratio", "orders", "source"])
+                self.assertAlmostEqual(gear["ratio"], 100, delta=0.001)
+                self.assertEqual(gear["orders"], [1, 2])
+
+    def test_what_identify_found_is_what_the_next_command_takes(self):
+        self.good("identify", PAPER_90, PAPER_60, "-o", "found.json")
+        found = json.loads((self.folder / "found.json").read_text())["gear"]
+        self.assertEqual(found.pop("source"), "found in the log")
+        for name, done, gear in self.every(["--joint-file", "found.json"]):
+            with self.subTest(command=name):
+                self.assertEqual(done.returncode, 0, done.stderr)
+                taken = gear()
+                self.assertEqual(taken.pop("source"), "found.json")
+                self.assertEqual(taken, found)
+
+    def test_nothing_found_is_no_gear(self):
+        self.good("simulate", "--gear-ratio", 100, "--motion", "constant,speed=60deg/s,duration=3s", "--sample-rate", "1kHz",
+                  "--noise", "0.05Nm", "-o", "flat.csv")
+        self.assertIsNone(self.said("identify", "flat.csv", "--json"))
+
+    def test_a_model_is_its_own_source(self):
+        words = ["simulate", "--motion", "constant,speed=60deg/s,duration=1s", "--sample-rate", "1kHz", "-o", "out.csv",
+                 "--force", "--json"]
+        for more, gear in ((["--gear-ratio", 50], {"ratio": 50, "orders": [], "source": "--gear-ratio"}),
+                           (["--gear-ratio", 50, "--ripple", "2:0.1Nm"],
+                            {"ratio": 50, "orders": [2], "source": "--gear-ratio, --ripple"}),
+                           (["--model", MODEL], {"ratio": 100, "orders": [1, 2], "source": str(MODEL)})):
+            self.assertEqual(self.said(*words, *more), gear)
+
+
+class BeforeTheGear(Commands):
+    """A log of the motor's motion is read by the ratio, whoever states it."""
+
+    def setUp(self):
+        super().setUp()
+        rows = list(csv.DictReader(PAPER_90.read_text().splitlines()))
+        # No ratio of 500 is told by a position that turns so much more; a motor's velocity alone tells none.
+        for name, ratio, head, column in (("speed", 100, "time_s,motor_velocity_rpm,torque_nm", "velocity_deg_s"),
+                                          ("turns", 500, "time_s,velocity_deg_s,torque_nm,position_deg", "position_deg")):
+            with (self.folder / f"{name}.csv").open("w") as log:
+                log.write(head + "\n")
+                for row in rows:
+                    cells = [row["time_s"], row["velocity_deg_s"], row["torque_nm"], row["position_deg"]]
+                    cells[1 if name == "speed" else 3] = f"{float(row[column]) * ratio / (6 if name == 'speed' else 1):.9g}"
+                    log.write(",".join(cells[:head.count(",") + 1]) + "\n")
+        for ratio in (100, 500):
+            (self.folder / f"joint_{ratio}.json").write_text(joint().replace('"value": 100.0', f'"value": {ratio}.0'))
+            (self.folder / f"model_{ratio}.json").write_text(MODEL.read_text().replace(": 100,", f": {ratio},"))
+            self.good("design", "--gear-ratio", ratio, "--sample-rate", "1kHz", "--speed", "18:90:18", "-o", f"table_{ratio}.json")
+
+    def asked(self, log, ratio):
+        """Each command with each source of the ratio."""
+        out = ["-o", "out.csv", "--json", "--force"]
+        for source in (["--gear-ratio", ratio], ["--joint-file", f"joint_{ratio}.json"]):
+            yield ["track", log, *source, "--json"]
+            yield ["spectrum", log, "--map", "campbell", *source, "--json"]
+            yield ["compare", log, "--method", "lowpass,cutoff=5Hz", *source, "--json"]
+            yield ["filter", log, "--method", "lowpass,cutoff=5Hz", *source, *out]
+        for method in (f"switching,table=table_{ratio}.json", f"tracking,gear-ratio={ratio},orders=1"):
+            yield ["filter", log, "--method", method, *out]
+            yield ["compare", log, "--method", method, "--json"]
+        yield ["filter", log, "--method", f"subtract,joint=joint_{ratio}.json", *out]
+        yield ["simulate", log, "--gear-ratio", ratio, *out]
+        yield ["simulate", log, "--model", f"model_{ratio}.json", *out]
+        yield ["diagnose", log, "--model", f"model_{ratio}.json", "--json"]
+
+    def recordings(self, name, ratio):
+        for words in self.asked(f"{name}.csv", ratio):
+            with self.subTest(words=words):
+                yield json.loads(self.good(*words, "-q").stdout)["recording"]
+
+    def test_a_motors_velocity_is_divided_by_the_ratio_of_any_source(self):
+        for recording in self.recordings("speed", 100):
+            self.assertEqual([one["reason"] for one in recording["inferences"]], ["named as the motor's; divided by the ratio 100"])
+
+    def test_a_motors_position_is_known_by_the_ratio_of_any_source(self):
+        for recording in self.recordings("turns", 500):
+            self.assertEqual([recording["angle"]["source"], recording["assumptions"]], ["position", []])
+            self.assertIn("motor side", " ".join(one["assumed"] for one in recording["inferences"]))
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ripplenotch/analysis/verdict.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/core/units.hpp"
 
@@ -113,6 +114,14 @@ struct Identification {
     std::vector<std::string> notes;  ///< what was looked at and why it was not enough, one sentence each
     bool conclusive = false;         ///< lines found and a ratio, or surely nothing, and no doubt
 };
+
+/// Cycles per motor turn of a line that follows the motor; empty for others. A line that was seen at one
+/// speed has an order where identify gave it one, because the gear ratio rests on it.
+[[nodiscard]] std::optional<double> motor_order(const Line& line);
+
+/// The gear that was found: the ratio and the orders of the lines that follow the motor. Empty where nothing
+/// supports a ratio.
+[[nodiscard]] std::optional<GearAccount> found_gear(const Identification& found);
 
 /// The verdict in words, doubts first.
 [[nodiscard]] std::string verdict_sentence(const Identification& found);

@@ -5,11 +5,13 @@
 #include <string>
 
 #include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
 
-/// Schema ripplenotch/diagnosis/1.
-[[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const Provenance& provenance);
+/// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given.
+[[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
+                                          const Provenance& provenance);
 
 }  // namespace ripplenotch

@@ -5,12 +5,14 @@
 #include <string>
 
 #include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/design/frontier.hpp"
 
 namespace ripplenotch {
 
 /// The whole text, schema ripplenotch/frontier/1; same frontier, same bytes.
-[[nodiscard]] std::string frontier_to_json(const Frontier& frontier, const Provenance& provenance);
+[[nodiscard]] std::string frontier_to_json(const Frontier& frontier, const GearAccount& gear,
+                                           const Provenance& provenance);
 
 /// bands, attenuation_db, delay_ms, q_least, q_largest, settle_ms, overshoot_percent, recommended (0 or 1).
 [[nodiscard]] std::string frontier_to_csv(const Frontier& frontier);

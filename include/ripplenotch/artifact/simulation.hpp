@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/model/model.hpp"
 
@@ -23,6 +24,7 @@ struct Followed {
 
 struct Simulation {
     Model model;
+    GearAccount gear;                  ///< of the model
     std::vector<std::string> motions;  ///< specifications, in sequence
     Hertz sample_rate;
     std::uint64_t seed = 0;

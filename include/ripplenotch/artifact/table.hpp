@@ -7,16 +7,19 @@
 #include <string_view>
 
 #include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
 
 namespace ripplenotch {
 
-/// What a table was asked to hold; empty for one that was spelled out. For readers: no command depends on it.
+/// What a table was asked to hold, empty for one that was spelled out, and whose ripple it is for. For
+/// readers: no command depends on it.
 struct DesignNote {
     std::optional<double> min_attenuation_db;
     std::optional<Seconds> max_delay;
     std::string reason;
     std::optional<DegPerSec> slowest;  ///< below it no notch that a design may take is within max_delay
+    std::optional<GearAccount> gear;   ///< whose ripple the bands are for, and who says so
 };
 
 /// The whole text of table.json; same table, same bytes.

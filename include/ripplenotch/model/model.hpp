@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/model/effect.hpp"
 
 namespace ripplenotch {
@@ -49,6 +50,10 @@ inline constexpr GearRatio largest_gear_ratio{1e5};
 /// the effects that are chance. Deterministic to the last bit. Throws UsageError that lists missing_values()
 /// when there are any.
 [[nodiscard]] std::vector<double> predict_nm(const Model& model, const Motion& motion);
+
+/// The gear that the model has: its ratio, and the orders of its ripple terms, each once, lowest first.
+/// `source` is who gave the model.
+[[nodiscard]] GearAccount gear_of(const Model& model, std::string source);
 
 /// Whether effects that are chance (spikes, dropout) act.
 enum class Chance { left_out, acts };

@@ -166,9 +166,10 @@ void add_match_on_log(Comparison& comparison, const Request& request, const Comp
 }
 
 // The torque that a perfect sensor would have given, row by row: another log of the same motion.
-std::vector<double> true_torque(const Request& request, std::size_t rows, Provenance& provenance) {
+std::vector<double> true_torque(const Request& request, const ReadOptions& read, std::size_t rows,
+                                Provenance& provenance) {
     if (request.truth.empty()) return {};
-    Log truth = read_log(request.truth, request.log_options.resolve());
+    Log truth = read_log(request.truth, read);
     provenance.inputs.push_back(input_record(request.truth));
     provenance.inputs.back().rows = truth.trace.size();
     if (truth.trace.size() != rows) {
@@ -181,7 +182,8 @@ std::vector<double> true_torque(const Request& request, std::size_t rows, Proven
 Comparison compare_on_log(const Request& request, const Field& field, Provenance& provenance) {
     if (request.log_options.joint == "all")
         raise<UsageError>("--joint all: compare looks at one joint; name it");
-    const Log log = read_log(request.log, request.log_options.resolve());
+    const ReadOptions read = read_options(request.log_options, field.gear);
+    const Log log = read_log(request.log, read);
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.push_back(input_record(request.log));
@@ -189,7 +191,7 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
     provenance.recordings.push_back({log.recording});
     ComparedLog compared{log.trace.view()};
     if (!request.truth.empty() && !field.gear) raise_no_gear("--truth");
-    const std::vector<double> truth = true_torque(request, log.trace.size(), provenance);
+    const std::vector<double> truth = true_torque(request, read, log.trace.size(), provenance);
     compared.truth_nm = truth;
     // The filters are those that the filter command would run.
     compared.trace.sample_rate = log.recording.clock.nominal_rate;
@@ -265,7 +267,6 @@ std::function<ExitCode()> attach(Options& options) {
     attach_costs(options, request->costs);
     attach_plot(options, request->plot);
     attach_log(options, request->log_options);
-    options.after_parse([request] { request->log_options.gear_ratio = request->gear.ratio; });
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };
 }

@@ -86,14 +86,18 @@ struct Drawn {
 
 // By what the table has to hold, or as it was spelled out.
 Drawn draw(const DesignRequest& request, const TableSpec& spec, const GearChoice& gear) {
+    DesignNote note;
+    note.gear = gear.of();
     if (!request.has_goal()) {
         if (request.max_bands)
             raise<UsageError>("--max-bands needs something to hold: --min-attenuation or --max-delay");
-        return {CandidateTable::design(spec), {}};
+        return {CandidateTable::design(spec), std::move(note)};
     }
     const DesignGoal goal = design_goal(request, spec, gear);
     DesignChoice choice = design_for(spec, goal);
-    DesignNote note{goal.min_attenuation_db, goal.max_delay, choice.reason, std::nullopt};
+    note.min_attenuation_db = goal.min_attenuation_db;
+    note.max_delay = goal.max_delay;
+    note.reason = choice.reason;
     if (goal.max_delay) note.slowest = slowest_within(spec, *goal.max_delay);
     return {std::move(choice.table), std::move(note)};
 }
@@ -101,7 +105,7 @@ Drawn draw(const DesignRequest& request, const TableSpec& spec, const GearChoice
 ExitCode print_frontier(const DesignRequest& request, const std::string& form, const TableSpec& spec,
                         const GearChoice& gear, const Provenance& provenance) {
     const Frontier frontier = design_frontier(spec, design_goal(request, spec, gear));
-    const std::string text = form == "json"  ? frontier_to_json(frontier, provenance)
+    const std::string text = form == "json"  ? frontier_to_json(frontier, gear.of().value(), provenance)
                              : form == "csv" ? frontier_to_csv(frontier)
                                              : frontier_to_text(frontier);
     write_all(request.common.output, text, request.common.overwrite());

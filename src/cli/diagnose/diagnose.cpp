@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
+#include "cli/gear/gear_choice.hpp"
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
@@ -46,9 +47,7 @@ void check(const Request& request) {
 }
 
 Log read(const Request& request, const Model& model, const std::string& path, Provenance& provenance) {
-    ReadOptions options = request.log.resolve();
-    options.gear_ratio = model.gear_ratio.value();
-    Log log = read_log(path, options);
+    Log log = read_log(path, read_options(request.log, gear_of(model, "")));
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.recordings.push_back({log.recording});
@@ -86,6 +85,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
     const std::string source = request.model == "-" ? "standard input" : request.model;
     const Model model = read_model(read_all(request.model), source);
     if (request.model != "-") provenance.inputs.push_back(input_record(request.model));
+    const GearAccount gear = gear_of(model, source);
+    say(request.common, gear_in_words(gear));
     const bool keep = request.common.output != "-";
     const Log log = read(request, model, request.path, provenance);
     const Diagnosis diagnosis = diagnosed(request, model, log, provenance);
@@ -94,7 +95,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
                   request.common.overwrite());
         say(request.common, fmt::format("the improved model is in {}", request.common.output));
     }
-    write_all("-", request.common.json ? write_diagnosis(diagnosis, provenance) : diagnosis_story(diagnosis),
+    write_all("-",
+              request.common.json ? write_diagnosis(diagnosis, gear, provenance) : diagnosis_story(diagnosis),
               ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, provenance,
               [&] { return diagnosis_figure(request.path, diagnosis, log.trace.view(), request.smoothing); });

@@ -148,9 +148,8 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
              const std::string& command_line) {
     std::optional<Spool> spool;
     if (methods.learns()) spool.emplace(job.log);
-    LogStream stream(
-        spool ? open_log(spool->open(), request.read_options()) : open_log(job.log, request.read_options()),
-        request.gap_steps);
+    const ReadOptions read = request.read_options(methods);
+    LogStream stream(spool ? open_log(spool->open(), read) : open_log(job.log, read), request.gap_steps);
     say_layout(request.common, stream.reader().layout());
     std::vector<JointWork> works = start_works(request, job, stream, methods, spool);
     std::unique_ptr<LogWriter> writer;

@@ -76,8 +76,9 @@ JointWork start_work(const FilterRequest& request, const FilterJob& job, const L
 }
 
 // The filters of a method that looks at the whole log first, from a pass of its own.
-void learn(const FilterRequest& request, const Spool& spool, std::vector<JointWork>& works) {
-    LogStream stream(open_log(spool.open(), request.read_options()), request.gap_steps);
+void learn(const FilterRequest& request, const JointMethods& methods, const Spool& spool,
+           std::vector<JointWork>& works) {
+    LogStream stream(open_log(spool.open(), request.read_options(methods)), request.gap_steps);
     std::vector<std::unique_ptr<Learner>> learners;
     std::vector<JointRun> runs;
     for (const JointWork& work : works) {
@@ -101,9 +102,9 @@ void start_filter(const FilterRequest& request, JointWork& work) {
 
 }  // namespace
 
-ReadOptions FilterRequest::read_options() const {
-    ReadOptions options = log.resolve();
-    options.gear_ratio = gear.ratio;
+ReadOptions FilterRequest::read_options(const JointMethods& methods) const {
+    ReadOptions options = ripplenotch::read_options(log, methods.common_gear());
+    if (!options.gear_ratio) options.gear_ratio = gear.ratio;
     options.every_joint = every_joint();
     if (options.every_joint) options.joint.reset();
     return options;
@@ -150,7 +151,7 @@ std::vector<JointWork> start_works(const FilterRequest& request, const FilterJob
     std::vector<JointWork> works;
     for (const JointColumns& joint : stream.reader().layout().all_chosen())
         works.push_back(start_work(request, job, stream, joint.joint, methods));
-    if (spool) learn(request, *spool, works);
+    if (spool) learn(request, methods, *spool, works);
     for (JointWork& work : works) {
         start_filter(request, work);
         // Outputs are opened before the work, so that a name that is taken costs nobody an hour.

@@ -33,7 +33,8 @@ struct FilterRequest {
     bool append = false, exact = false, in_place = false;
 
     [[nodiscard]] bool every_joint() const { return log.joint == "all"; }
-    [[nodiscard]] ReadOptions read_options() const;
+    /// Beside the gear of the methods, where they have one in common.
+    [[nodiscard]] ReadOptions read_options(const JointMethods& methods) const;
 };
 
 /// Where one log comes from and what is made of it.

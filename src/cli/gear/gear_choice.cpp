@@ -146,6 +146,12 @@ void raise_no_gear(std::string_view who) {
         "{} needs to know the gear: give --gear-ratio, for example 100, or --joint-file joint.json", who);
 }
 
+ReadOptions read_options(const LogOptions& log, const std::optional<GearAccount>& gear) {
+    ReadOptions read = log.resolve();
+    if (gear) read.gear_ratio = gear->ratio.value();
+    return read;
+}
+
 std::string gear_in_words(const GearAccount& gear) {
     std::string orders;
     for (const Order order : gear.orders)

@@ -68,6 +68,10 @@ class GearChoice {
 /// Throws the one UsageError for whoever needs the gear and is not told it: "--orders", "method tracking".
 [[noreturn]] void raise_no_gear(std::string_view who);
 
+/// How a log is read beside this gear: motion that is measured before the gear is told by its ratio, and
+/// divided by it. Throws what LogOptions::resolve throws.
+[[nodiscard]] ReadOptions read_options(const LogOptions& log, const std::optional<GearAccount>& gear);
+
 /// "gear ratio 100, orders 1, 2 (joint.json)", for -v.
 [[nodiscard]] std::string gear_in_words(const GearAccount& gear);
 

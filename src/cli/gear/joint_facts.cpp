@@ -20,8 +20,9 @@ constexpr double whole_order_share = 0.005;
 // file's a line keeps its frequency, so its order follows from what was measured per output turn.
 std::optional<double> order_of(const Line& line, const Identification& found,
                                std::optional<GearRatio> given) {
-    if (line.kind != LineKind::order && !(line.kind == LineKind::unknown && line.order)) return std::nullopt;
-    if (!given || (found.gear_ratio.value == given->value() && line.order)) return line.order;
+    const auto order_found = motor_order(line);
+    if (line.kind != LineKind::order && !order_found) return std::nullopt;
+    if (!given || (found.gear_ratio.value == given->value() && order_found)) return order_found;
     if (!line.order_output) return std::nullopt;
     const double order = *line.order_output / given->value();
     const double whole = std::round(2.0 * order) / 2.0;

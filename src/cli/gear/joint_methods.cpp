@@ -47,6 +47,10 @@ std::shared_ptr<const Contender> JointMethods::choose(const std::string& joint) 
     return std::make_shared<const Contender>(std::move(method));
 }
 
+std::optional<GearAccount> JointMethods::common_gear() const {
+    return common_ ? common_->gear : std::nullopt;
+}
+
 bool JointMethods::learns() const {
     return find_method(std::string_view(request_.method).substr(0, request_.method.find(','))).learner !=
            nullptr;

@@ -35,6 +35,8 @@ class JointMethods {
 
     /// Throws the same, and what with_joint throws.
     [[nodiscard]] std::shared_ptr<const Contender> of(const std::string& joint);
+    /// Of all joints; empty where each has its own, or nobody says it.
+    [[nodiscard]] std::optional<GearAccount> common_gear() const;
     /// Whether the method looks at the whole log before it filters.
     [[nodiscard]] bool learns() const;
 

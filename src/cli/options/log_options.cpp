@@ -102,7 +102,6 @@ ReadOptions LogOptions::resolve() const {
     read.hold_bad_values = hold_bad_values;
     read.skip_lines = static_cast<std::size_t>(skip_lines);
     if (side) read.sides = read_sides(*side);
-    read.gear_ratio = gear_ratio;
     return read;
 }
 

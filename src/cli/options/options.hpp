@@ -98,7 +98,6 @@ struct LogOptions {
     std::vector<std::string> units;
     std::optional<std::string> side;
     int skip_lines = 0;
-    std::optional<double> gear_ratio;  ///< of the command's own options: for motion measured before the gear
     std::optional<Hertz> sample_rate;
     bool no_header = false, hold_bad_values = false;
     [[nodiscard]] ReadOptions resolve() const;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <sstream>
+#include <utility>
 
 #include "ripplenotch/artifact/model.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -49,6 +50,14 @@ Model assemble_model(const JointModelOptions& options) {
     for (const std::string& ripple : options.ripples) model.terms.push_back(parse_ripple(ripple));
     for (const std::string& effect : options.effects) model.terms.push_back(parse_term(effect));
     return model;
+}
+
+GearAccount assembled_gear(const JointModelOptions& joint, const Model& model) {
+    std::string source = !joint.model          ? "--gear-ratio"
+                         : *joint.model == "-" ? "standard input"
+                                               : *joint.model;
+    if (!joint.ripples.empty()) source += ", --ripple";
+    return gear_of(model, std::move(source));
 }
 
 void attach_joint_model(Options& options, JointModelOptions& joint) {

@@ -24,4 +24,7 @@ void attach_joint_model(Options& options, JointModelOptions& joint);
 /// Throws UsageError, DataError, FileError.
 [[nodiscard]] Model assemble_model(const JointModelOptions& joint);
 
+/// The gear of the assembled model, with what was typed or read as its source.
+[[nodiscard]] GearAccount assembled_gear(const JointModelOptions& joint, const Model& model);
+
 }  // namespace ripplenotch

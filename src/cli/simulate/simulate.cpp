@@ -68,7 +68,7 @@ double rms(std::span<const double> values) {
     return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-Course course_of(const SimulateOptions& options) {
+Course course_of(const SimulateOptions& options, const Model& model) {
     if (!options.along_log()) {
         Motion motion = make_motion(options.motions, *options.sample_rate);
         std::vector<double> velocity_deg_s = motion.velocity_deg_s;
@@ -76,7 +76,7 @@ Course course_of(const SimulateOptions& options) {
     }
     LogOptions reading = options.log_options;
     reading.sample_rate = options.sample_rate;
-    const Log log = read_log(options.log, reading.resolve());
+    const Log log = read_log(options.log, read_options(reading, assembled_gear(options.joint, model)));
     say_layout(options.common, log.layout);
     say_warnings(options.common, log.recording.warnings);
     return {motion_along(log.trace.view(), options.smoothing),
@@ -159,6 +159,7 @@ std::string summary(const SimulateOptions& options, const Model& model, Hertz sa
                     std::vector<Recording> recordings, const std::optional<Followed>& followed,
                     const std::vector<NumberColumn>& columns) {
     Simulation made{.model = model,
+                    .gear = assembled_gear(options.joint, model),
                     .motions = options.motions,
                     .sample_rate = sample_rate,
                     .seed = static_cast<std::uint64_t>(options.seed),
@@ -192,8 +193,9 @@ ExitCode simulate(const SimulateOptions& options) {
     check(options);
     const LogFormat& format = output_format(options.common.output, options.format);
     const Model model = assemble_model(options.joint);
+    say(options.common, gear_in_words(assembled_gear(options.joint, model)));
     ByteSink sink(options.common.output, options.common.overwrite(), format.binary);
-    Course course = course_of(options);
+    Course course = course_of(options, model);
     std::vector<Recording> recordings = std::move(course.recordings);
     const Hertz sample_rate =
         recordings.empty() ? course.motion.sample_rate : recordings.front().clock.nominal_rate;

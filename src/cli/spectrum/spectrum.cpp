@@ -136,9 +136,8 @@ Result frequency_result(const Request& request, std::vector<StretchSpectrum> spe
             }};
 }
 
-Result map_result(const Request& request, const Trace& trace, Provenance& provenance) {
-    const MapLines lines = map_lines(request.map, provenance);
-    if (lines.gear) say(request.common, gear_in_words(*lines.gear));
+Result map_result(const Request& request, const MapLines& lines, const Trace& trace,
+                  const Provenance& provenance) {
     SpeedMapResult result = speed_map_result(request.map, lines, trace, request.common, provenance);
     return {std::move(result.text),
             [map = std::move(result.map), lines, source = joint_in_words(request.path, trace.joint)] {
@@ -160,15 +159,15 @@ Made piecewise_result(const Request& request, const std::string& command_line) {
 }
 
 Made whole_result(const Request& request, const std::string& command_line) {
-    const Log log = read_log(request.path, request.log.resolve());
+    Provenance provenance{{input_record(request.path)}, command_line};
+    const MapLines lines = request.map.map ? map_lines(request.map, provenance) : MapLines{};
+    if (lines.gear) say(request.common, gear_in_words(*lines.gear));
+    const Log log = read_log(request.path, read_options(request.log, lines.gear));
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
-    Provenance provenance{{input_record(request.path)}, command_line, {{log.recording}}};
+    provenance.recordings.push_back({log.recording});
+    if (request.map.map) return {map_result(request, lines, log.trace, provenance), provenance};
     const TraceView trace = log.trace.view();
-    if (request.map.map) {
-        Result map = map_result(request, log.trace, provenance);
-        return {std::move(map), std::move(provenance)};
-    }
     if (request.domain == "order")
         return {order_result(request, trace, log.trace.joint, provenance), provenance};
     return {frequency_result(request, frequency_spectra(request, trace), log.trace.joint, provenance),
@@ -215,7 +214,6 @@ std::function<ExitCode()> attach(Options& options) {
     attach_speed_map(options, request->map);
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    options.after_parse([request] { request->log.gear_ratio = request->map.gear.ratio; });
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };
 }

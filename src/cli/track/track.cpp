@@ -196,7 +196,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     take_gear(request, provenance);
-    const Log log = read_log(request.path, request.log.resolve());
+    const Log log = read_log(request.path, read_options(request.log, request.gear));
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.push_back(input_record(request.path));
@@ -247,7 +247,6 @@ std::function<ExitCode()> attach(Options& options) {
                      "width of a row's speeds; about 24 rows when left out");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    options.after_parse([request] { request->log.gear_ratio = request->gear_options.ratio; });
     attach_common(options, request->common);
     return [request, &options] { return run(*request, options.command_line()); };
 }
