@@ -90,7 +90,7 @@ struct Layout {
     bool velocity_from_position = false;  ///< no velocity is logged: it is the slope of the position
     std::optional<double> motor_ratio;    ///< by which motion measured before the gear was divided
     bool motor_units = false;             ///< motion is the motor's, and no ratio was known to divide it by
-    std::optional<Hertz> stated_rate;     ///< from --sample-rate
+    std::optional<Hertz> stated_rate;     ///< from --sample-rate, or from the head of a file without a clock
     std::string options;                  ///< the option line that would force this reading
     std::vector<std::string> warnings;    ///< one sentence each
     std::vector<Assumption> assumptions;  ///< what no rule decided

@@ -16,6 +16,7 @@
 #include "log/columns/conventions.hpp"
 #include "log/columns/decide_layout.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch::layout_detail {
 namespace {
@@ -146,6 +147,19 @@ void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOpt
                      layout.source, why, clocks.counters.empty() ? "" : "--unit time=ms, ");
 }
 
+// A file without a clock whose head says how long a row is.
+bool take_step_of_head(const ColumnFacts& facts, const Clocks& clocks, Layout& layout) {
+    const auto is_empty = [&](std::size_t column) { return finite_values(facts, column).empty(); };
+    if (!facts.row_step_s || !std::all_of(clocks.broken.begin(), clocks.broken.end(), is_empty)) return false;
+    layout.stated_rate = Hertz(1.0 / *facts.row_step_s);
+    layout.inferences.push_back({"time",
+                                 fmt::format("{} s a row", *facts.row_step_s),
+                                 "no column is a time, and the head of the file says Delta_X",
+                                 fmt::format("--sample-rate {}Hz", shortest(layout.stated_rate->value())),
+                                 {}});
+    return true;
+}
+
 }  // namespace
 
 bool varies(const std::vector<double>& values) {
@@ -204,6 +218,7 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
         layout.chosen.time = texts[0];
         return;
     }
+    if (take_step_of_head(facts, found, layout)) return;
     // One column called time that is no clock: the reader's own message names the row where it fails.
     if (counters.empty() && broken.size() == 1) {
         layout.chosen.time = broken[0];

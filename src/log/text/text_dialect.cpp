@@ -107,6 +107,7 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& sou
     dialect.rules = rules.rules;
     dialect.columns = rules.columns;
     const Preamble preamble = find_preamble(bytes, lines.content, dialect.rules, dialect.columns);
+    dialect.row_step_s = preamble.row_step_s;
     std::size_t row = preamble.first_row;
     if (preamble.lines > 0) dialect.head_lines = lines.content[preamble.lines].number - 1;
     if (preamble.names.empty()) {

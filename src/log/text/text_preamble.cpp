@@ -103,6 +103,26 @@ void read_channels(const Lines& lines, std::size_t columns, Preamble& found) {
     }
 }
 
+// LabVIEW: "Delta_X" and a step for each channel, in seconds where "X_Dimension" is Time. Files with
+// X_Columns "No" have no other clock.
+std::optional<double> read_step(const Lines& lines, std::size_t first_row, char decimal_mark) {
+    std::optional<double> step;
+    for (std::size_t line = 0; line < first_row; ++line) {
+        const std::vector<std::string> cells = lines.cells(line);
+        const bool is_step = cells.front() == "Delta_X";
+        if (!is_step && cells.front() != "X_Dimension") continue;
+        for (std::size_t c = 1; c < cells.size(); ++c) {
+            if (cells[c].empty()) continue;
+            if (!is_step && cells[c] != "Time") return std::nullopt;
+            if (!is_step) continue;
+            const auto number = parse_number(cells[c], decimal_mark);
+            if (!number || !(*number > 0.0) || *number != step.value_or(*number)) return std::nullopt;
+            step = number;
+        }
+    }
+    return step;
+}
+
 }  // namespace
 
 Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& content, const CellRules& rules,
@@ -114,6 +134,7 @@ Preamble find_preamble(std::string_view bytes, const std::vector<TextLine>& cont
     const bool names_then_rows = lines.may_be_names(0) && found.first_row <= 2;
     if (found.first_row == 0 || found.first_row == content.size() || names_then_rows) return {};
     read_channels(lines, columns, found);
+    found.row_step_s = read_step(lines, found.first_row, rules.decimal_mark);
     found.lines = found.first_row;
     if (!found.names.empty()) return found;
     const std::size_t above = found.first_row - 1;

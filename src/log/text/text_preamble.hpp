@@ -4,6 +4,7 @@
 // and any other lines that are no row of it.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,8 @@ struct Preamble {
     std::size_t names_line = 0, first_row = 0;
     /// From a head that says them channel by channel; empty where a line over the rows holds them.
     std::vector<std::string> names, units;
+    /// Seconds from row to row where the head says them (LabVIEW's Delta_X), alike for all channels.
+    std::optional<double> row_step_s;
 };
 
 /// `content` with rows of `columns` cells somewhere below. None where the first line may be names or a row.
