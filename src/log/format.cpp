@@ -10,6 +10,7 @@
 
 #include "log/formats.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/output_name.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -43,8 +44,7 @@ const LogFormat& output_format(const std::string& path, std::optional<std::strin
         const auto& known = format->extensions;
         if (std::find(known.begin(), known.end(), extension) != known.end()) return *format;
     }
-    if (extension == ".json")
-        raise<UsageError>("-o {}: a log is not written as JSON; name it .csv or .npy", path);
+    check_output_name(path, "a log", ".csv .npy");
     return formats::csv;
 }
 

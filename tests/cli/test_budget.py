@@ -174,12 +174,12 @@ class Gates(Case):
 
     def test_filter_within_its_limits_is_exit_code_0(self):
         done = run("filter", "steady.csv", "--table", "paper.json", "-o", "gate.csv", "--force", "--max-delay", "43ms",
-                   "--min-attenuation-db", "30", folder=self.folder)
+                   "--min-attenuation", "30dB", folder=self.folder)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_filter_holds_the_measured_attenuation_against_the_limit(self):
         done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13rad/s", "--gear-ratio", "100", "-o", "gate.csv",
-                   "--force", "--min-attenuation-db", "25", folder=self.folder)
+                   "--force", "--min-attenuation", "25dB", folder=self.folder)
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"lowpass,cutoff=13rad/s: it takes 21\.\d dB off order 1, 3\.\d dB less than")
         self.assertNotIn("order 2", done.stderr)
@@ -187,7 +187,7 @@ class Gates(Case):
     def test_compare_names_each_method_that_breaks_a_limit(self):
         words = ["compare", "--ramp", "20Nm/s", "--speed", "20deg/s", "--sample-rate", "1kHz", "--gear-ratio", "100",
                  "--orders", "1,2", "--method", "tracking,q=2", "--method", "lowpass,cutoff=13Hz", "--max-delay", "15ms",
-                 "--min-attenuation-db", "3"]
+                 "--min-attenuation", "3dB"]
         done = run(*words, folder=self.folder)
         self.assertEqual(done.returncode, 1)
         self.assertIn("lowpass", done.stdout)
@@ -197,9 +197,9 @@ class Gates(Case):
 
     def test_a_limit_on_attenuation_without_a_gear_is_a_usage_error(self):
         done = run("filter", "steady.csv", "--method", "lowpass,cutoff=13Hz", "-o", "gate.csv", "--force",
-                   "--min-attenuation-db", "25", folder=self.folder)
+                   "--min-attenuation", "25dB", folder=self.folder)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("--min-attenuation-db needs to know the gear", done.stderr)
+        self.assertIn("--min-attenuation needs to know the gear", done.stderr)
 
 
 class NoisySpeed(Case):

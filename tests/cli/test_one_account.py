@@ -151,7 +151,7 @@ class Angles(Case):
 
     def test_a_limit_is_kept_on_the_right_angle(self):
         done = run("filter", self.hard["another_joints_position"], "--method", "tracking", *GEAR, "-o", self.path / "out.csv", "--force",
-                   "--min-attenuation-db", "15")
+                   "--min-attenuation", "15dB")
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_compare_measures_what_filter_measures(self):

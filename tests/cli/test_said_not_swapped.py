@@ -45,6 +45,87 @@ class NamesOfJson(Told):
         self.good("filter", MOVE, *LOW, "--output-format", "csv", "-o", "stated.json")
 
 
+class NamesOfOtherKinds(Told):
+    """-o writes what the name promises, or is refused: no text in a .csv, no CSV in a .svg."""
+
+    ENDINGS = ("txt", "json", "csv", "tsv", "npy", "svg", "png", "pdf", "html", "h", "m", "yaml", "mat", "xlsx", "gz")
+    SIMULATE = ["simulate", "--gear-ratio", 100, "--ripple", "1:1Nm", "--motion", "constant,speed=60deg/s,duration=1s",
+                "--sample-rate", "1kHz"]
+    DESIGN = ["design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18"]
+
+    def commands(self):
+        self.good(*self.DESIGN, "-o", "t.json", "--json")
+        yield from (["info", MOVE], ["effects"], ["identify", PAPER_90], ["compare", MOVE, *LOW], self.DESIGN,
+                    [*self.DESIGN[:-1], "18:90", "--frontier"], ["spectrum", PAPER_90],
+                    ["spectrum", PAPER_90, "--peaks"], ["spectrum", MOVE, "--map", "order"],
+                    ["track", MOVE, "--gear-ratio", 100], ["track", MOVE, "--gear-ratio", 100, "--json"],
+                    ["filter", MOVE, *LOW], self.SIMULATE, ["report", "t.json"],
+                    ["diagnose", MOVE, "--model", DATA / "paper_model.json"])
+        for target in ("c-header", "cmsis-dsp", "scipy", "matlab", "ros-filters", "servo-drive", "betaflight", "ardupilot", "json"):
+            depth = "" if target == "betaflight" else ",depth=40dB"  # it knows full nulls alone
+            yield ["export", "--method", f"fixed,centers=60Hz,q=1{depth}", "--sample-rate", "1kHz", "--to", target]
+
+    def kind_of(self, path):
+        """The endings that what a file holds may have."""
+        data = path.read_bytes()
+        if data.startswith(b"\x93NUMPY"):
+            return {"npy"}
+        text = data.decode()
+        if text.startswith("<!"):
+            return {"html"}
+        if text.startswith("{"):
+            json.loads(text)
+            return {"json", "txt"}
+        if "#ifndef" in text or "#pragma once" in text:
+            return {"h"}
+        rows = [line for line in text.splitlines() if line and not line.startswith(("#", "%"))]
+        if len(rows) > 1 and "," in rows[0] and len({row.count(",") for row in rows}) == 1:
+            return {"csv", "tsv", "txt"}
+        return {"txt"} | ({"m"} if "sos" in text else set()) | ({"yaml"} if text.rstrip().count(":") else set())
+
+    def test_a_file_is_of_the_kind_that_its_name_says_or_is_refused(self):
+        for words in self.commands():
+            fitting = []
+            for ending in self.ENDINGS:
+                path = self.folder / f"x.{ending}"
+                path.unlink(missing_ok=True)
+                done = self.run_tool(*words, "-o", path.name, "--force", "-q")
+                with self.subTest(words=words, ending=ending):
+                    if done.returncode == 0:
+                        fitting.append(ending)
+                        self.assertIn(ending, self.kind_of(path))
+                        continue
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertRegex(done.stderr, rf"-o x\.{ending}: .*(name it \.|name the file)")
+                    self.assertFalse(path.exists())
+            self.assertTrue(fitting, words)
+
+    def test_names_that_promise_nothing_are_free(self):
+        for name in ("run", "run.log", "run.dat", "run.2"):
+            self.good("compare", MOVE, *LOW, "-o", name)
+
+
+class Attenuations(Told):
+    """--min-attenuation is one option with a unit; where nothing is left to choose it checks."""
+
+    DESIGN = ["design", "--gear-ratio", 100, "--sample-rate", "1kHz"]
+
+    def test_the_old_spelling_is_told_the_new_one(self):
+        for words in ([*self.DESIGN, "--speed", "18:180:18"], ["filter", MOVE, *LOW], ["compare", MOVE, *LOW]):
+            self.refused([*words, "--min-attenuation-db", "20"], "no option --min-attenuation-db (did you mean --min-attenuation?)")
+
+    def test_a_unit_or_none_is_the_same(self):
+        goal = [*self.DESIGN, "--speed", "18:180"]
+        self.assertEqual(self.good(*goal, "--min-attenuation", "20").stdout, self.good(*goal, "--min-attenuation", "20dB").stdout)
+        self.refused([*goal, "--min-attenuation", "20Hz"], "--min-attenuation")
+
+    def test_where_bands_and_q_are_stated_the_table_is_written_and_what_is_too_weak_is_told(self):
+        stated = [*self.DESIGN, "--speed", "18:180:18", "--q", 1, "--format", "csv"]
+        done = self.run_tool(*stated, "--min-attenuation", "10dB")
+        self.assertEqual((done.returncode, done.stdout), (1, self.good(*stated).stdout))
+        self.assertRegex(done.stderr, r"band 1 \(18-36 deg/s\) takes as little as \d\.\d dB off order 1, less than --min-attenuation 10dB")
+
+
 class Lists(Told):
     def test_a_list_with_other_marks_is_refused_with_the_list_as_it_should_be(self):
         for words, hint in ((["1", "2"], "--orders 1,2"), (["1,", "2"], "--orders 1,2"), (["1 2"], "--orders 1,2"),

@@ -26,6 +26,7 @@ struct LoadedFilters {
 
 struct Target {
     std::string_view name, summary, source;
+    std::string_view endings;  ///< of the names that fit its files, with blanks between them
     bool binary = false;
     std::span<const Key> keys = {};
     /// `heading` says what made the file, one line each, for a comment; it may be empty. Throws UsageError,

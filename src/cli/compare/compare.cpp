@@ -227,7 +227,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
         raise<UsageError>("--from and --to: there is no LOG to take rows of");
     Provenance provenance{{}, command_line};
     const Field field = load_contenders(request.methods, request.gear, provenance);
-    if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation-db");
+    if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
     if (field.gear) say(request.common, gear_in_words(*field.gear));
     Comparison comparison =
         request.log.empty() ? compare_on_signals(request, field) : compare_on_log(request, field, provenance);
@@ -267,7 +267,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_costs(options, request->costs);
     attach_plot(options, request->plot);
     attach_log(options, request->log_options);
-    attach_common(options, request->common);
+    attach_common(options, request->common, {"a comparison", ".txt .json", true});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

@@ -58,11 +58,12 @@ std::string form_of(const DesignRequest& request) {
 // Limits that the caller set: what breaks them is said, and the table is written all the same.
 std::vector<std::string> violations(const DesignRequest& request, const CandidateTable& table) {
     std::vector<std::string> sentences;
+    if (!request.only_checks()) return sentences;
     for (const Band& band : table.bands()) {
         const std::string label =
             fmt::format("band {} ({:.6g}-{:.6g} deg/s)", band.number, band.from.value(), band.to.value());
         const double delay_ms = 1e3 * band.dc_delay.value();
-        if (request.checks_delay() && band.dc_delay > *request.max_delay) {
+        if (request.max_delay && band.dc_delay > *request.max_delay) {
             sentences.push_back(fmt::format("{} delays by {:.1f} ms, more than --max-delay {:.6g}ms", label,
                                             delay_ms, 1e3 * request.max_delay->value()));
         }
@@ -71,7 +72,7 @@ std::vector<std::string> violations(const DesignRequest& request, const Candidat
             if (worst_db >= *request.min_attenuation_db) continue;
             sentences.push_back(
                 fmt::format("{} takes as little as {:.1f} dB off order {}, less than "
-                            "--min-attenuation-db {}",
+                            "--min-attenuation {}dB",
                             label, worst_db, shortest(band.notches[i].order.value()),
                             shortest(*request.min_attenuation_db)));
         }
@@ -161,8 +162,10 @@ std::function<ExitCode()> attach(Options& options) {
                      "instead of WIDTH: distance of the lowest order's centres");
     options.text("--bands", request->bands, "FROM:TO,...",
                  "bands one by one in deg/s, e.g. 18:36,36:60,60:100");
-    options.number("--min-attenuation", request->goal_attenuation_db, Dimension::decibel,
-                   "choose bands and Q that hold this at every speed of every band, e.g. 20dB");
+    options.number(
+        "--min-attenuation", request->min_attenuation_db, Dimension::decibel,
+        "choose bands and Q that hold this at every speed of every band, e.g. 20dB; where both are "
+        "stated, exit code 1 when a line is attenuated less");
     options.duration("--max-delay", request->max_delay,
                      "choose bands and Q whose DC delay is no longer, e.g. 20ms; where both are stated, exit "
                      "code 1 when a band's is");
@@ -183,12 +186,10 @@ std::function<ExitCode()> attach(Options& options) {
                    "per cent of a step within which it counts as settled");
     options.choice("--below", request->below, rule_names, "rule below the first band");
     options.choice("--above", request->above, rule_names, "rule above the last band");
-    options.number("--min-attenuation-db", request->min_attenuation_db, Dimension::none,
-                   "exit code 1 when a line is attenuated less anywhere in its band");
     options.choice("--format", request->form, form_names,
                    "form of the result (default: by the name of -o, else text)");
     attach_plot(options, request->plot);
-    attach_common(options, request->common, JsonName::is_own);
+    attach_common(options, request->common, {"a table", ".txt .csv .json"});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

@@ -169,7 +169,7 @@ std::pair<DegPerSec, DegPerSec> speeds_seen(const TableSpec& spec, const JointFa
 DesignGoal design_goal(const DesignRequest& request, const TableSpec& spec, const GearChoice& gear) {
     const auto joint = gear.facts();
     DesignGoal goal;
-    goal.min_attenuation_db = request.goal_attenuation_db;
+    goal.min_attenuation_db = request.min_attenuation_db;
     goal.max_delay = request.max_delay;
     goal.q = request.q;
     if (request.max_bands) {

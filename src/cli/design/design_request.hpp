@@ -19,9 +19,9 @@ struct DesignRequest {
     PlotRequest plot;
     std::string joint;
     GearOptions gear;
-    std::optional<double> ratio_error_percent, depth_db, min_attenuation_db, q;
-    std::optional<double> goal_attenuation_db, max_bands;
-    std::optional<Seconds> max_delay;  ///< a goal, and only a check where bands and Q are stated
+    std::optional<double> ratio_error_percent, depth_db, q, max_bands;
+    std::optional<double> min_attenuation_db;  ///< a goal, and only a check where bands and Q are stated
+    std::optional<Seconds> max_delay;          ///< the same
     std::vector<double> amplitudes_nm;
     std::optional<Hertz> sample_rate, spacing;
     std::optional<std::string> speed, bands;
@@ -31,11 +31,12 @@ struct DesignRequest {
 
     /// Something is left to the tool: it chooses bands, Q, or both.
     [[nodiscard]] bool has_goal() const {
-        return goal_attenuation_db || frontier || (max_delay && !checks_delay());
+        return frontier || ((min_attenuation_db || max_delay) && !only_checks());
     }
-    [[nodiscard]] bool checks_delay() const {
+    /// Limits are what the stated table is held against.
+    [[nodiscard]] bool only_checks() const {
         const bool widths = speed && std::count(speed->begin(), speed->end(), ':') > 1;
-        return max_delay && q && (bands || spacing || widths) && !goal_attenuation_db && !frontier;
+        return q && (bands || spacing || widths) && !frontier;
     }
 };
 

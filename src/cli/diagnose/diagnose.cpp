@@ -119,7 +119,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "exit with 5 unless the log is explained in the end");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common, JsonName::is_own);
+    attach_common(options, request->common, {"a model", ".json"});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

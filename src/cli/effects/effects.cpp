@@ -64,7 +64,7 @@ ExitCode explain(const Request& request) {
 std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
     options.argument("NAME", request->name, false, "effect to explain; without it, the list");
-    attach_common(options, request->common);
+    attach_common(options, request->common, {"a list of effects", ".txt .json", true});
     request->command_line = [&options] { return options.command_line(); };
     return [request] { return explain(*request); };
 }

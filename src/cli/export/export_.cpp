@@ -16,6 +16,7 @@
 #include "ripplenotch/artifact/export_report.hpp"
 #include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/version.hpp"
 
 namespace ripplenotch {
@@ -134,6 +135,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
     if (ends_with_json(request.common.output) && target.name != "json")
         raise<UsageError>("-o {}: {} is no JSON; use --to json, or name the file otherwise",
                           request.common.output, target.name);
+    check_output_name(request.common.output, target.name, target.endings);
     const Settings settings(fmt::format("target {}", spec.name), spec, target.keys);
     Provenance provenance{{}, command_line};
     FilterSet filters = request.method ? filters_of_method(request) : filter_set(load_table(request.table));
@@ -199,7 +201,7 @@ std::function<ExitCode()> attach(Options& options) {
                    "exit code 1 when the gain at 0 Hz is off by more");
     options.number("--max-pole-radius", request->limits.pole_radius, Dimension::none,
                    "exit code 1 when a pole is further out; 1 and beyond is always refused");
-    attach_common(options, request->common, JsonName::is_own);
+    attach_common(options, request->common, {});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

@@ -224,7 +224,7 @@ std::function<ExitCode()> attach(Options& options) {
                   "threads for long logs; the output is the same for any number; 0 is one a core, at most 4");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common, JsonName::is_own);
+    attach_common(options, request->common, {});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

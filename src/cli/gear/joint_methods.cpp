@@ -42,7 +42,7 @@ std::shared_ptr<const Contender> JointMethods::choose(const std::string& joint) 
     gear.joint_file = named(gear.joint_file);
     Contender method =
         choose_method(with_joint(request_.method, joint), named(request_.table), GearChoice(gear));
-    if (!method.gear && request_.needs_gear) raise_no_gear("--min-attenuation-db");
+    if (!method.gear && request_.needs_gear) raise_no_gear("--min-attenuation");
     if (!method.gear && !gear.orders.empty()) raise_no_gear("--orders");
     return std::make_shared<const Contender>(std::move(method));
 }

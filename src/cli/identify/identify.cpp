@@ -198,7 +198,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "exit with code 5 when the logs do not settle it");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common, JsonName::is_own);
+    attach_common(options, request->common, {"what identify found", ".txt .json"});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

@@ -43,7 +43,7 @@ std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
     options.arguments("LOG", request->paths, true, "logs to look at; - is standard input");
     attach_log(options, request->log);
-    attach_common(options, request->common);
+    attach_common(options, request->common, {"an inventory", ".txt .json", true});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

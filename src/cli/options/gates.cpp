@@ -20,8 +20,8 @@ std::string excess(const Gates& gates, double delay_ms) {
 void attach_gates(Options& options, Gates& gates) {
     options.duration("--max-delay", gates.max_delay,
                      "exit code 1 when a method's DC delay is longer, e.g. 20ms");
-    options.number("--min-attenuation-db", gates.min_attenuation_db, Dimension::none,
-                   "exit code 1 when an order is attenuated less");
+    options.number("--min-attenuation", gates.min_attenuation_db, Dimension::decibel,
+                   "exit code 1 when an order is attenuated less, e.g. 20dB");
 }
 
 std::vector<std::string> delay_violations(const Gates& gates, const Contender& contender, Hertz sample_rate,
@@ -60,12 +60,12 @@ std::vector<std::string> attenuation_violations(const Gates& gates, const std::s
     for (const OrderAttenuation& entry : orders) {
         if (!entry.db) {
             sentences.push_back(fmt::format(
-                "{}: order {:g} could not be measured, so --min-attenuation-db {} is not shown to hold",
+                "{}: order {:g} could not be measured, so --min-attenuation {}dB is not shown to hold",
                 method, entry.order, limit));
         } else if (!(*entry.db >= *gates.min_attenuation_db)) {
             sentences.push_back(
                 fmt::format("{}: it takes {:.1f} dB off order {:g}, {:.1f} dB less than "
-                            "--min-attenuation-db {}",
+                            "--min-attenuation {}dB",
                             method, *entry.db, entry.order, *gates.min_attenuation_db - *entry.db, limit));
         }
     }

@@ -12,6 +12,7 @@
 #include "cli/options/options_implementation.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/version.hpp"
 
@@ -190,9 +191,14 @@ std::string Options::command_line() const {
 
 bool ends_with_json(std::string_view path) { return path.size() > 5 && path.ends_with(".json"); }
 
-void attach_common(Options& options, CommonOptions& common, JsonName by_name) {
-    if (by_name == JsonName::asks_for_json)
-        options.after_parse([&common] { common.json = common.json || ends_with_json(common.output); });
+void attach_common(Options& options, CommonOptions& common, const OutputNames& names) {
+    options.after_parse([&common, names] {
+        if (!names.endings.empty()) {
+            check_output_name(common.output, names.what, names.endings);
+            if (common.json) check_output_name(common.output, "JSON", ".json .txt");
+        }
+        common.json = common.json || (names.json_is_option && ends_with_json(common.output));
+    });
     options.text("-o,--output", common.output, "FILE", "where the result goes; - is standard output");
     options.flag("--json", common.json, "one JSON object instead of text");
     options.flag("--force", common.force, "overwrite existing files");

@@ -81,12 +81,13 @@ struct CommonOptions {
         return force ? ByteSink::Overwrite::yes : ByteSink::Overwrite::no;
     }
 };
-/// What -o with a name that ends in .json means.
-enum class JsonName {
-    asks_for_json,  ///< the same as --json
-    is_own,         ///< the command's own affair
+/// What -o may be called. Names that promise another kind of file are refused (core/output_name.hpp).
+struct OutputNames {
+    std::string_view what;        ///< goes to -o: "a comparison"
+    std::string_view endings;     ///< that fit it: ".txt .json"; empty where the command looks itself
+    bool json_is_option = false;  ///< a name that ends in .json is the same as --json
 };
-void attach_common(Options& options, CommonOptions& common, JsonName by_name = JsonName::asks_for_json);
+void attach_common(Options& options, CommonOptions& common, const OutputNames& names);
 [[nodiscard]] bool ends_with_json(std::string_view path);
 
 /// How to read a log: --format, --joint, --columns, --unit, --sample-rate, --delimiter, --decimal,

@@ -11,6 +11,7 @@
 #include "cli/command.hpp"
 #include "ripplenotch/artifact/plotly.hpp"
 #include "ripplenotch/artifact/result_section.hpp"
+#include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 #include "ripplenotch/report/html_page.hpp"
 
@@ -60,6 +61,7 @@ std::optional<std::string> plotly_text_of(const Request& request) {
 ExitCode run(const Request& request) {
     if (ends_with_json(request.output))
         raise<UsageError>("-o {}: a report is an HTML page; name it .html", request.output);
+    check_output_name(request.output, "a report", ".html .htm");
     Page page{request.title, {}};
     for (const std::string& path : request.results) {
         page.sections.push_back(section_of_result(read_all(path), path == "-" ? "standard input" : path));

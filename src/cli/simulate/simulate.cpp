@@ -250,7 +250,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.text("--format", o->format, "NAME",
                  "format of what is written: csv, npy (default: by the extension of -o, else csv)");
     attach_log_columns(options, o->log_options);
-    attach_common(options, o->common, JsonName::is_own);
+    attach_common(options, o->common, {});
     o->command_line = [&options] { return options.command_line(); };
     return [o] { return simulate(*o); };
 }

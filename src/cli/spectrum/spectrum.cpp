@@ -15,6 +15,7 @@
 #include "cli/spectrum/streamed_spectrum.hpp"
 #include "ripplenotch/artifact/spectrum.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/report/spectrum_figure.hpp"
 
@@ -186,6 +187,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     if (request.map.map &&
         (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
         raise<UsageError>("--map goes with neither --domain, --stretch, --segment nor --peaks");
+    if (request.peaks) check_output_name(request.common.output, "a table of lines", ".txt .json");
     const auto [result, provenance] =
         request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
     if (request.peaks || !request.plot.instead_of(request.common.output))
@@ -214,7 +216,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_speed_map(options, request->map);
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common);
+    attach_common(options, request->common, {"a spectrum", ".csv .txt .json", true});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

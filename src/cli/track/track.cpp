@@ -247,7 +247,7 @@ std::function<ExitCode()> attach(Options& options) {
                      "width of a row's speeds; about 24 rows when left out");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common);
+    attach_common(options, request->common, {"a track", ".csv .txt .npy .json", true});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 

@@ -159,6 +159,7 @@ const Target targets::ardupilot = {
     .name = "ardupilot",
     .summary = "INS_HNTCH_*: frequency, bandwidth, attenuation, harmonics, in ArduPilot's way",
     .source = "ArduPilot, libraries/Filter: NotchFilter, HarmonicNotchFilter",
+    .endings = ".param .parm .txt",
     .keys = keys,
     .write = write,
     .read = read,

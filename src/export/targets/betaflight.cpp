@@ -155,6 +155,7 @@ const Target targets::betaflight = {
     .name = "betaflight",
     .summary = "rpm_filter_* for a table, gyro_notch* for one filter, in Betaflight's way",
     .source = "Betaflight, rpm_filter.c and filterGetNotchQ",
+    .endings = ".txt",
     .keys = keys,
     .write = write,
     .read = read,

@@ -109,6 +109,7 @@ const Target targets::json = {
     .name = "json",
     .summary = "everything, unrounded: sections in both forms, speeds, rules",
     .source = "RFC 8259",
+    .endings = ".json",
     .write = write,
     .read = read,
 };

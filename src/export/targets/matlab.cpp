@@ -82,6 +82,7 @@ const Target targets::matlab = {
     .name = "matlab",
     .summary = "sos and g as a script for MATLAB and Octave",
     .source = "MathWorks, Signal Processing Toolbox, sosfilt and sos2tf",
+    .endings = ".m",
     .keys = keys,
     .write = write,
     .read = read,

@@ -75,6 +75,7 @@ const Target targets::ros_filters = {
     .name = "ros-filters",
     .summary = "YAML for the ROS package filters; one band, for it does not follow the speed",
     .source = "ros/filters, transfer_function.hpp; ros2_controllers, chained_filter_controller",
+    .endings = ".yaml .yml",
     .keys = keys,
     .write = write,
     .read = read,

@@ -102,6 +102,7 @@ const Target targets::scipy = {
     .name = "scipy",
     .summary = "second-order sections for scipy.signal.sosfilt, as .npy of doubles",
     .source = "SciPy, scipy.signal.sosfilt; NumPy Enhancement Proposal 1",
+    .endings = ".npy",
     .binary = true,
     .write = write,
     .read = read,

@@ -118,6 +118,7 @@ const Target targets::servo_drive = {
     .summary = "frequency, width code and depth code of Panasonic MINAS and Omron G5 drives",
     .source =
         "Omron G5 user's manual, 6, Notch Filter Width and Depth; Panasonic MINAS A5, notch width and depth",
+    .endings = ".csv .txt",
     .keys = keys,
     .write = write,
     .read = read,
