@@ -84,13 +84,13 @@ struct Hum {
 
 /// What recordings of one joint say of one thing when they disagree beyond their errors.
 struct Disagreement {
-    enum class About { ratio, amplitude };
+    enum class About { ratio, amplitude, phase };
     struct Value {
-        std::size_t recording = 0;  ///< as handed over, from 0
-        double value = 0.0, error = 0.0;
+        std::size_t recording = 0;        ///< as handed over, from 0
+        double value = 0.0, error = 0.0;  ///< a ratio, Nm, or deg
     };
     About about = About::ratio;
-    std::optional<double> order, order_output;  ///< of the line, for amplitudes
+    std::optional<double> order, order_output;  ///< of the line, for amplitudes and phases
     std::vector<Value> values;                  ///< by recording
     double chance = 1.0;                        ///< that recordings which agree differ as much
 };

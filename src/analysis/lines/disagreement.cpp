@@ -5,12 +5,12 @@
 #include <cmath>
 #include <optional>
 
+#include "analysis/recorded_phases.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double least_chance = 0.001;
 constexpr double least_spread = 0.1;    // of amplitudes, of their mean
 constexpr double usual_scatter = 0.03;  // of amplitudes, from run to run of a joint that has not changed
 constexpr double like_speed_share = 0.05;
@@ -26,20 +26,6 @@ double chance_of(double chi_square, double freedom) {
     return 0.5 * std::erfc(normal / std::sqrt(2.0));
 }
 
-/// Whether values differ by more than their errors, and how likely that is.
-double chance_of_alike(const std::vector<Value>& values) {
-    double top = 0.0, bottom = 0.0, misfit = 0.0;
-    for (const Value& one : values) {
-        top += one.value / (one.error * one.error);
-        bottom += 1.0 / (one.error * one.error);
-    }
-    for (const Value& one : values) {
-        const double off = (one.value - top / bottom) / one.error;
-        misfit += off * off;
-    }
-    return chance_of(misfit, static_cast<double>(values.size()) - 1.0);
-}
-
 const Line* same_line(const Identification& one, double order_output) {
     const Line* nearest = nullptr;
     for (const Line& line : one.lines) {
@@ -51,16 +37,12 @@ const Line* same_line(const Identification& one, double order_output) {
     return nearest;
 }
 
-bool like(double speed, double other) {
-    return std::abs(speed - other) <= like_speed_share * std::abs(other);
-}
-
 /// Mean amplitude of a line near a speed, signed, with its error: of noise, or of the scatter where there are
 /// enough.
 std::optional<Value> amplitude_at(std::size_t recording, const Line& line, double speed_deg_s) {
     double sum = 0.0, noise = 0.0, count = 0.0, square = 0.0;
     for (const AmplitudeAtSpeed& at : line.by_speed) {
-        if (!like(at.speed_deg_s, speed_deg_s)) continue;
+        if (!like_speed(at.speed_deg_s, speed_deg_s)) continue;
         // The noise beside a line turns its amplitude by half its power.
         const double error = at.amplitude_nm / std::max(at.snr, 1.0) / std::sqrt(2.0);
         sum += at.amplitude_nm;
@@ -101,7 +83,8 @@ std::optional<Disagreement> about_amplitude(const Line& line, std::span<const Id
     const auto by_value = [](const Value& a, const Value& b) { return a.value < b.value; };
     const auto [least, most] = std::minmax_element(values.begin(), values.end(), by_value);
     const double chance = chance_of_alike(values);
-    if (chance > least_chance || most->value < (1.0 + least_spread) * least->value) return std::nullopt;
+    if (chance > least_chance_of_alike || most->value < (1.0 + least_spread) * least->value)
+        return std::nullopt;
     return Disagreement{Disagreement::About::amplitude, line.order, line.order_output, std::move(values),
                         chance};
 }
@@ -119,20 +102,39 @@ std::optional<Disagreement> about_ratio(const Identification& together,
     }
     if (values.size() < 2) return std::nullopt;
     const double chance = chance_of_alike(values);
-    if (chance > least_chance) return std::nullopt;
+    if (chance > least_chance_of_alike) return std::nullopt;
     return Disagreement{Disagreement::About::ratio, {}, {}, std::move(values), chance};
 }
 
 }  // namespace
 
-std::vector<Disagreement> disagreements(const Identification& together,
-                                        std::span<const Identification> each) {
+double chance_of_alike(const std::vector<Value>& values) {
+    double top = 0.0, bottom = 0.0, misfit = 0.0;
+    for (const Value& one : values) {
+        top += one.value / (one.error * one.error);
+        bottom += 1.0 / (one.error * one.error);
+    }
+    for (const Value& one : values) {
+        const double off = (one.value - top / bottom) / one.error;
+        misfit += off * off;
+    }
+    return chance_of(misfit, static_cast<double>(values.size()) - 1.0);
+}
+
+bool like_speed(double speed, double other) {
+    return std::abs(speed - other) <= like_speed_share * std::abs(other);
+}
+
+std::vector<Disagreement> disagreements(const Identification& together, std::span<const Identification> each,
+                                        std::span<const TraceView> logs) {
     std::vector<Disagreement> found;
     if (each.size() < 2) return found;
     if (auto ratio = about_ratio(together, each)) found.push_back(std::move(*ratio));
+    const RecordedPhases phases(logs);
     for (const Line& line : together.lines) {
         if (!line.order_output || line.kind == LineKind::tone) continue;
         if (auto amplitude = about_amplitude(line, each)) found.push_back(std::move(*amplitude));
+        if (auto phase = phases.about(line)) found.push_back(std::move(*phase));
     }
     return found;
 }

@@ -164,7 +164,7 @@ Identification identify(std::span<const TraceView> logs, const IdentifyOptions& 
     if (ripple && logs.size() > 1) {
         std::vector<Identification> each;
         for (const TraceView& log : logs) each.push_back(identify_together({&log, 1}, options));
-        together.disagreements = disagreements(together, each);
+        together.disagreements = disagreements(together, each, logs);
         settle(together);
     }
     for (const Doubt& doubt : options.doubts) cast_doubt(together, doubt);

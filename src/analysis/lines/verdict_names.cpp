@@ -17,7 +17,8 @@ constexpr std::array findings{Named<RippleFinding>{RippleFinding::ratio, "ratio"
                               Named<RippleFinding>{RippleFinding::too_little, "too little motion"}};
 constexpr std::array doubt_reasons{Named<DoubtReason>{DoubtReason::clock, "clock"}};
 constexpr std::array abouts{Named<Disagreement::About>{Disagreement::About::ratio, "gear ratio"},
-                            Named<Disagreement::About>{Disagreement::About::amplitude, "amplitude"}};
+                            Named<Disagreement::About>{Disagreement::About::amplitude, "amplitude"},
+                            Named<Disagreement::About>{Disagreement::About::phase, "phase"}};
 constexpr std::array ways{Named<LineEvidence>{LineEvidence::none, ""},
                           Named<LineEvidence>{LineEvidence::stretches, "steady stretches"},
                           Named<LineEvidence>{LineEvidence::sweeps, "order spectrum"},

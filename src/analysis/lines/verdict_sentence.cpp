@@ -102,6 +102,11 @@ std::string hums_too(const Identification& found) {
                        listed(words));
 }
 
+std::string line_in_words(const Disagreement& one) {
+    return one.order ? fmt::format("order {:g}", *one.order)
+                     : fmt::format("output order {:.5g}", *one.order_output);
+}
+
 /// "; the recordings disagree: order 1 from 0.38 to 0.96 Nm"
 std::string disagreements_too(const Identification& found) {
     std::vector<std::string> words;
@@ -111,11 +116,12 @@ std::string disagreements_too(const Identification& found) {
             [](const Disagreement::Value& a, const Disagreement::Value& b) { return a.value < b.value; });
         if (one.about == Disagreement::About::ratio) {
             words.push_back(fmt::format("gear ratio from {:.6g} to {:.6g}", least->value, most->value));
+        } else if (one.about == Disagreement::About::phase) {
+            words.push_back(fmt::format("the phase of {} from {:.0f} to {:.0f} deg", line_in_words(one),
+                                        least->value + 0.0, most->value + 0.0));
         } else {
-            words.push_back(fmt::format("{} from {:.2g} to {:.2g} Nm",
-                                        one.order ? fmt::format("order {:g}", *one.order)
-                                                  : fmt::format("output order {:.5g}", *one.order_output),
-                                        least->value, most->value));
+            words.push_back(
+                fmt::format("{} from {:.2g} to {:.2g} Nm", line_in_words(one), least->value, most->value));
         }
     }
     return words.empty() ? "" : "; the recordings disagree: " + listed(words);

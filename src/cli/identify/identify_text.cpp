@@ -32,10 +32,15 @@ std::string row(const Line& line) {
 /// One recording a row, with the line's amplitude or the ratio as it alone tells it.
 std::string disagreement_table(const Disagreement& one, const std::vector<std::string>& recordings) {
     const bool ratio = one.about == Disagreement::About::ratio;
-    std::string text =
-        ratio       ? "\nthe recordings disagree: gear ratio\n"
-        : one.order ? fmt::format("\nthe recordings disagree: order {:g}, Nm\n", *one.order)
-                    : fmt::format("\nthe recordings disagree: output order {:.5g}, Nm\n", *one.order_output);
+    const bool phase = one.about == Disagreement::About::phase;
+    std::string text = "\nthe recordings disagree: ";
+    if (!ratio) {
+        text += one.order ? fmt::format("order {:g}", *one.order)
+                          : fmt::format("output order {:.5g}", *one.order_output);
+    }
+    text += ratio   ? "gear ratio\n"
+            : phase ? ", phase in deg (the wave generator or the encoder's zero may have been turned)\n"
+                    : ", Nm\n";
     for (const Disagreement::Value& value : one.values) {
         const std::string name = value.recording < recordings.size()
                                      ? recordings[value.recording]
