@@ -50,6 +50,11 @@ OTHER_UNITS = {"velocity_deg_s": ("velocity [rad/s]", math.pi / 180), "torque_nm
                "position_deg": ("position [rad]", math.pi / 180)}
 
 
+# Columns as a program names and writes them, without a word about units.
+HEADERS = {"libfranka": {"time_s": ("t", 1.0), "velocity_deg_s": ("dq", math.pi / 180), "torque_nm": ("tau_J", 1.0),
+                         "position_deg": ("q", math.pi / 180)}}
+
+
 @dataclasses.dataclass(frozen=True)
 class Case:
     study: str
@@ -64,17 +69,19 @@ class Case:
     seconds: float = 40.0
     variant: str = ""
     without: str = ""  # an effect that the tool may not try
+    header: str = ""  # of HEADERS: how the logs are written
 
     @property
     def name(self):
-        words = (self.study, self.label, self.variant, self.motion, self.noise,
+        words = (self.study, self.label, self.variant, self.header, self.motion, self.noise,
                  "" if self.position else "no-position", str(self.number))
         return "-".join(word.replace(" ", "_").replace(",", "") for word in words if word)
 
     @property
     def log_of(self):
         """Name of the case whose log it is: variants and logs with an effect taken out are those of the singles."""
-        return dataclasses.replace(self, study="single" if self.variant or self.without else self.study, variant="").name
+        study = "single" if self.variant or self.without else self.study
+        return dataclasses.replace(self, study=study, variant="", header="").name
 
     def rng(self, purpose):
         return np.random.default_rng([zlib.crc32(f"{self.log_of} {purpose}".encode())])

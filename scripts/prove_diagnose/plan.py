@@ -5,6 +5,8 @@ A run may be cut off at any time. So the studies advance together: after a tenth
 cases, and within a study every effect has had its first log before any has its second.
 """
 
+import dataclasses
+
 from . import cases
 
 # How many of each kind: 5 of each single effect, 40 pairs, 200 logs with nothing hidden, ...
@@ -32,8 +34,9 @@ def by_name(name):
     number = name.rpartition("-")[2]
     for known in SEEDS if number.isdigit() else ():
         for case in cases.studies(known, 1, int(number)):
-            if case.name == name:
-                return case
+            for header in ("", *cases.HEADERS):
+                if dataclasses.replace(case, header=header).name == name:
+                    return dataclasses.replace(case, header=header)
     raise SystemExit(f"prove-diagnose: there is no case '{name}'")
 
 

@@ -27,8 +27,9 @@ def write_files(case, folder):
     halves = {"first half": (0.0, 0.5), "second half": (0.5, 1.0)}
     if case.variant in halves:
         logs["train"] = logs["train"].part(*halves[case.variant])
+    units = cases.OTHER_UNITS if case.variant == "other units" else cases.HEADERS.get(case.header)
     for purpose, log in logs.items():
-        log.save(folder / f"{purpose}.npy", cases.OTHER_UNITS if case.variant == "other units" else None)
+        log.save(folder / f"{purpose}.npy", units)
     return logs
 
 
