@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "analysis/recorded_phases.hpp"
+#include "analysis/lines/recorded_phases.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/recorded_phases.hpp"
+#include "analysis/lines/recorded_phases.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "analysis/disagreement.hpp"
+#include "analysis/lines/disagreement.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
