@@ -10,10 +10,10 @@
 #include "ripplenotch/artifact/figure.hpp"
 #include "ripplenotch/artifact/identification.hpp"
 #include "ripplenotch/artifact/table.hpp"
+#include "ripplenotch/chart/diagnosis_figures.hpp"
+#include "ripplenotch/chart/identification_figure.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/report/diagnosis_figures.hpp"
-#include "ripplenotch/report/identification_figure.hpp"
-#include "ripplenotch/report/table_figure.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -22,9 +22,9 @@ SEES = {
     "export": {"core", "design"},
     "evaluate": {"core", "filter", "analysis", "design"},
     "figure": {"core"},
-    "report": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
-    "artifact": {"core", "figure", "report", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose"},
-    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose", "artifact", "figure", "report"},
+    "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
+    "artifact": {"core", "figure", "chart", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose"},
+    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose", "artifact", "figure", "chart"},
 }
 
 # Third-party header -> the files that may include it.

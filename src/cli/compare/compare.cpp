@@ -14,13 +14,13 @@
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/artifact/comparison.hpp"
+#include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/evaluate/match_low_pass.hpp"
 #include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/report/comparison_figure.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -14,8 +14,8 @@
 #include "cli/design/table_text.hpp"
 #include "ripplenotch/artifact/frontier.hpp"
 #include "ripplenotch/artifact/table.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/report/table_figure.hpp"
 
 namespace ripplenotch {
 namespace {

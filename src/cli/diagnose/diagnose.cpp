@@ -13,10 +13,10 @@
 #include "cli/readings/readings.hpp"
 #include "ripplenotch/artifact/diagnosis.hpp"
 #include "ripplenotch/artifact/model.hpp"
+#include "ripplenotch/chart/diagnosis_plot.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/report/diagnosis_plot.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -14,10 +14,10 @@
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
 #include "ripplenotch/artifact/identification.hpp"
+#include "ripplenotch/chart/identification_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/report/identification_figure.hpp"
 
 namespace ripplenotch {
 namespace {

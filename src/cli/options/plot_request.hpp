@@ -9,9 +9,9 @@
 
 #include "cli/options/options.hpp"
 #include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/chart/torque_course.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/log/format.hpp"
-#include "ripplenotch/report/torque_course.hpp"
 
 namespace ripplenotch {
 

@@ -11,9 +11,9 @@
 #include "cli/command.hpp"
 #include "ripplenotch/artifact/plotly.hpp"
 #include "ripplenotch/artifact/result_section.hpp"
+#include "ripplenotch/chart/html_page.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
-#include "ripplenotch/report/html_page.hpp"
 
 namespace ripplenotch {
 namespace {

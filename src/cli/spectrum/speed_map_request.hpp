@@ -9,8 +9,8 @@
 #include "cli/options/options.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
 #include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/trace.hpp"
-#include "ripplenotch/report/spectrum_figure.hpp"
 
 namespace ripplenotch {
 

@@ -14,9 +14,9 @@
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/vold_kalman.hpp"
 #include "ripplenotch/artifact/track.hpp"
+#include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/log.hpp"
-#include "ripplenotch/report/track_figure.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/report/comparison_figure.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/torque_course.hpp"
+#include "ripplenotch/chart/torque_course.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/html_page.hpp"
+#include "ripplenotch/chart/html_page.hpp"
 
 #include <fmt/format.h>
 

@@ -7,13 +7,13 @@
 #include "analysis/traces.hpp"
 #include "filter/tables.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/chart/comparison_figure.hpp"
+#include "ripplenotch/chart/identification_figure.hpp"
+#include "ripplenotch/chart/spectrum_figure.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/chart/torque_course.hpp"
 #include "ripplenotch/design/low_pass.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
-#include "ripplenotch/report/comparison_figure.hpp"
-#include "ripplenotch/report/identification_figure.hpp"
-#include "ripplenotch/report/spectrum_figure.hpp"
-#include "ripplenotch/report/table_figure.hpp"
-#include "ripplenotch/report/torque_course.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/diagnosis_figures.hpp"
+#include "ripplenotch/chart/diagnosis_figures.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/comparison_figure.hpp"
+#include "ripplenotch/chart/comparison_figure.hpp"
 
 #include <fmt/format.h>
 

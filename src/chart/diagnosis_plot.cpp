@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/diagnosis_plot.hpp"
+#include "ripplenotch/chart/diagnosis_plot.hpp"
 
 #include <fmt/format.h>
 
+#include "ripplenotch/chart/diagnosis_figures.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
-#include "ripplenotch/report/diagnosis_figures.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/diagnosis_figures.hpp"
+#include "ripplenotch/chart/diagnosis_figures.hpp"
 
 #include <cmath>
 
-#include "ripplenotch/report/track_figure.hpp"
+#include "ripplenotch/chart/track_figure.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/report/spectrum_figure.hpp"
 
 namespace ripplenotch {
 namespace {

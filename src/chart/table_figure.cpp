@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/table_figure.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/html_page.hpp"
+#include "ripplenotch/chart/html_page.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -7,8 +7,8 @@
 #include "ripplenotch/artifact/figure.hpp"
 #include "ripplenotch/artifact/plotly.hpp"
 #include "ripplenotch/artifact/result_section.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/report/table_figure.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/spectrum_figure.hpp"
+#include "ripplenotch/chart/spectrum_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/track_figure.hpp"
+#include "ripplenotch/chart/track_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/report/identification_figure.hpp"
+#include "ripplenotch/chart/identification_figure.hpp"
 
 #include <fmt/format.h>
 
