@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "filter/tables.hpp"
-#include "ripplenotch/artifact/figure.hpp"
-#include "ripplenotch/artifact/plotly.hpp"
-#include "ripplenotch/artifact/result_section.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/document/plotly.hpp"
+#include "ripplenotch/document/result_section.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

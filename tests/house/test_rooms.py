@@ -23,14 +23,14 @@ SEES = {
     "evaluate": {"core", "filter", "analysis", "design"},
     "figure": {"core"},
     "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
-    "artifact": {"core", "figure", "chart", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose"},
-    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose", "artifact", "figure", "chart"},
+    "document": {"core", "figure", "chart", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose"},
+    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose", "document", "figure", "chart"},
 }
 
 # Third-party header -> the files that may include it.
 DOORS = {
     r"fftw3": {"src/analysis/spectrum/fourier.cpp"},
-    r"nlohmann/": {"src/artifact/json.hpp"},
+    r"nlohmann/": {"src/document/json.hpp"},
     r"CLI/": {"src/cli/options/options_implementation.hpp"},
     r"fast_float/": {"src/core/number.cpp"},
     r"nettle/": {"src/core/sha256.cpp"},

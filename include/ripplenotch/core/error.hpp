@@ -37,7 +37,7 @@ class UsageError : public Error {
     explicit UsageError(const std::string& message) : Error(ExitCode::usage, message) {}
 };
 
-/// A log or an artifact says something that cannot be used. The message names file, line and column.
+/// A log or a document says something that cannot be used. The message names file, line and column.
 class DataError : public Error {
   public:
     explicit DataError(const std::string& message) : Error(ExitCode::data, message) {}

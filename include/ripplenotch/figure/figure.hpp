@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // A figure as a value: what it shows, in which units, under which names. Built once from results (room
-// chart); renderers draw it, artifact writes it as JSON. Nothing here knows pixels.
+// chart); renderers draw it, document writes it as JSON. Nothing here knows pixels.
 
 #include <optional>
 #include <string>

@@ -9,7 +9,7 @@
 
 #include "cli/gear/chosen_method.hpp"
 #include "cli/options/options.hpp"
-#include "ripplenotch/artifact/document.hpp"
+#include "ripplenotch/document/provenance.hpp"
 
 namespace ripplenotch {
 

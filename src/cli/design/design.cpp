@@ -12,10 +12,10 @@
 #include "cli/design/design_request.hpp"
 #include "cli/design/frontier_text.hpp"
 #include "cli/design/table_text.hpp"
-#include "ripplenotch/artifact/frontier.hpp"
-#include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/frontier_json.hpp"
+#include "ripplenotch/document/table_json.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
+#include "ripplenotch/document/table_json.hpp"
 
 namespace ripplenotch {
 

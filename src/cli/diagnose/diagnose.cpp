@@ -11,11 +11,11 @@
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
-#include "ripplenotch/artifact/diagnosis.hpp"
-#include "ripplenotch/artifact/model.hpp"
 #include "ripplenotch/chart/diagnosis_plot.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {

@@ -7,8 +7,8 @@
 
 #include "cli/command.hpp"
 #include "cli/text_table.hpp"
-#include "ripplenotch/artifact/catalogue.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/effects_json.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -13,11 +13,11 @@
 #include "cli/export/export_text.hpp"
 #include "cli/gear/chosen_method.hpp"
 #include "cli/gear/joint_facts.hpp"
-#include "ripplenotch/artifact/export_report.hpp"
-#include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/version.hpp"
+#include "ripplenotch/document/export_json.hpp"
+#include "ripplenotch/document/table_json.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "ripplenotch/artifact/export_report.hpp"
+#include "ripplenotch/document/export_json.hpp"
 
 namespace ripplenotch {
 

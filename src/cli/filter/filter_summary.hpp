@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/artifact/metrics.hpp"
+#include "ripplenotch/document/metrics_json.hpp"
 
 namespace ripplenotch {
 

@@ -11,8 +11,8 @@
 #include "cli/options/gates.hpp"
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
-#include "ripplenotch/artifact/metrics.hpp"
 #include "ripplenotch/core/spool.hpp"
+#include "ripplenotch/document/metrics_json.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ripplenotch/artifact/table.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/table_json.hpp"
 
 namespace ripplenotch {
 namespace {

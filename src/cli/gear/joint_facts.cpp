@@ -5,10 +5,10 @@
 #include <cmath>
 #include <map>
 
-#include "ripplenotch/artifact/identification.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/identification_json.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "ripplenotch/analysis/identification.hpp"
-#include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/core/units.hpp"
+#include "ripplenotch/document/provenance.hpp"
 
 namespace ripplenotch {
 

@@ -13,10 +13,10 @@
 #include "cli/identify/identify_text.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
-#include "ripplenotch/artifact/identification.hpp"
 #include "ripplenotch/chart/identification_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/document/identification_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include "cli/command.hpp"
 #include "cli/info/info_text.hpp"
 #include "cli/info/survey.hpp"
-#include "ripplenotch/artifact/info.hpp"
+#include "ripplenotch/document/info_json.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "ripplenotch/artifact/info.hpp"
+#include "ripplenotch/document/info_json.hpp"
 
 namespace ripplenotch {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/options/options.hpp"
-#include "ripplenotch/artifact/metrics.hpp"
+#include "ripplenotch/document/metrics_json.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
 

@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/quantity.hpp"
 #include "ripplenotch/core/units.hpp"
+#include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/log/layout.hpp"
 
 namespace ripplenotch {

@@ -9,8 +9,8 @@
 #include <cctype>
 #include <filesystem>
 
-#include "ripplenotch/artifact/figure.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 
 namespace ripplenotch {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "cli/options/options.hpp"
-#include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/chart/torque_course.hpp"
+#include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/log/format.hpp"
 

@@ -9,10 +9,10 @@
 #include <memory>
 
 #include "cli/command.hpp"
-#include "ripplenotch/artifact/plotly.hpp"
-#include "ripplenotch/artifact/result_section.hpp"
 #include "ripplenotch/chart/html_page.hpp"
 #include "ripplenotch/core/output_name.hpp"
+#include "ripplenotch/document/plotly.hpp"
+#include "ripplenotch/document/result_section.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 
 namespace ripplenotch {

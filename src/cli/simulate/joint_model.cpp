@@ -6,9 +6,9 @@
 #include <sstream>
 #include <utility>
 
-#include "ripplenotch/artifact/model.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/model_json.hpp"
 
 namespace ripplenotch {
 namespace {

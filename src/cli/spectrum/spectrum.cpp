@@ -13,10 +13,10 @@
 #include "cli/spectrum/spectrum_text.hpp"
 #include "cli/spectrum/speed_map_request.hpp"
 #include "cli/spectrum/streamed_spectrum.hpp"
-#include "ripplenotch/artifact/spectrum.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
+#include "ripplenotch/document/spectrum_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/artifact/spectrum.hpp"
+#include "ripplenotch/document/spectrum_json.hpp"
 
 namespace ripplenotch {
 

@@ -7,9 +7,9 @@
 
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
-#include "ripplenotch/artifact/speed_map.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/speed_map_json.hpp"
 
 namespace ripplenotch {
 namespace {

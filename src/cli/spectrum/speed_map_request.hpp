@@ -8,9 +8,9 @@
 #include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/analysis/order_map.hpp"
-#include "ripplenotch/artifact/document.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/document/provenance.hpp"
 
 namespace ripplenotch {
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "ripplenotch/artifact/spectrum.hpp"
+#include "ripplenotch/document/spectrum_json.hpp"
 #include "ripplenotch/log/passes.hpp"
 
 namespace ripplenotch {

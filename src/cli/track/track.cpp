@@ -13,9 +13,9 @@
 #include "cli/track/track_words.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/vold_kalman.hpp"
-#include "ripplenotch/artifact/track.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/track_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/artifact/track.hpp"
+#include "ripplenotch/document/track_json.hpp"
 
 namespace ripplenotch {
 

@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-// The JSON library lives in the room of artifacts, which sees this one; what is written here is text of our
+// The JSON library lives in room document, which sees this one; what is written here is text of our
 // own and numbers, so that quoting is all there is to it.
 std::string quoted(std::string_view text) {
     std::string out = "\"";

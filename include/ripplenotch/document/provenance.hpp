@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What every document has in common: schema, tool, version, inputs with their hashes, the settings that made
+// it.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/log/recording.hpp"
+
+namespace ripplenotch {
+
+struct InputRecord {
+    std::string name;    ///< as given on the command line
+    std::string sha256;  ///< of the bytes read; empty when not computed
+    std::optional<std::size_t> rows;
+};
+
+struct Provenance {
+    std::vector<InputRecord> inputs;
+    std::string command;  ///< the command line that reproduces it, without paths of its own making
+    std::vector<Recording> recordings = {};  ///< the logs among the inputs
+};
+
+}  // namespace ripplenotch

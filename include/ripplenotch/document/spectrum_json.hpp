@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// spectrum.json: peaks, noise floor, window and resolution of one or several spectra of a log.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/spectrum.hpp"
+#include "ripplenotch/analysis/steady.hpp"
+#include "ripplenotch/document/provenance.hpp"
+
+namespace ripplenotch {
+
+/// A frequency spectrum and the samples that it is of.
+struct StretchSpectrum {
+    std::optional<int> number;  ///< of the steady stretch, from 1; empty for the whole log
+    Stretch stretch;
+    Spectrum spectrum;
+};
+
+/// An order spectrum and the lines found in it.
+struct OrderSpectrum {
+    Stack stack;
+    MotionLines lines;
+};
+
+[[nodiscard]] std::string spectra_text(const std::string& joint, const std::vector<StretchSpectrum>& spectra,
+                                       double false_alarm, const Provenance& provenance);
+[[nodiscard]] std::string order_spectrum_text(const std::string& joint, const OrderSpectrum& spectrum,
+                                              double false_alarm, const Provenance& provenance);
+
+/// Median of a noise floor, bins without one left out.
+[[nodiscard]] double median_floor(const std::vector<double>& floor_nm);
+
+}  // namespace ripplenotch

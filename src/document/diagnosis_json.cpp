@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/document/diagnosis_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "document/gear_fields.hpp"
+#include "document/json.hpp"
+#include "document/model_fields.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// Six significant digits: more is rounding noise of a fit. The model keeps all of them.
+Json six(double value) {
+    if (!std::isfinite(value)) return nullptr;
+    return *parse_number(fmt::format("{:.6g}", value)) + 0.0;
+}
+
+// A frequency is known to more digits than that.
+Json ten(double value) {
+    if (!std::isfinite(value)) return nullptr;
+    return *parse_number(fmt::format("{:.10g}", value)) + 0.0;
+}
+
+Json six(const std::optional<double>& value) { return value ? six(*value) : Json(nullptr); }
+
+Json spans_json(const std::vector<Span>& spans) {
+    Json list = Json::array();
+    for (const Span& span : spans) list.push_back({six(span.from), six(span.to)});
+    return list;
+}
+
+Json numbers_json(const std::vector<double>& values) {
+    Json list = Json::array();
+    for (const double value : values) list.push_back(six(value));
+    return list;
+}
+
+Json place_json(const Place& place) {
+    return {{"time_s", spans_json(place.time_s)},
+            {"speed_deg_s", spans_json(place.speed_deg_s)},
+            {"position_deg", spans_json(place.position_deg)},
+            {"hz", numbers_json(place.hz)},
+            {"order", numbers_json(place.order)},
+            {"direction", place.direction.empty() ? Json(nullptr) : Json(place.direction)}};
+}
+
+Json parameters_json(const Term& term, const std::vector<FittedValue>& values) {
+    Json parameters = Json::object();
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        const Parameter& parameter = term.effect->parameters[p];
+        Json entry{{"value", ten(term.values[p].value_or(parameter.start))}, {"ci95", nullptr}};
+        const auto fitted = std::find_if(values.begin(), values.end(),
+                                         [&](const FittedValue& value) { return value.parameter == p; });
+        if (fitted != values.end() && fitted->ci95)
+            entry["ci95"] = {ten(fitted->ci95->low), ten(fitted->ci95->high)};
+        if (fitted == values.end()) entry["fitted"] = false;
+        if (fitted != values.end() && fitted->at_bound) entry["at_bound"] = true;
+        parameters[std::string(parameter.name)] = entry;
+    }
+    return parameters;
+}
+
+Json round_json(const Finding& finding) {
+    const Term& term = finding.term;
+    Json json{{"effect", term.effect->name}, {"status", status_name(finding.status)}};
+    if (!finding.reason.empty()) json["reason"] = finding.reason;
+    json["parameters"] = parameters_json(term, finding.values);
+    json["where"] = place_json(finding.where);
+    json["evidence"] = {
+        {"gain", six(finding.evidence.gain)},         {"price", six(finding.evidence.price)},
+        {"share_nm", six(finding.evidence.share_nm)}, {"share_of_noise", six(finding.evidence.share_sigma)},
+        {"own_nm", six(finding.evidence.own_nm)},     {"gain_elsewhere", six(finding.evidence.elsewhere)}};
+    json["alternatives"] = Json::array();
+    for (const RivalFinding& rival : finding.alternatives)
+        json["alternatives"].push_back({{"effect", rival.effect}, {"margin", six(rival.margin)}});
+    json["validation_before_nm"] = six(finding.validation_before_nm);
+    json["validation_after_nm"] = six(finding.validation_after_nm);
+    json["gap_before_nm"] = six(finding.gap_before_nm);
+    json["gap_after_nm"] = six(finding.gap_after_nm);
+    return json;
+}
+
+Json fault_json(const Fault& fault) {
+    return {{"effect", fault.term.effect->name},
+            {"parameters", parameters_json(fault.term, {})},
+            {"samples", fault.samples},
+            {"time_s", spans_json(fault.time_s)},
+            {"words", fault.words}};
+}
+
+Json leftovers_json(const std::vector<Leftover>& leftovers) {
+    Json list = Json::array();
+    for (const Leftover& leftover : leftovers) {
+        list.push_back({{"kind", leftover.kind},
+                        {"where", place_json(leftover.where)},
+                        {"rms_nm", six(leftover.rms_nm)},
+                        {"part_of_gap", six(leftover.part)}});
+    }
+    return list;
+}
+
+Json gap_json(const DiagnosisGap& gap) {
+    return {{"before_nm", six(gap.before_nm)},
+            {"after_nm", six(gap.after_nm)},
+            {"noise_floor_nm", six(gap.noise_floor_nm)},
+            {"closed_percent", six(gap.closed_percent)},
+            {"validation_before_nm", six(gap.validation_before_nm)},
+            {"validation_after_nm", six(gap.validation_after_nm)},
+            {"validation_closed_percent", six(gap.validation_closed_percent)}};
+}
+
+Json baseline_json(const Diagnosis& diagnosis) {
+    Json list = Json::array();
+    for (std::size_t term = 0; term < diagnosis.baseline.terms.size(); ++term) {
+        std::vector<FittedValue> values;
+        for (const FittedValue& value : diagnosis.values) {
+            if (value.term == term) values.push_back(value);
+        }
+        list.push_back({{"effect", diagnosis.baseline.terms[term].effect->name},
+                        {"parameters", parameters_json(diagnosis.model.terms[term], values)}});
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
+                            const Provenance& provenance) {
+    Json json = document_head("diagnosis", provenance);
+    json["verdict"] = verdict_name(diagnosis.verdict);
+    if (!diagnosis.doubt.empty()) json["doubt"] = diagnosis.doubt;
+    json["gear"] = gear_to_json(gear);
+    json["named"] = diagnosis.named;
+    json["rounds"] = Json::array();
+    for (const Finding& finding : diagnosis.rounds) json["rounds"].push_back(round_json(finding));
+    json["faults"] = Json::array();
+    for (const Fault& fault : diagnosis.faults) json["faults"].push_back(fault_json(fault));
+    json["ambiguous"] = Json::array();
+    for (const Tie& tie : diagnosis.ambiguous)
+        json["ambiguous"].push_back({{"effects", tie.effects}, {"advice", tie.advice}});
+    json["unexplained"] = leftovers_json(diagnosis.unexplained);
+    json["disagreement"] = leftovers_json(diagnosis.disagreement);
+    json["undecidable"] = Json::array();
+    for (const Undecidable& entry : diagnosis.undecidable)
+        json["undecidable"].push_back({{"effect", entry.effect},
+                                       {"reason", entry.reason},
+                                       {"would_explain_nm", six(entry.would_explain_nm)}});
+    json["gap"] = gap_json(diagnosis.gap);
+    json["own_terms"] = baseline_json(diagnosis);
+    json["samples"] = diagnosis.samples;
+    json["samples_used"] = diagnosis.samples_used;
+    json["position_in_log"] = diagnosis.has_position;
+    json["search"] = {{"evaluations", std::round(diagnosis.evaluations)}, {"ended", diagnosis.search_ended}};
+    json["noise_color"] = numbers_json(diagnosis.noise_color);
+    json["false_alarm"] = diagnosis.false_alarm;
+    json["model"] = {{"schema", "ripplenotch/model/1"}};
+    put_model(json["model"], diagnosis.model);
+    return to_fitted_text(std::move(json));
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The only door to the JSON library; included by files in src/document alone.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "ripplenotch/document/provenance.hpp"
+
+namespace ripplenotch {
+
+using Json = nlohmann::ordered_json;
+
+/// {"schema": "ripplenotch/<kind>/1", "tool", "version", "command", "inputs"}: the opening of every document.
+[[nodiscard]] Json document_head(std::string_view kind, const Provenance& provenance);
+
+/// Text with two spaces of indentation, numbers shortest round trip, a line feed at the end: for what another
+/// program computes with (tables, models, settings).
+[[nodiscard]] std::string to_text(const Json& json);
+
+/// The same for what was fitted or measured: every number but a time (a name that ends in _s) has
+/// fitted_digits.
+[[nodiscard]] std::string to_fitted_text(Json json);
+
+/// Parses a document and checks its schema. Throws DataError with file, line and column of a syntax error,
+/// and the schema expected and found.
+[[nodiscard]] Json parse_document(std::string_view text, const std::string& source, std::string_view kind);
+
+/// Null for what is not finite: JSON has no nan.
+[[nodiscard]] inline Json finite_or_null(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// Reads fields strictly: a missing or mistyped field and an unknown one are DataErrors that name source and
+/// path.
+class Fields {
+  public:
+    Fields(const Json& object, std::string source, std::string path);
+    [[nodiscard]] const Json& at(std::string_view name);    ///< must be there
+    [[nodiscard]] const Json* find(std::string_view name);  ///< may be absent or null
+    [[nodiscard]] double number(std::string_view name);
+    [[nodiscard]] std::string text(std::string_view name);
+    void ignore(std::initializer_list<std::string_view> names);    ///< known, not used
+    void finish() const;                                           ///< throws on fields nobody asked for
+    [[nodiscard]] std::string where(std::string_view name) const;  ///< "table.json: bands[2].q"
+
+  private:
+    const Json& object_;
+    std::string source_, path_;
+    std::vector<std::string> seen_;
+};
+
+}  // namespace ripplenotch
