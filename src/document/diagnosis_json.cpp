@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "document/diagnosis_fields.hpp"
 #include "document/gear_fields.hpp"
-#include "document/json.hpp"
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -39,6 +39,8 @@ Json numbers_json(const std::vector<double>& values) {
     return list;
 }
 
+}  // namespace
+
 Json place_json(const Place& place) {
     return {{"time_s", spans_json(place.time_s)},
             {"speed_deg_s", spans_json(place.speed_deg_s)},
@@ -63,6 +65,8 @@ Json parameters_json(const Term& term, const std::vector<FittedValue>& values) {
     }
     return parameters;
 }
+
+namespace {
 
 Json round_json(const Finding& finding) {
     const Term& term = finding.term;

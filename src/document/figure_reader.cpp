@@ -2,7 +2,7 @@
 #include <array>
 #include <limits>
 
-#include "document/json.hpp"
+#include "document/fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 
@@ -117,13 +117,13 @@ class Reader {
         return map;
     }
 
-    template <class Take>
-    void each(Fields& fields, std::string_view name, const std::string& path, const Take& take) const {
+    template <class Read>
+    void each(Fields& fields, std::string_view name, const std::string& path, const Read& read) const {
         const Json& array = fields.at(name);
         if (!array.is_array()) raise<DataError>("{}: not a list", fields.where(name));
         for (std::size_t i = 0; i < array.size(); ++i) {
             Fields entry(array[i], source_, fmt::format("{}.{}[{}]", path, name, i));
-            take(entry);
+            read(entry);
             entry.finish();
         }
     }
@@ -136,7 +136,7 @@ class Reader {
 Figure figure_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "figure");
     Fields fields(json, source, "");
-    fields.ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings"});
+    fields.ignore_head();
     Figure figure{fields.text("name"), fields.text("title"), fields.text("sentence"), {}};
     figure.columns = static_cast<int>(std::clamp(fields.number("columns"), 1.0, 4.0));
     const Json& panels = fields.at("panels");

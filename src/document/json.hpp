@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -35,24 +34,5 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] inline Json finite_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
-
-/// Reads fields strictly: a missing or mistyped field and an unknown one are DataErrors that name source and
-/// path.
-class Fields {
-  public:
-    Fields(const Json& object, std::string source, std::string path);
-    [[nodiscard]] const Json& at(std::string_view name);    ///< must be there
-    [[nodiscard]] const Json* find(std::string_view name);  ///< may be absent or null
-    [[nodiscard]] double number(std::string_view name);
-    [[nodiscard]] std::string text(std::string_view name);
-    void ignore(std::initializer_list<std::string_view> names);    ///< known, not used
-    void finish() const;                                           ///< throws on fields nobody asked for
-    [[nodiscard]] std::string where(std::string_view name) const;  ///< "table.json: bands[2].q"
-
-  private:
-    const Json& object_;
-    std::string source_, path_;
-    std::vector<std::string> seen_;
-};
 
 }  // namespace ripplenotch

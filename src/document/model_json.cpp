@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/model_json.hpp"
 
-#include "document/json.hpp"
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -18,22 +17,11 @@ Json term_json(const Term& term) {
     return json;
 }
 
-// The catalogue answers an unknown name as a wrong request; in a file it is wrong data, and the file must be
-// named.
-const Effect& effect_named(std::string_view name, std::string_view where) {
-    try {
-        return find_effect(name);
-    } catch (const UsageError& error) {
-        raise<DataError>("{}: {}", where, error.what());
-    }
-}
-
-Term read_term(const Json& json, const std::string& source, const std::string& path) {
-    Fields fields(json, source, path);
-    const Effect& effect = effect_named(fields.text("effect"), fields.where("effect"));
+Term term_of(Fields& fields) {
+    const Effect& effect = effect_of(fields);
     Term term{&effect, {}};
     for (const Parameter& parameter : effect.parameters) {
-        if (fields.find(parameter.name) == nullptr) {
+        if (!fields.has(parameter.name)) {
             term.values.emplace_back();
             continue;
         }
@@ -45,7 +33,6 @@ Term read_term(const Json& json, const std::string& source, const std::string& p
         }
         term.values.emplace_back(value);
     }
-    fields.finish();
     return term;
 }
 
@@ -63,21 +50,32 @@ std::string write_model(const Model& model, const Provenance& provenance) {
     return to_text(json);
 }
 
-Model read_model(std::string_view text, const std::string& source) {
-    const Json json = parse_document(text, source, "model");
-    Fields fields(json, source, "");
-    fields.ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings"});
+// The catalogue answers an unknown name as a wrong request; in a file it is wrong data, and the file must be
+// named.
+const Effect& effect_of(Fields& fields) {
+    try {
+        return find_effect(fields.text("effect"));
+    } catch (const UsageError& error) {
+        raise<DataError>("{}: {}", fields.where("effect"), error.what());
+    }
+}
+
+Model model_of(Fields& fields) {
     Model model;
     model.gear_ratio = GearRatio(fields.number("gear_ratio"));
     if (!(model.gear_ratio.value() > 0.0 && model.gear_ratio <= largest_gear_ratio)) {
         raise<DataError>("{} is {}, expected a number above 0 and at most {}", fields.where("gear_ratio"),
                          shortest(model.gear_ratio.value()), shortest(largest_gear_ratio.value()));
     }
-    const Json& effects = fields.at("effects");
-    if (!effects.is_array()) raise<DataError>("{} is not a list", fields.where("effects"));
-    for (std::size_t i = 0; i < effects.size(); ++i) {
-        model.terms.push_back(read_term(effects[i], source, fmt::format("effects[{}]", i)));
-    }
+    fields.each("effects", [&](Fields& entry) { model.terms.push_back(term_of(entry)); });
+    return model;
+}
+
+Model read_model(std::string_view text, const std::string& source) {
+    const Json json = parse_document(text, source, "model");
+    Fields fields(json, source, "");
+    fields.ignore_head();
+    Model model = model_of(fields);
     fields.finish();
     return model;
 }

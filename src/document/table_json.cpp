@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "document/fields.hpp"
 #include "document/gear_fields.hpp"
-#include "document/json.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -55,22 +55,6 @@ Json note_to_json(const DesignNote& note) {
     return json;
 }
 
-const Json& array_at(Fields& fields, std::string_view name) {
-    const Json& value = fields.at(name);
-    if (!value.is_array()) raise<DataError>("{} is not a list", fields.where(name));
-    return value;
-}
-
-std::vector<double> numbers_at(Fields& fields, std::string_view name) {
-    std::vector<double> numbers;
-    for (const Json& entry : array_at(fields, name)) {
-        if (!entry.is_number())
-            raise<DataError>("{} holds {}, expected numbers", fields.where(name), entry.dump());
-        numbers.push_back(entry.get<double>());
-    }
-    return numbers;
-}
-
 template <class Choice, std::size_t n>
 Choice choice_at(Fields& fields, std::string_view name, const std::array<Choice, n>& choices,
                  std::string_view (*name_of)(Choice)) {
@@ -93,7 +77,7 @@ void compare(const Fields& fields, std::string_view name, double stored, double 
 }
 
 void compare_list(Fields& fields, std::string_view name, const std::vector<double>& computed) {
-    const std::vector<double> stored = numbers_at(fields, name);
+    const std::vector<double> stored = fields.numbers(name);
     if (stored.size() != computed.size()) {
         raise<DataError>("{} has {} entries, expected {}", fields.where(name), stored.size(),
                          computed.size());
@@ -111,7 +95,7 @@ CandidateNotch notch_from_json(const Json& json, const std::string& source, cons
     notch.notch.q = fields.number("q");
     notch.notch.depth_db = fields.find("depth_db") == nullptr ? infinite_depth_db : fields.number("depth_db");
     notch.notch.width = spec.width;
-    const std::vector<double> sos = numbers_at(fields, "sos");
+    const std::vector<double> sos = fields.numbers("sos");
     if (sos.size() != 6) {
         raise<DataError>("{} has {} numbers, expected 6: b0, b1, b2, 1, a1, a2", fields.where("sos"),
                          sos.size());
@@ -142,7 +126,7 @@ Band band_from_json(const Json& json, const std::string& source, const std::stri
     band.number = static_cast<int>(number);
     band.from = DegPerSec(fields.number("speed_from_deg_s"));
     band.to = DegPerSec(fields.number("speed_to_deg_s"));
-    const Json& notches = array_at(fields, "notches");
+    const Json& notches = fields.list("notches");
     for (std::size_t i = 0; i < notches.size(); ++i) {
         band.notches.push_back(
             notch_from_json(notches[i], source, fmt::format("{}.notches[{}]", path, i), spec));
@@ -162,11 +146,11 @@ Band band_from_json(const Json& json, const std::string& source, const std::stri
     compare(fields, "overshoot_percent", fields.number("overshoot_percent"), band.overshoot_percent,
             figure_tolerance);
     compare_list(fields, "worst_attenuation_db", band.worst_attenuation_db);
-    if (fields.find("held_attenuation_db") != nullptr) {
+    if (fields.has("held_attenuation_db")) {
         compare(fields, "held_attenuation_db", fields.number("held_attenuation_db"), band.held_attenuation_db,
                 figure_tolerance);
     }
-    if (fields.find("predicted_residual_nm") != nullptr)
+    if (fields.has("predicted_residual_nm"))
         compare_list(fields, "predicted_residual_nm", band.predicted_residual_nm);
     fields.finish();
     return band;
@@ -196,21 +180,21 @@ std::string table_to_json(const CandidateTable& table, const Provenance& provena
 CandidateTable table_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "table");
     Fields fields(json, source, "");
-    fields.ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings", "gear",
-                   "designed_for"});
+    fields.ignore_head();
+    fields.ignore({"gear", "designed_for"});
     TableSpec spec;
     spec.sample_rate = Hertz(fields.number("sample_rate_hz"));
     spec.gear_ratio = GearRatio(fields.number("gear_ratio"));
-    for (const double order : numbers_at(fields, "orders")) spec.orders.emplace_back(order);
-    if (fields.find("gear_ratio_error_percent") != nullptr)
+    for (const double order : fields.numbers("orders")) spec.orders.emplace_back(order);
+    if (fields.has("gear_ratio_error_percent"))
         spec.ratio_error = fields.number("gear_ratio_error_percent") / 100.0;
-    if (fields.find("amplitude_nm") != nullptr) spec.amplitude_nm = numbers_at(fields, "amplitude_nm");
+    if (fields.has("amplitude_nm")) spec.amplitude_nm = fields.numbers("amplitude_nm");
     spec.width =
         choice_at(fields, "width", std::array{WidthRule::analog, WidthRule::digital}, width_rule_name);
     constexpr std::array rules = {OutsideRule::pass, OutsideRule::hold, OutsideRule::fade};
     spec.below = choice_at(fields, "below_first_band", rules, outside_rule_name);
     spec.above = choice_at(fields, "above_last_band", rules, outside_rule_name);
-    const Json& rows = array_at(fields, "bands");
+    const Json& rows = fields.list("bands");
     fields.finish();
     std::vector<Band> bands;
     for (std::size_t i = 0; i < rows.size(); ++i) {

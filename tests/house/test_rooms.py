@@ -23,8 +23,10 @@ SEES = {
     "evaluate": {"core", "filter", "analysis", "design"},
     "figure": {"core"},
     "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
-    "document": {"core", "figure", "chart", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose"},
-    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose", "document", "figure", "chart"},
+    "document": {"core", "figure", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose"},
+    "page": {"core", "diagnose", "figure", "chart", "document"},
+    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose", "figure", "chart",
+            "document", "page"},
 }
 
 # Third-party header -> the files that may include it.

@@ -3,6 +3,7 @@
 // diagnosis.json: what a diagnosis found, docs/formats/diagnosis.md.
 
 #include <string>
+#include <string_view>
 
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
@@ -13,5 +14,11 @@ namespace ripplenotch {
 /// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given.
 [[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
                                           const Provenance& provenance);
+
+/// Reads it back; `source` is its name in messages. What the document does not hold is not known then: values
+/// of Diagnosis::baseline are empty, Evidence::raw_gain is nan, FittedValue has no standard error, and a
+/// finding's values have the place that it would have if every round were in the model. Throws DataError that
+/// names `source`, the field, what it holds and what was expected.
+[[nodiscard]] Diagnosis read_diagnosis(std::string_view text, const std::string& source);
 
 }  // namespace ripplenotch

@@ -11,7 +11,7 @@
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
-#include "ripplenotch/chart/diagnosis_plot.hpp"
+#include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"

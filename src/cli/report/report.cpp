@@ -9,11 +9,9 @@
 #include <memory>
 
 #include "cli/command.hpp"
-#include "ripplenotch/chart/html_page.hpp"
 #include "ripplenotch/core/output_name.hpp"
-#include "ripplenotch/document/plotly.hpp"
-#include "ripplenotch/document/result_section.hpp"
-#include "ripplenotch/figure/gnuplot.hpp"
+#include "ripplenotch/page/html_page.hpp"
+#include "ripplenotch/page/result_section.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -38,7 +36,7 @@ std::optional<std::string> installed_plotly() {
     return std::nullopt;
 }
 
-std::optional<std::string> plotly_text_of(const Request& request) {
+std::optional<std::string> plotly_js_of(const Request& request) {
     if (request.no_plotly) return std::nullopt;
     const auto path = request.plotly ? request.plotly : installed_plotly();
     if (!path) {
@@ -66,9 +64,7 @@ ExitCode run(const Request& request) {
     for (const std::string& path : request.results) {
         page.sections.push_back(section_of_result(read_all(path), path == "-" ? "standard input" : path));
     }
-    const HtmlParts parts{plotly_text_of(request), plotly_text,
-                          [](const Figure& figure) { return draw_picture(figure, PictureKind::svg); }};
-    write_all(request.output, html_page(page, parts),
+    write_all(request.output, html_page(page, plotly_js_of(request)),
               request.force ? ByteSink::Overwrite::yes : ByteSink::Overwrite::no);
     return ExitCode::done;
 }

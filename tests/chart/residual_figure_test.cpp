@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/chart/diagnosis_figures.hpp"
+#include "ripplenotch/chart/residual_figure.hpp"
 
 #include <cmath>
+#include <tuple>
 
+#include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/chart/track_figure.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
 
 TEST_CASE("the gap falls from round to round in the figure as it did, each round named, down to the floor") {
-    const std::vector<GapRound> rounds{{"coulomb-friction", 2.0, 1.1}, {"ripple", 1.1, 0.3}};
-    const Figure figure = gap_figure("Gap", "", rounds, 0.25);
+    Diagnosis diagnosis;
+    for (const auto& [name, before_nm, after_nm] :
+         {std::tuple{"coulomb-friction", 2.0, 1.1}, {"ripple", 1.1, 0.3}}) {
+        Finding& finding = diagnosis.rounds.emplace_back();
+        finding.term.effect = &find_effect(name);
+        finding.gap_before_nm = before_nm;
+        finding.gap_after_nm = after_nm;
+    }
+    diagnosis.gap.noise_floor_nm = 0.25;
+    const Figure figure = gap_figure("Gap", diagnosis);
     check_figure(figure);
     const Panel& panel = figure.panels.front();
     CHECK(panel.curves[0].x == std::vector<double>{0.0, 1.0, 2.0});
@@ -20,7 +30,8 @@ TEST_CASE("the gap falls from round to round in the figure as it did, each round
     CHECK(panel.lines[0].name == "1: coulomb-friction");
     CHECK(panel.lines[1].value == 2.0);
     CHECK(panel.lines[2].value == 0.25);
-    check_figure(gap_figure("Nothing was added", "", {}, 0.25));
+    diagnosis.rounds.clear();
+    check_figure(gap_figure("Nothing was added", diagnosis));
 }
 
 TEST_CASE("a residual's map is as high where the models disagree as the disagreement is, and nowhere else") {

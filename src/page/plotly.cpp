@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/document/plotly.hpp"
+#include "ripplenotch/page/plotly.hpp"
 
 #include <algorithm>
 
-#include "document/plotly_lines.hpp"
-#include "document/plotly_traces.hpp"
 #include "figure/gnuplot_script.hpp"
 #include "figure/page_layout.hpp"
+#include "page/plotly_lines.hpp"
+#include "page/plotly_traces.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
 

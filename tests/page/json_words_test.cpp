@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "document/json_words.hpp"
+#include "page/json_words.hpp"
 
-#include <algorithm>
-
-#include "ripplenotch/document/result_section.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -44,27 +41,4 @@ TEST_CASE("where something is stands in one cell, without dust beside large numb
     CHECK(where_text(where) == "speed -112.5 to 0 deg/s; order 1, 2");
     CHECK(parameters_text({{"torque_nm", {{"value", 0.5}, {"ci95", {0.49, 0.51}}}}, {"order", 2.0}}) ==
           "torque 0.500 (0.490 to 0.510) Nm; order 2");
-}
-
-TEST_CASE("the rounds of a diagnosis are a table that fits a page") {
-    const std::string text = R"({"schema": "ripplenotch/diagnosis/1", "verdict": "explained", "rounds": [{
-        "effect": "coulomb-friction", "status": "ambiguous",
-        "parameters": {"torque_nm": {"value": 0.4998466893, "ci95": [0.4987246838, 0.5009686948]}},
-        "where": {"time_s": [], "speed_deg_s": [[10, 90]], "position_deg": [], "hz": [], "order": [], "direction": "both"},
-        "evidence": {"gain": 773388.0, "price": 34.9626, "share_nm": 0.432205, "share_of_noise": 8.70051,
-                     "own_nm": 0.432622, "gain_elsewhere": 0.959804},
-        "alternatives": [{"effect": "offset", "margin": 2.5}],
-        "validation_before_nm": 0.433479, "validation_after_nm": 0.0503318,
-        "gap_before_nm": 0.434974, "gap_after_nm": 0.0496759}]})";
-    const PageSection section = section_of_result(text, "diagnosis.json");
-    const auto table = std::find_if(section.tables.begin(), section.tables.end(),
-                                    [](const PageTable& one) { return one.title == "rounds"; });
-    REQUIRE(table != section.tables.end());
-    CHECK(table->header == std::vector<std::string>{"effect", "status", "parameters (95 % interval)", "where",
-                                                    "explains, Nm", "gap, Nm", "validation, Nm", "rivals"});
-    REQUIRE(table->rows.size() == 1);
-    CHECK(table->rows[0] == std::vector<std::string>{"coulomb-friction", "ambiguous",
-                                                     "torque 0.4998 (0.4987 to 0.5010) Nm",
-                                                     "speed 10 to 90 deg/s; direction both", "0.4322",
-                                                     "0.435 to 0.04968", "0.4335 to 0.05033", "offset"});
 }

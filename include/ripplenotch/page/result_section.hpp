@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "ripplenotch/figure/page.hpp"
+#include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/chart/diagnosis_figures.hpp"
+#include "ripplenotch/chart/residual_figure.hpp"
 
 #include <fmt/format.h>
 
@@ -62,31 +62,6 @@ Curve course_of(std::string name, Ink ink, std::span<const double> x, std::span<
 }
 
 }  // namespace
-
-Figure gap_figure(const std::string& title, const std::string& sentence, std::span<const GapRound> rounds,
-                  double noise_floor_nm) {
-    Panel panel{.title = "", .x = {"round", "", PlotScale::whole}, .y = {"rms residual", "Nm"}};
-    panel.x.from = -0.5;
-    panel.x.to = static_cast<double>(rounds.size()) + 0.5;
-    panel.y.from = 0.0;
-    Curve gap{"gap", Ink::blue, CurveStyle::line, {}, {}};
-    for (std::size_t i = 0; i < rounds.size(); ++i) {
-        if (i == 0) {
-            gap.x.push_back(0.0);
-            gap.y.push_back(rounds[i].before_nm);
-        }
-        gap.x.push_back(static_cast<double>(i + 1));
-        gap.y.push_back(rounds[i].after_nm);
-        panel.lines.push_back({fmt::format("{}: {}", i + 1, rounds[i].name), NamedLine::Run::at_x,
-                               static_cast<double>(i + 1), Ink::grey});
-    }
-    Curve points = gap;
-    points.name.clear();
-    points.style = CurveStyle::points;
-    panel.curves = {std::move(gap), std::move(points)};
-    panel.lines.push_back({"noise floor", NamedLine::Run::at_y, noise_floor_nm, Ink::black});
-    return {"gap", title, sentence, {std::move(panel)}};
-}
 
 Figure residual_figure(const std::string& title, const std::string& sentence, const Residuals& residuals,
                        std::optional<double> noise_floor_nm) {

@@ -21,6 +21,9 @@ struct Spoken {
 /// "-" for null; numbers with six significant digits, or four below 1, spans as "0.5 to 2.25; 4 to 5".
 [[nodiscard]] std::string value_text(const Json& json);
 
+/// Four significant digits.
+[[nodiscard]] std::string coarse_text(double value);
+
 /// A field of `owner`: digits as far as its standard error (NAME_stderr, or stderr and ci95 beside a value)
 /// reaches, else four for torques, levels, shares and milliseconds, else as value_text.
 [[nodiscard]] std::string field_text(const Json& owner, const std::string& name);

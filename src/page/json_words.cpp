@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "document/json_words.hpp"
+#include "page/json_words.hpp"
 
 #include <fmt/format.h>
 
@@ -129,6 +129,8 @@ std::string value_text(const Json& json) {
     return json.is_boolean() ? (json.get<bool>() ? "yes" : "no") : json.dump();
 }
 
+std::string coarse_text(double value) { return fmt::format("{:.4g}", value + 0.0); }
+
 std::string field_text(const Json& owner, const std::string& name) {
     const Json& json = owner.at(name);
     const auto decimals = decimals_beside(owner, name);
@@ -139,7 +141,7 @@ std::string field_text(const Json& owner, const std::string& name) {
     if (decimals) return rounded(json.get<double>(), *decimals);
     constexpr std::array coarse = {"Nm", "dB", "%", "ms"};
     const bool of_coarse = std::find(coarse.begin(), coarse.end(), spoken(name).unit) != coarse.end();
-    if (of_coarse || name.starts_with("residual")) return fmt::format("{:.4g}", json.get<double>() + 0.0);
+    if (of_coarse || name.starts_with("residual")) return coarse_text(json.get<double>());
     return value_text(json);
 }
 

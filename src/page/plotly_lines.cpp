@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "document/plotly_lines.hpp"
+#include "page/plotly_lines.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "document/plotly_traces.hpp"
+#include "page/plotly_traces.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
 

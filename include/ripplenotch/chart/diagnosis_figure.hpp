@@ -8,6 +8,12 @@
 
 namespace ripplenotch {
 
+/// "explained: coulomb-friction, tone; gap from 1.01 to 0.0493 Nm rms, noise floor 0.0494 Nm"
+[[nodiscard]] std::string diagnosis_sentence(const Diagnosis& diagnosis);
+
+/// The gap from round to round down to the noise floor, each round named.
+[[nodiscard]] Figure gap_figure(const std::string& title, const Diagnosis& diagnosis);
+
 /// The gap from round to round, and the residual of the model as given and of the improved one: against time,
 /// and over position and speed. Runs both models along the log's motion with the smoothing of the diagnosis.
 [[nodiscard]] Figure diagnosis_figure(const std::string& source, const Diagnosis& diagnosis,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/chart/html_page.hpp"
+#include "ripplenotch/page/html_page.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,9 @@
 
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/version.hpp"
+#include "ripplenotch/figure/gnuplot.hpp"
 #include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/page/plotly.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -85,12 +87,12 @@ std::string script_hash(std::string_view script) {
 
 class Writer {
   public:
-    explicit Writer(const HtmlParts& parts) : parts_(parts) {}
+    explicit Writer(const std::optional<std::string>& plotly_js) : plotly_js_(plotly_js) {}
 
-    void write(const Page& page) {
+    [[nodiscard]] std::string written(const Page& page) {
         head(page.title);
         put("<h1>{}</h1>\n", shown(page.title));
-        if (!parts_.plotly_js) {
+        if (!plotly_js_) {
             put("<p class=\"note\">plotly.js was not found when this page was made, so the figures are "
                 "pictures: no zoom, no "
                 "values under the pointer.</p>\n");
@@ -98,10 +100,10 @@ class Writer {
         for (const PageSection& one : page.sections) section(one);
         put("<p class=\"note\">Made by {} {}; this page loads nothing from anywhere.</p>\n", tool_name,
             version());
-        if (parts_.plotly_js) put("<script>{}</script>\n<script>{}</script>\n", *parts_.plotly_js, draw_all);
+        if (plotly_js_) put("<script>{}</script>\n<script>{}</script>\n", *plotly_js_, draw_all);
         put("</body>\n</html>\n");
+        return std::move(text_);
     }
-    [[nodiscard]] std::string take() { return std::move(text_); }
 
   private:
     template <class... Args>
@@ -112,7 +114,7 @@ class Writer {
 
     void head(const std::string& title) {
         std::string scripts = "'none'";
-        if (parts_.plotly_js) scripts = script_hash(*parts_.plotly_js) + " " + script_hash(draw_all);
+        if (plotly_js_) scripts = script_hash(*plotly_js_) + " " + script_hash(draw_all);
         put("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
             "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; "
             "style-src "
@@ -142,11 +144,11 @@ class Writer {
         put("<figure>\n");
         if (titled) put("<h3>{}</h3>\n", shown(drawn.title));
         if (!drawn.sentence.empty()) put("<figcaption>{}</figcaption>\n", shown(drawn.sentence));
-        if (parts_.plotly_js) {
+        if (plotly_js_) {
             put("<div class=\"plot\" id=\"{0}\"></div>\n<script type=\"application/json\" "
                 "data-figure=\"{0}\">{1}</script>\n",
-                id, parts_.plotly_figure(drawn));
-        } else if (const auto svg = parts_.svg(drawn)) {
+                id, plotly_text(drawn));
+        } else if (const auto svg = draw_picture(drawn, PictureKind::svg)) {
             put("<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">\n", shown(drawn.title), base64(*svg));
         } else {
             put("<p class=\"note\">Neither plotly.js nor gnuplot was found to draw this figure; its numbers "
@@ -185,7 +187,7 @@ class Writer {
             html_escaped(one.json));
     }
 
-    const HtmlParts& parts_;
+    const std::optional<std::string>& plotly_js_;
     std::string text_;
     int figures_ = 0;
 };
@@ -219,10 +221,8 @@ std::string html_escaped(std::string_view text) {
     return escaped;
 }
 
-std::string html_page(const Page& page, const HtmlParts& parts) {
-    Writer writer(parts);
-    writer.write(page);
-    return writer.take();
+std::string html_page(const Page& page, const std::optional<std::string>& plotly_js) {
+    return Writer(plotly_js).written(page);
 }
 
 }  // namespace ripplenotch

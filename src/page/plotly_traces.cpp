@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "document/plotly_traces.hpp"
+#include "page/plotly_traces.hpp"
 
 #include <algorithm>
 

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/page/result_section.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "page/diagnosis_rounds.hpp"
+#include "page/json_table.hpp"
+#include "page/json_words.hpp"
+#include "ripplenotch/chart/diagnosis_figure.hpp"
+#include "ripplenotch/chart/identification_figure.hpp"
+#include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/document/identification_json.hpp"
+#include "ripplenotch/document/table_json.hpp"
+
+namespace ripplenotch {
+namespace {
+
+void add_field(PageSection& section, const std::string& name, const Json& whole) {
+    const Json& json = whole.at(name);
+    if (is_table(json)) {
+        section.tables.push_back(table_of(name, json));
+    } else if (json.is_object()) {
+        for (const auto& [inner, entry] : json.items()) {
+            const Spoken outer = spoken(name);
+            if (is_table(entry)) {
+                section.tables.push_back(table_of(name + " " + inner, entry));
+            } else if (inner != "schema" && !entry.is_null() && !(entry.is_array() && entry.empty())) {
+                const Spoken said = spoken(inner);
+                const std::string unit = said.unit.empty() ? outer.unit : said.unit;
+                section.facts.push_back(
+                    {fmt::format("{} {}{}{}", outer.name, said.name, unit.empty() ? "" : ", ", unit),
+                     field_text(json, inner)});
+            }
+        }
+    } else if (!json.is_null() && !(json.is_array() && json.empty()) && json != "") {
+        const Spoken said = spoken(name);
+        section.facts.push_back(
+            {said.unit.empty() ? said.name : said.name + ", " + said.unit, field_text(whole, name)});
+    }
+}
+
+// Empty where there is no text of this name.
+std::string text_at(const Json& json, const char* name) {
+    const auto found = json.find(name);
+    return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+// What was read is JSON; whether it is an object is seen here.
+std::string kind_of(const Json& json, const std::string& source) {
+    const std::string schema = json.is_object() ? text_at(json, "schema") : "";
+    constexpr std::string_view before = "ripplenotch/", after = "/1";
+    if (!schema.starts_with(before) || !schema.ends_with(after)) {
+        raise<DataError>(
+            "{}: read schema '{}', expected a result of ripplenotch such as joint.json or what --json prints",
+            source, schema);
+    }
+    return schema.substr(before.size(), schema.size() - before.size() - after.size());
+}
+
+// Every field as a fact or a table, in the order of the document, but for what stands elsewhere in the
+// section.
+void add_fields(PageSection& section, const Json& json, const std::optional<Diagnosis>& diagnosis) {
+    constexpr std::array told = {"schema", "tool", "version", "command", "inputs", "verdict"};
+    for (const auto& [name, entry] : json.items()) {
+        if (std::find(told.begin(), told.end(), name) != told.end()) continue;
+        if (diagnosis && name == "rounds") {
+            if (!diagnosis->rounds.empty()) section.tables.push_back(rounds_table(*diagnosis));
+        } else {
+            add_field(section, name, json);
+        }
+    }
+}
+
+PageSection section_of_figure(Figure figure) {
+    PageSection section;
+    section.title = figure.title;
+    section.verdict = std::exchange(figure.sentence, "");
+    section.figures.push_back(std::move(figure));
+    return section;  // its JSON is all in the figure
+}
+
+}  // namespace
+
+PageSection section_of_result(const std::string& text, const std::string& source) {
+    Json json;
+    try {
+        json = Json::parse(text);
+    } catch (const Json::parse_error&) {
+        raise<DataError>("{}: read {}, expected JSON as --json, -o joint.json or --plot FILE.json write it",
+                         source, text.empty() ? "an empty file" : "what is not JSON");
+    }
+    const std::string kind = kind_of(json, source);
+    PageSection section;
+    if (kind == "figure") section = section_of_figure(figure_from_json(text, source));
+    if (kind != "figure") section.title = fmt::format("{}: {}", kind, source);
+    section.command = text_at(json, "command");
+    for (const Json& input : json.value("inputs", Json::array()))
+        section.inputs.push_back({text_at(input, "name"), text_at(input, "sha256")});
+    if (kind == "figure") return section;
+    section.json = text;
+    if (const auto verdict = json.find("verdict"); verdict != json.end())
+        section.verdict = value_text(*verdict);
+    std::optional<Diagnosis> diagnosis;
+    if (kind == "diagnosis") diagnosis = read_diagnosis(text, source);
+    add_fields(section, json, diagnosis);
+    if (kind == "joint") {
+        section.figures.push_back(identification_figure(source, identification_from_json(text, source)));
+        section.figures.back().sentence.clear();  // it is the verdict above
+    } else if (kind == "table") {
+        section.figures.push_back(table_figure(table_from_json(text, source)));
+    } else if (diagnosis) {
+        section.verdict = diagnosis_sentence(*diagnosis);
+        section.figures.push_back(gap_figure(fmt::format("How the gap shrank: {}", source), *diagnosis));
+    }
+    return section;
+}
+
+}  // namespace ripplenotch
