@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/metrics_json.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "document/gear_fields.hpp"
 #include "document/ledger_fields.hpp"
 #include "document/recording_fields.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -75,21 +73,6 @@ void add_stream(Json& json, const FilterMetrics& metrics) {
 }
 
 }  // namespace
-
-std::optional<double> attenuation_db(const OrderLevel& level) {
-    const double raw = level.amplitude_nm[0], filtered = level.amplitude_nm[1];
-    if (!(raw > 0.0) || !(filtered > 0.0)) return std::nullopt;
-    return 20.0 * portable::log10(raw / filtered);
-}
-
-std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order) {
-    if (!metrics.levels || metrics.levels->windows == 0) return std::nullopt;
-    const OrderLevel& level = metrics.levels->orders[order];
-    if (!level.expected_gain) return std::nullopt;
-    const std::vector<double>& known_nm = metrics.gear->amplitude_nm;
-    const double before = known_nm.empty() ? level.amplitude_nm[0] : known_nm[order];
-    return before * *level.expected_gain;
-}
 
 std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& provenance) {
     Json json = document_head("metrics", provenance);

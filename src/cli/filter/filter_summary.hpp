@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/document/metrics_json.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 
 namespace ripplenotch {
 

@@ -12,7 +12,7 @@
 #include "cli/options/options.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/core/spool.hpp"
-#include "ripplenotch/document/metrics_json.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
 namespace ripplenotch {

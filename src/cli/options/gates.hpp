@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cli/options/options.hpp"
-#include "ripplenotch/document/metrics_json.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/evaluate/filter_metrics.hpp"
 
 namespace ripplenotch {
 
