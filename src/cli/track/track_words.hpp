@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/document/track_json.hpp"
+#include "ripplenotch/analysis/track_report.hpp"
 
 namespace ripplenotch {
 

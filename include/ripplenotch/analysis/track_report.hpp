@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Order tracks with their names and kind of amplitude, as columns of numbers and in words.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/analysis/track_by_speed.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+
+namespace ripplenotch {
+
+enum class AmplitudeKind { peak, rms, peak_to_peak };
+/// What a cosine of amplitude 1, zero to peak, is in this kind.
+[[nodiscard]] double amplitude_factor(AmplitudeKind kind);
+/// "amplitude_nm", "rms_nm", "peak_to_peak_nm": in this project amplitude means zero to peak.
+[[nodiscard]] std::string_view amplitude_name(AmplitudeKind kind);
+/// "zero to peak", "rms", "peak to peak"
+[[nodiscard]] std::string_view amplitude_words(AmplitudeKind kind);
+
+/// What a line of the tracks is.
+struct TrackLabel {
+    enum class Kind { order, order_output, tone } kind = Kind::order;
+    double value = 1.0;  ///< cycles per motor turn, per output turn, or hertz
+
+    /// "order_1", "order_output_202", "tone_50hz"
+    [[nodiscard]] std::string column() const;
+    /// "order 1", "output order 202", "50 Hz"
+    [[nodiscard]] std::string words() const;
+};
+
+struct TrackReport {
+    std::string joint;
+    std::string method;  ///< "ls" or "vold-kalman"
+    AmplitudeKind kind = AmplitudeKind::peak;
+    std::optional<GearAccount> gear;
+    bool angle_from_position = false;    ///< else phases count from the first sample
+    std::optional<double> window_turns;  ///< ls: of the motor where there is a gear ratio, else of the output
+    std::optional<Seconds> window;       ///< ls
+    std::optional<Hertz> bandwidth, bandwidth_obtained;  ///< vold-kalman
+    std::optional<int> poles;                            ///< vold-kalman
+    std::vector<TrackLabel> labels;
+    OrderTracks tracks;
+    std::optional<SpeedTrack> by_speed;  ///< when the rows go by speed
+};
+
+struct TrackColumn {
+    std::string name;  ///< with its unit
+    std::vector<double> values;
+};
+
+/// Rows by time or by speed as columns, six significant digits: time_s, speed_deg_s, and per line amplitude,
+/// phase_deg and standard_error_nm; or speed_deg_s, rows, and per line amplitude, phase_deg and spread_nm.
+/// nan where a line was not measured.
+[[nodiscard]] std::vector<TrackColumn> track_columns(const TrackReport& report);
+
+/// One line over the rows in which it was measured, amplitudes in the kind of the report.
+struct TrackSummary {
+    std::size_t rows = 0;  ///< where it was measured; 0: the rest means nothing
+    double median_nm = 0.0, least_nm = 0.0, greatest_nm = 0.0;
+    double least_at_deg_s = 0.0, greatest_at_deg_s = 0.0;
+};
+/// `line` counts from 0, as `labels` do.
+[[nodiscard]] TrackSummary track_summary(const TrackReport& report, std::size_t line);
+
+/// One sentence a line: its median, least and greatest amplitude and where they are.
+[[nodiscard]] std::string track_verdict(const TrackReport& report);
+
+}  // namespace ripplenotch

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/analysis/track_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// Six significant digits, and no negative zero: more would be rounding noise of the fit.
+std::vector<double> rounded(std::vector<double> values, double factor) {
+    for (double& value : values) {
+        if (std::isfinite(value)) value = *parse_number(fmt::format("{:.6g}", factor * value)) + 0.0;
+    }
+    return values;
+}
+
+std::vector<double> as_numbers(const std::vector<std::size_t>& counts) {
+    return {counts.begin(), counts.end()};
+}
+
+const std::vector<double>& amplitudes(const TrackReport& report, std::size_t line) {
+    return report.by_speed ? report.by_speed->lines[line].amplitude_nm
+                           : report.tracks.lines[line].amplitude_nm;
+}
+
+const std::vector<double>& speeds(const TrackReport& report) {
+    return report.by_speed ? report.by_speed->speed_deg_s : report.tracks.speed_deg_s;
+}
+
+}  // namespace
+
+double amplitude_factor(AmplitudeKind kind) {
+    switch (kind) {
+        case AmplitudeKind::peak:
+            return 1.0;
+        case AmplitudeKind::rms:
+            return 1.0 / std::numbers::sqrt2;
+        case AmplitudeKind::peak_to_peak:
+            return 2.0;
+    }
+    return 1.0;
+}
+
+std::string_view amplitude_name(AmplitudeKind kind) {
+    switch (kind) {
+        case AmplitudeKind::peak:
+            return "amplitude_nm";
+        case AmplitudeKind::rms:
+            return "rms_nm";
+        case AmplitudeKind::peak_to_peak:
+            return "peak_to_peak_nm";
+    }
+    return "";
+}
+
+std::string TrackLabel::column() const {
+    switch (kind) {
+        case Kind::order:
+            return fmt::format("order_{}", shortest(value));
+        case Kind::order_output:
+            return fmt::format("order_output_{}", shortest(value));
+        case Kind::tone:
+            return fmt::format("tone_{}hz", shortest(value));
+    }
+    return "";
+}
+
+std::string TrackLabel::words() const {
+    switch (kind) {
+        case Kind::order:
+            return fmt::format("order {}", shortest(value));
+        case Kind::order_output:
+            return fmt::format("output order {}", shortest(value));
+        case Kind::tone:
+            return fmt::format("{} Hz", shortest(value));
+    }
+    return "";
+}
+
+std::vector<TrackColumn> track_columns(const TrackReport& report) {
+    const double factor = amplitude_factor(report.kind);
+    std::vector<TrackColumn> columns;
+    if (report.by_speed) {
+        columns.push_back({"speed_deg_s", rounded(report.by_speed->speed_deg_s, 1.0)});
+        columns.push_back({"rows", as_numbers(report.by_speed->rows)});
+    } else {
+        columns.push_back({"time_s", report.tracks.time_s});
+        // Time may be large: microseconds, not digits.
+        for (double& time : columns.back().values) time = std::round(time * 1e6) / 1e6 + 0.0;
+        columns.push_back({"speed_deg_s", rounded(report.tracks.speed_deg_s, 1.0)});
+    }
+    for (std::size_t i = 0; i < report.labels.size(); ++i) {
+        const std::string prefix = report.labels[i].column() + "_";
+        columns.push_back(
+            {prefix + std::string(amplitude_name(report.kind)), rounded(amplitudes(report, i), factor)});
+        if (report.by_speed) {
+            columns.push_back({prefix + "phase_deg", rounded(report.by_speed->lines[i].phase_deg, 1.0)});
+            columns.push_back({prefix + "spread_nm", rounded(report.by_speed->lines[i].spread_nm, factor)});
+        } else {
+            columns.push_back({prefix + "phase_deg", rounded(report.tracks.lines[i].phase_deg, 1.0)});
+            columns.push_back(
+                {prefix + "standard_error_nm", rounded(report.tracks.lines[i].standard_error_nm, factor)});
+        }
+    }
+    return columns;
+}
+
+std::string_view amplitude_words(AmplitudeKind kind) {
+    switch (kind) {
+        case AmplitudeKind::peak:
+            return "zero to peak";
+        case AmplitudeKind::rms:
+            return "rms";
+        case AmplitudeKind::peak_to_peak:
+            return "peak to peak";
+    }
+    return "";
+}
+
+TrackSummary track_summary(const TrackReport& report, std::size_t line) {
+    const std::vector<double>& amplitude = amplitudes(report, line);
+    std::vector<std::pair<double, std::size_t>> sorted;
+    for (std::size_t row = 0; row < amplitude.size(); ++row) {
+        if (std::isfinite(amplitude[row])) sorted.emplace_back(amplitude[row], row);
+    }
+    if (sorted.empty()) return {};
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t n = sorted.size();
+    const double median = 0.5 * (sorted[(n - 1) / 2].first + sorted[n / 2].first);
+    const double factor = amplitude_factor(report.kind);
+    return {n,
+            factor * median,
+            factor * sorted.front().first,
+            factor * sorted.back().first,
+            speeds(report)[sorted.front().second],
+            speeds(report)[sorted.back().second]};
+}
+
+std::string track_verdict(const TrackReport& report) {
+    std::string text;
+    for (std::size_t i = 0; i < report.labels.size(); ++i) {
+        const TrackSummary line = track_summary(report, i);
+        if (!text.empty()) text += "; ";
+        text += report.labels[i].words();
+        if (line.rows == 0) {
+            text += ": measured nowhere";
+            continue;
+        }
+        text += fmt::format(": {:.3g} Nm {}", line.median_nm, amplitude_words(report.kind));
+        text += line.rows == 1
+                    ? fmt::format(" at {:.4g} deg/s", line.least_at_deg_s)
+                    : fmt::format(", from {:.3g} at {:.4g} to {:.3g} at {:.4g} deg/s", line.least_nm,
+                                  line.least_at_deg_s, line.greatest_nm, line.greatest_at_deg_s);
+    }
+    return text + fmt::format("; {:.2g} Nm rms are neither line nor trend.", report.tracks.residual_rms_nm);
+}
+
+}  // namespace ripplenotch
