@@ -15,6 +15,7 @@ SEES = {
     "core": set(),
     "log": {"core"},
     "analysis": {"core"},
+    "survey": {"core", "log", "analysis"},
     "design": {"core"},
     "model": {"core"},
     "diagnose": {"core", "model", "analysis"},
@@ -23,9 +24,9 @@ SEES = {
     "evaluate": {"core", "filter", "analysis", "design"},
     "figure": {"core"},
     "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
-    "document": {"core", "figure", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose"},
+    "document": {"core", "figure", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose"},
     "page": {"core", "diagnose", "figure", "chart", "document"},
-    "cli": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "export", "diagnose", "figure", "chart",
+    "cli": {"core", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "figure", "chart",
             "document", "page"},
 }
 

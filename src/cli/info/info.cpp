@@ -5,7 +5,6 @@
 
 #include "cli/command.hpp"
 #include "cli/info/info_text.hpp"
-#include "cli/info/survey.hpp"
 #include "ripplenotch/document/info_json.hpp"
 
 namespace ripplenotch {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "ripplenotch/document/info_json.hpp"
+#include "ripplenotch/survey/survey.hpp"
 
 namespace ripplenotch {
 

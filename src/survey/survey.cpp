@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/info/survey.hpp"
+#include "ripplenotch/survey/survey.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/steady.hpp"
-#include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 namespace {
