@@ -20,13 +20,13 @@ class Span {
   public:
     explicit Span(PlotScale scale) : scale_(scale) {}
 
-    void take(double value) {
+    void include(double value) {
         if (!std::isfinite(value) || (scale_ == PlotScale::logarithmic && !(value > 0.0))) return;
         low_ = std::min(low_, value);
         high_ = std::max(high_, value);
     }
-    void take(const std::vector<double>& values) {
-        for (const double value : values) take(value);
+    void include(const std::vector<double>& values) {
+        for (const double value : values) include(value);
     }
 
     [[nodiscard]] PlotRange range(const PlotAxis& axis, double widen) const {
@@ -66,12 +66,12 @@ Ink series_ink(std::size_t i) {
 
 PlotRange x_range(const Panel& panel) {
     Span span(panel.x.scale);
-    for (const Curve& curve : panel.curves) span.take(curve.x);
-    for (const Ribbon& ribbon : panel.ribbons) span.take(ribbon.x);
-    if (panel.map) span.take(panel.map->x_edges);
+    for (const Curve& curve : panel.curves) span.include(curve.x);
+    for (const Ribbon& ribbon : panel.ribbons) span.include(ribbon.x);
+    if (panel.map) span.include(panel.map->x_edges);
     for (const Shade& shade : panel.shades) {
-        span.take(shade.x_from);
-        span.take(shade.x_to);
+        span.include(shade.x_from);
+        span.include(shade.x_to);
     }
     return span.range(panel.x, 0.0);
 }
@@ -79,20 +79,20 @@ PlotRange x_range(const Panel& panel) {
 PlotRange y_range(const Panel& panel) {
     Span span(panel.y.scale);
     for (const Curve& curve : panel.curves) {
-        span.take(curve.y);
-        if (curve.style == CurveStyle::stems) span.take(0.0);
+        span.include(curve.y);
+        if (curve.style == CurveStyle::stems) span.include(0.0);
     }
     for (const Ribbon& ribbon : panel.ribbons) {
-        span.take(ribbon.low);
-        span.take(ribbon.high);
+        span.include(ribbon.low);
+        span.include(ribbon.high);
     }
-    if (panel.map) span.take(panel.map->y_edges);
+    if (panel.map) span.include(panel.map->y_edges);
     for (const Shade& shade : panel.shades) {
-        span.take(shade.y_from);
-        span.take(shade.y_to);
+        span.include(shade.y_from);
+        span.include(shade.y_to);
     }
     for (const NamedLine& line : panel.lines) {
-        if (line.run == NamedLine::Run::at_y) span.take(line.value);
+        if (line.run == NamedLine::Run::at_y) span.include(line.value);
     }
     return span.range(panel.y, panel.map ? 0.0 : 0.05);
 }

@@ -96,7 +96,7 @@ pid_t start(const Pipe& in, const Pipe& out, const Pipe& complaints) {
 }
 
 // Appends what is there; false at the end.
-bool take(int from, std::string& to) {
+bool read_some(int from, std::string& to) {
     std::array<char, 65536> buffer;  // NOLINT: filled by read
     const ssize_t got = ::read(from, buffer.data(), buffer.size());
     if (got < 0) return errno == EINTR;
@@ -119,8 +119,8 @@ void converse(const std::string& script, Pipe& in, Pipe& out, Pipe& complaints, 
             const bool gone = took < 0 && errno != EAGAIN && errno != EINTR;
             if (gone || given == script.size()) in.close_write();
         }
-        if (ends[1].revents != 0 && !take(out.read_end(), printed)) out.close_read();
-        if (ends[2].revents != 0 && !take(complaints.read_end(), complained)) complaints.close_read();
+        if (ends[1].revents != 0 && !read_some(out.read_end(), printed)) out.close_read();
+        if (ends[2].revents != 0 && !read_some(complaints.read_end(), complained)) complaints.close_read();
     }
 }
 

@@ -34,7 +34,7 @@ class Problem {
           torque_nm_(torque_nm),
           weighing_(weighing) {
         const std::size_t samples = weighing.rows().size(), values = coordinates.list().size();
-        if (samples <= values + weighing.taken())
+        if (samples <= values + weighing.used_up())
             raise<UsageError>("{} samples are too few to fit {} values", samples, values);
     }
 

@@ -85,7 +85,7 @@ std::vector<double> covariance_of(std::span<const double> slopes, std::span<cons
     }
     const Told told =
         told_by(Eigen::HouseholderQR<MatrixXd>(scaled).matrixQR().topRows(m).triangularView<Eigen::Upper>());
-    const double samples = static_cast<double>(weighing.rows().size() - weighing.taken());
+    const double samples = static_cast<double>(weighing.rows().size() - weighing.used_up());
     const double variance = left.squaredNorm() / (samples - static_cast<double>(m));
     VectorXd larger = VectorXd::Ones(m);
     if (stretch > 0) larger = inflation(columns, left, scale, told.inverse, variance, weighing, stretch);

@@ -43,7 +43,7 @@ std::vector<double> Weighing::operator()(std::span<const double> torque_nm) cons
     std::vector<double> white = whitened(torque_nm);
     if (basis_.empty()) return white;
     const auto n = static_cast<Index>(size());
-    const Eigen::Map<const MatrixXd> basis(basis_.data(), n, static_cast<Index>(taken()));
+    const Eigen::Map<const MatrixXd> basis(basis_.data(), n, static_cast<Index>(used_up()));
     Eigen::Map<VectorXd> vector(white.data(), n);
     const VectorXd part = basis.transpose() * vector;
     vector.noalias() -= basis * part;

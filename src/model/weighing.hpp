@@ -27,8 +27,8 @@ class Weighing {
     [[nodiscard]] const std::vector<std::size_t>& rows() const { return rows_; }  ///< samples that count
     /// Numbers per torque: one a row, and one a nuisance whose size is bounded.
     [[nodiscard]] std::size_t size() const { return rows_.size() + bounded_; }
-    /// Directions that nuisances take away.
-    [[nodiscard]] std::size_t taken() const { return basis_.size() / (size() > 0 ? size() : 1); }
+    /// How many of those numbers nuisances use up: directions in which nothing is left to fit.
+    [[nodiscard]] std::size_t used_up() const { return basis_.size() / (size() > 0 ? size() : 1); }
     [[nodiscard]] std::vector<double> operator()(std::span<const double> torque_nm) const;
     /// Whitened only.
     [[nodiscard]] std::vector<double> whitened(std::span<const double> torque_nm) const;

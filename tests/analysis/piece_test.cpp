@@ -28,7 +28,7 @@ TEST_CASE("the line through a piece leaves neither a mean nor a slope, whatever 
     std::vector<double> values = noise_of(n, 3), window(n, 1.0), left(n);
     for (std::size_t k = 0; k < n; ++k) values[k] += 7.0 - 0.3 * static_cast<double>(k);
     const std::span<const double> all(values);
-    take_line_and_window(values, even_line(look_at_even(all, all, 1.0)), window, left);
+    subtract_line_and_window(values, even_line(look_at_even(all, all, 1.0)), window, left);
     double sum = 0.0, tilt = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
         sum += left[k];

@@ -40,13 +40,13 @@ struct Stretch {
 /// One stretch made of all samples, whatever the speed does.
 [[nodiscard]] Stretch whole_log(const TraceView& trace);
 
-/// The same, of rows that go by.
+/// whole_log() of rows that go by.
 class StretchMeter {
   public:
     /// So many rows will come, with these mean values; the position's is 0 where there is none.
     StretchMeter(std::size_t count, double mean_s, double mean_position_deg)
         : count_(count), mean_s_(mean_s), mean_position_deg_(mean_position_deg) {}
-    void take(const TraceView& rows);
+    void add(const TraceView& rows);
     [[nodiscard]] Stretch stretch(Hertz rate, const SteadyRule& rule = {}) const;
 
   private:

@@ -73,8 +73,8 @@ EvenLine even_line(const EvenPart& values) {
 }
 
 RIPPLENOTCH_FOR_AVX2_TOO
-void take_line_and_window(std::span<const double> values, const EvenLine& line,
-                          std::span<const double> window, std::span<double> to) {
+void subtract_line_and_window(std::span<const double> values, const EvenLine& line,
+                              std::span<const double> window, std::span<double> to) {
     const std::size_t n = values.size(), even = n - n % (groups * lanes);
     const double middle = 0.5 * (static_cast<double>(n) - 1.0);
     Four place = {0.0, 1.0, 2.0, 3.0}, value, weight;

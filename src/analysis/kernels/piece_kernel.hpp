@@ -31,8 +31,8 @@ struct EvenLine {
 [[nodiscard]] EvenLine even_line(const EvenPart& values);
 
 /// to[k] = (values[k] - line at k) * window[k].
-void take_line_and_window(std::span<const double> values, const EvenLine& line,
-                          std::span<const double> window, std::span<double> to);
+void subtract_line_and_window(std::span<const double> values, const EvenLine& line,
+                              std::span<const double> window, std::span<double> to);
 
 /// sum over k of value[k] place[k]^d (cosine[k] + i sine[k]) for d = 0 .. 7.
 using Moments = std::array<std::complex<double>, 8>;

@@ -90,7 +90,7 @@ EvenPart PieceMaker::look_at(std::span<const double> time_s, std::span<const dou
 }
 
 void PieceMaker::make_even(std::span<const double> torque_nm, const EvenLine& line) {
-    take_line_and_window(torque_nm, line, even_window_, transform_.in());
+    subtract_line_and_window(torque_nm, line, even_window_, transform_.in());
     piece_.time_s = even_time_s_;
     piece_.value = transform_.in();
     piece_.window_sum = even_sum_;

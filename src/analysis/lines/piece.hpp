@@ -27,15 +27,15 @@ class PieceMaker {
   public:
     PieceMaker(std::size_t length, Hertz rate);
 
-    /// Hands every whole piece of the samples (seconds and Nm) to `take`; what it gets holds until the next
-    /// one. Returns how many samples are done with: the others are to come again, in front of those that
-    /// follow them.
-    template <class Take>
-    std::size_t for_each(std::span<const double> time_s, std::span<const double> torque_nm, Take take) {
+    /// Hands every whole piece of the samples (seconds and Nm) to `use`; a piece holds until the next one.
+    /// Returns how many samples are done with: the others are to come again, in front of those that follow
+    /// them.
+    template <class Use>
+    std::size_t for_each(std::span<const double> time_s, std::span<const double> torque_nm, Use use) {
         std::size_t done = 0;
         for (; done + length_ <= time_s.size(); done += hop_) {
             if (ahead_.empty()) look_ahead(time_s.subspan(done), torque_nm.subspan(done));
-            take(make(time_s.subspan(done, length_), torque_nm.subspan(done, length_)));
+            use(make(time_s.subspan(done, length_), torque_nm.subspan(done, length_)));
         }
         return done;
     }

@@ -6,7 +6,7 @@
 
 namespace ripplenotch {
 
-void StretchMeter::take(const TraceView& rows) {
+void StretchMeter::add(const TraceView& rows) {
     if (rows.size() == 0) return;
     if (rows_ == 0) first_s_ = rows.time_s.front();
     last_s_ = rows.time_s.back();

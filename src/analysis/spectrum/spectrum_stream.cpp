@@ -12,7 +12,7 @@ struct SpectrumStream::Work {
     std::vector<double> time_s = {}, torque_nm = {};  // of pieces that are not whole yet
 
     using Pass = std::size_t (Welch::*)(std::span<const double>, std::span<const double>);
-    void take(Pass pass, std::span<const double> more_s, std::span<const double> more_nm) {
+    void feed(Pass pass, std::span<const double> more_s, std::span<const double> more_nm) {
         time_s.insert(time_s.end(), more_s.begin(), more_s.end());
         torque_nm.insert(torque_nm.end(), more_nm.begin(), more_nm.end());
         const auto done = static_cast<std::ptrdiff_t>((welch.*pass)(time_s, torque_nm));
@@ -28,7 +28,7 @@ SpectrumStream::SpectrumStream(SpectrumStream&&) noexcept = default;
 SpectrumStream& SpectrumStream::operator=(SpectrumStream&&) noexcept = default;
 
 void SpectrumStream::add(std::span<const double> time_s, std::span<const double> torque_nm) {
-    work_->take(&Welch::add, time_s, torque_nm);
+    work_->feed(&Welch::add, time_s, torque_nm);
 }
 
 bool SpectrumStream::settle(Hertz rate) {
@@ -44,7 +44,7 @@ bool SpectrumStream::find_lines(double false_alarm) {
 }
 
 void SpectrumStream::measure(std::span<const double> time_s, std::span<const double> torque_nm) {
-    work_->take(&Welch::measure, time_s, torque_nm);
+    work_->feed(&Welch::measure, time_s, torque_nm);
 }
 
 Spectrum SpectrumStream::spectrum() const { return work_->welch.spectrum(); }

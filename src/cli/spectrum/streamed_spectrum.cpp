@@ -58,7 +58,7 @@ StretchSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options
 
     StretchMeter speed(facts.rows, facts.mean_s, facts.mean_position_deg);
     log.second([&](const TraceView& rows) {
-        speed.take(rows);
+        speed.add(rows);
         if (enough && !added) stream->add(rows.time_s, rows.torque_nm);
         if (lines) stream->measure(rows.time_s, rows.torque_nm);
     });
