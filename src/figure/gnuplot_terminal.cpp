@@ -6,7 +6,7 @@
 
 #include "figure/gnuplot_process.hpp"
 #include "figure/gnuplot_script.hpp"
-#include "figure/page_layout.hpp"
+#include "figure/picture_layout.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 #include "ripplenotch/figure/visible_text.hpp"

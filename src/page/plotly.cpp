@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "figure/gnuplot_script.hpp"
-#include "figure/page_layout.hpp"
+#include "figure/picture_layout.hpp"
 #include "page/plotly_lines.hpp"
 #include "page/plotly_traces.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -7,7 +7,7 @@
 
 #include "document/json.hpp"
 #include "figure/gnuplot_script.hpp"
-#include "figure/page_layout.hpp"
+#include "figure/picture_layout.hpp"
 #include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "analysis/lines/verdict.hpp"
+#include "analysis/lines/conclude.hpp"
 
 namespace ripplenotch {
 

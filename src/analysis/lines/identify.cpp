@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/lines/conclude.hpp"
 #include "analysis/lines/disagreement.hpp"
 #include "analysis/lines/hums.hpp"
 #include "analysis/lines/reported_line.hpp"
 #include "analysis/lines/tone_family.hpp"
-#include "analysis/lines/verdict.hpp"
 #include "ripplenotch/analysis/gear_ratio.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"

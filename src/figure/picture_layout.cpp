@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "figure/page_layout.hpp"
+#include "figure/picture_layout.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -119,8 +119,8 @@ std::vector<std::string> legend_names(const Panel& panel) {
     return names;
 }
 
-PageLayout lay_out(const Figure& figure) {
-    PageLayout page;
+PictureLayout lay_out(const Figure& figure) {
+    PictureLayout page;
     page.width = figure.columns > 1 ? wide_page_width : page_width;
     page.title = wrapped(visible_text(figure.title), static_cast<std::size_t>((page.width - 28.0) / 9.0));
     if (!figure.sentence.empty()) {

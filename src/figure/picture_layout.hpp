@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where everything on a page goes, in pixels from the top left, so that nothing overlaps or is cut: space for
-// names is set aside from their lengths before anything is drawn.
+// Where everything in a picture goes, in pixels from the top left, so that nothing overlaps or is cut: space
+// for names is set aside from their lengths before anything is drawn.
 
 #include <string>
 #include <vector>
@@ -33,7 +33,7 @@ struct PanelLayout {
     std::vector<LineLabel> labels;
 };
 
-struct PageLayout {
+struct PictureLayout {
     double width = 0.0, height = 0.0;
     std::vector<std::string> title, sentence;  ///< lines
     std::vector<PanelLayout> panels;
@@ -42,7 +42,7 @@ struct PageLayout {
 /// Names that the legend shows, in its order: ribbons, then curves.
 [[nodiscard]] std::vector<std::string> legend_names(const Panel& panel);
 
-[[nodiscard]] PageLayout lay_out(const Figure& figure);
+[[nodiscard]] PictureLayout lay_out(const Figure& figure);
 
 /// Positions at least `apart` from each other between `from` and `to` as far as they fit, in the order of
 /// `wanted`'s values and close to them.

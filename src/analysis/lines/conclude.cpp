@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/verdict.hpp"
+#include "analysis/lines/conclude.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "figure/page_layout.hpp"
+#include "figure/picture_layout.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ TEST_CASE("nothing on a page overlaps or leaves it, however crowded") {
     for (const int lines : {0, 1, 6}) {
         for (const int columns : {1, 2}) {
             const Figure figure = crowded(lines, columns);
-            const PageLayout page = lay_out(figure);
+            const PictureLayout page = lay_out(figure);
             double above = 14.0 + 20.0 * static_cast<double>(page.title.size()) +
                            line_px * static_cast<double>(page.sentence.size());
             REQUIRE(page.panels.size() == 3);

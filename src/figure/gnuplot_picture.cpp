@@ -6,7 +6,7 @@
 
 #include "figure/gnuplot_process.hpp"
 #include "figure/gnuplot_script.hpp"
-#include "figure/page_layout.hpp"
+#include "figure/picture_layout.hpp"
 #include "figure/same_bytes.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 #include "ripplenotch/figure/min_max.hpp"
@@ -24,7 +24,7 @@ constexpr const char* palette =
 // One panel of one page, in gnuplot's words.
 class PanelScript {
   public:
-    PanelScript(GnuplotScript& script, const PageLayout& page, const Panel& panel, const PanelLayout& box)
+    PanelScript(GnuplotScript& script, const PictureLayout& page, const Panel& panel, const PanelLayout& box)
         : script_(script), page_(page), panel_(panel), box_(box) {}
 
     void write() {
@@ -200,12 +200,12 @@ class PanelScript {
     }
 
     GnuplotScript& script_;
-    const PageLayout& page_;
+    const PictureLayout& page_;
     const Panel& panel_;
     const PanelLayout& box_;
 };
 
-void open_page(GnuplotScript& script, const PageLayout& page, PictureKind kind) {
+void open_page(GnuplotScript& script, const PictureLayout& page, PictureKind kind) {
     script.line("set encoding utf8");
     if (kind == PictureKind::svg) {
         script.line(
@@ -226,7 +226,7 @@ void open_page(GnuplotScript& script, const PageLayout& page, PictureKind kind) 
 }
 
 std::string page_script(const Figure& figure, PictureKind kind) {
-    const PageLayout page = lay_out(figure);
+    const PictureLayout page = lay_out(figure);
     GnuplotScript script;
     open_page(script, page, kind);
     script.line("set multiplot");
