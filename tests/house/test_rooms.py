@@ -15,13 +15,13 @@ SEES = {
     "core": set(),
     "log": {"core"},
     "analysis": {"core"},
-    "survey": {"core", "log", "analysis"},
     "design": {"core"},
     "model": {"core"},
-    "diagnose": {"core", "model", "analysis"},
+    "survey": {"core", "log", "analysis"},
     "filter": {"core", "log", "analysis", "design"},
-    "export": {"core", "design"},
     "evaluate": {"core", "filter", "analysis", "design"},
+    "export": {"core", "design"},
+    "diagnose": {"core", "model", "analysis"},
     "figure": {"core"},
     "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
     "document": {"core", "figure", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose"},
@@ -83,6 +83,19 @@ class Rooms(unittest.TestCase):
                     self.assertTrue(target[1] == room or target[1] in SEES[room],
                                     f"{path.relative_to(SOURCE)} in {room} includes {include}")
         self.assertGreater(looked_at, 50)
+
+    def test_the_decision_tells_every_room_and_names_files_that_there_are(self):
+        page = (SOURCE / "docs/decisions/0001-rooms.md").read_text()
+        self.assertEqual(re.findall(r"^\| `([a-z]+)` \|", page, re.M), list(SEES))
+        floors = {room: int(floor) for floor, rooms in re.findall(r"^ (\d)   ((?:[a-z]+ {1,3})+)  ", page, re.M)
+                  for room in rooms.split()}
+        self.assertEqual(set(floors), set(SEES))
+        for room, seen in SEES.items():
+            for below in seen:
+                self.assertLess(floors[below], floors[room], f"{room} sees {below}")
+        named = re.findall(r"`((?:src|include)/[\w/.]+)`", page)
+        self.assertGreater(len(named), 15)
+        self.assertEqual([name for name in named if not (SOURCE / name).exists()], [])
 
     def test_third_party_headers_have_one_door_each(self):
         for path, _, includes in sources():
