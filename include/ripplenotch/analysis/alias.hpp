@@ -26,9 +26,9 @@ struct Fold {
 [[nodiscard]] std::vector<double> unfolded_orders(double seen, double rate_hz, double speed_deg_s,
                                                   double highest);
 
-/// The same with what each explains, best first, each at its own maximum where the speeds of the heaviest
-/// sweep could put it. Rests on the heaviest sweeps, 20,000 samples at most. Empty where no image lies below
-/// `highest`.
+/// The same with what each explains, best first. Each is asked at its own maximum, within what the speeds of
+/// the heaviest sweep allow. Rests on the heaviest sweeps, 20,000 samples at most. Empty where no image lies
+/// below `highest`.
 [[nodiscard]] std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, double seen,
                                          double highest);
 

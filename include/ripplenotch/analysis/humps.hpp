@@ -21,8 +21,9 @@ struct SignificantHump {
 /// up to a fifth of the spectrum is compared with the noise below it, above it and around it, whichever is
 /// largest: noise that falls or rises along the bins, of whatever colour, is higher on one side and so makes
 /// no hump. The ratio follows an F distribution; where neighbouring cells are alike, as in noise that comes
-/// in bursts, as many fewer of them count. What a person would overlook, less than twice the amplitude of the
-/// noise beside it, is none. Lines are to be taken out of the power first, or they are humps. O(n log n).
+/// in bursts, as many fewer of them count. What has less than twice the amplitude of
+/// the noise beside it is none, since a person would overlook it. Take lines out of the power first: they
+/// would be humps. O(n log n).
 [[nodiscard]] std::vector<SignificantHump> significant_humps(const PowerSpectrum& spectrum,
                                                              double false_alarm);
 

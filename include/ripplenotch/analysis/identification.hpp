@@ -95,7 +95,7 @@ struct Disagreement {
     double chance = 1.0;                        ///< that recordings which agree differ as much
 };
 [[nodiscard]] std::string_view about_name(Disagreement::About about);
-/// Empty for a name of none.
+/// Empty where nothing has this name.
 [[nodiscard]] std::optional<Disagreement::About> about_of(std::string_view name);
 
 struct Identification {

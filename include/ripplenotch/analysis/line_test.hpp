@@ -36,9 +36,9 @@ struct SignificantPeak {
 };
 
 /// Local maxima whose false_alarm is at most the one asked for, in bin order. Each is compared with the
-/// largest of the floors 2 to 5, 3 to 12 and 3 to 40 cells away and of the one below it, so that neither the
-/// flank of a broad resonance is a line nor the noise inside a narrow one; that the floor itself is known
-/// from few cells only is part of the test: the ratio follows an F distribution. Maxima within 5 cells of
+/// largest of four floors: 2 to 5, 3 to 12 and 3 to 40 cells away, and the one below it. So the flank of a
+/// broad resonance is no line, and neither is the noise inside a narrow one. The floor is known from few
+/// cells, which the test allows for: the ratio follows an F distribution. Maxima within 5 cells of
 /// either end are not judged.
 [[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
                                                              double false_alarm);

@@ -43,7 +43,7 @@ struct OrderTracks {
     std::size_t rows_folded = 0;              ///< rows in which a line lies above half the sample rate
     std::size_t rows_not_separable = 0;       ///< left out: lines too much alike within the window
     std::size_t windows_too_slow = 0;         ///< left out: longer than WindowRule::longest
-    std::size_t windows_too_few_samples = 0;  ///< left out: under two samples an unknown
+    std::size_t windows_too_few_samples = 0;  ///< left out: fewer than two samples per unknown
 };
 
 struct WindowRule {

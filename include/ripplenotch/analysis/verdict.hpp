@@ -26,7 +26,7 @@ enum class RippleFinding {
     too_little,  ///< the joint is at rest, or moves too little to say anything
 };
 [[nodiscard]] std::string_view finding_name(RippleFinding finding);
-/// Empty for a name of none.
+/// Empty where nothing has this name.
 [[nodiscard]] std::optional<RippleFinding> finding_of(std::string_view name);
 
 /// Why the lines are not believed whatever they show.
@@ -34,7 +34,7 @@ enum class DoubtReason {
     clock,  ///< position, velocity and time contradict each other
 };
 [[nodiscard]] std::string_view doubt_name(DoubtReason reason);
-/// Empty for a name of none.
+/// Empty where nothing has this name.
 [[nodiscard]] std::optional<DoubtReason> doubt_of(std::string_view name);
 
 struct Doubt {
@@ -46,7 +46,7 @@ struct Doubt {
 /// The way of looking that gave the lines.
 enum class LineEvidence { none, stretches, sweeps, both };
 [[nodiscard]] std::string_view evidence_name(LineEvidence evidence);
-/// Empty for a name of none.
+/// Empty where nothing has this name.
 [[nodiscard]] std::optional<LineEvidence> evidence_of(std::string_view name);
 
 /// What a verdict rests on.

@@ -30,8 +30,10 @@ struct Band {
     double settle_band_percent = 0.5;
     double overshoot_percent = 0.0;
     std::vector<double> worst_attenuation_db;  ///< per order, anywhere in the band
-    double held_attenuation_db = 0.0;  ///< of all orders by TableSpec::amplitude_nm; else of the weakest line
-    std::vector<double> predicted_residual_nm;  ///< per order, at most left of it; empty without amplitudes
+    double held_attenuation_db = 0.0;          ///< of all orders, weighed by TableSpec::amplitude_nm; without
+                                               ///< amplitudes, of the order least attenuated
+    std::vector<double>
+        predicted_residual_nm;  ///< per order, the most that is left; empty without amplitudes
 
     [[nodiscard]] Cascade cascade() const;
 };

@@ -38,9 +38,8 @@ struct Model {
 inline constexpr GearRatio largest_gear_ratio{1e5};
 
 /// Reads "ripple,order=1,amplitude_nm=0.8,phase_deg=0"; a value may carry any unit of the parameter's
-/// dimension
-/// ("amplitude_nm=800mNm"). Parameters left out stay to be fitted. Throws UsageError: unknown effect or
-/// parameter, value out of its bounds.
+/// dimension ("amplitude_nm=800mNm"). Parameters left out stay to be fitted. Throws UsageError: unknown
+/// effect or parameter, value out of its bounds.
 [[nodiscard]] Term parse_term(std::string_view spec);
 
 /// Names of the values that the model has to state and does not, as "effects[1].amplitude_nm of ripple".
