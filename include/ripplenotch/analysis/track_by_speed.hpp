@@ -15,7 +15,7 @@ struct SpeedTrack {
         std::vector<double> amplitude_nm;  ///< zero to peak, mean of the rows
         /// Standard deviation of the rows' amplitudes; with one row, its own standard error.
         std::vector<double> spread_nm;
-        std::vector<double> phase_deg;  ///< of the mean of the rows as arrows of this length and direction
+        std::vector<double> phase_deg;  ///< of the mean of all rows, each an arrow of its amplitude and phase
         std::vector<double> hz;         ///< mean
     };
     std::vector<Line> lines;  ///< nan where no row of that speed has the line
