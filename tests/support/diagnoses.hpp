@@ -7,7 +7,7 @@
 
 namespace ripplenotch::testing {
 
-inline GearAccount known_gear() { return {GearRatio(100.0), {}, "--gear-ratio", {}}; }
+inline GearAccount known_gear() { return {GearRatio(100.0), {}, {}, {}, "--gear-ratio"}; }
 
 inline Finding coulomb_finding() {
     Finding finding;
