@@ -11,6 +11,7 @@
 #include "ripplenotch/page/plotly.hpp"
 #include "ripplenotch/page/result_section.hpp"
 #include "support/catch.hpp"
+#include "support/skipped.hpp"
 
 using namespace ripplenotch;
 using Catch::Contains;
@@ -127,7 +128,7 @@ TEST_CASE("without plotly the page carries pictures, says so, and runs no script
     CHECK_THAT(html, Contains("script-src 'none'") && !Contains("<script"));
     const auto picture = draw_picture(page.sections[0].figures[0], PictureKind::svg);
     if (!picture) {
-        WARN("SKIPPED: there is no gnuplot here");
+        test::skipped("there is no gnuplot here");
         CHECK_THAT(html, Contains("Neither plotly.js nor gnuplot was found"));
         return;
     }

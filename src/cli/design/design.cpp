@@ -10,8 +10,8 @@
 
 #include "cli/command.hpp"
 #include "cli/design/design_request.hpp"
+#include "cli/design/design_text.hpp"
 #include "cli/design/frontier_text.hpp"
-#include "cli/design/table_text.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/frontier_json.hpp"

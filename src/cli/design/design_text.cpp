@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/design/table_text.hpp"
+#include "cli/design/design_text.hpp"
 
 #include <fmt/format.h>
 
