@@ -12,7 +12,7 @@ using Catch::Contains;
 TEST_CASE("a survey tells a log's clock, its motion and what it is good for") {
     const LogInfo info = survey_log(source_folder() + "/data/paper_90deg_s.csv", {});
     CHECK(info.rows == 4000);
-    CHECK(info.clock.nominal_rate == 1000_Hz);
+    CHECK(info.clock.nominal_rate == Hertz(1000.0));
     CHECK(info.duration_s.value() == Approx(3.999));
     REQUIRE(info.joints.size() == 1);
     const JointInfo& joint = info.joints.front();

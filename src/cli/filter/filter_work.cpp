@@ -7,6 +7,7 @@
 
 #include "cli/filter/filter_summary.hpp"
 #include "cli/gear/joint_facts.hpp"
+#include "ripplenotch/document/metrics_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
