@@ -37,7 +37,9 @@ TEST_CASE("a diagnosis has its verdict in words, the gap as a figure and its par
         told = told || (fact.name == "gap closed, %" && fact.value == "99.9");
     CHECK(told);
     CHECK(table_named(section, "faults").rows[0][0] == "quantization");
-    CHECK(section_of(Diagnosis{}).verdict ==
+    Diagnosis nothing_found;
+    nothing_found.model.gear_ratio = GearRatio(100.0);
+    CHECK(section_of(nothing_found).verdict ==
           "matches: no effect is named; gap from 0 to 0 Nm rms, noise floor 0 Nm");
 }
 
@@ -49,10 +51,10 @@ TEST_CASE("the rounds of a diagnosis are a table that fits a page") {
                                                     "reason"});
     REQUIRE(rounds.rows.size() == 2);
     CHECK(rounds.rows[0] == std::vector<std::string>{"coulomb-friction", "confirmed",
-                                                     "torque 0.4998 (0.4987 to 0.5010) Nm; width 2 deg/s",
+                                                     "torque 0.4999 (0.4987 to 0.5010) Nm; width 2 deg/s",
                                                      "speed 10 to 90 deg/s; direction both", "0.4322",
                                                      "0.435 to 0.04968", "0.4335 to 0.05033", "offset", "-"});
-    CHECK(rounds.rows[1][2] == "frequency 50.000 (49.900 to 50.100) Hz; amplitude 0.02 Nm; phase 10 deg");
+    CHECK(rounds.rows[1][2] == "frequency 50.00 (49.90 to 50.10) Hz; amplitude 0.02 Nm; phase 10 deg");
     CHECK(rounds.rows[1][3] == "time 0.5 to 2.25; 4 to 5 s; frequency 50 Hz");
     CHECK(rounds.rows[1][6] == "- to -");
 }

@@ -11,8 +11,8 @@ inline GearAccount known_gear() { return {GearRatio(100.0), {}, {}, {}, "--gear-
 
 inline Finding coulomb_finding() {
     Finding finding;
-    finding.term = parse_term("coulomb-friction,torque_nm=0.4998466893,width_deg_s=2");
-    finding.values = {{1, 0, 0.4998466893, {}, Interval{0.4987246838, 0.5009686948}, false}};
+    finding.term = parse_term("coulomb-friction,torque_nm=0.49985,width_deg_s=2");
+    finding.values = {{1, 0, 0.49985, {}, Interval{0.4987246838, 0.5009686948}, false}};
     finding.where.speed_deg_s = {{10.0, 90.0}};
     finding.where.direction = "both";
     finding.evidence = {773388.0, 34.9626, 0.432205, 8.70051, 0.432622, 0.0, 0.959804};
