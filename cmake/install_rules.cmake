@@ -2,7 +2,7 @@ include(CMakePackageConfigHelpers)
 install(TARGETS ripplenotch_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS ripplenotch EXPORT ripplenotch_targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILE_SET lists DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT ripplenotch_targets NAMESPACE ripplenotch:: FILE ripplenotch-targets.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/ripplenotch)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/ripplenotch-config.cmake.in

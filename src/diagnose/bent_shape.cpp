@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "diagnose/search.hpp"
@@ -11,9 +12,6 @@
 namespace ripplenotch {
 namespace {
 
-// Torques of which no more than this part differs, whatever their size, are as good as one another.
-constexpr double as_good = 0.1;
-
 class Shapes {
   public:
     Shapes(const ModelBench& bench, const Model& stated, std::size_t term)
@@ -21,12 +19,15 @@ class Shapes {
         own_ = torque_at(term_);
     }
 
-    [[nodiscard]] bool as_good_at(std::size_t parameter, double bound) const {
+    // By how much of it the torque differs from that at the bound, where that is as good.
+    [[nodiscard]] std::optional<double> as_good_at(std::size_t parameter, double bound) const {
         const std::vector<double> there = torque_at(moved(parameter, bound));
-        if (!alike(own_, there)) return false;
+        const double off = difference(own_, there), as_good = bench_.rules().shape.as_good;
+        if (!(off < as_good)) return std::nullopt;
         // A bound that is as good as neutral is no particular shape.
         const double neutral = term_.effect->parameters[parameter].neutral;
-        return !alike(torque_at(moved(parameter, neutral)), there);
+        if (difference(torque_at(moved(parameter, neutral)), there) < as_good) return std::nullopt;
+        return off;
     }
 
   private:
@@ -48,16 +49,17 @@ class Shapes {
         return torque_nm;
     }
 
-    // Whatever the size of the one.
-    static bool alike(const std::vector<double>& torque, const std::vector<double>& other) {
+    // Part of a torque that the best multiple of the other leaves; 1 where that has the other sign.
+    [[nodiscard]] static double difference(const std::vector<double>& torque,
+                                           const std::vector<double>& other) {
         double square = 0.0, both = 0.0, others = 0.0;
         for (std::size_t r = 0; r < torque.size(); ++r) {
             square += torque[r] * torque[r];
             both += torque[r] * other[r];
             others += other[r] * other[r];
         }
-        // What the best multiple of the other leaves.
-        return both > 0.0 && square - both * both / others < as_good * as_good * square;
+        if (!(both > 0.0)) return 1.0;
+        return std::sqrt(std::max(square - both * both / others, 0.0) / square);
     }
 
     const ModelBench& bench_;
@@ -77,32 +79,36 @@ bool is_neutral(const Parameter& parameter, double value) {
     return std::abs(value - parameter.neutral) <= 1e-6 * std::max(1.0, std::abs(parameter.neutral));
 }
 
-// Held within its bound it does clearly worse.
-bool leans_on(const ModelBench& bench, const Candidate& model, const FittedValue& value) {
+// What is lost when it is held within its bound; much, where the log wants it there.
+double lost_within(const ModelBench& bench, const Candidate& model, const FittedValue& value) {
     const Parameter& parameter = model.stated.terms[value.term].effect->parameters[value.parameter];
     const bool at_lower = value.value - parameter.lower < parameter.upper - value.value;
-    const double inward = 0.05 * (parameter.upper - parameter.lower);
+    const double inward = bench.rules().shape.inward_part * (parameter.upper - parameter.lower);
+    const double factor = bench.rules().shape.inward_factor;
     double within = value.value + (at_lower ? inward : -inward);
-    if (parameter.lower > 0.0) within = value.value * (at_lower ? 2.0 : 0.5);
+    if (parameter.lower > 0.0) within = at_lower ? value.value * factor : value.value / factor;
     Model held = model.open, guess = model.stated;
     held.terms[value.term].values[value.parameter] = guess.terms[value.term].values[value.parameter] = within;
-    return bench.fitted(held, guess, model.prices).gain_left > model.gain_left + tie_margin;
+    return bench.fitted(held, guess, model.prices).gain_left - model.gain_left;
 }
 
 }  // namespace
 
-std::string_view bent_parameter(const ModelBench& bench, const Candidate& model, std::size_t term) {
+Bend bend_of(const ModelBench& bench, const Candidate& model, std::size_t term) {
     const Effect& effect = *model.stated.terms[term].effect;
     const Shapes shapes(bench, model.stated, term);
     for (const FittedValue& value : model.values) {
         const Parameter& parameter = effect.parameters[value.parameter];
         if (value.term != term || !is_shape(effect, value.parameter)) continue;
         if (effect.polar && effect.polar->phase == value.parameter) continue;
-        if (value.at_bound && !is_neutral(parameter, value.value) && leans_on(bench, model, value))
-            return parameter.name;
+        if (value.at_bound && !is_neutral(parameter, value.value)) {
+            const double lost = lost_within(bench, model, value);
+            if (lost > bench.rules().judge.tie_margin) return {parameter.name, "judge.tie_margin", lost};
+        }
         for (const double bound : {parameter.lower, parameter.upper}) {
-            if (!is_neutral(parameter, bound) && shapes.as_good_at(value.parameter, bound))
-                return parameter.name;
+            if (is_neutral(parameter, bound)) continue;
+            if (const auto off = shapes.as_good_at(value.parameter, bound))
+                return {parameter.name, "shape.as_good", *off};
         }
     }
     return {};

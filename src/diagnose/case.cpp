@@ -13,14 +13,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t fewest_samples = 200;
-constexpr std::size_t stretch_samples = 2000;
-// At the beginning of a stretch effects with a memory do not know what came before.
-constexpr std::size_t settling_samples = 100;
-constexpr int walk_modes = 20;
-constexpr double edge_s = 0.1;
-constexpr double kink_deviations = 6.0, kink_part = 0.04;
-
 std::vector<double> picked(const std::vector<double>& values, const std::vector<std::size_t>& rows) {
     std::vector<double> some;
     some.reserve(rows.size());
@@ -44,6 +36,7 @@ Case rows_of(const Case& whole, const std::vector<std::size_t>& rows, Hertz samp
     some.blunted_deg_s2 = picked(whole.blunted_deg_s2, rows);
     some.walk_deg = whole.walk_deg;
     some.step_nm = whole.step_nm;
+    some.moving_deg_s = whole.moving_deg_s;
     for (const std::size_t row : rows) {
         some.use.push_back(whole.use[row]);
         some.edge.push_back(whole.edge[row]);
@@ -52,8 +45,8 @@ Case rows_of(const Case& whole, const std::vector<std::size_t>& rows, Hertz samp
     return some;
 }
 
-// Where a rest begins or ends (motion_along holds the speed at 0 there), a tenth of a second to both sides.
-std::vector<unsigned char> edges_of(const Motion& motion) {
+// Where a rest begins or ends (motion_along holds the speed at 0 there), some time to both sides.
+std::vector<unsigned char> edges_of(const Motion& motion, double edge_s) {
     const auto reach = static_cast<std::size_t>(edge_s * motion.sample_rate.value()) + 1;
     const std::size_t n = motion.size();
     std::vector<unsigned char> edge(n, 0);
@@ -66,7 +59,7 @@ std::vector<unsigned char> edges_of(const Motion& motion) {
 
 // Where the acceleration jumps, smoothing makes a slope of it, and what the joint's inertia does there is not
 // known: such samples do not count.
-void leave_out_kinks(Case& whole, Seconds smoothing) {
+void leave_out_kinks(Case& whole, Seconds smoothing, const RecordingRules& rules) {
     std::vector<double> sizes;
     double most = 0.0;
     for (std::size_t k = 0; k < whole.size(); ++k) {
@@ -74,13 +67,21 @@ void leave_out_kinks(Case& whole, Seconds smoothing) {
         most = std::max(most, std::abs(whole.motion.acceleration_deg_s2[k]));
     }
     std::vector<double> sorted = sizes;
-    const double kink = std::max(kink_deviations * 1.4826 * median_in(sorted), kink_part * most);
+    const double kink = std::max(rules.kink_deviations * 1.4826 * median_in(sorted), rules.kink_part * most);
     const auto reach = static_cast<std::size_t>(0.5 * smoothing.value() * whole.motion.sample_rate.value());
     for (std::size_t k = 0; k < whole.size(); ++k) {
         if (sizes[k] <= kink) continue;
         for (std::size_t i = k - std::min(k, reach); i < std::min(k + reach + 1, whole.size()); ++i)
             whole.use[i] = 0;
     }
+}
+
+// A hundredth of the fastest speed of a slow joint is motion; of a fast one the limit stays, however fast.
+double slowest_moving(const Motion& motion, const RecordingRules& rules) {
+    double fastest = 0.0;
+    for (const double speed : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(speed));
+    return fastest > 0.0 ? std::min(rules.moving_most_deg_s, rules.moving_part * fastest)
+                         : rules.moving_most_deg_s;
 }
 
 }  // namespace
@@ -90,9 +91,10 @@ std::size_t Case::used() const {
         std::count_if(use.begin(), use.end(), [](unsigned char u) { return u != 0; }));
 }
 
-Case whole_case(const TraceView& log, Seconds smoothing) {
-    if (log.size() < fewest_samples)
-        raise<DataError>("the log has {} rows; a diagnosis needs at least {}", log.size(), fewest_samples);
+Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& rules) {
+    if (log.size() < rules.fewest_samples)
+        raise<DataError>("the log has {} rows; a diagnosis needs at least {}", log.size(),
+                         rules.fewest_samples);
     Case whole;
     whole.motion = motion_along(log, smoothing);
     const Motion smoother = motion_along(log, 3.0 * smoothing), sharper = motion_along(log, 0.5 * smoothing);
@@ -106,8 +108,9 @@ Case whole_case(const TraceView& log, Seconds smoothing) {
     for (const double torque : log.torque_nm) whole.use.push_back(std::isfinite(torque) ? 1 : 0);
     for (double& torque : whole.torque_nm) torque = std::isfinite(torque) ? torque : 0.0;
     whole.from = {0};
-    whole.edge = edges_of(whole.motion);
-    leave_out_kinks(whole, smoothing);
+    whole.moving_deg_s = slowest_moving(whole.motion, rules);
+    whole.edge = edges_of(whole.motion, rules.edge_s);
+    leave_out_kinks(whole, smoothing, rules);
     if (!log.has_position()) {
         double squares = 0.0;
         for (std::size_t k = 0; k < log.size(); ++k) {
@@ -119,9 +122,10 @@ Case whole_case(const TraceView& log, Seconds smoothing) {
     return whole;
 }
 
-Case excerpt(const Case& whole) {
-    if (whole.size() <= search_samples + stretch_samples) return whole;
-    const std::size_t stretches = search_samples / stretch_samples;
+Case excerpt(const Case& whole, const RecordingRules& rules) {
+    const std::size_t stretch_samples = rules.stretch_samples;
+    if (whole.size() <= rules.search_samples + stretch_samples) return whole;
+    const std::size_t stretches = rules.search_samples / stretch_samples;
     std::vector<std::size_t> rows, from;
     for (std::size_t s = 0; s < stretches; ++s) {
         const std::size_t begin = s * (whole.size() - stretch_samples) / (stretches - 1);
@@ -131,8 +135,8 @@ Case excerpt(const Case& whole) {
     Case some = rows_of(whole, rows, whole.motion.sample_rate);
     some.from = from;
     for (const std::size_t begin : from)
-        std::fill_n(some.use.begin() + static_cast<std::ptrdiff_t>(begin), begin > 0 ? settling_samples : 0,
-                    0);
+        std::fill_n(some.use.begin() + static_cast<std::ptrdiff_t>(begin),
+                    begin > 0 ? rules.settling_samples : 0, 0);
     return some;
 }
 
@@ -142,8 +146,8 @@ Case sketch(const Case& whole, std::size_t count) {
                    Hertz(whole.motion.sample_rate.value() / static_cast<double>(step)));
 }
 
-Case blocks(const Case& whole, std::size_t count) {
-    const std::size_t length = 240, all = whole.size();
+Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules) {
+    const std::size_t length = rules.block_samples, all = whole.size();
     if (all <= count + length) return rows_of(whole, every(whole, 1), whole.motion.sample_rate);
     const std::size_t number = count / length;
     std::vector<std::size_t> rows;
@@ -155,15 +159,15 @@ Case blocks(const Case& whole, std::size_t count) {
     // What a delay brings into the ends of a stretch is of another one.
     for (std::size_t k = 0; k < some.size(); ++k) {
         const std::size_t within = k % length;
-        if (within < 40 || within + 10 > length) some.use[k] = 0;
+        if (within < rules.block_begin || within + rules.block_end > length) some.use[k] = 0;
     }
     return some;
 }
 
-std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model) {
+std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
     std::vector<Nuisance> errors{{looked_at.rough_deg_s2, 0.0}, {looked_at.blunted_deg_s2, 0.0}};
     if (looked_at.walk_deg == 0.0) return errors;
-    // How the torque changes with the position.
+    // How the torque changes with the position: so little that it is a slope, and far above rounding.
     constexpr double shift_deg = 1e-4;
     Motion ahead = looked_at.motion, behind = looked_at.motion;
     for (double& position : ahead.position_deg) position += shift_deg;
@@ -173,8 +177,8 @@ std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model) {
     // (Karhunen and Loeve).
     const auto& time_s = looked_at.motion.time_s;
     const double duration_s = time_s.back() - time_s.front();
-    for (int mode = 1; mode <= walk_modes; ++mode) {
-        const double quarter_turns = (mode - 0.5) * std::numbers::pi;
+    for (std::size_t mode = 1; mode <= rules.walk_modes; ++mode) {
+        const double quarter_turns = (static_cast<double>(mode) - 0.5) * std::numbers::pi;
         Nuisance walk{std::vector<double>(time_s.size()),
                       looked_at.walk_deg * std::sqrt(duration_s) * std::numbers::sqrt2 / quarter_turns};
         for (std::size_t k = 0; k < time_s.size(); ++k) {

@@ -7,9 +7,12 @@
 
 #include "model/weighing.hpp"
 #include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
+
+using RecordingRules = DiagnosisRules::RecordingRules;
 
 struct Case {
     Motion motion;
@@ -22,6 +25,7 @@ struct Case {
     double walk_deg =
         0.0;               ///< rms error of the position after 1 s, where it is the integral of a noisy speed
     double step_nm = 0.0;  ///< of a log that holds whole steps coarser than its noise
+    double moving_deg_s = 0.0;      ///< slower samples count as resting where direction or speed decides
     std::vector<std::size_t> from;  ///< samples at which a stretch begins; the first is 0
 
     [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
@@ -31,19 +35,19 @@ struct Case {
 /// Root mean square; 0 of no values.
 [[nodiscard]] double rms(const std::vector<double>& values);
 
-[[nodiscard]] Case whole_case(const TraceView& log, Seconds smoothing);
+[[nodiscard]] Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& rules);
 
-/// The case itself up to this many samples; beyond, stretches spread over it that have about as many.
-inline constexpr std::size_t search_samples = 40'000;
-[[nodiscard]] Case excerpt(const Case& whole);
+/// The case itself up to rules.search_samples; beyond, stretches spread over it that have about as many.
+[[nodiscard]] Case excerpt(const Case& whole, const RecordingRules& rules);
 
 /// Every n-th sample, so that about `count` are left. The sample rate falls with it.
 [[nodiscard]] Case sketch(const Case& whole, std::size_t count);
 /// The same number in short stretches at the full rate, for what looks at neighbouring samples.
-[[nodiscard]] Case blocks(const Case& whole, std::size_t count);
+[[nodiscard]] Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules);
 
 /// Shapes that errors of the measured motion leave in the torque of a model: the walk of an integrated
 /// position, and what smoothing made of the acceleration.
-[[nodiscard]] std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model);
+[[nodiscard]] std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model,
+                                                  const RecordingRules& rules);
 
 }  // namespace ripplenotch

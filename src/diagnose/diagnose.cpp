@@ -21,10 +21,6 @@
 namespace ripplenotch {
 namespace {
 
-// The noise is looked at again when a model leaves less than this part of it.
-constexpr double noise_was_too_large = 0.985;
-constexpr int most_looks = 3;
-
 bool is_among(std::span<const std::string> names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -52,27 +48,29 @@ struct Searched {
     std::unique_ptr<ModelBench> bench;  ///< on which the last model was found
     NoiseFloor noise;
     Candidate first, last;
+    std::vector<RefusedCandidate> refused;
 };
 
-Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work) {
+Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work,
+                     const DiagnosisRules& rules) {
     const std::size_t own = model.terms.size();
     // The first fit knows nothing of the noise.
-    ModelBench rough(c, {1.0, 1.0, {}}, work);
+    ModelBench rough(c, {1.0, 1.0, {}}, work, rules);
     Searched found;
     found.first = baseline(rough, model);
     found.last = found.first;
-    for (int look = 0; look < most_looks; ++look) {
-        found.noise = noise_floor(c, found.last.stated, found.last.open);
-        found.bench = std::make_unique<ModelBench>(c, found.noise, work);
+    for (std::size_t look = 0; look < rules.noise_floor.most_looks; ++look) {
+        found.noise = noise_floor(c, found.last.stated, found.last.open, rules);
+        found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules);
         ModelBench& bench = *found.bench;
         bench.settle_on(found.last.stated);
         const Candidate start = bench.fitted(found.last.open, found.last.stated, found.last.prices);
         if (look == 0) found.first = start;
-        found.last = search(bench, start, own, effects);
+        found.last = search(bench, start, own, effects, found.refused);
         const double left = std::sqrt(found.last.gain_left / bench.samples());
         if (look > 0 && found.last.stated.terms.size() == start.stated.terms.size()) break;
         if (work.is_over()) break;
-        if (left > noise_was_too_large && found.last.stated.terms.size() == own) break;
+        if (left > rules.noise_floor.was_too_large && found.last.stated.terms.size() == own) break;
     }
     return found;
 }
@@ -93,11 +91,11 @@ void tell_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candidate&
     }
 }
 
-bool set_aside(Case& c, const std::vector<Leftover>& left) {
+bool set_aside(Case& c, const std::vector<Leftover>& left, const DiagnosisRules& rules) {
     bool any = false;
-    const double margin_s = 0.05;
+    const double margin_s = rules.leftover.aside_margin_s;
     for (const Leftover& leftover : left) {
-        if (!is_confined(leftover, c)) continue;
+        if (!is_confined(leftover, c, rules)) continue;
         for (std::size_t k = 0; k < c.size(); ++k) {
             for (const Span& span : leftover.where.time_s) {
                 if (c.motion.time_s[k] < span.from - margin_s || c.motion.time_s[k] > span.to + margin_s)
@@ -114,7 +112,7 @@ double confined_part(const Case& c, const std::vector<Leftover>& left) {
     double total_s = 0.0;
     for (const Leftover& leftover : left) {
         for (const Span& span : leftover.where.time_s)
-            total_s += leftover.kind == "time" ? span.to - span.from : 0.0;
+            total_s += leftover.kind == LeftoverKind::time ? span.to - span.from : 0.0;
     }
     return total_s / (c.motion.time_s.back() - c.motion.time_s.front());
 }
@@ -124,7 +122,7 @@ std::vector<Leftover> nameless(std::vector<Fault>& faults, std::span<const std::
     std::vector<Leftover> left;
     for (const Fault& fault : faults) {
         if (is_among(without, fault.term.effect->name))
-            left.push_back({"time", {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
+            left.push_back({LeftoverKind::time, {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
     }
     std::erase_if(faults, [&](const Fault& fault) { return is_among(without, fault.term.effect->name); });
     return left;
@@ -161,7 +159,6 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
     std::vector<Undecidable> told;
     for (const Effect* effect : others)
         told.push_back({effect->name, "it depends on where the joint is, and the log has no position", 0.0});
-    bench.screened().clear();
     for (const Trial& trial : screen(bench, model, others)) {
         for (Undecidable& entry : told) {
             if (entry.effect == trial.start.effect->name && trial.score() > 0.0)
@@ -174,21 +171,24 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
 // A disturbance of short duration bends everything that is fitted to it. It is told, set aside, and the rest
 // of the log is diagnosed without it.
 Searched search_rest(Case& part, const Model& model, std::span<const Effect* const> effects,
-                     Diagnosis& diagnosis, std::vector<Leftover>& aside, Work& work) {
-    Searched found = search_case(part, model, effects, work);
+                     Diagnosis& diagnosis, std::vector<Leftover>& aside, Work& work,
+                     const DiagnosisRules& rules) {
+    Searched found = search_case(part, model, effects, work, rules);
     {
-        ModelBench bench(part, found.noise, work);
+        ModelBench bench(part, found.noise, work, rules);
         bench.settle_on(found.first.stated);
         diagnosis.disagreement = leftovers(bench, found.first.stated);
     }
-    for (int look = 0; look < 2; ++look) {
+    for (std::size_t look = 0; look < rules.leftover.most_asides; ++look) {
         const auto left = leftovers(*found.bench, found.last.stated);
         // What is set aside has to be searched once more from the start.
-        if (confined_part(part, left) > 0.15 || work.is_over() || !set_aside(part, left)) break;
+        if (confined_part(part, left) > rules.leftover.most_aside_part || work.is_over() ||
+            !set_aside(part, left, rules))
+            break;
         for (const Leftover& leftover : left) {
-            if (leftover.kind == "time") aside.push_back(leftover);
+            if (leftover.kind == LeftoverKind::time) aside.push_back(leftover);
         }
-        found = search_case(part, model, effects, work);
+        found = search_case(part, model, effects, work, rules);
     }
     return found;
 }
@@ -199,9 +199,10 @@ Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
     const ModelBench& bench = *found.bench;
     diagnosis.unexplained = leftovers(bench, found.last.stated);
     diagnosis.rounds = judge(bench, found.last, own, effects, diagnosis.unexplained);
+    diagnosis.refused = found.refused;
     diagnosis.baseline = found.first.stated;
     diagnosis.evaluations =
-        bench.work().spent() * search_samples / static_cast<double>(bench.looked_at().size());
+        bench.work().spent() * Work::unit_samples / static_cast<double>(bench.looked_at().size());
     diagnosis.search_ended = bench.work().ended();
     diagnosis.gap.noise_floor_nm = bench.floor_nm(found.last.stated);
     diagnosis.noise_color = found.noise.color;
@@ -219,23 +220,26 @@ Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
 
 Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
                    const DiagnosisOptions& options) {
+    const DiagnosisRules& rules = options.rules;
+    check(rules);
     for (const std::string& name : options.without) (void)find_effect(name);
     const auto effects = screened(model, options.without, log.has_position());
     const std::size_t own = model.terms.size();
-    Case whole = whole_case(log, options.smoothing);
+    Case whole = whole_case(log, options.smoothing, rules.recording);
     std::optional<Case> other;
     if (validation != nullptr) {
-        other = whole_case(*validation, options.smoothing);
-        (void)find_faults(*other);
+        other = whole_case(*validation, options.smoothing, rules.recording);
+        (void)find_faults(*other, rules.faults);
     }
-    Work work(options.most_evaluations);
+    Work work(rules.search.most_evaluations);
     Diagnosis diagnosis;
+    diagnosis.false_alarm = rules.screening.false_alarm;
     diagnosis.has_position = log.has_position();
     diagnosis.samples = whole.size();
-    diagnosis.faults = find_faults(whole);
+    diagnosis.faults = find_faults(whole, rules.faults);
     std::vector<Leftover> spoiled = nameless(diagnosis.faults, options.without), aside;
-    Case part = excerpt(whole);
-    const Searched found = search_rest(part, model, effects, diagnosis, aside, work);
+    Case part = excerpt(whole, rules.recording);
+    const Searched found = search_rest(part, model, effects, diagnosis, aside, work, rules);
     Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr);
     if (!log.has_position())
         diagnosis.undecidable = undecidable(*found.bench, last, effects, options.without);
@@ -244,13 +248,14 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     diagnosis.unexplained.insert(diagnosis.unexplained.begin(), aside.begin(), aside.end());
     // The excerpt chose; the whole log gives the values.
     if (part.size() < whole.size()) {
-        (void)set_aside(whole, aside);
-        ModelBench all(whole, found.noise, work);
+        (void)set_aside(whole, aside, rules);
+        ModelBench all(whole, found.noise, work, rules);
         all.settle_on(last.stated);
         last = all.fitted(last.open, last.stated, last.prices, 4);
         diagnosis.baseline = all.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;
     }
-    last = told_values(part.size() < whole.size() ? whole : part, found.noise, last, diagnosis.faults, work);
+    last = told_values(part.size() < whole.size() ? whole : part, found.noise, last, diagnosis.faults, work,
+                       rules);
     diagnosis.model = last.stated;
     diagnosis.values = last.values;
     std::size_t place = own;
@@ -267,9 +272,9 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
         diagnosis.model.terms.push_back(fault.term);
         diagnosis.named.emplace_back(fault.term.effect->name);
     }
-    name_findings(diagnosis);
+    name_findings(diagnosis, rules);
     diagnosis.samples_used = part.size() < whole.size() ? whole.used() : part.used();
-    measure_gap(diagnosis, whole, other ? &*other : nullptr);
+    measure_gap(diagnosis, whole, other ? &*other : nullptr, rules);
     diagnosis.verdict = verdict_of(diagnosis);
     return diagnosis;
 }

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "diagnose/bent_shape.hpp"
 #include "diagnose/evenness.hpp"
+#include "diagnose/hearing.hpp"
 #include "diagnose/leftover.hpp"
 #include "diagnose/search.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -17,31 +20,24 @@
 namespace ripplenotch {
 namespace {
 
-// Part of the gain that must remain without the finding's best fortieth of the log.
-constexpr double least_elsewhere = 0.2;
-// A torque so many times larger than what it explains is held in balance by another.
-constexpr double most_inflation = 12.0;
-// A finding smaller than this part of a larger one of the same kind may only mend its form.
-constexpr double shape_part = 0.04;
-// Below this, whatever its kind.
-constexpr double slight_sigma = 0.25;
-// Above this a large torque is a finding of its own, however little of it no other can explain.
-constexpr double stands_sigma = 0.5;
-// Part of a finding's torque that must be left unexplained where it acts to cast doubt on it.
-constexpr double casts_doubt = 0.4;
-// A real effect's size is the same wherever it acts, but for what its formula leaves out.
-constexpr double most_uneven = 0.3;
-constexpr double outgrown = 0.7;
+using DoubtRules = DiagnosisRules::DoubtRules;
+
 constexpr const char* more_is_left = "more is left unexplained than it explains";
 
 // Domains in which something unexplained casts doubt on an effect.
 bool touches(Domain domain, const Leftover& leftover) {
-    if (leftover.kind == "order" || leftover.kind == "tone") {
-        return domain == Domain::order || domain == Domain::frequency;
+    switch (leftover.kind) {
+        case LeftoverKind::order:
+        case LeftoverKind::tone:
+            return domain == Domain::order || domain == Domain::frequency;
+        case LeftoverKind::position:
+            return domain == Domain::position;
+        case LeftoverKind::speed:
+            return domain == Domain::speed;
+        case LeftoverKind::time:
+            return domain == Domain::time || domain == Domain::speed || domain == Domain::position;
     }
-    if (leftover.kind == "position") return domain == Domain::position;
-    if (leftover.kind == "speed") return domain == Domain::speed;
-    return domain == Domain::time || domain == Domain::speed || domain == Domain::position;
+    return false;
 }
 
 std::string uneven_words(const Unevenness& uneven) {
@@ -53,27 +49,37 @@ bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
 
 bool of_one_kind(Domain a, Domain b) { return is_fast(a) == is_fast(b); }
 
-// A delay of part of a sample is a matter of when a sample is said to be taken.
-bool within_a_sample(const Term& term, const Case& looked_at) {
+// The shortest time of an effect of the sensor, in samples; empty when it has none.
+std::optional<double> shortest_delay_samples(const Term& term, const Case& looked_at) {
+    std::optional<double> shortest;
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         const Parameter& parameter = term.effect->parameters[p];
         if (term.effect->side != Side::sensor || parameter.unit != "s" || !term.values[p]) continue;
-        if (std::abs(*term.values[p]) < 0.75 / looked_at.motion.sample_rate.value()) return true;
+        const double samples = std::abs(*term.values[p]) * looked_at.motion.sample_rate.value();
+        shortest = std::min(shortest.value_or(samples), samples);
     }
-    return false;
+    return shortest;
 }
 
-// A size that its own error covers, unless another number tells that the effect is there.
-std::string_view untold_size(const Term& stated, const std::vector<FittedValue>& values, std::size_t term) {
-    std::string_view untold;
+// The size that is told best, and its standard error as a part of it.
+struct Size {
+    std::string_view name;
+    double error = 0.0;
+};
+
+// Empty for an effect without a size; of several the first that is told, or the last.
+std::optional<Size> size_of(const Term& stated, const std::vector<FittedValue>& values, std::size_t term,
+                            double most_error) {
+    std::optional<Size> size;
     for (const FittedValue& value : values) {
         const Parameter& parameter = stated.effect->parameters[value.parameter];
         if (value.term != term || !parameter.linear) continue;
         const double off = std::abs(value.value - parameter.neutral);
-        if (value.standard_error && *value.standard_error < 0.5 * off) return {};
-        untold = parameter.name;
+        size = {parameter.name,
+                value.standard_error ? *value.standard_error / off : std::numeric_limits<double>::infinity()};
+        if (size->error < most_error) return size;
     }
-    return untold;
+    return size;
 }
 
 // What speaks against a finding by itself; empty reason when nothing does.
@@ -82,27 +88,50 @@ struct Doubt {
     std::string reason;
 };
 
-Doubt doubt_of(const ModelBench& bench, const Candidate& model, std::size_t term, const Evidence& evidence) {
+// Too small to matter, or too small to be told.
+Doubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t term,
+                    const Evidence& evidence, Hearing& hearing) {
     const Term& stated = model.stated.terms[term];
-    if (evidence.share_sigma < material_sigma(bench.looked_at()) ||
-        within_a_sample(stated, bench.looked_at()))
+    const DoubtRules& rules = bench.rules().doubt;
+    bool slight = hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
+                                evidence.share_sigma < bench.material_sigma());
+    // A delay of part of a sample is a matter of when a sample is said to be taken.
+    if (const auto samples = shortest_delay_samples(stated, bench.looked_at()); samples && !slight)
+        slight = hearing.asked("doubt.least_delay_samples", *samples, *samples < rules.least_delay_samples);
+    if (slight)
         return {FindingStatus::immaterial,
                 fmt::format("it changes the torque by {:.2g} Nm rms beside a noise of {:.2g} Nm",
                             evidence.share_nm, bench.noise().rms_nm)};
-    if (evidence.own_nm > most_inflation * std::max(evidence.share_nm, 1e-12))
+    const double share_nm = std::max(evidence.share_nm, 1e-12);
+    if (hearing.asked("doubt.most_inflation", evidence.own_nm / share_nm,
+                      evidence.own_nm > rules.most_inflation * share_nm))
         return {FindingStatus::unidentifiable,
                 "most of its torque is held in balance by another effect's: this log cannot tell them"};
-    if (const auto size = untold_size(stated, model.values, term); !size.empty())
-        return {FindingStatus::unidentifiable, fmt::format("this log does not tell its {}", size)};
-    if (evidence.raw_gain <= 0.0) return {FindingStatus::tentative, "the gap is no smaller with it"};
-    if (const auto bent = bent_parameter(bench, model, term); !bent.empty())
-        return {
-            FindingStatus::tentative,
-            fmt::format("its {} ends at a bound, or as good as that: it stands in for something else", bent)};
-    if (evidence.elsewhere < least_elsewhere)
+    // A size that its own error covers, unless another number tells that the effect is there.
+    const auto size = size_of(stated, model.values, term, rules.most_error);
+    if (size && hearing.asked("doubt.most_error", size->error, !(size->error < rules.most_error)))
+        return {FindingStatus::unidentifiable, fmt::format("this log does not tell its {}", size->name)};
+    return {};
+}
+
+Doubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::size_t term,
+                    const Evidence& evidence, Hearing& hearing) {
+    const DoubtRules& rules = bench.rules().doubt;
+    if (hearing.asked("doubt.least_closed_nm2", evidence.raw_gain,
+                      evidence.raw_gain <= rules.least_closed_nm2))
+        return {FindingStatus::tentative, "the gap is no smaller with it"};
+    if (const Bend bend = bend_of(bench, model, term); !bend.parameter.empty()) {
+        hearing.asked(bend.rule, bend.number, true);
+        return {FindingStatus::tentative,
+                fmt::format("its {} ends at a bound, or as good as that: it stands in for something else",
+                            bend.parameter)};
+    }
+    if (hearing.asked("doubt.least_elsewhere", evidence.elsewhere,
+                      evidence.elsewhere < rules.least_elsewhere))
         return {FindingStatus::tentative,
                 "it explains one short stretch of the log and hardly anything elsewhere"};
-    if (const Unevenness uneven = unevenness(bench, model.stated, term); uneven.part > most_uneven)
+    const Unevenness uneven = unevenness(bench, model.stated, term);
+    if (hearing.asked("evenness.most_uneven", uneven.part, uneven.part > bench.rules().evenness.most_uneven))
         return {FindingStatus::tentative, uneven_words(uneven)};
     return {};
 }
@@ -110,7 +139,10 @@ Doubt doubt_of(const ModelBench& bench, const Candidate& model, std::size_t term
 }  // namespace
 
 void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& model, std::size_t term) {
-    Doubt doubt = doubt_of(bench, model, term, finding.evidence);
+    Hearing hearing(bench.rules(), finding.decisions);
+    Doubt doubt = doubt_of_size(bench, model, term, finding.evidence, hearing);
+    if (doubt.status == FindingStatus::confirmed)
+        doubt = doubt_of_kind(bench, model, term, finding.evidence, hearing);
     finding.status = doubt.status;
     finding.reason = std::move(doubt.reason);
 }
@@ -122,31 +154,42 @@ double excess_of(const ModelBench& bench, const Model& stated) {
 
 void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& bench,
                          const std::vector<Leftover>& unexplained) {
-    if (excess_nm > outgrown * finding.evidence.share_nm && !unexplained.empty()) {
+    const DoubtRules& rules = bench.rules().doubt;
+    const double share_nm = finding.evidence.share_nm;
+    Hearing hearing(bench.rules(), finding.decisions);
+    if (hearing.asked("doubt.outgrown", excess_nm / share_nm,
+                      excess_nm > rules.outgrown * share_nm && !unexplained.empty())) {
         finding.status = FindingStatus::tentative;
         finding.reason = more_is_left;
     }
+    const Leftover* largest = nullptr;
     for (const Leftover& place : unexplained) {
-        // What is left must not be small beside the finding to cast doubt on it.
         if (!touches(finding.term.effect->domain, place) ||
-            place.rms_nm < casts_doubt * finding.evidence.share_nm || is_confined(place, bench.looked_at()))
+            is_confined(place, bench.looked_at(), bench.rules()))
             continue;
-        finding.status = FindingStatus::tentative;
-        finding.reason = "something unexplained is left where it acts";
+        if (largest == nullptr || place.rms_nm > largest->rms_nm) largest = &place;
     }
+    // What is left must not be small beside the finding to cast doubt on it.
+    if (largest == nullptr || !hearing.asked("doubt.casts_doubt", largest->rms_nm / share_nm,
+                                             !(largest->rms_nm < rules.casts_doubt * share_nm)))
+        return;
+    finding.status = FindingStatus::tentative;
+    finding.reason = "something unexplained is left where it acts";
 }
 
-void doubt_for_size(Finding& finding, const std::vector<Finding>& findings) {
+void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& all) {
+    const DoubtRules& rules = all.doubt;
     const Evidence& evidence = finding.evidence;
     for (const Finding& other : findings) {
         const Effect& larger = *other.term.effect;
-        const bool slight = evidence.share_sigma < slight_sigma;
-        const bool stands =
-            evidence.share_sigma > stands_sigma && evidence.own_nm > shape_part * other.evidence.own_nm;
+        const bool slight = evidence.share_sigma < rules.slight_sigma;
+        const bool stands = evidence.share_sigma > rules.stands_sigma &&
+                            evidence.own_nm > rules.shape_part * other.evidence.own_nm;
         const double larger_nm = std::max(other.evidence.share_nm, other.evidence.own_nm);
-        if (evidence.share_nm > shape_part * larger_nm || stands ||
+        if (evidence.share_nm > rules.shape_part * larger_nm || stands ||
             !(slight || of_one_kind(finding.term.effect->domain, larger.domain)))
             continue;
+        Hearing(all, finding.decisions).asked("doubt.shape_part", evidence.share_nm / larger_nm, true);
         finding.status = is_doubtful(other) ? FindingStatus::tentative : FindingStatus::shape_correction;
         finding.reason = fmt::format("it may only mend the form of {}, which is {}", larger.name,
                                      is_doubtful(other) ? "in doubt" : "far larger");
@@ -178,8 +221,15 @@ bool doubt_beside(const ModelBench& bench, const Candidate& kept, std::size_t ow
         }
         if (!is_trusted(finding)) continue;
         const Unevenness uneven = same ? unevenness(bench, kept.stated, place) : Unevenness{};
-        const bool outdone = (same || kin) && excess_nm > outgrown * finding.evidence.share_nm;
-        if (!outdone && uneven.part <= most_uneven) continue;
+        const DiagnosisRules& rules = bench.rules();
+        const double share_nm = finding.evidence.share_nm;
+        const bool outdone = (same || kin) && excess_nm > rules.doubt.outgrown * share_nm;
+        if (!outdone && uneven.part <= rules.evenness.most_uneven) continue;
+        Hearing hearing(rules, finding.decisions);
+        if (outdone)
+            hearing.asked("doubt.outgrown", excess_nm / share_nm, true);
+        else
+            hearing.asked("evenness.most_uneven", uneven.part, true);
         finding.status = FindingStatus::tentative;
         finding.reason = outdone ? more_is_left : uneven_words(uneven);
         changed = true;

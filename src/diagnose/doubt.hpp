@@ -20,7 +20,7 @@ void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& b
 
 /// A finding that is slight beside a far larger one may only mend its form. One whose torque is large, and of
 /// which others explain much because they look alike, is no such thing.
-void doubt_for_size(Finding& finding, const std::vector<Finding>& findings);
+void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& rules);
 
 /// Once more without the findings in doubt: beside a surrogate of its kind a finding may look right that does
 /// not by itself. True when one was doubted.

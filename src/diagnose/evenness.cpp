@@ -12,10 +12,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t none = static_cast<std::size_t>(-1);
-// A place tells a size when it would be told from twice the size by so many standard deviations, and when the
-// torque there is not far below the noise.
-constexpr double telling_deviations = 10.0;
-constexpr double least_sigma = 0.5;
+using EvennessRules = DiagnosisRules::EvennessRules;
 
 struct Sums {
     double samples = 0.0, left = 0.0, torque = 0.0, both = 0.0, square = 0.0;
@@ -25,7 +22,9 @@ struct Sums {
 struct Torques {
     std::vector<double> finding_nm, left_nm;
     double variance_nm2 = 0.0;  ///< of a sum of noise over places, per sample
-    bool changes = false;       ///< in the log, be it in rows that do not count
+    double telling_nm2 =
+        0.0;               ///< sum of squares from which a torque tells its size: rules.telling_deviations
+    bool changes = false;  ///< in the log, be it in rows that do not count
 };
 
 Torques torques_of(const ModelBench& bench, const Model& stated, std::size_t term) {
@@ -38,6 +37,8 @@ Torques torques_of(const ModelBench& bench, const Model& stated, std::size_t ter
     const auto [low, high] = std::minmax_element(added.begin(), added.end());
     torques.changes = *high - *low > 1e-6 * std::max(std::abs(*low), std::abs(*high));
     torques.variance_nm2 = portable::pow(bench.noise().rms_nm, 2) * bench.noise().of_sums();
+    const double deviations = bench.rules().evenness.telling_deviations;
+    torques.telling_nm2 = deviations * deviations * torques.variance_nm2;
     return torques;
 }
 
@@ -57,11 +58,12 @@ std::vector<Sums> sums_of(const Torques& torques, const std::vector<std::size_t>
 }
 
 // Each place that tells a size has the same say.
-double between(const Torques& torques, const std::vector<std::size_t>& place, std::size_t count) {
+double between(const Torques& torques, double least_sigma, const std::vector<std::size_t>& place,
+               std::size_t count) {
     double off = 0.0, places = 0.0;
     for (const Sums& sum : sums_of(torques, place, count)) {
         const double variance = torques.variance_nm2;
-        if (sum.square < telling_deviations * telling_deviations * variance ||
+        if (sum.square < torques.telling_nm2 ||
             sum.square < least_sigma * least_sigma * variance * sum.samples)
             continue;
         const double part = sum.both / sum.square;
@@ -75,12 +77,12 @@ double between(const Torques& torques, const std::vector<std::size_t>& place, st
 bool only_constant(const Torques& torques) {
     if (!torques.changes) return false;
     const Sums sum = sums_of(torques, std::vector<std::size_t>(torques.finding_nm.size(), 0), 1)[0];
-    return sum.square - sum.torque * sum.torque / sum.samples <
-           telling_deviations * telling_deviations * torques.variance_nm2;
+    return sum.square - sum.torque * sum.torque / sum.samples < torques.telling_nm2;
 }
 
 // Of the change within places alone; each has the say of how much the torque changes in it.
-double within(const Torques& torques, const std::vector<std::size_t>& place, std::size_t count) {
+double within(const Torques& torques, double telling_deviations, const std::vector<std::size_t>& place,
+              std::size_t count) {
     double off = 0.0, all = 0.0, chance = 0.0;
     for (const Sums& sum : sums_of(torques, place, count)) {
         if (sum.samples < 2.0) continue;
@@ -109,7 +111,7 @@ std::vector<std::size_t> by_speed(const ModelBench& bench, std::size_t count) {
     const auto& velocity = bench.looked_at().motion.velocity_deg_s;
     std::vector<double> speeds;
     for (const std::size_t k : bench.rows()) {
-        if (std::abs(velocity[k]) > 1.0) speeds.push_back(std::abs(velocity[k]));
+        if (std::abs(velocity[k]) > bench.looked_at().moving_deg_s) speeds.push_back(std::abs(velocity[k]));
     }
     std::vector<double> ends;
     for (std::size_t b = 1; b < count && !speeds.empty(); ++b) {
@@ -122,7 +124,7 @@ std::vector<std::size_t> by_speed(const ModelBench& bench, std::size_t count) {
         const double speed = std::abs(velocity[k]);
         const auto b =
             static_cast<std::size_t>(std::lower_bound(ends.begin(), ends.end(), speed) - ends.begin());
-        const bool counts = speed > 1.0 && bench.looked_at().edge[k] == 0;
+        const bool counts = speed > bench.looked_at().moving_deg_s && bench.looked_at().edge[k] == 0;
         place.push_back(counts ? b + (velocity[k] > 0.0 ? count : 0) : none);
     }
     return place;
@@ -137,10 +139,14 @@ Unevenness unevenness(const ModelBench& bench, const Model& stated, std::size_t 
     const auto take = [&](double part, std::string_view where) {
         if (part > worst.part) worst = {part, where};
     };
-    take(between(torques, by_time(bench, 8), 8), "early and late in the log");
-    take(between(torques, by_speed(bench, 6), 12), "slow and fast, forth and back");
-    for (const std::size_t stretches : {40U, 10U})
-        take(within(torques, by_time(bench, stretches), stretches), "within short stretches of the log");
+    const EvennessRules& rules = bench.rules().evenness;
+    take(between(torques, rules.least_sigma, by_time(bench, rules.times), rules.times),
+         "early and late in the log");
+    take(between(torques, rules.least_sigma, by_speed(bench, rules.speeds), 2 * rules.speeds),
+         "slow and fast, forth and back");
+    for (const std::size_t stretches : {rules.short_stretches, rules.long_stretches})
+        take(within(torques, rules.telling_deviations, by_time(bench, stretches), stretches),
+             "within short stretches of the log");
     return worst;
 }
 

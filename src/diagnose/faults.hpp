@@ -11,6 +11,6 @@
 namespace ripplenotch {
 
 /// Marks spoiled samples in `looked_at.use`.
-[[nodiscard]] std::vector<Fault> find_faults(Case& looked_at);
+[[nodiscard]] std::vector<Fault> find_faults(Case& looked_at, const FaultRules& rules);
 
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "diagnose/hearing.hpp"
 #include "diagnose/place.hpp"
 #include "diagnose/search.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -12,13 +13,13 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double stretches = 40.0;  ///< of the log, in which gains are compared
-
 // Part of the gain that is left when the stretch of the log that gives most of it is put aside.
 double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& without) {
     const auto now = bench.residual(with), before = bench.residual(without);
     const auto& time_s = bench.looked_at().motion.time_s;
-    const double start_s = time_s.front(), stretch_s = std::max((time_s.back() - start_s) / stretches, 0.25);
+    const double start_s = time_s.front(),
+                 stretch_s = std::max((time_s.back() - start_s) / bench.rules().judge.stretches,
+                                      bench.rules().judge.least_stretch_s);
     std::map<long, double> gains;
     double total = 0.0, most = 0.0;
     for (std::size_t r = 0; r < now.size(); ++r) {
@@ -32,15 +33,19 @@ double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& w
 
 void find_rivals(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
                  std::span<const Effect* const> effects, Finding& finding) {
-    const std::size_t most = bench.work().ended() ? 1 : 3;
+    const DiagnosisRules::JudgeRules& rules = bench.rules().judge;
+    const std::size_t most = bench.work().ended() ? 1 : rules.most_rivals;
     std::size_t tried = 0;
+    Hearing hearing(bench.rules(), finding.decisions);
     for (const Trial& trial : screen(bench, fewer, effects)) {
         if (trial.start.effect == model.stated.terms[term].effect) continue;
-        if (trial.gain < 0.85 * finding.evidence.gain - 100.0 || tried++ >= most) break;
+        if (trial.gain < rules.rival_gain * finding.evidence.gain - rules.rival_slack || tried++ >= most)
+            break;
         const Candidate other = with_trial(bench, fewer, trial);
         const double margin = other.criterion() - model.criterion();
         finding.alternatives.push_back({trial.start.effect->name, margin});
-        if (margin < tie_margin) finding.status = FindingStatus::ambiguous;
+        if (hearing.asked("judge.tie_margin", margin, margin < rules.tie_margin))
+            finding.status = FindingStatus::ambiguous;
     }
 }
 
@@ -66,7 +71,7 @@ Finding finding_of(const ModelBench& bench, const Candidate& model, const Candid
     evidence.own_nm = rms(torque_nm);
     evidence.raw_gain = squares(bench, fewer.stated) - squares(bench, model.stated);
     evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
-    finding.where = place_of(bench.looked_at(), torque_nm, finding.term);
+    finding.where = place_of(bench.looked_at(), torque_nm, finding.term, bench.rules().place);
     return finding;
 }
 
@@ -82,6 +87,9 @@ std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std:
         removed.terms.erase(removed.terms.begin() + static_cast<std::ptrdiff_t>(term));
         const auto torque_nm = Prediction(removed, bench.looked_at().motion).added(model.stated.terms[term]);
         Finding finding = finding_of(bench, model, fewer, term, torque_nm);
+        // It was worth its price when it was added; beside later ones it may be worth less.
+        const Evidence& evidence = finding.evidence;
+        Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);
         doubt_alone(finding, bench, model, term);
         if (is_trusted(finding)) find_rivals(bench, model, fewer, term, effects, finding);
         findings.push_back(std::move(finding));
@@ -90,7 +98,7 @@ std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std:
     for (Finding& finding : findings) {
         if (!is_trusted(finding)) continue;
         doubt_for_leftovers(finding, excess_nm, bench, unexplained);
-        doubt_for_size(finding, findings);
+        doubt_for_size(finding, findings, bench.rules());
     }
     return findings;
 }

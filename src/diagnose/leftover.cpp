@@ -14,14 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-// In units of the standard deviation; many windows, lines and bins are looked at, and noise is never quite
-// what a model of it says.
-constexpr double significant = 7.0;
-// Of a window or bin: mean torque in units of the noise floor that matters there.
-constexpr double matters_mean = 0.35;
-// Of a window: how much the power of what is left may exceed that of the rest.
-constexpr double matters_power = 1.6;
-constexpr double line_prominence = 40.0;
+using LeftoverRules = DiagnosisRules::LeftoverRules;
 
 struct Window {
     std::size_t first = 0, end = 0;  ///< places in rows
@@ -31,14 +24,18 @@ struct Window {
 class Residual {
   public:
     Residual(const ModelBench& bench, const Model& stated)
-        : bench_(bench), raw_nm_(bench.raw_residual(stated)), white_(bench.residual(stated)) {
+        : bench_(bench),
+          rules_(bench.rules().leftover),
+          raw_nm_(bench.raw_residual(stated)),
+          white_(bench.residual(stated)) {
         // Errors of the measured motion are no disagreement.
         const auto cleared = bench.cleared_residual(stated);
         for (std::size_t r = 0; r < cleared.size(); ++r) raw_nm_[bench.rows()[r]] = cleared[r];
         // Of whole steps a torque that stays on one is off by up to half of it.
         const double step_nm = bench.looked_at().step_nm;
-        matters_mean_ = std::max(matters_mean, 0.55 * step_nm / bench.noise().rms_nm);
-        matters_power_ = step_nm > 0.0 ? 4.0 : matters_power;
+        matters_mean_ =
+            std::max(rules_.matters_mean, rules_.matters_mean_steps * step_nm / bench.noise().rms_nm);
+        matters_power_ = step_nm > 0.0 ? rules_.matters_power_steps : rules_.matters_power;
         inflation_ = bench.noise().of_sums();
     }
 
@@ -54,8 +51,9 @@ class Residual {
     [[nodiscard]] std::vector<Leftover> in_time() const {
         std::vector<Window> windows;
         const double rate = bench_.looked_at().motion.sample_rate.value();
-        for (const double length_s : {0.1, 0.25, 0.6, 1.5}) {
-            const auto length = std::max<std::size_t>(12, static_cast<std::size_t>(length_s * rate));
+        for (const double length_s : {rules_.shortest_window_s, rules_.short_window_s, rules_.long_window_s,
+                                      rules_.longest_window_s}) {
+            const auto length = std::max(rules_.fewest_in_window, static_cast<std::size_t>(length_s * rate));
             scan(length, windows);
         }
         std::sort(windows.begin(), windows.end(),
@@ -66,7 +64,7 @@ class Residual {
                 return window.first < other.end && other.first < window.end;
             });
             if (apart) kept.push_back(window);
-            if (kept.size() > 400) break;
+            if (kept.size() > rules_.most_windows) break;
         }
         std::sort(kept.begin(), kept.end(),
                   [](const Window& a, const Window& b) { return a.first < b.first; });
@@ -74,44 +72,18 @@ class Residual {
     }
 
     // Mean in bins of a quantity, per direction.
-    [[nodiscard]] std::vector<Leftover> in_bins(const std::vector<double>& quantity, bool by_position,
-                                                int bins) const {
-        const auto& velocity = bench_.looked_at().motion.velocity_deg_s;
+    [[nodiscard]] std::vector<Leftover> in_bins(const std::vector<double>& quantity, LeftoverKind kind,
+                                                std::size_t bins, double least_range) const {
         const auto [low, high] = std::minmax_element(quantity.begin(), quantity.end());
         std::vector<Leftover> found;
-        if (!(*high - *low > 1.0)) return found;
-        for (const int direction : {-1, 1}) {
-            std::vector<double> sum(static_cast<std::size_t>(bins), 0.0), count(sum);
-            for (const std::size_t k : bench_.rows()) {
-                if (velocity[k] * direction < 1.0 || bench_.looked_at().edge[k] != 0) continue;
-                const auto b = std::min(
-                    static_cast<std::size_t>((quantity[k] - *low) / (*high - *low) * bins), sum.size() - 1);
-                sum[b] += raw_nm_[k];
-                count[b] += 1.0;
-            }
-            Leftover leftover{by_position ? "position" : "speed", {}, 0.0, 0.0};
-            double squares = 0.0, total = 0.0;
-            for (std::size_t b = 0; b < sum.size(); ++b) {
-                if (count[b] < 30.0) continue;
-                const double mean = sum[b] / count[b] / sigma_nm();
-                if (std::abs(mean) * std::sqrt(count[b] / inflation_) < significant ||
-                    std::abs(mean) < matters_mean_)
-                    continue;
-                const double width = (*high - *low) / bins, from = *low + static_cast<double>(b) * width;
-                auto& spans = by_position ? leftover.where.position_deg : leftover.where.speed_deg_s;
-                if (!spans.empty() && std::abs(spans.back().to - from) < 1e-9 * (1.0 + std::abs(from))) {
-                    spans.back().to = from + width;
-                } else {
-                    spans.push_back({from, from + width});
-                }
-                squares += mean * mean * count[b];
-                total += count[b];
-            }
-            if (total == 0.0) continue;
-            leftover.where.direction = direction > 0 ? "positive" : "negative";
-            leftover.rms_nm = sigma_nm() * std::sqrt(squares / total);
-            leftover.part = part(leftover.rms_nm, total);
-            found.push_back(leftover);
+        if (!(*high - *low > least_range)) return found;
+        for (const Direction direction : {Direction::negative, Direction::positive}) {
+            Bins all{*low, (*high - *low) / static_cast<double>(bins), {}, {}};
+            all.sum.assign(bins, 0.0);
+            all.count.assign(bins, 0.0);
+            fill(all, quantity, *high - *low, direction);
+            const Leftover leftover = in_direction(all, kind, direction);
+            if (leftover.rms_nm > 0.0) found.push_back(leftover);
         }
         return found;
     }
@@ -119,14 +91,18 @@ class Residual {
     [[nodiscard]] std::vector<Leftover> in_lines(const GearRatio& ratio) const {
         std::vector<Leftover> found;
         std::vector<double> left_nm = raw_nm_;
-        for (int peeled = 0; peeled < 4; ++peeled) {
+        for (std::size_t peeled = 0; peeled < rules_.most_lines; ++peeled) {
             // One at a time: what is beside a strong line is often its own foot.
-            const auto lines = standing_out(bench_.looked_at(), left_nm, line_prominence, 1);
+            const auto lines =
+                standing_out(bench_.looked_at(), left_nm, rules_.line_prominence, 1, bench_.rules().lines);
             if (lines.empty()) break;
             const ResidualLine& line = lines[0];
             const double rms_nm = peel(line, left_nm);
-            if (rms_nm < material_sigma(bench_.looked_at()) * sigma_nm()) break;
-            Leftover leftover{line.by_angle ? "order" : "tone", {}, rms_nm, part(rms_nm, bench_.samples())};
+            if (rms_nm < bench_.material_sigma() * sigma_nm()) break;
+            Leftover leftover{line.by_angle ? LeftoverKind::order : LeftoverKind::tone,
+                              {},
+                              rms_nm,
+                              part(rms_nm, bench_.samples())};
             if (line.by_angle) {
                 leftover.where.order.push_back(line.frequency * 360.0 / ratio.value());
             } else {
@@ -138,6 +114,52 @@ class Residual {
     }
 
   private:
+    struct Bins {
+        double low = 0.0, width = 0.0;
+        std::vector<double> sum, count;
+    };
+
+    void fill(Bins& bins, const std::vector<double>& quantity, double range, Direction direction) const {
+        const Case& c = bench_.looked_at();
+        const double sign = direction == Direction::positive ? 1.0 : -1.0;
+        for (const std::size_t k : bench_.rows()) {
+            if (c.motion.velocity_deg_s[k] * sign < c.moving_deg_s || c.edge[k] != 0) continue;
+            const auto b = std::min(static_cast<std::size_t>((quantity[k] - bins.low) / range *
+                                                             static_cast<double>(bins.sum.size())),
+                                    bins.sum.size() - 1);
+            bins.sum[b] += raw_nm_[k];
+            bins.count[b] += 1.0;
+        }
+    }
+
+    // Of the bins whose mean is significant and matters; nothing when there are none.
+    [[nodiscard]] Leftover in_direction(const Bins& bins, LeftoverKind kind, Direction direction) const {
+        Leftover leftover{kind, {}, 0.0, 0.0};
+        double squares = 0.0, total = 0.0;
+        for (std::size_t b = 0; b < bins.sum.size(); ++b) {
+            if (bins.count[b] < rules_.fewest_in_bin) continue;
+            const double mean = bins.sum[b] / bins.count[b] / sigma_nm();
+            if (std::abs(mean) * std::sqrt(bins.count[b] / inflation_) < rules_.significant ||
+                std::abs(mean) < matters_mean_)
+                continue;
+            const double from = bins.low + static_cast<double>(b) * bins.width;
+            auto& spans =
+                kind == LeftoverKind::position ? leftover.where.position_deg : leftover.where.speed_deg_s;
+            if (!spans.empty() && std::abs(spans.back().to - from) < 1e-9 * (1.0 + std::abs(from))) {
+                spans.back().to = from + bins.width;
+            } else {
+                spans.push_back({from, from + bins.width});
+            }
+            squares += mean * mean * bins.count[b];
+            total += bins.count[b];
+        }
+        if (total == 0.0) return leftover;
+        leftover.where.direction = direction;
+        leftover.rms_nm = sigma_nm() * std::sqrt(squares / total);
+        leftover.part = part(leftover.rms_nm, total);
+        return leftover;
+    }
+
     // Takes the line out of the rows that count; its rms in them.
     [[nodiscard]] double peel(const ResidualLine& line, std::vector<double>& left_nm) const {
         const Motion& motion = bench_.looked_at().motion;
@@ -196,8 +218,8 @@ class Residual {
         for (std::size_t w = 0; w < firsts.size(); ++w) {
             const double by_mean = std::abs(means[w]) * std::sqrt(count / inflation_);
             const double by_power = (powers[w] / typical - 1.0) * std::sqrt(0.5 * count / 2.0);
-            const bool mean_out = by_mean > significant && std::abs(means[w]) > matters_mean_;
-            const bool power_out = by_power > significant && powers[w] > matters_power_ * typical;
+            const bool mean_out = by_mean > rules_.significant && std::abs(means[w]) > matters_mean_;
+            const bool power_out = by_power > rules_.significant && powers[w] > matters_power_ * typical;
             if (!mean_out && !power_out) continue;
             windows.push_back({firsts[w], firsts[w] + length,
                                std::max(mean_out ? by_mean : 0.0, power_out ? by_power : 0.0),
@@ -220,7 +242,7 @@ class Residual {
             last = window.end;
         }
         for (const auto& [first, end] : stretches) {
-            Leftover leftover{"time", {}, 0.0, 0.0};
+            Leftover leftover{LeftoverKind::time, {}, 0.0, 0.0};
             leftover.where.time_s.push_back({motion.time_s[rows[first]], motion.time_s[rows[end - 1]]});
             double squares = 0.0, slow = 1e300, fast = -1e300;
             for (std::size_t r = first; r < end; ++r) {
@@ -237,8 +259,9 @@ class Residual {
     }
 
     const ModelBench& bench_;
+    const LeftoverRules& rules_;
     std::vector<double> raw_nm_, white_;
-    double inflation_ = 1.0, matters_mean_ = matters_mean, matters_power_ = matters_power;
+    double inflation_ = 1.0, matters_mean_ = 0.0, matters_power_ = 0.0;
 };
 
 }  // namespace
@@ -251,19 +274,22 @@ std::vector<Leftover> leftovers(const ModelBench& bench, const Model& stated) {
         found.insert(found.end(), more.begin(), more.end());
     };
     append(residual.in_lines(stated.gear_ratio));
-    append(residual.in_bins(motion.position_deg, true, 18));
-    append(residual.in_bins(motion.velocity_deg_s, false, 20));
+    const LeftoverRules& rules = bench.rules().leftover;
+    append(residual.in_bins(motion.position_deg, LeftoverKind::position, rules.position_bins,
+                            rules.least_travel_deg));
+    append(residual.in_bins(motion.velocity_deg_s, LeftoverKind::speed, rules.speed_bins,
+                            rules.least_speeds * bench.looked_at().moving_deg_s));
     std::stable_sort(found.begin(), found.end(),
                      [](const Leftover& a, const Leftover& b) { return a.rms_nm > b.rms_nm; });
     return found;
 }
 
-bool is_confined(const Leftover& leftover, const Case& looked_at) {
-    if (leftover.kind != "time") return false;
+bool is_confined(const Leftover& leftover, const Case& looked_at, const DiagnosisRules& rules) {
+    if (leftover.kind != LeftoverKind::time) return false;
     const auto& time_s = looked_at.motion.time_s;
     double total_s = 0.0;
     for (const Span& span : leftover.where.time_s) total_s += span.to - span.from;
-    return total_s < 0.1 * (time_s.back() - time_s.front());
+    return total_s < rules.leftover.confined_part * (time_s.back() - time_s.front());
 }
 
 }  // namespace ripplenotch

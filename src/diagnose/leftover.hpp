@@ -14,8 +14,8 @@ namespace ripplenotch {
 /// first.
 [[nodiscard]] std::vector<Leftover> leftovers(const ModelBench& bench, const Model& stated);
 
-/// True when the leftover is confined to less than a tenth of the log's time, so that the rest of the log can
-/// be diagnosed without it.
-[[nodiscard]] bool is_confined(const Leftover& leftover, const Case& looked_at);
+/// True when the leftover is confined to less than rules.leftover.confined_part of the log's time, so that
+/// the rest of the log can be diagnosed without it.
+[[nodiscard]] bool is_confined(const Leftover& leftover, const Case& looked_at, const DiagnosisRules& rules);
 
 }  // namespace ripplenotch

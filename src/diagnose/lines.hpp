@@ -8,6 +8,8 @@
 
 namespace ripplenotch {
 
+using LineRules = DiagnosisRules::LineRules;
+
 struct ResidualLine {
     bool by_angle = false;
     double frequency = 0.0;     ///< Hz, or cycles per degree of output
@@ -18,12 +20,12 @@ struct ResidualLine {
 /// The strongest lines whose prominence is at least `least`, the strongest first, at most `most`.
 [[nodiscard]] std::vector<ResidualLine> standing_out(const Case& looked_at,
                                                      const std::vector<double>& residual_nm, double least,
-                                                     std::size_t most);
+                                                     std::size_t most, const LineRules& rules);
 
-/// Frequencies of the strongest tones of the residual, refined.
+/// Frequencies of the strongest tones of the residual, refined: at most rules.screening.most_tones.
 [[nodiscard]] std::vector<double> strongest_tones_hz(const Case& looked_at,
                                                      const std::vector<double>& residual_nm,
-                                                     std::size_t most);
+                                                     const DiagnosisRules& rules);
 
 /// The orders of a model's ripple, and the gear ratio with what its terms make of it.
 struct StatedRipple {
@@ -33,13 +35,13 @@ struct StatedRipple {
 [[nodiscard]] StatedRipple stated_ripple(const Model& model);
 
 /// Gear ratios that put `orders` on the strongest lines of a torque over the angle, the best first; how many
-/// were compared comes with them.
+/// were compared comes with them. At most rules.screening.most_ratios.
 struct RatioCandidates {
     std::vector<double> ratios;
     double compared = 1.0;
 };
 [[nodiscard]] RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
                                             const std::vector<double>& orders, double about,
-                                            std::size_t most);
+                                            const DiagnosisRules& rules);
 
 }  // namespace ripplenotch

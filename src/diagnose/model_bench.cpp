@@ -6,21 +6,41 @@
 #include <numeric>
 
 namespace ripplenotch {
-namespace {
 
-// Longer than what smoothing ties together, several to a move.
-constexpr double stretch_s = 0.25;
-
-}  // namespace
+double material_sigma(const Case& looked_at, const DiagnosisRules& rules) {
+    return looked_at.step_nm > 0.0 ? rules.judge.material_sigma_of_steps : rules.judge.material_sigma;
+}
 
 double Candidate::criterion() const { return gain_left + std::accumulate(prices.begin(), prices.end(), 0.0); }
 
-ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work)
-    : case_(looked_at), noise_(noise), work_(work), weighing_(looked_at.size(), looked_at.use, noise.color) {}
+std::string_view material_rule(const Case& looked_at) {
+    return looked_at.step_nm > 0.0 ? "judge.material_sigma_of_steps" : "judge.material_sigma";
+}
+
+ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work,
+                       const DiagnosisRules& rules)
+    : case_(looked_at),
+      noise_(noise),
+      work_(work),
+      rules_(rules),
+      weighing_(looked_at.size(), looked_at.use, noise.color) {}
+
+std::optional<std::vector<Trial>> ModelBench::screened(const Model& beside,
+                                                       std::span<const Effect* const> effects) const {
+    for (const Screened& before : screened_) {
+        if (before.beside == beside && std::ranges::equal(before.effects, effects)) return before.trials;
+    }
+    return std::nullopt;
+}
+
+void ModelBench::remember(const Model& beside, std::span<const Effect* const> effects,
+                          std::vector<Trial> trials) const {
+    screened_.push_back({beside, {effects.begin(), effects.end()}, std::move(trials)});
+}
 
 void ModelBench::settle_on(const Model& model) {
     screened_.clear();
-    weighing_.set_nuisance(motion_errors(case_, model), noise_.white_nm);
+    weighing_.set_nuisance(motion_errors(case_, model, rules_.recording), noise_.white_nm);
 }
 
 Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
@@ -42,12 +62,12 @@ Candidate ModelBench::with_errors(Candidate model) const {
 }
 
 Candidate ModelBench::settled(const Candidate& model) const {
-    return fitted(
-        model.open, model.prices,
-        {.first_guess = &model.stated,
-         .most_iterations = 30,
-         .error_stretch = static_cast<std::size_t>(std::ceil(stretch_s * case_.motion.sample_rate.value())),
-         .weighing = &weighing_});
+    return fitted(model.open, model.prices,
+                  {.first_guess = &model.stated,
+                   .most_iterations = 30,
+                   .error_stretch = static_cast<std::size_t>(
+                       std::ceil(rules_.values.error_stretch_s * case_.motion.sample_rate.value())),
+                   .weighing = &weighing_});
 }
 
 Candidate ModelBench::fitted(const Model& open, std::vector<double> prices, const FitOptions& options) const {
@@ -77,7 +97,7 @@ double ModelBench::share(const Candidate& with, const Candidate& without) const 
 
 std::vector<double> ModelBench::cleared_residual(const Model& stated) const {
     Weighing plain(case_.size(), case_.use, {});
-    plain.set_nuisance(motion_errors(case_, stated), noise_.rms_nm);
+    plain.set_nuisance(motion_errors(case_, stated, rules_.recording), noise_.rms_nm);
     const auto cleared = plain(raw_residual(stated));
     // Weighing leaves out what noise_.color makes unusable as well; here only rows() are told.
     std::vector<double> all(case_.size(), 0.0), told;

@@ -2,7 +2,8 @@
 #pragma once
 // A case with its noise, on which models are fitted and compared.
 
-#include <memory>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,12 @@
 #include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {
+
+/// Share of the noise floor below which a torque does not matter. Steps coarser than the noise bend whatever
+/// is in the torque into shapes of their own, which are no effects.
+[[nodiscard]] double material_sigma(const Case& looked_at, const DiagnosisRules& rules);
+/// The name of the rule that says so.
+[[nodiscard]] std::string_view material_rule(const Case& looked_at);
 
 /// A model in hand: the terms of the user's model first, then those that were added.
 struct Candidate {
@@ -35,7 +42,8 @@ struct Trial {
 
 class ModelBench {
   public:
-    ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work);
+    /// `looked_at`, `work` and `rules` must outlive it.
+    ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work, const DiagnosisRules& rules);
 
     /// Takes up the motion errors of this model: what can be blamed on them is no gap.
     void settle_on(const Model& model);
@@ -58,25 +66,35 @@ class ModelBench {
     [[nodiscard]] double floor_nm(const Model& stated) const;
 
     [[nodiscard]] const Case& looked_at() const { return case_; }
+    [[nodiscard]] const DiagnosisRules& rules() const { return rules_; }
+    /// Share of the noise floor below which a torque does not matter in `looked_at`.
+    [[nodiscard]] double material_sigma() const { return ripplenotch::material_sigma(case_, rules_); }
     [[nodiscard]] Work& work() const { return work_; }
     [[nodiscard]] const NoiseFloor& noise() const { return noise_; }
     [[nodiscard]] const std::vector<std::size_t>& rows() const { return weighing_.rows(); }
     [[nodiscard]] double samples() const { return static_cast<double>(weighing_.rows().size()); }
 
-    /// What a screening found beside this model, where one took place since settle_on().
-    struct Screened {
-        Model beside;
-        std::vector<Trial> trials;
-    };
-    [[nodiscard]] std::vector<Screened>& screened() const { return screened_; }
+    /// What a screening of these effects found beside this model, where one took place since settle_on().
+    [[nodiscard]] std::optional<std::vector<Trial>> screened(const Model& beside,
+                                                             std::span<const Effect* const> effects) const;
+    /// Keeps what a screening found; a screening has no other outcome however often it is made.
+    void remember(const Model& beside, std::span<const Effect* const> effects,
+                  std::vector<Trial> trials) const;
 
   private:
+    struct Screened {
+        Model beside;
+        std::vector<const Effect*> effects;
+        std::vector<Trial> trials;
+    };
+
     [[nodiscard]] Candidate fitted(const Model& open, std::vector<double> prices,
                                    const FitOptions& options) const;
     mutable std::vector<Screened> screened_;
     const Case& case_;
     NoiseFloor noise_;
     Work& work_;
+    const DiagnosisRules& rules_;
     Weighing weighing_;
 };
 

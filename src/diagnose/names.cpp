@@ -15,4 +15,14 @@ std::string_view verdict_name(DiagnosisVerdict verdict) {
     return names[static_cast<std::size_t>(verdict)];
 }
 
+std::string_view direction_name(Direction direction) {
+    constexpr std::string_view names[] = {"", "positive", "negative", "both"};
+    return names[static_cast<std::size_t>(direction)];
+}
+
+std::string_view leftover_kind_name(LeftoverKind kind) {
+    constexpr std::string_view names[] = {"time", "tone", "order", "position", "speed"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
 }  // namespace ripplenotch

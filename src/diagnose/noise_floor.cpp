@@ -19,12 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_lags = 16;
-constexpr int most_lines = 8;
-// A line stands out when its power is this many times the median about it.
-constexpr double stands_out = 60.0;
-// Noise whose quieter stretches have less than this part of its rms is none.
-constexpr double unsteady = 0.75;
+using NoiseRules = DiagnosisRules::NoiseRules;
 
 struct Columns {
     explicit Columns(std::size_t rows) : rows_(rows) {}
@@ -45,9 +40,10 @@ struct Columns {
 };
 
 // Cubic B-spline number i of n over [low, high].
-double spline(double x, double low, double high, int i, int n) {
-    const double u = std::clamp((x - low) / std::max(high - low, 1e-12), 0.0, 1.0) * (n - 3);
-    const double d = std::abs(u - (i - 1));
+double spline(double x, double low, double high, std::size_t i, std::size_t n) {
+    const double u =
+        std::clamp((x - low) / std::max(high - low, 1e-12), 0.0, 1.0) * (static_cast<double>(n) - 3.0);
+    const double d = std::abs(u - (static_cast<double>(i) - 1.0));
     if (d >= 2.0) return 0.0;
     return d < 1.0 ? (4.0 - 6.0 * d * d + 3.0 * d * d * d) / 6.0 : (2.0 - d) * (2.0 - d) * (2.0 - d) / 6.0;
 }
@@ -59,7 +55,8 @@ void add_wave(Columns& columns, const Function& turns_at, const std::function<do
 }
 
 // Ripple of the model and of its neighbourhood, each swelling with whatever the motion shows.
-void add_ripple(Columns& columns, const Case& c, double ratio, const std::vector<double>& orders) {
+void add_ripple(Columns& columns, const Case& c, double ratio, const std::vector<double>& orders,
+                const NoiseRules& rules) {
     const Motion& m = c.motion;
     const auto one = [](std::size_t) { return 1.0; };
     std::vector<double> all = orders;
@@ -69,12 +66,13 @@ void add_ripple(Columns& columns, const Case& c, double ratio, const std::vector
     for (const double order : all)
         add_wave(
             columns, [&](std::size_t k) { return order * ratio * m.position_deg[k] / 360.0; }, one);
+    const double width_deg_s = rules.step_part * c.moving_deg_s;
     const double middle_s = 0.5 * (m.time_s.front() + m.time_s.back()), half_s = m.time_s.back() - middle_s;
     const std::function<double(std::size_t)> swells[] = {
         [&](std::size_t k) { return std::abs(m.velocity_deg_s[k]); },
         [&](std::size_t k) { return m.velocity_deg_s[k]; },
         [&](std::size_t k) { return m.velocity_deg_s[k] * m.velocity_deg_s[k]; },
-        [&](std::size_t k) { return portable::tanh(m.velocity_deg_s[k] / 0.2); },
+        [&](std::size_t k) { return portable::tanh(m.velocity_deg_s[k] / width_deg_s); },
         [&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); },
         [&](std::size_t k) { return (m.time_s[k] - middle_s) / half_s; },
         [&](std::size_t k) { return portable::pow((m.time_s[k] - middle_s) / half_s, 2); },
@@ -90,32 +88,38 @@ void add_ripple(Columns& columns, const Case& c, double ratio, const std::vector
     }
 }
 
-void add_smooth(Columns& columns, const Case& c) {
+void add_smooth(Columns& columns, const Case& c, const NoiseRules& rules) {
     const Motion& m = c.motion;
+    const double width_deg_s = rules.step_part * c.moving_deg_s;
+    const std::size_t positions = rules.position_splines, speeds = rules.speed_splines,
+                      times = rules.time_splines;
     const auto [low_q, high_q] = std::minmax_element(m.position_deg.begin(), m.position_deg.end());
     double fastest = 0.0;
     for (const double v : m.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
     for (const double direction : {-1.0, 1.0}) {
-        const auto moves = [&](std::size_t k) { return m.velocity_deg_s[k] * direction > 0.2 ? 1.0 : 0.0; };
-        for (int i = 0; i < 13; ++i) {
-            columns.add(
-                [&](std::size_t k) { return moves(k) * spline(m.position_deg[k], *low_q, *high_q, i, 13); });
+        const auto moves = [&](std::size_t k) {
+            return m.velocity_deg_s[k] * direction > width_deg_s ? 1.0 : 0.0;
+        };
+        for (std::size_t i = 0; i < positions; ++i) {
+            columns.add([&](std::size_t k) {
+                return moves(k) * spline(m.position_deg[k], *low_q, *high_q, i, positions);
+            });
         }
-        for (int i = 0; i < 14; ++i) {  // closer where it is slow: friction changes most there
+        for (std::size_t i = 0; i < speeds; ++i) {  // closer where it is slow: friction changes most there
             columns.add([&](std::size_t k) {
                 return moves(k) *
-                       spline(std::sqrt(std::abs(m.velocity_deg_s[k])), 0.0, std::sqrt(fastest), i, 14);
+                       spline(std::sqrt(std::abs(m.velocity_deg_s[k])), 0.0, std::sqrt(fastest), i, speeds);
             });
         }
     }
-    for (int i = 0; i < 22; ++i)
+    for (std::size_t i = 0; i < times; ++i)
         columns.add(
-            [&](std::size_t k) { return spline(m.time_s[k], m.time_s.front(), m.time_s.back(), i, 22); });
+            [&](std::size_t k) { return spline(m.time_s[k], m.time_s.front(), m.time_s.back(), i, times); });
     columns.add([&](std::size_t k) { return m.acceleration_deg_s2[k]; });
     columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); });
-    columns.add([&](std::size_t k) { return portable::tanh(m.velocity_deg_s[k] / 0.2); });
+    columns.add([&](std::size_t k) { return portable::tanh(m.velocity_deg_s[k] / width_deg_s); });
     columns.add([&](std::size_t k) {
-        return std::abs(m.acceleration_deg_s2[k]) * portable::tanh(m.velocity_deg_s[k] / 0.2);
+        return std::abs(m.acceleration_deg_s2[k]) * portable::tanh(m.velocity_deg_s[k] / width_deg_s);
     });
 }
 
@@ -147,7 +151,7 @@ VectorXd left_by(const Columns& columns, const Case& c, const std::vector<double
 }
 
 // Levinson's recursion; the order that the length of the log supports.
-void color_of(const std::vector<double>& covariance, double samples, NoiseFloor& floor) {
+void color_of(const std::vector<double>& covariance, double samples, double lag_price, NoiseFloor& floor) {
     std::vector<double> a;  // e(k) = sum a[i] e(k-1-i) + white
     double variance = covariance[0];
     double best = samples * portable::log(variance);
@@ -163,7 +167,7 @@ void color_of(const std::vector<double>& covariance, double samples, NoiseFloor&
         next.push_back(reflection);
         a = next;
         variance *= 1.0 - reflection * reflection;
-        const double score = samples * portable::log(variance) + 6.0 * static_cast<double>(p);
+        const double score = samples * portable::log(variance) + lag_price * static_cast<double>(p);
         if (score < best) {
             best = score;
             floor.color = a;
@@ -172,9 +176,9 @@ void color_of(const std::vector<double>& covariance, double samples, NoiseFloor&
     }
 }
 
-// rms of a stretch of the log that is quieter than three in four.
-double quiet_rms(const VectorXd& left, const Case& c) {
-    const Index length = std::max<Index>(left.size() / 160, 50);
+// rms of a stretch of the log that is quieter than most.
+double quiet_rms(const VectorXd& left, const Case& c, const NoiseRules& rules) {
+    const Index length = std::max<Index>(left.size() / static_cast<Index>(rules.quiet_stretches), 50);
     std::vector<double> powers;
     for (Index first = 0; first + length <= left.size(); first += length) {
         double sum = 0.0, count = 0.0;
@@ -186,7 +190,8 @@ double quiet_rms(const VectorXd& left, const Case& c) {
         if (count > 0.5 * static_cast<double>(length)) powers.push_back(sum / count);
     }
     if (powers.empty()) return 0.0;
-    const auto middle = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 4);
+    const auto middle =
+        powers.begin() + static_cast<std::ptrdiff_t>(rules.quiet_part * static_cast<double>(powers.size()));
     std::nth_element(powers.begin(), middle, powers.end());
     return std::sqrt(*middle);
 }
@@ -203,11 +208,12 @@ double NoiseFloor::of_sums() const {
 namespace {
 
 // Lines that stand out of what is about them are no noise: they become columns, two at a time.
-VectorXd left_without_lines(Columns& columns, const Case& c, const std::vector<double>& torque_nm) {
+VectorXd left_without_lines(Columns& columns, const Case& c, const std::vector<double>& torque_nm,
+                            const DiagnosisRules& rules) {
     VectorXd left = left_by(columns, c, torque_nm);
-    for (int line = 0; line < most_lines; line += 2) {
+    for (std::size_t line = 0; line < rules.noise_floor.most_lines; line += 2) {
         const std::vector<double> values(left.data(), left.data() + left.size());
-        const auto found = standing_out(c, values, stands_out, 2);
+        const auto found = standing_out(c, values, rules.noise_floor.stands_out, 2, rules.lines);
         if (found.empty()) break;
         for (const ResidualLine& strong : found) {
             const auto& where = strong.by_angle ? c.motion.position_deg : c.motion.time_s;
@@ -221,9 +227,9 @@ VectorXd left_without_lines(Columns& columns, const Case& c, const std::vector<d
 }
 
 // At lags 0 to most_lags, over pairs of samples that both count.
-std::vector<double> autocovariance(const VectorXd& left, const Case& c) {
+std::vector<double> autocovariance(const VectorXd& left, const Case& c, std::size_t most_lags) {
     std::vector<double> covariance;
-    for (Index lag = 0; lag <= most_lags; ++lag) {
+    for (Index lag = 0; lag <= static_cast<Index>(most_lags); ++lag) {
         double sum = 0.0, count = 0.0;
         for (Index k = lag; k < left.size(); ++k) {
             if (c.use[static_cast<std::size_t>(k)] == 0 || c.use[static_cast<std::size_t>(k - lag)] == 0)
@@ -238,7 +244,8 @@ std::vector<double> autocovariance(const VectorXd& left, const Case& c) {
 
 }  // namespace
 
-NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open) {
+NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
+                       const DiagnosisRules& rules) {
     const Case& c = looked_at;
     std::vector<double> torque_nm = c.torque_nm;
     const auto predicted = predict_nm(model, c.motion);
@@ -246,23 +253,24 @@ NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& o
     const StatedRipple ripple = stated_ripple(model);
     Columns columns(c.size());
     add_slopes(columns, c, model, open);
-    add_ripple(columns, c, ripple.ratio.value(), ripple.orders);
-    add_smooth(columns, c);
-    for (const Nuisance& nuisance : motion_errors(c, model))
+    add_ripple(columns, c, ripple.ratio.value(), ripple.orders, rules.noise_floor);
+    add_smooth(columns, c, rules.noise_floor);
+    for (const Nuisance& nuisance : motion_errors(c, model, rules.recording))
         columns.add([&](std::size_t k) { return nuisance.torque_nm[k]; });
-    const VectorXd left = left_without_lines(columns, c, torque_nm);
-    std::vector<double> covariance = autocovariance(left, c);
+    const VectorXd left = left_without_lines(columns, c, torque_nm, rules);
+    std::vector<double> covariance = autocovariance(left, c, rules.noise_floor.most_lags);
     const double samples = static_cast<double>(c.used());
     const double spent = samples / std::max(samples - static_cast<double>(columns.count()), 0.2 * samples);
     covariance[0] = std::max(covariance[0], 1e-24);
     NoiseFloor floor;
-    color_of(covariance, samples, floor);
+    color_of(covariance, samples, rules.noise_floor.lag_price, floor);
     floor.rms_nm = std::sqrt(covariance[0] * spent);
     floor.white_nm *= std::sqrt(spent);
     // What is loud in some stretches only is not noise but something that none of these columns can follow,
     // such as a resonance. Its colour would hide it.
-    const double quiet_nm = quiet_rms(left, c);
-    if (quiet_nm > 0.0 && quiet_nm < unsteady * floor.rms_nm) floor = {quiet_nm, quiet_nm, {}};
+    const double quiet_nm = quiet_rms(left, c, rules.noise_floor);
+    if (quiet_nm > 0.0 && quiet_nm < rules.noise_floor.unsteady * floor.rms_nm)
+        floor = {quiet_nm, quiet_nm, {}};
     return floor;
 }
 

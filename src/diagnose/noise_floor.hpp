@@ -19,6 +19,7 @@ struct NoiseFloor {
 };
 
 /// `model`: the best one so far, wholly stated; its own slopes take part.
-[[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open);
+[[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
+                                     const DiagnosisRules& rules);
 
 }  // namespace ripplenotch

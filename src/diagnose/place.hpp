@@ -9,8 +9,11 @@
 
 namespace ripplenotch {
 
+using PlaceRules = DiagnosisRules::PlaceRules;
+
 /// Where `torque_nm`, which `term` adds along the case's motion, has at least half of its largest rms;
 /// frequency and order are the term's own.
-[[nodiscard]] Place place_of(const Case& looked_at, const std::vector<double>& torque_nm, const Term& term);
+[[nodiscard]] Place place_of(const Case& looked_at, const std::vector<double>& torque_nm, const Term& term,
+                             const PlaceRules& rules);
 
 }  // namespace ripplenotch

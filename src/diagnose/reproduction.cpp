@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnose/hearing.hpp"
 #include "diagnose/judge.hpp"
 #include "diagnose/search.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -48,7 +49,7 @@ Check checked(const ModelBench& bench, const Case& other, const Candidate& with,
     std::vector<double> brought = before;
     for (std::size_t k = 0; k < brought.size(); ++k) brought[k] -= after[k];
     return {rms_used(other, before), rms_used(other, after),
-            rms_used(other, brought) > material_sigma(other) * bench.noise().rms_nm};
+            rms_used(other, brought) > material_sigma(other, bench.rules()) * bench.noise().rms_nm};
 }
 
 void note(Finding& finding, const Check& check) {
@@ -93,8 +94,9 @@ void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& give
         }
         if (newest == nullptr) return;
         const double kept_nm = rms_left(other, kept.stated);
-        if (kept_nm <= given_nm) return;
+        if (kept_nm <= bench.rules().reproduction.most_left * given_nm) return;
         newest->status = FindingStatus::not_reproduced;
+        Hearing(bench.rules(), newest->decisions).asked("reproduction.most_left", kept_nm / given_nm, true);
         newest->reason = fmt::format(
             "the improved model leaves {:.3g} Nm of the validation log with it, the model as given {:.3g} Nm",
             kept_nm, given_nm);
@@ -111,7 +113,7 @@ Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candid
     while (true) {
         Finding* worst = nullptr;
         Candidate without_worst;
-        double most = 1.0;
+        double most = bench.rules().reproduction.most_left;
         std::size_t term = own_terms;
         for (Finding& finding : findings) {
             if (is_doubtful(finding)) continue;
@@ -127,6 +129,7 @@ Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candid
         }
         if (worst == nullptr) break;
         worst->status = FindingStatus::not_reproduced;
+        Hearing(bench.rules(), worst->decisions).asked("reproduction.most_left", most, true);
         worst->reason =
             fmt::format("it leaves {:.3g} Nm of the validation log, where {:.3g} Nm are left without it",
                         *worst->validation_after_nm, *worst->validation_before_nm);

@@ -18,11 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t sketch_samples = 6'000;
-// A column of which less than this part lies outside the model's own is not told by the log.
-constexpr double least_outside = 0.03;
-constexpr double false_alarm = 0.01;
-
 VectorXd to_vector(const std::vector<double>& values) {
     return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
@@ -65,6 +60,7 @@ class Screening {
   public:
     Screening(const ModelBench& bench, const Candidate& model, Case some, const Hints& hints)
         : model_(model),
+          rules_(bench.rules()),
           case_(std::move(some)),
           prediction_(model.stated, case_.motion),
           samples_(bench.samples()),
@@ -90,7 +86,7 @@ class Screening {
             Trial trial = opened(start);
             const double values = static_cast<double>(free_values(trial.open));
             trial.price = values * portable::log(samples_) + 2.0 * portable::log(cells) +
-                          2.0 * portable::log(static_cast<double>(effects) / false_alarm);
+                          2.0 * portable::log(static_cast<double>(effects) / rules_.screening.false_alarm);
             trial.gain = gain_of(start) * unit_;
             if (trial.gain > 0.0 && (!best || trial.score() > best->score())) best = trial;
         }
@@ -110,7 +106,7 @@ class Screening {
             if (only_linear && !coordinate.linear && coordinate.kind == CoordinateKind::logarithm) continue;
             columns.push_back(counted(to_vector(slope_nm(prediction, coordinates, point, c))));
         }
-        for (const Nuisance& error : motion_errors(case_, prediction.model()))
+        for (const Nuisance& error : motion_errors(case_, prediction.model(), rules_.recording))
             columns.push_back(counted(to_vector(error.torque_nm)));
         return columns;
     }
@@ -179,7 +175,7 @@ class Screening {
         std::vector<VectorXd> beside;
         for (const VectorXd& column : columns) {
             const VectorXd part = outside(column);
-            if (!(part.norm() > least_outside * column.norm())) continue;
+            if (!(part.norm() > rules_.screening.least_outside * column.norm())) continue;
             beside.push_back(part);
         }
         if (beside.empty()) return 0.0;
@@ -201,6 +197,7 @@ class Screening {
     }
 
     const Candidate& model_;
+    const DiagnosisRules& rules_;
     Case case_;
     Prediction prediction_;
     double samples_, unit_ = 1.0;
@@ -214,13 +211,12 @@ class Screening {
 
 std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
                           std::span<const Effect* const> effects) {
-    for (const ModelBench::Screened& before : bench.screened()) {
-        if (before.beside == model.stated) return before.trials;
-    }
+    if (const auto before = bench.screened(model.stated, effects)) return *before;
     const Hints hints = hints_of(bench, model.stated);
-    const Screening thinned(bench, model, sketch(bench.looked_at(), sketch_samples), hints);
+    const std::size_t count = bench.rules().screening.sketch_samples;
+    const Screening thinned(bench, model, sketch(bench.looked_at(), count), hints);
     // Delays and lags look at neighbouring samples, which a thinned log does not have.
-    const Screening stretches(bench, model, blocks(bench.looked_at(), sketch_samples), hints);
+    const Screening stretches(bench, model, blocks(bench.looked_at(), count, bench.rules().recording), hints);
     std::vector<Trial> trials;
     for (const Effect* effect : effects) {
         const Screening& screening = effect->side == Side::sensor ? stretches : thinned;
@@ -228,7 +224,7 @@ std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
     }
     std::stable_sort(trials.begin(), trials.end(),
                      [](const Trial& a, const Trial& b) { return a.score() > b.score(); });
-    bench.screened().push_back({model.stated, trials});
+    bench.remember(model.stated, effects, trials);
     return trials;
 }
 

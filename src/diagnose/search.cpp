@@ -6,23 +6,12 @@
 #include <optional>
 
 #include "diagnose/bent_shape.hpp"
+#include "diagnose/hearing.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_names = 7;
-constexpr int most_additions = 9;
-constexpr std::size_t finalists = 4;
-// Relative improvement at which a trial has shown what it is worth.
-constexpr double finalist_settled = 1e-5;
-// A finalist's foreseen gain, against that of the best.
-constexpr double within_reach = 0.4;
-// As long as more than this part of the sum of squares is unexplained, a step has to close a fair part of it:
-// what closes less only feeds on something else.
-constexpr double open_gap = 0.02, fair_part = 0.12;
-constexpr int swap_rounds = 2;
-// Part of the gain of a bent shape with which another is preferred to it.
-constexpr double instead_of_bent = 0.5;
+using SearchRules = DiagnosisRules::SearchRules;
 
 // The lines of a trial are names of their own: ripple of order 3 and of order 4 may both be there.
 bool same_place(const Term& a, const Term& b) {
@@ -34,17 +23,18 @@ bool same_place(const Term& a, const Term& b) {
 }
 
 bool newest_is_bent(const ModelBench& bench, const Candidate& model) {
-    return !bent_parameter(bench, model, model.stated.terms.size() - 1).empty();
+    return !bend_of(bench, model, model.stated.terms.size() - 1).parameter.empty();
 }
 
 // A shape that is bent as far as it goes stands in for something else: before it is taken, whatever closes a
 // fair part of what it closes has its turn.
+// `tried`: the finalists, the best first.
 std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate& now,
-                                       const std::vector<Trial>& trials) {
-    std::vector<Candidate> tried;
-    const double worth = trials.empty() ? 0.0 : std::max(within_reach * trials[0].score(), 0.0);
+                                       const std::vector<Trial>& trials, std::vector<Candidate>& tried) {
+    const SearchRules& rules = bench.rules().search;
+    const double worth = trials.empty() ? 0.0 : std::max(rules.within_reach * trials[0].score(), 0.0);
     for (const Trial& trial : trials) {
-        if (tried.size() >= finalists || trial.score() <= worth) break;
+        if (tried.size() >= rules.finalists || trial.score() <= worth) break;
         if (!tried.empty() && bench.work().is_over()) break;
         tried.push_back(with_trial(bench, now, trial));
     }
@@ -53,18 +43,39 @@ std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate&
                      [](const Candidate& a, const Candidate& b) { return a.criterion() < b.criterion(); });
     const double most = now.criterion() - tried[0].criterion();
     for (const Candidate& next : tried) {
-        if (now.criterion() - next.criterion() < instead_of_bent * most) break;
+        if (now.criterion() - next.criterion() < rules.instead_of_bent * most) break;
         if (!newest_is_bent(bench, next)) return next;
     }
     return tried[0];
 }
 
-bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& next) {
-    if (next.criterion() >= now.criterion()) return false;
+bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& next,
+              std::vector<Decision>& decisions) {
+    Hearing hearing(bench.rules(), decisions);
     const double gain = now.gain_left - next.gain_left, samples = bench.samples();
-    if (bench.share(next, now) < material_sigma(bench.looked_at())) return false;
+    if (hearing.asked_price(gain, next.prices.back(), next.criterion() >= now.criterion())) return false;
+    const double share = bench.share(next, now);
+    if (hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma())) return false;
     const double gap = now.gain_left - samples;
-    return gap <= open_gap * samples || gain >= fair_part * gap;
+    const SearchRules& rules = bench.rules().search;
+    const bool open = gap > rules.open_gap * samples;
+    return !open || !hearing.asked("search.fair_part", gain / gap, gain < rules.fair_part * gap);
+}
+
+// Why each finalist was not added; where none was fitted, why the best of the screening was none.
+std::vector<RefusedCandidate> refused_by(const ModelBench& bench, const Candidate& now,
+                                         const std::vector<Trial>& trials,
+                                         const std::vector<Candidate>& tried) {
+    std::vector<RefusedCandidate> refused;
+    for (const Candidate& next : tried) {
+        RefusedCandidate candidate{next.stated.terms.back(), {}};
+        // One that passes alone was left out for a better one that did not.
+        if (!worth_it(bench, now, next, candidate.decisions)) refused.push_back(std::move(candidate));
+    }
+    if (!tried.empty() || trials.empty()) return refused;
+    RefusedCandidate best{trials[0].start, {}};
+    Hearing(bench.rules(), best.decisions).asked_price(trials[0].gain, trials[0].price, true);
+    return {best};
 }
 
 // `spared`: how many of the newest were judged a moment ago.
@@ -83,6 +94,7 @@ void drop_needless(const ModelBench& bench, Candidate& now, std::size_t own_term
 
 bool swap_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
                std::span<const Effect* const> effects) {
+    const SearchRules& rules = bench.rules().search;
     for (std::size_t term = own_terms; term < now.stated.terms.size(); ++term) {
         if (bench.work().is_over()) return false;
         const Candidate fewer = without_term(bench, now, term);
@@ -90,9 +102,9 @@ bool swap_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
         std::size_t tried = 0;
         for (const Trial& trial : screen(bench, fewer, effects)) {
             if (same_place(trial.start, now.stated.terms[term])) continue;
-            if (trial.gain < 0.8 * gain || tried++ >= 2) break;
+            if (trial.gain < rules.swap_gain * gain || tried++ >= rules.most_swaps) break;
             const Candidate other = with_trial(bench, fewer, trial);
-            if (other.criterion() < now.criterion() - 1.0 && !newest_is_bent(bench, other)) {
+            if (other.criterion() < now.criterion() - rules.swap_margin && !newest_is_bent(bench, other)) {
                 now = other;
                 return true;
             }
@@ -113,7 +125,8 @@ Candidate with_trial(const ModelBench& bench, const Candidate& model, const Tria
     guess.terms.push_back(trial.start);
     std::vector<double> prices = model.prices;
     prices.push_back(trial.price);
-    return bench.fitted(open, guess, std::move(prices), bench.work().ended() ? 4 : 12, finalist_settled);
+    return bench.fitted(open, guess, std::move(prices), bench.work().ended() ? 4 : 12,
+                        bench.rules().search.finalist_settled);
 }
 
 Candidate without_term(const ModelBench& bench, const Candidate& model, std::size_t term) {
@@ -124,20 +137,30 @@ Candidate without_term(const ModelBench& bench, const Candidate& model, std::siz
     guess.terms.erase(guess.terms.begin() + at);
     prices.erase(prices.begin() + at);
     // After the end only a size is wanted.
-    if (bench.work().ended()) return bench.fitted(open, guess, std::move(prices), 3, finalist_settled);
+    if (bench.work().ended())
+        return bench.fitted(open, guess, std::move(prices), 3, bench.rules().search.finalist_settled);
     return bench.fitted(open, guess, std::move(prices));
 }
 
 Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
-                 std::span<const Effect* const> effects) {
+                 std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
+    const SearchRules& rules = bench.rules().search;
     Candidate now = start;
     const auto add_all = [&] {
+        refused.clear();
         // An addition may make an earlier one needless, and that one come back.
-        for (int added = 0; added < most_additions && now.stated.terms.size() < own_terms + most_names;
+        for (std::size_t added = 0;
+             added < rules.most_additions && now.stated.terms.size() < own_terms + rules.most_names;
              ++added) {
             if (bench.work().is_over()) return;
-            const auto next = best_addition(bench, now, screen(bench, now, effects));
-            if (!next || !worth_it(bench, now, *next)) return;
+            const std::vector<Trial> trials = screen(bench, now, effects);
+            std::vector<Candidate> tried;
+            std::vector<Decision> decisions;
+            const auto next = best_addition(bench, now, trials, tried);
+            if (!next || !worth_it(bench, now, *next, decisions)) {
+                refused = refused_by(bench, now, trials, tried);
+                return;
+            }
             now = *next;
             // The motion's errors act through the model's own torque, which has changed.
             bench.settle_on(now.stated);
@@ -147,7 +170,7 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
     };
     drop_needless(bench, now, own_terms, 0);
     add_all();
-    for (int round = 0; round < swap_rounds; ++round) {
+    for (std::size_t round = 0; round < rules.swap_rounds; ++round) {
         if (!swap_once(bench, now, own_terms, effects)) break;
         drop_needless(bench, now, own_terms);
         add_all();

@@ -48,7 +48,7 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
 
 Hints hints_of(const ModelBench& bench, const Model& stated) {
     Hints hints;
-    hints.tones_hz = strongest_tones_hz(bench.looked_at(), bench.raw_residual(stated), 3);
+    hints.tones_hz = strongest_tones_hz(bench.looked_at(), bench.raw_residual(stated), bench.rules());
     StatedRipple ripple = stated_ripple(stated);
     hints.ratio = ripple.ratio;
     hints.orders = std::move(ripple.orders);
@@ -56,7 +56,7 @@ Hints hints_of(const ModelBench& bench, const Model& stated) {
     std::erase_if(without_ripple.terms,
                   [](const Term& term) { return term.effect->ripple_order.has_value(); });
     hints.ratios = likely_ratios(bench.looked_at(), bench.raw_residual(without_ripple), hints.orders,
-                                 hints.ratio.value(), 3);
+                                 hints.ratio.value(), bench.rules());
     return hints;
 }
 

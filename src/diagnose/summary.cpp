@@ -21,11 +21,11 @@ double residual_rms(const Case& c, const Model& stated, const std::vector<unsign
 
 // Part of the squared gap above the floor that is gone, of samples that no fault spoiled. Empty when there
 // was no gap to speak of.
-std::optional<double> closed_percent(const Case& c, const Diagnosis& diagnosis) {
+std::optional<double> closed_percent(const Case& c, const Diagnosis& diagnosis, double least_gap) {
     const double floor = portable::pow(diagnosis.gap.noise_floor_nm, 2);
     const double before = portable::pow(residual_rms(c, diagnosis.baseline, c.use), 2) - floor;
     const double after = portable::pow(residual_rms(c, diagnosis.model, c.use), 2) - floor;
-    if (before < 0.02 * floor) return std::nullopt;
+    if (before < least_gap * floor) return std::nullopt;
     const double closed = 100.0 * (1.0 - std::max(after, 0.0) / before);
     return std::abs(closed) < 1e-3 ? 0.0 : closed;  // the same model, fitted anew
 }
@@ -50,7 +50,7 @@ DiagnosisVerdict verdict_of(const Diagnosis& diagnosis) {
     return told ? DiagnosisVerdict::partly_explained : DiagnosisVerdict::unexplained;
 }
 
-void name_findings(Diagnosis& diagnosis) {
+void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules) {
     std::set<std::set<std::string>> ties;
     for (const Finding& finding : diagnosis.rounds) {
         const Effect& effect = *finding.term.effect;
@@ -62,7 +62,7 @@ void name_findings(Diagnosis& diagnosis) {
         if (finding.status != FindingStatus::ambiguous) continue;
         Tie tie{{name}, {}};
         for (const RivalFinding& rival : finding.alternatives) {
-            if (rival.margin >= tie_margin) continue;
+            if (rival.margin >= rules.judge.tie_margin) continue;
             tie.effects.emplace_back(rival.effect);
             if (tie.advice.empty()) tie.advice = what_would_tell(effect, find_effect(rival.effect));
         }
@@ -71,18 +71,19 @@ void name_findings(Diagnosis& diagnosis) {
 }
 
 // Gaps are over every sample, so that they are what `simulate` says of the same model and log.
-void measure_gap(Diagnosis& diagnosis, const Case& whole, const Case* validation) {
+void measure_gap(Diagnosis& diagnosis, const Case& whole, const Case* validation,
+                 const DiagnosisRules& rules) {
     DiagnosisGap& gap = diagnosis.gap;
     const std::vector<unsigned char> all(whole.size(), 1);
     gap.before_nm = residual_rms(whole, diagnosis.baseline, all);
     gap.after_nm = residual_rms(whole, diagnosis.model, all);
-    gap.closed_percent = closed_percent(whole, diagnosis);
+    gap.closed_percent = closed_percent(whole, diagnosis, rules.values.least_gap);
     if (validation == nullptr) return;
     const Case& other = *validation;
     const std::vector<unsigned char> every(other.size(), 1);
     gap.validation_before_nm = residual_rms(other, diagnosis.baseline, every);
     gap.validation_after_nm = residual_rms(other, diagnosis.model, every);
-    gap.validation_closed_percent = closed_percent(other, diagnosis);
+    gap.validation_closed_percent = closed_percent(other, diagnosis, rules.values.least_gap);
 }
 
 }  // namespace ripplenotch

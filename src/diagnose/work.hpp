@@ -6,13 +6,16 @@
 
 namespace ripplenotch {
 
-/// How often effects were run along a motion; the unit is 40 000 samples.
+/// How often effects were run along a motion; the unit is unit_samples.
 class Work {
   public:
     explicit Work(double most) : most_(most) {}
 
+    /// Samples that one evaluation runs along.
+    static constexpr double unit_samples = 40'000.0;
+
     void add(std::size_t applied, std::size_t samples) {
-        spent_ += static_cast<double>(applied) * static_cast<double>(samples) / 40'000.0;
+        spent_ += static_cast<double>(applied) * static_cast<double>(samples) / unit_samples;
     }
     [[nodiscard]] double spent() const { return spent_; }
     /// Whether a search has to end here; remembered.

@@ -47,7 +47,8 @@ Json place_json(const Place& place) {
             {"position_deg", spans_json(place.position_deg)},
             {"hz", numbers_json(place.hz)},
             {"order", numbers_json(place.order)},
-            {"direction", place.direction.empty() ? Json(nullptr) : Json(place.direction)}};
+            {"direction", place.direction == Direction::at_rest_too ? Json(nullptr)
+                                                                    : Json(direction_name(place.direction))}};
 }
 
 Json parameters_json(const Term& term, const std::vector<FittedValue>& values) {
@@ -99,7 +100,7 @@ Json fault_json(const Fault& fault) {
 Json leftovers_json(const std::vector<Leftover>& leftovers) {
     Json list = Json::array();
     for (const Leftover& leftover : leftovers) {
-        list.push_back({{"kind", leftover.kind},
+        list.push_back({{"kind", leftover_kind_name(leftover.kind)},
                         {"where", place_json(leftover.where)},
                         {"rms_nm", six(leftover.rms_nm)},
                         {"part_of_gap", six(leftover.part)}});
@@ -130,6 +131,32 @@ Json baseline_json(const Diagnosis& diagnosis) {
     return list;
 }
 
+Json decision_json(std::string_view effect, const Json& round, std::string_view outcome,
+                   const std::vector<Decision>& decisions) {
+    Json rules = Json::array();
+    for (const Decision& decision : decisions) {
+        rules.push_back({{"rule", decision.rule},
+                         {"number", six(decision.number)},
+                         {"limit", six(decision.limit)},
+                         {"unit", decision.unit},
+                         {"against", decision.against}});
+    }
+    return {{"effect", effect}, {"round", round}, {"outcome", outcome}, {"rules", rules}};
+}
+
+// Which rules were asked about each finding and each candidate of the last step.
+Json decisions_json(const Diagnosis& diagnosis) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
+        const Finding& finding = diagnosis.rounds[i];
+        list.push_back(
+            decision_json(finding.term.effect->name, i + 1, status_name(finding.status), finding.decisions));
+    }
+    for (const RefusedCandidate& candidate : diagnosis.refused)
+        list.push_back(decision_json(candidate.term.effect->name, nullptr, "refused", candidate.decisions));
+    return list;
+}
+
 }  // namespace
 
 std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
@@ -141,6 +168,7 @@ std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
     json["named"] = diagnosis.named;
     json["rounds"] = Json::array();
     for (const Finding& finding : diagnosis.rounds) json["rounds"].push_back(round_json(finding));
+    json["decisions"] = decisions_json(diagnosis);
     json["faults"] = Json::array();
     for (const Fault& fault : diagnosis.faults) json["faults"].push_back(fault_json(fault));
     json["ambiguous"] = Json::array();

@@ -14,6 +14,7 @@
 namespace ripplenotch::fixture {
 
 inline constexpr double noise_nm = 0.05;
+inline const DiagnosisRules standard;
 
 inline const Motion& tour() {
     static const std::vector<std::string> specs = {"rest,duration=0.4s",

@@ -17,7 +17,7 @@ Case case_with(std::initializer_list<std::string_view> hidden, std::uint64_t see
     Model truth = joint();
     for (const auto term : hidden) truth.terms.push_back(parse_term(term));
     const Trace log = logged(truth, tour(), seed);
-    return whole_case(log.view(), default_smoothing);
+    return whole_case(log.view(), default_smoothing, standard.recording);
 }
 
 std::vector<std::string> names(const std::vector<Fault>& faults) {
@@ -34,7 +34,7 @@ TEST_CASE("a log without faults has none, whatever its noise") {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         Case c = case_with({}, seed);
         const std::size_t before = c.used();
-        CHECK(names(find_faults(c)).empty());
+        CHECK(names(find_faults(c, standard.faults)).empty());
         CHECK(c.used() == before);
     }
 }
@@ -42,7 +42,7 @@ TEST_CASE("a log without faults has none, whatever its noise") {
 TEST_CASE("each fault is found alone, with its size, and what it spoiled does not count") {
     SECTION("clipping") {
         Case c = case_with({"saturation,limit_nm=0.9"});
-        const auto faults = find_faults(c);
+        const auto faults = find_faults(c, standard.faults);
         CHECK(names(faults) == Names{"saturation"});
         CHECK(*faults[0].term.values[0] == 0.9);
         std::size_t counted = 0;
@@ -53,7 +53,7 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
     SECTION("whole steps") {
         Case c = case_with({"quantization,step_nm=0.4"});
         const std::size_t before = c.used();
-        const auto faults = find_faults(c);
+        const auto faults = find_faults(c, standard.faults);
         CHECK(names(faults) == Names{"quantization"});
         CHECK(*faults[0].term.values[0] == Approx(0.4));
         CHECK(c.used() == before);
@@ -61,7 +61,7 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
     SECTION("spikes") {
         Case c = case_with({"spikes,rate_percent=0.15,size_nm=5"});
         const std::size_t before = c.used();
-        const auto faults = find_faults(c);
+        const auto faults = find_faults(c, standard.faults);
         CHECK(names(faults) == Names{"spikes"});
         CHECK(*faults[0].term.values[1] == Approx(5.0).epsilon(0.05));
         CHECK(faults[0].samples == before - c.used());
@@ -69,7 +69,7 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
     }
     SECTION("held stretches") {
         Case c = case_with({"dropout,rate_hz=1,duration_s=0.1"});
-        const auto faults = find_faults(c);
+        const auto faults = find_faults(c, standard.faults);
         CHECK(names(faults) == Names{"dropout"});
         CHECK(*faults[0].term.values[1] == Approx(0.1).epsilon(0.3));
         CHECK(faults[0].time_s.size() >= 6);
@@ -78,18 +78,18 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
 
 TEST_CASE("steps finer than the noise are no fault: a log of four decimals is as good as continuous") {
     Case c = case_with({"quantization,step_nm=0.0001"});
-    CHECK(names(find_faults(c)).empty());
+    CHECK(names(find_faults(c, standard.faults)).empty());
     Case finer = case_with({"quantization,step_nm=0.02"});
-    CHECK(names(find_faults(finer)).empty());
+    CHECK(names(find_faults(finer, standard.faults)).empty());
 }
 
 TEST_CASE("a resonance and a burst of noise are no spikes") {
     Case c = case_with({"resonance,frequency_hz=30,damping=0.05"});
-    CHECK(names(find_faults(c)) == Names{});
+    CHECK(names(find_faults(c, standard.faults)) == Names{});
     Case burst = case_with({});
     Noise noise(3, NoiseChannel::torque);
     for (std::size_t k = 3000; k < 3600; ++k) burst.torque_nm[k] += 0.4 * noise.normal();
-    CHECK(names(find_faults(burst)).empty());
+    CHECK(names(find_faults(burst, standard.faults)).empty());
 }
 
 TEST_CASE("noise with heavy tails has no spikes") {
@@ -102,6 +102,6 @@ TEST_CASE("noise with heavy tails has no spikes") {
             for (int i = 0; i < 4; ++i) squares += std::pow(noise.normal(), 2);
             torque += 0.08 / std::sqrt(2.0) * noise.normal() / std::sqrt(squares / 4.0);
         }
-        CHECK(names(find_faults(c)) == Names{});
+        CHECK(names(find_faults(c, standard.faults)) == Names{});
     }
 }

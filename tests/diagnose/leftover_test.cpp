@@ -30,7 +30,7 @@ TEST_CASE("something touched for a third of a second is unexplained, at its time
     CHECK(found.named.empty());
     CHECK(found.verdict == DiagnosisVerdict::unexplained);
     REQUIRE(!found.unexplained.empty());
-    CHECK(found.unexplained[0].kind == "time");
+    CHECK(found.unexplained[0].kind == LeftoverKind::time);
     CHECK(holds(found.unexplained[0].where.time_s, 7.06));
     CHECK(found.unexplained[0].rms_nm > 0.5);
 }

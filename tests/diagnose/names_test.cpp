@@ -34,7 +34,7 @@ Names sorted(Names names) {
     return names;
 }
 
-bool tells(const Diagnosis& found, std::string_view kind) {
+bool tells(const Diagnosis& found, LeftoverKind kind) {
     return std::any_of(found.unexplained.begin(), found.unexplained.end(),
                        [&](const Leftover& leftover) { return leftover.kind == kind; });
 }
@@ -66,7 +66,7 @@ TEST_CASE("a ripple that may not be named is unexplained at its order") {
     CHECK(found.named.empty());
     double order = 0.0, most_nm = 0.0;
     for (const Leftover& leftover : found.unexplained) {
-        if (leftover.kind != "order" || leftover.rms_nm < most_nm) continue;
+        if (leftover.kind != LeftoverKind::order || leftover.rms_nm < most_nm) continue;
         order = leftover.where.order[0];
         most_nm = leftover.rms_nm;
     }
@@ -129,7 +129,9 @@ TEST_CASE(
     CHECK(!whole.search_ended);
     CHECK(whole.evaluations > 10.0);
     CHECK(sorted(whole.named) == Names{"offset", "viscous-friction"});
-    const Diagnosis ended = diagnose(opened(joint()), log.view(), nullptr, {.most_evaluations = 1.0});
+    DiagnosisOptions short_search;
+    short_search.rules.search.most_evaluations = 1.0;
+    const Diagnosis ended = diagnose(opened(joint()), log.view(), nullptr, short_search);
     tell(ended);
     CHECK(ended.search_ended);
     CHECK(ended.evaluations < whole.evaluations);
@@ -166,7 +168,7 @@ TEST_CASE("faults that may not be named are unexplained at their samples") {
     const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr, {.without = spikes});
     CHECK(found.named.empty());
     CHECK(found.faults.empty());
-    REQUIRE(tells(found, "time"));
+    REQUIRE(tells(found, LeftoverKind::time));
     CHECK(found.unexplained[0].rms_nm > 3.0);
     CHECK(found.unexplained[0].where.time_s.size() >= 5);
 }

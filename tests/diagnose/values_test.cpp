@@ -49,11 +49,11 @@ Motion smooth_strokes() {
 
 Candidate told(const Trace& log, const Model& open, const Model& near,
                const std::vector<Fault>& faults = {}) {
-    const Case looked_at = whole_case(log.view(), default_smoothing);
+    const Case looked_at = whole_case(log.view(), default_smoothing, standard.recording);
     Work work(1e9);
     return told_values(looked_at, {noise_nm, noise_nm, {}},
-                       {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults,
-                       work);
+                       {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults, work,
+                       standard);
 }
 
 struct Errors {
@@ -111,13 +111,14 @@ TEST_CASE("a torque that the converter cuts on one side does not pull the values
     Errors offset, ripple;
     for (std::uint64_t seed = 80; seed < 96; ++seed) {
         const Trace log = with_encoder(logged(cut, tour(), seed));
-        Case looked_at = whole_case(log.view(), default_smoothing);
-        const auto faults = find_faults(looked_at);
+        Case looked_at = whole_case(log.view(), default_smoothing, standard.recording);
+        const auto faults = find_faults(looked_at, standard.faults);
         REQUIRE(faults.size() == 1);
         Work work(1e9);
-        const Candidate found = told_values(
-            looked_at, {noise_nm, noise_nm, {}},
-            {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults, work);
+        const Candidate found =
+            told_values(looked_at, {noise_nm, noise_nm, {}},
+                        {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults,
+                        work, standard);
         offset.look_at(found, truth, 3, 0);
         ripple.look_at(found, truth, 1, 1);
     }

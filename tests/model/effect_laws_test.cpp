@@ -77,6 +77,15 @@ TEST_CASE("effects have unique names in kebab-case, are found by them, and descr
                       Contains("did you mean ripple?") && Contains("ripplenotch effects"));
 }
 
+TEST_CASE("each effect of the converter says how a log shows it, and no other effect does") {
+    for (const Effect* effect : catalogue()) {
+        CAPTURE(effect->name);
+        CHECK((effect->detect != nullptr) == (effect->side == Side::converter));
+        CHECK((effect->detect_turn == 0 || effect->detect != nullptr));
+        CHECK((!effect->range_limit || effect->parameters[*effect->range_limit].unit == "Nm"));
+    }
+}
+
 TEST_CASE("look-alikes are effects of the catalogue, or are said in words, and each says what decides") {
     for (const Effect* effect : catalogue()) {
         CAPTURE(effect->name);

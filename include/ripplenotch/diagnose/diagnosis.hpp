@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 #include "ripplenotch/model/model.hpp"
@@ -42,11 +43,20 @@ struct Span {
     bool operator==(const Span&) const = default;
 };
 
+enum class Direction {
+    at_rest_too,  ///< in none in particular, and where the joint rests
+    positive,
+    negative,
+    both,  ///< wherever it moves
+};
+/// "positive", "negative", "both"; empty for at_rest_too.
+[[nodiscard]] std::string_view direction_name(Direction direction);
+
 /// Where in a log something acts. Empty lists: nowhere in particular.
 struct Place {
     std::vector<Span> time_s, speed_deg_s, position_deg;
     std::vector<double> hz, order;  ///< order: cycles per motor revolution
-    std::string direction;          ///< "positive", "negative", "both"; empty: at rest too
+    Direction direction = Direction::at_rest_too;
 };
 
 /// Why a finding is believed.
@@ -66,6 +76,20 @@ struct RivalFinding {
     double margin = 0.0;  ///< gain by which the finding is ahead of it
 };
 
+/// A rule that was asked about a finding or a candidate.
+struct Decision {
+    std::string rule;  ///< of diagnosis_rules(); "price": what chance might gain, given all that was tried
+    double number = 0.0, limit = 0.0;
+    std::string_view unit;
+    bool against = false;  ///< it spoke against; the last that did decided
+};
+
+/// What the search did not add in its last step.
+struct RefusedCandidate {
+    Term term;  ///< with the values that were tried
+    std::vector<Decision> decisions;
+};
+
 /// One effect that was added, in the order of adoption.
 struct Finding {
     Term term;  ///< with its values
@@ -77,7 +101,8 @@ struct Finding {
     double gap_before_nm = 0.0, gap_after_nm = 0.0;
     /// rms residual of the validation log, without it and with it beside what is believed.
     std::optional<double> validation_before_nm, validation_after_nm;
-    std::string reason;  ///< of a status other than confirmed, in words
+    std::string reason;               ///< of a status other than confirmed, in words
+    std::vector<Decision> decisions;  ///< in the order in which the rules were asked
 };
 
 /// Effects between which this log does not decide.
@@ -86,9 +111,13 @@ struct Tie {
     std::string advice;  ///< the experiment that would
 };
 
+/// What a leftover is confined to.
+enum class LeftoverKind { time, tone, order, position, speed };
+[[nodiscard]] std::string_view leftover_kind_name(LeftoverKind kind);
+
 /// Something that no effect of the catalogue explains.
 struct Leftover {
-    std::string kind;  ///< "time", "tone", "order", "position", "speed", "noise"
+    LeftoverKind kind = LeftoverKind::time;
     Place where;
     double rms_nm = 0.0;  ///< within the place
     double part = 0.0;    ///< of the squared residual of the whole log
@@ -122,6 +151,7 @@ struct Diagnosis {
     Model model;     ///< the improved one: with what was found, but for what is tentative or unidentifiable
     std::vector<FittedValue> values;  ///< of every fitted value of the improved model
     std::vector<Finding> rounds;
+    std::vector<RefusedCandidate> refused;
     std::vector<Fault> faults;
     std::vector<std::string> named;
     std::string doubt;  ///< one sentence, where the verdict is undecided
@@ -142,14 +172,12 @@ struct Diagnosis {
 struct DiagnosisOptions {
     Seconds smoothing = default_smoothing;
     std::span<const std::string> without = {};  ///< names of effects that are not tried
-    /// The search ends after so many; Diagnosis::evaluations are counted alike. One to three hidden effects
-    /// take up to a third of it.
-    double most_evaluations = 5000.0;
+    DiagnosisRules rules = {};
 };
 
-/// Diagnoses a log of at least 200 samples. `validation` is another log that nothing is fitted to; it may be
-/// absent. Throws UsageError: an unknown name in `without`, a model whose lines are not stated; DataError: a
-/// log too short, or without motion.
+/// Diagnoses a log of at least rules.recording.fewest_samples. `validation` is another log that nothing is
+/// fitted to; it may be absent. Throws UsageError: an unknown name in `without`, a rule outside its bounds, a
+/// model whose lines are not stated; DataError: a log too short, or without motion.
 [[nodiscard]] Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
                                  const DiagnosisOptions& options = {});
 

@@ -97,6 +97,10 @@ struct Polar {
     std::size_t size, phase;  ///< places in Effect::parameters
 };
 
+struct LoggedTorque;   // ripplenotch/model/detection.hpp
+struct DetectedFault;  // the same
+struct FaultRules;
+
 struct Effect {
     std::string_view name;      ///< kebab-case, stable
     std::string_view summary;   ///< one line
@@ -115,6 +119,11 @@ struct Effect {
     std::optional<std::size_t> ripple_order = std::nullopt;  ///< joint: it is a ripple term, and this
                                                              ///< parameter is its order
 
+    /// converter: this parameter is the end of the range in Nm, so that torques near it are cut on one side
+    std::optional<std::size_t> range_limit = std::nullopt;
+    /// converter: detectors of a lower turn have marked what they spoiled before this one looks
+    std::size_t detect_turn = 0;
+
     // One of the following, by side. `values` has one entry per parameter, in their order and units, each
     // allowed. All are pure functions.
 
@@ -127,6 +136,10 @@ struct Effect {
     /// amplitude * Re(gain * exp(i * angle)).
     void (*change_ripple)(const Situation& situation, Order order, std::span<const double> values,
                           std::span<std::complex<double>> gain) = nullptr;
+
+    /// converter, beside apply: whether a log shows this effect, and where. Every one has it: no fit sees
+    /// what a converter did.
+    std::optional<DetectedFault> (*detect)(const LoggedTorque& log, const FaultRules& rules) = nullptr;
 };
 
 /// All effects in the order of effects.def.

@@ -11,6 +11,7 @@
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
+#include "cli/text_table.hpp"
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
@@ -27,12 +28,30 @@ struct Request {
     LogOptions log;
     std::string path, model;
     std::optional<std::string> validate;
-    std::vector<std::string> without;
+    std::vector<std::string> without, rules;
+    bool list_rules = false, explain = false;
     Seconds smoothing = default_smoothing;
     bool require_conclusive = false;
 };
 
+/// Every rule with its value, those of --rule included.
+std::string rules_text(const DiagnosisRules& rules) {
+    std::vector<std::vector<std::string>> rows = {{"rule", "is", "from", "to", "kind", "unit", "why"}};
+    for (const DiagnosisRule& rule : diagnosis_rules()) {
+        rows.push_back({rule.name, shortest(rule.get(rules)), shortest(rule.lowest), shortest(rule.highest),
+                        rule.whole ? "whole" : "number", std::string(rule.unit), std::string(rule.why)});
+    }
+    return text_table(rows, "lrrrl");
+}
+
+DiagnosisRules rules_of(const Request& request) {
+    DiagnosisRules rules;
+    for (const std::string& assignment : request.rules) set_rule(rules, assignment);
+    return rules;
+}
+
 void check(const Request& request) {
+    if (request.path.empty()) raise<UsageError>("LOG is missing: the measured log; - is standard input");
     if (request.model.empty())
         raise<UsageError>("--model is missing: the model.json whose gap to the log is to be explained");
     if (request.path == "-" && request.model == "-")
@@ -72,14 +91,20 @@ Diagnosis diagnosed(const Request& request, const Model& model, const Log& log, 
     if (request.validate) other = read(request, model, *request.validate, provenance);
     Progress::current().begin("looking for what is missing", "", 0);
     try {
-        return diagnose_readings(model, log, other ? &*other : nullptr,
-                                 {.smoothing = request.smoothing, .without = request.without});
+        return diagnose_readings(
+            model, log, other ? &*other : nullptr,
+            {.smoothing = request.smoothing, .without = request.without, .rules = rules_of(request)});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
 }
 
 ExitCode run(const Request& request, const std::string& command_line) {
+    const DiagnosisRules rules = rules_of(request);  // refused before anything is read
+    if (request.list_rules) {
+        write_all("-", rules_text(rules), ByteSink::Overwrite::no);
+        return ExitCode::done;
+    }
     check(request);
     Provenance provenance{{}, command_line};
     const std::string source = request.model == "-" ? "standard input" : request.model;
@@ -96,7 +121,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
         say(request.common, fmt::format("the improved model is in {}", request.common.output));
     }
     write_all("-",
-              request.common.json ? write_diagnosis(diagnosis, gear, provenance) : diagnosis_story(diagnosis),
+              request.common.json ? write_diagnosis(diagnosis, gear, provenance)
+                                  : diagnosis_story(diagnosis, request.explain),
               ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, provenance,
               [&] { return diagnosis_figure(request.path, diagnosis, log.trace.view(), request.smoothing); });
@@ -107,12 +133,18 @@ ExitCode run(const Request& request, const std::string& command_line) {
 
 std::function<ExitCode()> attach(Options& options) {
     const auto request = std::make_shared<Request>();
-    options.argument("LOG", request->path, true, "the measured log; - is standard input");
+    options.argument("LOG", request->path, false, "the measured log; - is standard input");
     options.text("--model", request->model, "FILE", "model.json of the joint; values left out are fitted");
     options.text("--validate", request->validate, "OTHER",
                  "another log, on which the improved model is checked");
     options.texts("--without", request->without, "NAME",
                   "an effect that is not tried; may be given several times");
+    options.flag("--explain", request->explain,
+                 "in the story, which rules were asked about each finding, with their numbers and limits");
+    options.texts("--rule", request->rules, "NAME=VALUE",
+                  "for studies: a limit that a diagnosis decides by; may be given several times");
+    options.flag("--rules", request->list_rules,
+                 "list these limits, their bounds, units and reasons, and end; needs no LOG");
     options.quantity("--smoothing", request->smoothing, Dimension::time,
                      "window in which the log's velocity is fitted to give speed and acceleration");
     options.flag("--require-conclusive", request->require_conclusive,

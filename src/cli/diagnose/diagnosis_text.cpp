@@ -38,9 +38,9 @@ std::string where_text(const Place& place) {
         parts.push_back("at positions of " + spans_text(place.position_deg, "deg"));
     for (const double hz : place.hz) parts.push_back(fmt::format("at {} Hz", short_number(hz)));
     for (const double order : place.order) parts.push_back(fmt::format("at order {}", short_number(order)));
-    if (place.direction == "both") parts.emplace_back("while it moves");
-    if (place.direction == "positive" || place.direction == "negative")
-        parts.push_back(fmt::format("in {} direction", place.direction));
+    if (place.direction == Direction::both) parts.emplace_back("while it moves");
+    if (place.direction == Direction::positive || place.direction == Direction::negative)
+        parts.push_back(fmt::format("in {} direction", direction_name(place.direction)));
     std::string text;
     for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
     return text.empty() ? "all over the log" : text;
@@ -81,6 +81,21 @@ std::string round_text(const Finding& finding, std::size_t number) {
     return text;
 }
 
+// The last rule that spoke against decided; without one, all are told.
+std::string decisions_text(const std::vector<Decision>& decisions) {
+    std::string decided, passed;
+    for (const Decision& decision : decisions) {
+        const std::string text =
+            fmt::format("{} {} {}, limit {}", decision.rule, short_number(decision.number), decision.unit,
+                        short_number(decision.limit));
+        if (decision.against)
+            decided = fmt::format("  decided by {}\n", text);
+        else
+            passed += fmt::format("  passed {}\n", text);
+    }
+    return passed + decided;
+}
+
 std::string leftover_text(const Leftover& leftover) {
     return fmt::format("{} Nm rms {} ({:.0f} % of the squared residual)", short_number(leftover.rms_nm),
                        where_text(leftover.where), 100.0 * std::min(leftover.part, 1.0));
@@ -89,14 +104,15 @@ std::string leftover_text(const Leftover& leftover) {
 // Places of one kind are told together beyond the largest: a log may disagree in dozens of stretches of time.
 std::string leftovers_text(const std::vector<Leftover>& leftovers, std::string_view verb) {
     std::string text;
-    std::map<std::string, std::pair<std::size_t, double>> more;  // number and part
-    std::map<std::string, std::size_t> told;
+    std::map<std::string_view, std::pair<std::size_t, double>> more;  // number and part, by the kind's name
+    std::map<LeftoverKind, std::size_t> told;
     for (const Leftover& leftover : leftovers) {
         if (told[leftover.kind]++ < most_of_a_kind) {
             text += fmt::format("{} {}\n", verb, leftover_text(leftover));
         } else {
-            ++more[leftover.kind].first;
-            more[leftover.kind].second += leftover.part;
+            auto& [number, part] = more[leftover_kind_name(leftover.kind)];
+            ++number;
+            part += leftover.part;
         }
     }
     for (const auto& [kind, rest] : more)
@@ -129,7 +145,7 @@ std::string closing(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::string diagnosis_story(const Diagnosis& diagnosis) {
+std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     if (diagnosis.verdict == DiagnosisVerdict::undecided) return diagnosis.doubt + "\n";
     const DiagnosisGap& gap = diagnosis.gap;
     std::string text = fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,
@@ -139,7 +155,15 @@ std::string diagnosis_story(const Diagnosis& diagnosis) {
         text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
-    for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) text += round_text(diagnosis.rounds[i], i + 1);
+    for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
+        text += round_text(diagnosis.rounds[i], i + 1);
+        if (explain) text += decisions_text(diagnosis.rounds[i].decisions);
+    }
+    for (const RefusedCandidate& candidate : diagnosis.refused) {
+        if (explain)
+            text += fmt::format("refused: {}\n{}", candidate.term.effect->name,
+                                decisions_text(candidate.decisions));
+    }
     for (const Tie& tie : diagnosis.ambiguous)
         text += fmt::format("{}: this log cannot tell; {} would\n", joined(tie.effects, " or "), tie.advice);
     text += leftovers_text(diagnosis.unexplained, "unexplained:");

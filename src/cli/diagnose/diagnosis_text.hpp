@@ -8,6 +8,7 @@
 
 namespace ripplenotch {
 
-[[nodiscard]] std::string diagnosis_story(const Diagnosis& diagnosis);
+/// `explain`: with the rules that were asked about each finding and each refused candidate.
+[[nodiscard]] std::string diagnosis_story(const Diagnosis& diagnosis, bool explain = false);
 
 }  // namespace ripplenotch

@@ -227,6 +227,7 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
     taken.model = taken.baseline;
     taken.values.clear();
     taken.rounds.clear();
+    taken.refused.clear();
     taken.named.clear();
     taken.ambiguous.clear();
     return taken;

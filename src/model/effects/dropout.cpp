@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "model/effects.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/model/detection.hpp"
 #include "ripplenotch/model/noise.hpp"
 
 namespace ripplenotch {
@@ -42,6 +49,89 @@ void apply(const Situation& situation, std::span<const double> values, std::span
     }
 }
 
+// Runs of equal values, and which of them are no chance.
+class Runs {
+  public:
+    Runs(const LoggedTorque& log, const FaultRules& rules) : log_(log), rules_(rules) {}
+
+    // First sample from k on that differs from the one before it.
+    [[nodiscard]] std::size_t end_of_run(std::size_t k) const {
+        while (k < log_.torque_nm.size() && log_.torque_nm[k] == log_.torque_nm[k - 1] && log_.use[k] != 0)
+            ++k;
+        return k;
+    }
+
+    // Repeats in a row that chance hardly makes while the joint moves.
+    [[nodiscard]] std::size_t unlikely() const {
+        const std::size_t n = log_.torque_nm.size();
+        std::size_t equal = 0, moving = 0;
+        for (std::size_t k = 1; k < n; ++k) {
+            if (std::abs(log_.motion.velocity_deg_s[k]) < rules_.moving_speeds * log_.moving_deg_s ||
+                log_.use[k] == 0)
+                continue;
+            ++moving;
+            if (log_.torque_nm[k] == log_.torque_nm[k - 1]) ++equal;
+        }
+        // Neither never nor always, so that the logarithm is one.
+        const double often = std::clamp(
+            static_cast<double>(equal) / static_cast<double>(std::max<std::size_t>(moving, 1)), 1e-3, 0.95);
+        const auto run = static_cast<std::size_t>(
+            std::ceil(portable::log(rules_.chance_run / static_cast<double>(n)) / portable::log(often)));
+        // On whole steps a slow torque stays on one: what is held must be long against that.
+        return std::max(run, log_.step_nm > 0.0 ? rules_.fewest_held_of_steps : rules_.fewest_held);
+    }
+
+    [[nodiscard]] double turn_deg(std::size_t first, std::size_t end) const {
+        return std::abs(log_.motion.position_deg[end - 1] - log_.motion.position_deg[first]);
+    }
+
+    // On whole steps the torque stays on one until the joint has turned far enough: a held stretch goes
+    // through several times the angle of the longest that come by nature.
+    [[nodiscard]] double least_turn_deg() const {
+        if (log_.step_nm == 0.0) return 0.0;
+        std::vector<double> turns;
+        for (std::size_t k = 1; k < log_.torque_nm.size();) {
+            const std::size_t end = end_of_run(k);
+            if (end > k) turns.push_back(turn_deg(k - 1, end));
+            k = std::max(end, k + 1);
+        }
+        if (turns.size() < rules_.fewest_turns) return 1e300;
+        const std::size_t place = std::min(turns.size() * rules_.usual_turns_percent / 100, turns.size() - 1);
+        const auto high = turns.begin() + static_cast<std::ptrdiff_t>(place);
+        std::nth_element(turns.begin(), high, turns.end());
+        return rules_.held_turns * *high;
+    }
+
+  private:
+    const LoggedTorque& log_;
+    const FaultRules& rules_;
+};
+
+std::optional<DetectedFault> detect(const LoggedTorque& log, const FaultRules& rules) {
+    const Runs runs(log, rules);
+    const std::size_t n = log.torque_nm.size(), unlikely = runs.unlikely();
+    const double least_turn_deg = runs.least_turn_deg();
+    DetectedFault fault;
+    std::vector<double> lengths;
+    for (std::size_t k = 1; k < n;) {
+        const std::size_t end = runs.end_of_run(k);
+        if (end - k >= unlikely && runs.turn_deg(k - 1, end) >= least_turn_deg) {
+            lengths.push_back(static_cast<double>(end - k));
+            for (std::size_t i = k; i < end; ++i) fault.spoiled.push_back(i);
+        }
+        k = std::max(end, k + 1);
+    }
+    if (lengths.empty()) return std::nullopt;
+    const double rate = log.motion.sample_rate.value();
+    double mean = 0.0;
+    for (const double length : lengths) mean += length / static_cast<double>(lengths.size());
+    const double duration_s = static_cast<double>(n) / rate;
+    fault.values = {static_cast<double>(lengths.size()) / duration_s, mean / rate, seed_parameter.start};
+    fault.words = fmt::format("{} stretches of {:.3g} ms on average repeat one value", lengths.size(),
+                              1e3 * mean / rate);
+    return fault;
+}
+
 }  // namespace
 
 const Effect effects::dropout{
@@ -58,6 +148,7 @@ const Effect effects::dropout{
     .parameters = parameters,
     .chance = true,
     .apply = apply,
+    .detect = detect,
 };
 
 }  // namespace ripplenotch

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <cmath>
+#include <set>
 
 #include "model/effects.hpp"
+#include "ripplenotch/model/detection.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -27,6 +31,16 @@ void apply(const Situation&, std::span<const double> values, std::span<double> t
         torque_nm[k] = std::round(torque_nm[k] / values[0]) * values[0] + 0.0;
 }
 
+std::optional<DetectedFault> detect(const LoggedTorque& log, const FaultRules& rules) {
+    if (log.step_nm == 0.0 || log.step_nm < rules.step_of_noise * log.noise_nm) return std::nullopt;
+    const std::set<double> levels(log.torque_nm.begin(), log.torque_nm.end());
+    return DetectedFault{
+        .values = {log.step_nm},
+        .spoiled = {},
+        .words = fmt::format("the log holds {} distinct values, {:.3g} Nm apart", levels.size(), log.step_nm),
+        .bends_nm = log.step_nm};
+}
+
 }  // namespace
 
 const Effect effects::quantization{
@@ -41,6 +55,7 @@ const Effect effects::quantization{
     .parameters = parameters,
     .linear_in_torque = false,
     .apply = apply,
+    .detect = detect,
 };
 
 }  // namespace ripplenotch

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "model/effects.hpp"
+#include "ripplenotch/model/detection.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -26,6 +30,42 @@ void apply(const Situation&, std::span<const double> values, std::span<double> t
         torque_nm[k] = std::clamp(torque_nm[k], -values[0], values[0]);
 }
 
+// Samples at an end of the log's range; none where the torque only came to its extreme.
+std::vector<std::size_t> clipped_at(const LoggedTorque& log, double rail_nm, const FaultRules& rules) {
+    std::vector<std::size_t> at;
+    std::size_t next = 0;  // samples on the level before the last
+    for (std::size_t k = 0; k < log.torque_nm.size(); ++k) {
+        const double off = std::abs(log.torque_nm[k] - rail_nm);
+        if (off <= 1e-9 * std::abs(rail_nm))
+            at.push_back(k);
+        else if (log.step_nm > 0.0 && off < rules.next_level_steps * log.step_nm)
+            ++next;
+    }
+    // On whole steps the extreme is held by chance, but by fewer samples than the level below it.
+    const bool by_chance = log.step_nm > 0.0 &&
+                           static_cast<double>(at.size()) < rules.clipped_of_next * static_cast<double>(next);
+    if (at.size() < rules.fewest_clipped || by_chance) at.clear();
+    return at;
+}
+
+std::optional<DetectedFault> detect(const LoggedTorque& log, const FaultRules& rules) {
+    const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
+    DetectedFault fault;
+    double limit_nm = 0.0;
+    for (const double rail_nm : {*low, *high}) {
+        const std::vector<std::size_t> at = clipped_at(log, rail_nm, rules);
+        if (at.empty()) continue;
+        limit_nm = std::max(limit_nm, std::abs(rail_nm));
+        fault.spoiled.insert(fault.spoiled.end(), at.begin(), at.end());
+    }
+    if (fault.spoiled.empty()) return std::nullopt;
+    std::sort(fault.spoiled.begin(), fault.spoiled.end());
+    fault.values = {limit_nm};
+    fault.words = fmt::format("{} samples stand at exactly {:.3g} Nm, the end of the log's range",
+                              fault.spoiled.size(), limit_nm);
+    return fault;
+}
+
 }  // namespace
 
 const Effect effects::saturation{
@@ -39,7 +79,9 @@ const Effect effects::saturation{
     .domain = Domain::time,
     .parameters = parameters,
     .linear_in_torque = false,
+    .range_limit = 0,
     .apply = apply,
+    .detect = detect,
 };
 
 }  // namespace ripplenotch

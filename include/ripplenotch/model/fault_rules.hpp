@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// By what limits an effect of the converter is told from a torque that looks like it.
+
+#include <cstddef>
+
+namespace ripplenotch {
+
+/// Numbers by which Effect::detect decides. Each line of fault_rules.def is one: its value, the bounds within
+/// which it may be changed, its unit, and why it is there.
+struct FaultRules {
+#define NUMBER(name, value, lowest, highest, unit, why) double name = value;
+#define WHOLE(name, value, lowest, highest, unit, why) std::size_t name = value;
+#include "ripplenotch/model/fault_rules.def"
+#undef NUMBER
+#undef WHOLE
+};
+
+}  // namespace ripplenotch

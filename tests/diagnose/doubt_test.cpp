@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Each thing that speaks against a finding, alone, with the rule that is told for it.
+#include "diagnose/doubt.hpp"
+
+#include "bench_fixture.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::fixture;
+
+namespace {
+
+constexpr std::string_view offset = "offset,torque_nm=0.4";
+
+Evidence sound() {
+    return {.gain = 5e4,
+            .price = 25.0,
+            .share_nm = 0.4,
+            .share_sigma = 8.0,
+            .own_nm = 0.4,
+            .raw_gain = 1000.0,
+            .elsewhere = 0.97};
+}
+
+struct Doubted {
+    FindingStatus status;
+    Decision last;
+};
+
+// What is made of an offset that is there, told with this evidence.
+Doubted doubted(const Evidence& evidence, std::string_view term = offset) {
+    static const TestBench on(case_of(plain_log(joint_with({offset}), 54)));
+    static const Candidate model = on.fitted(joint_with({offset}));
+    Candidate given = model;
+    given.stated.terms[3] = parse_term(term);
+    Finding finding;
+    finding.term = given.stated.terms[3];
+    finding.evidence = evidence;
+    doubt_alone(finding, on.bench, given, 3);
+    CHECK((finding.status == FindingStatus::confirmed) == finding.reason.empty());
+    return {finding.status, last_against(finding.decisions)};
+}
+
+Finding named(std::string_view term, double share_sigma) {
+    Finding finding;
+    finding.term = parse_term(term);
+    finding.evidence.share_sigma = share_sigma;
+    finding.evidence.share_nm = finding.evidence.own_nm = share_sigma * noise_nm;
+    return finding;
+}
+
+}  // namespace
+
+TEST_CASE("an effect that is there and well told is confirmed, and no rule spoke against it") {
+    const Doubted found = doubted(sound());
+    CHECK(found.status == FindingStatus::confirmed);
+    CHECK(found.last.rule.empty());
+}
+
+TEST_CASE("a torque below an eighth of the noise is immaterial") {
+    Evidence evidence = sound();
+    evidence.share_sigma = 0.1;
+    const Doubted found = doubted(evidence);
+    CHECK(found.status == FindingStatus::immaterial);
+    CHECK(found.last.rule == "judge.material_sigma");
+    CHECK(found.last.number == 0.1);
+    CHECK(found.last.limit == standard.judge.material_sigma);
+    CHECK(found.last.unit == "of the noise");
+    evidence.share_sigma = 0.13;
+    CHECK(doubted(evidence).status == FindingStatus::confirmed);
+}
+
+TEST_CASE("a delay of half a sample is a matter of when a sample is said to be taken") {
+    const Doubted found = doubted(sound(), "delay,delay_s=0.001");
+    CHECK(found.status == FindingStatus::immaterial);
+    CHECK(found.last.rule == "doubt.least_delay_samples");
+    CHECK(found.last.number == Approx(0.5));
+}
+
+TEST_CASE("a torque far larger than what it explains is held in balance by another") {
+    Evidence evidence = sound();
+    evidence.own_nm = 6.0;
+    const Doubted found = doubted(evidence);
+    CHECK(found.status == FindingStatus::unidentifiable);
+    CHECK(found.last.rule == "doubt.most_inflation");
+    CHECK(found.last.number == Approx(15.0));
+}
+
+TEST_CASE("what leaves the gap as it was, or explains one stretch alone, is tentative") {
+    Evidence evidence = sound();
+    evidence.raw_gain = -1.0;
+    CHECK(doubted(evidence).last.rule == "doubt.least_closed_nm2");
+    evidence = sound();
+    evidence.elsewhere = 0.1;
+    CHECK(doubted(evidence).last.rule == "doubt.least_elsewhere");
+    CHECK(doubted(evidence).status == FindingStatus::tentative);
+}
+
+TEST_CASE("beside more than it explains a finding is in doubt, and beside a leftover of its own kind") {
+    const TestBench on(case_of(plain_log(joint(), 55)));
+    const Leftover at_speed{LeftoverKind::speed, {}, 0.3, 0.2}, slight{LeftoverKind::speed, {}, 0.1, 0.02};
+    const auto with = [&](std::string_view term, double excess_nm, const std::vector<Leftover>& left) {
+        Finding finding = named(term, 8.0);
+        doubt_for_leftovers(finding, excess_nm, on.bench, left);
+        return std::pair(finding.status, last_against(finding.decisions).rule);
+    };
+    const std::string_view friction = "viscous-friction,coefficient_nm_per_deg_s=0.006";
+    CHECK(with(friction, 0.3, {slight}) ==
+          std::pair(FindingStatus::tentative, std::string("doubt.outgrown")));
+    CHECK(with(friction, 0.1, {at_speed}) ==
+          std::pair(FindingStatus::tentative, std::string("doubt.casts_doubt")));
+    CHECK(with("gravity,amplitude_nm=1,phase_deg=0", 0.1, {at_speed}).first == FindingStatus::confirmed);
+    CHECK(with(friction, 0.1, {slight}).first == FindingStatus::confirmed);
+    CHECK(with(friction, 0.3, {}).first == FindingStatus::confirmed);
+}
+
+TEST_CASE("a slight finding beside a far larger one of its kind may only mend its form") {
+    std::vector<Finding> findings = {named("coulomb-friction,torque_nm=3,width_deg_s=0.2", 60.0),
+                                     named("viscous-friction,coefficient_nm_per_deg_s=0.0001", 0.2)};
+    doubt_for_size(findings[1], findings, standard);
+    CHECK(findings[1].status == FindingStatus::shape_correction);
+    CHECK(last_against(findings[1].decisions).rule == "doubt.shape_part");
+    findings[0].status = FindingStatus::tentative;
+    doubt_for_size(findings[1], findings, standard);
+    CHECK(findings[1].status == FindingStatus::tentative);
+    Finding larger = named("viscous-friction,coefficient_nm_per_deg_s=0.003", 6.0);
+    doubt_for_size(larger, findings, standard);
+    CHECK(larger.status == FindingStatus::confirmed);
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Lines of a residual, against time and against the angle.
+#include "diagnose/lines.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "bench_fixture.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::fixture;
+
+namespace {
+
+const Case& along_tour() {
+    static const Case c = case_of(plain_log(joint(), 60));
+    return c;
+}
+
+std::vector<double> noise(std::uint64_t seed) {
+    std::vector<double> values(along_tour().size(), 0.0);
+    add_white_noise(values, noise_nm, seed, NoiseChannel::torque);
+    return values;
+}
+
+// Cycles per second, or per degree, of 0.1 Nm.
+std::vector<double> with_line(double cycles, const std::vector<double>& where) {
+    std::vector<double> values = noise(61);
+    for (std::size_t k = 0; k < values.size(); ++k)
+        values[k] += 0.1 * std::cos(2.0 * std::numbers::pi * cycles * where[k]);
+    return values;
+}
+
+std::vector<ResidualLine> told(const std::vector<double>& values) {
+    return standing_out(along_tour(), values, standard.leftover.line_prominence, 4, standard.lines);
+}
+
+}  // namespace
+
+TEST_CASE("noise has no lines") {
+    for (std::uint64_t seed = 62; seed < 66; ++seed) CHECK(told(noise(seed)).empty());
+}
+
+TEST_CASE("a tone is a line in time, with its frequency and its size") {
+    const auto lines = told(with_line(37.0, along_tour().motion.time_s));
+    REQUIRE(!lines.empty());
+    CHECK(!lines[0].by_angle);
+    CHECK(lines[0].frequency == Approx(37.0).margin(0.02));
+    CHECK(lines[0].amplitude_nm == Approx(0.1).epsilon(0.15));
+    const auto tones =
+        strongest_tones_hz(along_tour(), with_line(37.0, along_tour().motion.time_s), standard);
+    REQUIRE(!tones.empty());
+    CHECK(tones[0] == Approx(37.0).margin(0.02));
+}
+
+TEST_CASE("a swing slower than the rule is no tone") {
+    DiagnosisRules rules;
+    const auto values = with_line(8.0, along_tour().motion.time_s);
+    CHECK(strongest_tones_hz(along_tour(), values, rules).at(0) == Approx(8.0).margin(0.02));
+    rules.lines.slowest_tone_hz = 10.0;
+    for (const double hz : strongest_tones_hz(along_tour(), values, rules)) CHECK(hz > 9.9);
+}
+
+TEST_CASE("what goes with the angle is an order") {
+    const auto lines = told(with_line(400.0 / 360.0, along_tour().motion.position_deg));
+    REQUIRE(!lines.empty());
+    CHECK(lines[0].by_angle);
+    CHECK(lines[0].frequency * 360.0 == Approx(400.0).margin(0.2));
+}
+
+TEST_CASE("the ratio that puts the ripple on its lines comes first") {
+    Model truth = joint();
+    truth.gear_ratio = GearRatio(80.0);
+    const Case c = case_of(plain_log(truth, 66));
+    const RatioCandidates found = likely_ratios(c, c.torque_nm, {1.0, 2.0}, 100.0, standard);
+    REQUIRE(found.ratios.size() == standard.screening.most_ratios);
+    CHECK(found.ratios[0] == Approx(80.0).margin(0.5));
+    CHECK(found.compared > 100.0);
+}

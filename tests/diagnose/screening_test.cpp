@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// A screening ranks what is there first, asks its price, and is made once.
+#include "diagnose/screening.hpp"
+
+#include <cmath>
+
+#include "bench_fixture.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::fixture;
+
+namespace {
+
+using Effects = std::vector<const Effect*>;
+
+Effects few() {
+    return {&find_effect("offset"), &find_effect("gravity"), &find_effect("coulomb-friction"),
+            &find_effect("delay")};
+}
+
+}  // namespace
+
+TEST_CASE("what is hidden is ranked first, with about the gain that a fit of the whole log finds") {
+    const Model truth = joint_with({"coulomb-friction,torque_nm=0.4,width_deg_s=0.2"});
+    const TestBench on(case_of(plain_log(truth, 73)));
+    const Candidate without = on.fitted(joint());
+    const auto trials = screen(on.bench, without, few());
+    REQUIRE(!trials.empty());
+    CHECK(trials[0].start.effect->name == "coulomb-friction");
+    for (std::size_t i = 1; i < trials.size(); ++i) CHECK(trials[i].score() <= trials[i - 1].score());
+    CHECK(trials[0].gain == Approx(without.gain_left - on.fitted(truth).gain_left).epsilon(0.15));
+}
+
+TEST_CASE("where nothing is missing no trial is worth its price, and a rarer false alarm costs more") {
+    DiagnosisRules rules;
+    rules.screening.false_alarm = 0.0001;
+    const Trace log = plain_log(joint(), 74);
+    const TestBench on(case_of(log)), strict(case_of(log), rules);
+    const auto trials = screen(on.bench, on.fitted(joint()), few());
+    const auto dearer = screen(strict.bench, strict.fitted(joint()), few());
+    REQUIRE(!trials.empty());
+    REQUIRE(trials.size() == dearer.size());
+    for (const Trial& trial : trials) CHECK(trial.score() < 0.0);
+    CHECK(dearer[0].price - trials[0].price == Approx(2.0 * std::log(100.0)));
+}
+
+TEST_CASE("a screening beside the same model is kept, but not for other effects, and not after settling") {
+    TestBench on(case_of(plain_log(joint(), 75)));
+    const Candidate model = on.fitted(joint());
+    const Effects effects = few();
+    CHECK(!on.bench.screened(model.stated, effects));
+    const auto first = screen(on.bench, model, effects);
+    const auto kept = on.bench.screened(model.stated, effects);
+    REQUIRE(kept);
+    CHECK(kept->size() == first.size());
+    const Effects fewer(effects.begin(), effects.begin() + 2);
+    CHECK(!on.bench.screened(model.stated, fewer));
+    for (const Trial& trial : screen(on.bench, model, fewer)) CHECK(trial.start.effect->name != "delay");
+    on.bench.settle_on(model.stated);
+    CHECK(!on.bench.screened(model.stated, effects));
+}
