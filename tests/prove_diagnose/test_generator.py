@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The generator and the tool's catalogue are two programs; for each effect they make the same torque."""
 
+import dataclasses
+import io
 import unittest
 
 import prove  # first: it skips without numpy
 import numpy as np
-from prove_diagnose import agreement, cases, joint, motion, sensor
+from prove_diagnose import agreement, cases, joint, motion, plan, sensor
 
 
 class Agreement(unittest.TestCase):
@@ -50,6 +52,20 @@ class Sensor(unittest.TestCase):
         first, again, other = case.log("train"), case.log("train"), case.log("validate")
         self.assertTrue(np.array_equal(first.torque_nm, again.torque_nm))
         self.assertFalse(np.array_equal(first.torque_nm[:1000], other.torque_nm[:1000]))
+
+    def test_a_header_changes_how_a_log_is_written_and_nothing_else(self):
+        for study in ("single", "rarer", "without"):
+            case = cases.studies(study, 1)[0]
+            bare = dataclasses.replace(case, header="libfranka")
+            self.assertEqual(plan.by_name(bare.name), bare)
+            self.assertNotEqual(bare.name, case.name)
+            log, written = case.log("train"), io.BytesIO()
+            bare.log("train").save(written, cases.HEADERS[bare.header])
+            rows = np.load(io.BytesIO(written.getvalue()))
+            self.assertEqual(rows.dtype.names, ("t", "dq", "tau_J", "q"))
+            np.testing.assert_array_equal(rows["tau_J"], log.torque_nm)
+            np.testing.assert_allclose(np.degrees(rows["dq"]), log.velocity_deg_s, rtol=1e-12)
+            np.testing.assert_allclose(np.degrees(rows["q"]), log.position_deg, rtol=1e-12)
 
     def test_every_effect_that_can_be_drawn_changes_the_log(self):
         for study in ("single", "rarer"):
