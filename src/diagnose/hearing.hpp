@@ -19,7 +19,7 @@ class Hearing {
     /// Notes that `rule` was asked about `number`; returns `against`, whether it spoke against the finding.
     bool asked(std::string_view rule, double number, bool against) {
         const DiagnosisRule& found = find_diagnosis_rule(rule);
-        decisions_.push_back({found.name, number, found.get(rules_), found.unit, against});
+        decisions_.push_back({found.name, number, found.get(rules_), std::string(found.unit), against});
         return against;
     }
 

@@ -41,8 +41,9 @@ std::vector<Span> spans_of(Fields& fields, std::string_view name) {
 Place place_of(Fields& fields, std::string_view name) {
     Fields where = fields.object(name);
     Place place{spans_of(where, "time_s"), spans_of(where, "speed_deg_s"), spans_of(where, "position_deg"),
-                where.numbers("hz"),       where.numbers("order"),         ""};
-    if (where.has("direction")) place.direction = where.text("direction");
+                where.numbers("hz"), where.numbers("order")};
+    if (where.has("direction"))
+        place.direction = enumerator_of(where, "direction", Direction::both, direction_name);
     where.finish();
     return place;
 }
@@ -103,7 +104,8 @@ Finding finding_at(Fields& fields, std::size_t place) {
 std::vector<Leftover> leftovers_of(Fields& fields, std::string_view name) {
     std::vector<Leftover> leftovers;
     fields.each(name, [&](Fields& entry) {
-        leftovers.push_back({entry.text("kind"), place_of(entry, "where"), number_or_unknown(entry, "rms_nm"),
+        leftovers.push_back({enumerator_of(entry, "kind", LeftoverKind::speed, leftover_kind_name),
+                             place_of(entry, "where"), number_or_unknown(entry, "rms_nm"),
                              number_or_unknown(entry, "part_of_gap")});
     });
     return leftovers;
@@ -120,6 +122,33 @@ DiagnosisGap gap_of(Fields& fields) {
     return gap;
 }
 
+std::vector<Decision> rules_of(Fields& fields) {
+    std::vector<Decision> decisions;
+    fields.each("rules", [&](Fields& entry) {
+        decisions.push_back({entry.text("rule"), number_or_unknown(entry, "number"),
+                             number_or_unknown(entry, "limit"), entry.text("unit"), entry.flag("against")});
+    });
+    return decisions;
+}
+
+// Belongs to the round that it names, or to a candidate that was refused.
+void decision_of(Fields& fields, Diagnosis& diagnosis) {
+    const Effect& effect = effect_of(fields);
+    const std::string outcome = fields.text("outcome");
+    if (!fields.has("round")) {
+        diagnosis.refused.push_back({{&effect, {}}, rules_of(fields)});
+        return;
+    }
+    const std::size_t round = fields.whole("round");
+    if (round < 1 || round > diagnosis.rounds.size())
+        raise<DataError>("{} is {}, expected one of {} rounds", fields.where("round"), round,
+                         diagnosis.rounds.size());
+    Finding& finding = diagnosis.rounds[round - 1];
+    if (outcome != status_name(finding.status) || &effect != finding.term.effect)
+        raise<DataError>("{} is not what rounds[{}] says", fields.where("outcome"), round - 1);
+    finding.decisions = rules_of(fields);
+}
+
 // Everything that was found, beside the model.
 void findings_of(Fields& fields, Diagnosis& diagnosis) {
     fields.each("own_terms", [&](Fields& entry) {
@@ -131,6 +160,9 @@ void findings_of(Fields& fields, Diagnosis& diagnosis) {
     fields.each("rounds", [&](Fields& entry) {
         diagnosis.rounds.push_back(finding_at(entry, own + diagnosis.rounds.size()));
     });
+    // Older files do not tell what was decided by.
+    if (fields.has("decisions"))
+        fields.each("decisions", [&](Fields& entry) { decision_of(entry, diagnosis); });
     fields.each("faults", [&](Fields& entry) {
         std::vector<FittedValue> none;
         const Term term = fitted_term_of(entry, 0, none);

@@ -14,13 +14,14 @@ inline Finding coulomb_finding() {
     finding.term = parse_term("coulomb-friction,torque_nm=0.49985,width_deg_s=2");
     finding.values = {{1, 0, 0.49985, {}, Interval{0.4987246838, 0.5009686948}, false}};
     finding.where.speed_deg_s = {{10.0, 90.0}};
-    finding.where.direction = "both";
+    finding.where.direction = Direction::both;
     finding.evidence = {773388.0, 34.9626, 0.432205, 8.70051, 0.432622, 0.0, 0.959804};
     finding.alternatives = {{find_effect("offset").name, 2.5}};
     finding.gap_before_nm = 0.434974;
     finding.gap_after_nm = 0.0496759;
     finding.validation_before_nm = 0.433479;
     finding.validation_after_nm = 0.0503318;
+    finding.decisions = {{"price", 773388.0, 34.9626, "gain", false}};
     return finding;
 }
 
@@ -47,11 +48,13 @@ inline Diagnosis full_diagnosis() {
     diagnosis.model = diagnosis.baseline;
     for (const Finding& finding : diagnosis.rounds) diagnosis.model.terms.push_back(finding.term);
     diagnosis.values = {{0, 0, 0.4, {}, Interval{0.39, 0.41}, false}};
+    diagnosis.refused = {{{&find_effect("offset"), {}}, {{"price", 6.761, 24.53, "gain", true}}}};
     diagnosis.faults = {{parse_term("quantization,step_nm=0.01"), 12, {{1.5, 1.5}}, "steps of 0.01 Nm"}};
     diagnosis.named = {"coulomb-friction"};
     diagnosis.ambiguous = {{{"tone", "ripple"}, "move at another speed"}};
-    diagnosis.unexplained = {{"time", {{{3.0, 3.5}}, {}, {}, {}, {}, "positive"}, 0.25, 0.125}};
-    diagnosis.disagreement = {{"order", {{}, {}, {}, {}, {2.0}, ""}, 0.4, 0.75}};
+    diagnosis.unexplained = {
+        {LeftoverKind::time, {{{3.0, 3.5}}, {}, {}, {}, {}, Direction::positive}, 0.25, 0.125}};
+    diagnosis.disagreement = {{LeftoverKind::order, {{}, {}, {}, {}, {2.0}}, 0.4, 0.75}};
     diagnosis.undecidable = {{find_effect("gravity").name, "the log has no position", 0.1}};
     diagnosis.gap = {0.434974, 0.0475, 0.0474, 99.9, {}, {}, {}};
     diagnosis.samples = 9050;

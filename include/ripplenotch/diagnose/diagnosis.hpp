@@ -80,7 +80,7 @@ struct RivalFinding {
 struct Decision {
     std::string rule;  ///< of diagnosis_rules(); "price": what chance might gain, given all that was tried
     double number = 0.0, limit = 0.0;
-    std::string_view unit;
+    std::string unit;
     bool against = false;  ///< it spoke against; the last that did decided
 };
 
