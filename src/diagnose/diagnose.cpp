@@ -216,6 +216,35 @@ Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
     return last;
 }
 
+Candidate fitted_to_whole(const Case& whole, const Searched& found, const Candidate& last,
+                          Diagnosis& diagnosis, Work& work, const DiagnosisRules& rules) {
+    ModelBench all(whole, found.noise, work, rules);
+    all.settle_on(last.stated);
+    const Candidate fitted = all.fitted(last.open, last.stated, last.prices, 4);
+    diagnosis.baseline = all.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;
+    return fitted;
+}
+
+// The improved model with its values, those of each finding, and the faults, which are names too.
+void tell_model(Diagnosis& diagnosis, const Candidate& last, std::size_t own) {
+    diagnosis.model = last.stated;
+    diagnosis.values = last.values;
+    std::size_t place = own;
+    for (Finding& finding : diagnosis.rounds) {
+        if (is_doubtful(finding)) continue;
+        finding.term = last.stated.terms[place];
+        finding.values.clear();
+        for (const FittedValue& value : last.values) {
+            if (value.term == place) finding.values.push_back(value);
+        }
+        ++place;
+    }
+    for (const Fault& fault : diagnosis.faults) {
+        diagnosis.model.terms.push_back(fault.term);
+        diagnosis.named.emplace_back(fault.term.effect->name);
+    }
+}
+
 }  // namespace
 
 Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
@@ -247,33 +276,14 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     diagnosis.unexplained.insert(diagnosis.unexplained.begin(), spoiled.begin(), spoiled.end());
     diagnosis.unexplained.insert(diagnosis.unexplained.begin(), aside.begin(), aside.end());
     // The excerpt chose; the whole log gives the values.
-    if (part.size() < whole.size()) {
-        (void)set_aside(whole, aside, rules);
-        ModelBench all(whole, found.noise, work, rules);
-        all.settle_on(last.stated);
-        last = all.fitted(last.open, last.stated, last.prices, 4);
-        diagnosis.baseline = all.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;
-    }
-    last = told_values(part.size() < whole.size() ? whole : part, found.noise, last, diagnosis.faults, work,
-                       rules);
-    diagnosis.model = last.stated;
-    diagnosis.values = last.values;
-    std::size_t place = own;
-    for (Finding& finding : diagnosis.rounds) {
-        if (is_doubtful(finding)) continue;
-        finding.term = last.stated.terms[place];
-        finding.values.clear();
-        for (const FittedValue& value : last.values) {
-            if (value.term == place) finding.values.push_back(value);
-        }
-        ++place;
-    }
-    for (const Fault& fault : diagnosis.faults) {
-        diagnosis.model.terms.push_back(fault.term);
-        diagnosis.named.emplace_back(fault.term.effect->name);
-    }
+    const bool is_excerpt = part.size() < whole.size();
+    if (is_excerpt) (void)set_aside(whole, aside, rules);
+    if (is_excerpt) last = fitted_to_whole(whole, found, last, diagnosis, work, rules);
+    const Case& all = is_excerpt ? whole : part;
+    last = told_values(all, found.noise, last, diagnosis.faults, work, rules);
+    tell_model(diagnosis, last, own);
     name_findings(diagnosis, rules);
-    diagnosis.samples_used = part.size() < whole.size() ? whole.used() : part.used();
+    diagnosis.samples_used = all.used();
     measure_gap(diagnosis, whole, other ? &*other : nullptr, rules);
     diagnosis.verdict = verdict_of(diagnosis);
     return diagnosis;

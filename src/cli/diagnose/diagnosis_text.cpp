@@ -143,6 +143,34 @@ std::string closing(const Diagnosis& diagnosis) {
     return {};
 }
 
+std::string findings_text(const Diagnosis& diagnosis, bool explain) {
+    std::string text;
+    for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
+        text += round_text(diagnosis.rounds[i], i + 1);
+        if (explain) text += decisions_text(diagnosis.rounds[i].decisions);
+    }
+    if (!explain) return text;
+    for (const RefusedCandidate& candidate : diagnosis.refused)
+        text +=
+            fmt::format("refused: {}\n{}", candidate.term.effect->name, decisions_text(candidate.decisions));
+    return text;
+}
+
+std::string gap_text(const DiagnosisGap& gap) {
+    std::string text =
+        fmt::format("gap {} -> {} Nm", short_number(gap.before_nm), short_number(gap.after_nm));
+    if (gap.closed_percent) text += fmt::format(", {:.1f} % of it closed", *gap.closed_percent);
+    text += "\n";
+    if (gap.validation_before_nm) {
+        text += fmt::format("on the validation log {} -> {} Nm", short_number(*gap.validation_before_nm),
+                            short_number(*gap.validation_after_nm));
+        if (gap.validation_closed_percent)
+            text += fmt::format(", {:.1f} % of it closed", *gap.validation_closed_percent);
+        text += "\n";
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
@@ -155,15 +183,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
         text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
-    for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
-        text += round_text(diagnosis.rounds[i], i + 1);
-        if (explain) text += decisions_text(diagnosis.rounds[i].decisions);
-    }
-    for (const RefusedCandidate& candidate : diagnosis.refused) {
-        if (explain)
-            text += fmt::format("refused: {}\n{}", candidate.term.effect->name,
-                                decisions_text(candidate.decisions));
-    }
+    text += findings_text(diagnosis, explain);
     for (const Tie& tie : diagnosis.ambiguous)
         text += fmt::format("{}: this log cannot tell; {} would\n", joined(tie.effects, " or "), tie.advice);
     text += leftovers_text(diagnosis.unexplained, "unexplained:");
@@ -174,16 +194,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
                                 short_number(entry.would_explain_nm));
         text += "\n";
     }
-    text += fmt::format("gap {} -> {} Nm", short_number(gap.before_nm), short_number(gap.after_nm));
-    if (gap.closed_percent) text += fmt::format(", {:.1f} % of it closed", *gap.closed_percent);
-    text += "\n";
-    if (gap.validation_before_nm) {
-        text += fmt::format("on the validation log {} -> {} Nm", short_number(*gap.validation_before_nm),
-                            short_number(*gap.validation_after_nm));
-        if (gap.validation_closed_percent)
-            text += fmt::format(", {:.1f} % of it closed", *gap.validation_closed_percent);
-        text += "\n";
-    }
+    text += gap_text(gap);
     if (diagnosis.search_ended)
         text += fmt::format(
             "the search was ended after {:.0f} evaluations of the model; what is left is unexplained\n",
