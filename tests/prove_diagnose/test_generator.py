@@ -13,7 +13,7 @@ from prove_diagnose import agreement, cases, joint, motion, score, sensor, stren
 class Agreement(unittest.TestCase):
     def test_every_effect_of_the_catalogue_is_drawn(self):
         listed = subprocess.run([prove.TOOL, "effects", "--json"], capture_output=True, check=True, timeout=60).stdout
-        names = {effect["name"] for effect in json.loads(listed)["effects"]}
+        names = {effect["effect"] for effect in json.loads(listed)["effects"]}
         rng = np.random.default_rng(1)
         always = {effect["effect"] for effect in strengths.base_joint(rng)}
         drawn = {strengths.draw(rng, label)["effect"] for label in (*strengths.HIDDEN, *strengths.RARER)}
