@@ -48,8 +48,10 @@ PRIVATE_DOORS = {
     "log/account/account.hpp": ({"filter"}, "a stream goes through the same account as a log that is read whole"),
     "model/fit_coordinates.hpp": ({"diagnose"}, "effects that are tried are screened in the coordinates of the fit"),
     "model/weighing.hpp": ({"diagnose"}, "effects that are tried are screened by the weights of the fit"),
+    "document/diagnosis_fields.hpp": ({"page"}, "values and places of a finding stand on the page as in the document"),
+    "document/json.hpp": ({"page"}, "the page shows JSON as tables; the library behind it has one door"),
     "figure/gnuplot_script.hpp": ({"page"}, "a map has the same colours on the page as in a picture"),
-    "figure/page_layout.hpp": ({"page"}, "names find their places on the page as they do in a picture"),
+    "figure/picture_layout.hpp": ({"page"}, "names find their places on the page as they do in a picture"),
 }
 
 
