@@ -14,7 +14,7 @@ namespace {
 
 // The control is grey, methods take the inks in turn.
 Ink ink_of(const Contender& contender, std::size_t& taken) {
-    return contender.method->name == "none" ? Ink::grey : series_ink(taken++);
+    return contender.method->part == MethodPart::control ? Ink::grey : series_ink(taken++);
 }
 
 // Half of the longest settling time before the signal and one and a half after it, within reason.

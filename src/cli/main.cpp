@@ -78,6 +78,16 @@ std::string unknown_option_message(const CLI::App& command, const std::string& n
                        near ? fmt::format(" (did you mean {}?)", *near) : "", tool_name, command.get_name());
 }
 
+// The option of one value that came with several, if there is one.
+std::optional<std::string> given_twice(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw &&
+            option->get_expected_max() == 1 && option->results().size() > 1)
+            return option->get_name();
+    }
+    return std::nullopt;
+}
+
 // What the parsing library refers to until the work is done.
 struct Declared {
     std::vector<std::unique_ptr<Options::Implementation>> implementations;
@@ -126,8 +136,16 @@ ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
             return complain(ExitCode::usage, running, unknown_option_message(chosen, *unknown));
         }
     }
-    app.parse(Words(words.rbegin(), words.rend()));  // the library wants the last word first
-    const ProgressBar bar(words);                    // gone before a complaint is printed
+    try {
+        app.parse(Words(words.rbegin(), words.rend()));  // the library wants the last word first
+    } catch (const CLI::ArgumentMismatch&) {
+        const auto twice = named_first ? given_twice(*app.get_subcommand(running)) : std::nullopt;
+        if (!twice) throw;
+        return complain(
+            ExitCode::usage, running,
+            fmt::format("{} is given more than once; see {} {} --help", *twice, tool_name, running));
+    }
+    const ProgressBar bar(words);  // gone before a complaint is printed
     return declared.work();
 }
 
@@ -142,14 +160,6 @@ ExitCode run(const Words& words) {
             app.exit(request);
             return ExitCode::done;
         }
-    } catch (const CLI::ArgumentMismatch& error) {
-        // "At Most 1 required but received 2" is how the library says that an option came twice.
-        const std::string what = error.what();
-        const std::string option = what.substr(0, what.find(':'));
-        const bool twice = what.find("At Most 1 required") != std::string::npos;
-        return complain(ExitCode::usage, running,
-                        fmt::format("{}; see {} {} --help",
-                                    twice ? option + " is given more than once" : what, tool_name, running));
     } catch (const CLI::ParseError& error) {
         return complain(ExitCode::usage, running,
                         fmt::format("{}; see {} {} --help", error.what(), tool_name, running));

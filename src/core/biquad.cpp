@@ -23,14 +23,6 @@ double polynomial_delay(double c0, double c1, double c2, std::complex<double> z1
 
 }  // namespace
 
-BiquadState settled_at(const Biquad& f, double x) noexcept {
-    const double y = dc_gain(f) * x;
-    BiquadState s;
-    s.s2 = f.b2 * x - f.a2 * y;
-    s.s1 = f.b1 * x + s.s2 - f.a1 * y;
-    return s;
-}
-
 double dc_gain(const Biquad& f) noexcept { return (f.b0 + f.b1 + f.b2) / (1.0 + f.a1 + f.a2); }
 
 std::complex<double> response(const Biquad& f, Hertz at, Hertz sample_rate) {

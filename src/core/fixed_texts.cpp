@@ -25,8 +25,8 @@ void FixedTexts::prepare(std::span<const double> values, double divisor, int dec
     print_fixed_avx2(values, decimals, mark_, slots_.data(), lengths_.data());
 }
 
-char* FixedTexts::put_alone(char* into, std::size_t i, int decimals) const {
-    char* const end = put_fixed(into, values_[i] / divisor_, decimals);
+char* FixedTexts::put_alone(char* into, std::size_t i) const {
+    char* const end = put_fixed(into, values_[i] / divisor_, decimals_);
     if (mark_ != '.') std::replace(into, end, '.', mark_);
     return end;
 }

@@ -31,18 +31,14 @@ class FixedTexts {
     char* put(char* into, std::size_t i) const {
         const auto length = static_cast<std::size_t>(lengths_[i]);
         if (length == 0) [[unlikely]]
-            return put_alone(into, i, decimals_);
+            return put_alone(into, i);
         // Always as many bytes as a slot has: what stands behind the text is written over by what comes next.
         std::memcpy(into, slots_.data() + slot_bytes * (i + 1) - length, slot_bytes);
         return into + length;
     }
-    /// With other decimals than those prepared, for the few that need them.
-    char* put(char* into, std::size_t i, int decimals) const {
-        return decimals == decimals_ ? put(into, i) : put_alone(into, i, decimals);
-    }
 
   private:
-    char* put_alone(char* into, std::size_t i, int decimals) const;
+    char* put_alone(char* into, std::size_t i) const;
 
     char mark_;
     bool avx2_;

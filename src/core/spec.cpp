@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <numeric>
 
 #include "ripplenotch/core/error.hpp"
@@ -23,13 +24,16 @@ const Key* find_key(std::span<const Key> keys, std::string_view name) {
 double checked_number(std::string_view text, const Key& key, std::string_view what) {
     const std::string label = fmt::format("{}, {}", what, key.name);
     const double value = parse_quantity(text, key.dimension, label);
-    const std::string_view unit = base_unit(key.dimension);
-    if (!(value > key.above)) {
-        raise<UsageError>("{}: {} is not above {} {}", label, text, shortest(key.above), unit);
-    }
-    if (!(value <= key.at_most)) {
-        raise<UsageError>("{}: {} is above the limit of {} {}", label, text, shortest(key.at_most), unit);
-    }
+    const auto limit = [&](double number) {
+        const std::string_view unit = base_unit(key.dimension);
+        return fmt::format("{}{}{}", shortest(number), unit.empty() ? "" : " ", unit);
+    };
+    if (!(value > key.above)) raise<UsageError>("{}: {} is not above {}", label, text, limit(key.above));
+    if (!(value >= key.at_least)) raise<UsageError>("{}: {} is below {}", label, text, limit(key.at_least));
+    if (!(value <= key.at_most))
+        raise<UsageError>("{}: {} is above the limit of {}", label, text, limit(key.at_most));
+    if (key.whole && value != std::floor(value))
+        raise<UsageError>("{}: {} is not a whole number", label, text);
     return value;
 }
 

@@ -117,25 +117,34 @@ std::string alone(const MethodFigures& a, const std::string& name) {
 
 }  // namespace
 
+MethodPart part_of(const MethodFigures& figures) {
+    for (const Method* method : methods()) {
+        if (is(figures, method->name)) return method->part;
+    }
+    return MethodPart::contender;
+}
+
 const MethodFigures* Comparison::subject() const {
     const MethodFigures* found = nullptr;
     for (const MethodFigures& figures : methods) {
-        if (is(figures, "none")) continue;
-        if (!is(figures, "lowpass")) return &figures;
+        const MethodPart part = part_of(figures);
+        if (part == MethodPart::control) continue;
+        if (part == MethodPart::contender) return &figures;
         if (found == nullptr) found = &figures;
     }
     return found;
 }
 
 const MethodFigures* Comparison::rival() const {
-    const MethodFigures *low_pass = nullptr, *other = nullptr;
+    const MethodFigures *rival = nullptr, *other = nullptr;
     for (const MethodFigures& figures : methods) {
-        if (&figures == subject() || is(figures, "none")) continue;
+        const MethodPart part = part_of(figures);
+        if (&figures == subject() || part == MethodPart::control) continue;
         if (match && match->low_pass == figures.method) return &figures;
-        if (low_pass == nullptr && is(figures, "lowpass")) low_pass = &figures;
+        if (rival == nullptr && part == MethodPart::rival) rival = &figures;
         if (other == nullptr) other = &figures;
     }
-    return low_pass != nullptr ? low_pass : other;
+    return rival != nullptr ? rival : other;
 }
 
 std::string verdict(const Comparison& comparison) {

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "export/parameters.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 
+#include "export/targets.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -32,10 +36,10 @@ SharedShape shared_shape(const FilterSet& filters, std::string_view target) {
     for (const ExportBand& band : filters.bands) {
         for (const ExportSection& section : band.sections) {
             if (!section.notch) {
-                raise<UsageError>(
-                    "target {} holds notches only, not a low-pass; c-header, cmsis-dsp, scipy, "
-                    "matlab, ros-filters and json hold both",
-                    target);
+                const auto both = targets_that(&Target::notches_only, false);
+                const auto last = both.end() - 1;
+                raise<UsageError>("target {} holds notches only, not a low-pass; {} and {} hold both", target,
+                                  fmt::join(both.begin(), last, ", "), *last);
             }
             const NotchSpec& notch = *section.notch;
             if (notch.width == WidthRule::digital) {

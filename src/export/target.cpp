@@ -18,6 +18,14 @@ constexpr const Target* list[] = {
 
 std::span<const Target* const> export_targets() { return list; }
 
+std::vector<std::string_view> targets_that(bool Target::*trait, bool value) {
+    std::vector<std::string_view> names;
+    for (const Target* target : export_targets()) {
+        if (target->*trait == value) names.push_back(target->name);
+    }
+    return names;
+}
+
 const Target& find_target(std::string_view name) {
     std::vector<std::string> known;
     for (const Target* target : export_targets()) {

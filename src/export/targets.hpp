@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
+// The entries of the target registry, declared from its one list.
+
+#include <string_view>
+#include <vector>
+
 #include "ripplenotch/export/target.hpp"
+
+namespace ripplenotch {
+
+/// The names of the targets for which this trait is `value`, in the order of the list.
+[[nodiscard]] std::vector<std::string_view> targets_that(bool Target::*trait, bool value = true);
+
+}  // namespace ripplenotch
 
 namespace ripplenotch::targets {
 #define TARGET(name) extern const Target name;

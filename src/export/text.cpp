@@ -2,6 +2,7 @@
 #include "export/text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "export/targets.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -89,10 +91,10 @@ const ExportBand& only_band(const FilterSet& filters, std::string_view target) {
         raise<UsageError>(
             "target {} holds one filter for all speeds, and this table has {}; choose a band with --band, "
             "for "
-            "example --band {}, or a target that switches: c-header, cmsis-dsp, scipy, matlab, json",
+            "example --band {}, or a target that switches: {}",
             target,
             filters.bands.size() == 1 ? "a band of speed" : fmt::format("{} bands", filters.bands.size()),
-            filters.bands.back().number);
+            filters.bands.back().number, fmt::join(targets_that(&Target::switches), ", "));
     }
     return filters.bands.front();
 }

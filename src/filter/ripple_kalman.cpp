@@ -8,12 +8,11 @@
 
 #include "core/linear_algebra.hpp"
 #include "filter/gain_schedule.hpp"
+#include "filter/rate_edge.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
-
-constexpr double full_below_rate = 0.45, none_above_rate = 0.48;  ///< cycles per sample
 
 double radians(double cycles) { return 2.0 * std::numbers::pi * (cycles - std::floor(cycles)); }
 
@@ -33,8 +32,7 @@ double RippleModel::amplitude_noise(double step_turns) const noexcept {
 }
 
 double RippleModel::share(double order, double step_turns) const noexcept {
-    return std::clamp((none_above_rate - order * std::abs(step_turns)) / (none_above_rate - full_below_rate),
-                      0.0, 1.0);
+    return share_below_rate(order * std::abs(step_turns));
 }
 
 RippleKalman::RippleKalman(RippleModel model, std::vector<AmplitudePrior> priors,

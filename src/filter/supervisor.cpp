@@ -5,19 +5,13 @@
 #include <cmath>
 
 #include "core/first_outside.hpp"
-#include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 
 Supervisor::Supervisor(std::span<const Band> bands, const SupervisorSettings& settings)
     : regions_(speed_regions(bands, settings.below, settings.above)),
       hysteresis_deg_s_(settings.hysteresis.value()),
-      dwell_(settings.dwell_samples) {
-    if (!(hysteresis_deg_s_ >= 0.0)) {
-        raise<UsageError>("method switching, hysteresis: {} deg/s is negative", shortest(hysteresis_deg_s_));
-    }
-}
+      dwell_(settings.dwell_samples) {}
 
 std::size_t Supervisor::find(double speed_deg_s) const noexcept {
     const auto holds_speed = [speed_deg_s](const SpeedRegion& region) {

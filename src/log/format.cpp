@@ -34,18 +34,58 @@ const LogFormat& find_log_format(std::string_view name) {
     raise<UsageError>("there is no log format '{}'; formats: {}", name, fmt::join(names, ", "));
 }
 
-const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked) {
-    if (asked) return find_log_format(*asked);
+std::string written_log_formats() {
+    std::string names;
+    for (const LogFormat* format : log_formats()) {
+        if (format->is_written()) names += fmt::format("{}{}", names.empty() ? "" : ", ", format->name);
+    }
+    return names;
+}
+
+void require_written(const LogFormat& format, const std::string& output) {
+    if (format.is_written()) return;
+    raise<UsageError>("{}: format {} is read and not written; formats that are written: {}",
+                      output == "-" ? "standard output" : output, format.name, written_log_formats());
+}
+
+namespace {
+
+/// ".csv .npy": one for each format that is written.
+std::string written_extensions() {
+    std::string extensions;
+    for (const LogFormat* format : log_formats()) {
+        if (!format->is_written()) continue;
+        extensions += (extensions.empty() ? "" : " ") + std::string(format->extensions.front());
+    }
+    return extensions;
+}
+
+/// As `asked`, or by the extension; null where neither says it.
+const LogFormat* told_format(const std::string& path, std::optional<std::string_view> asked) {
+    if (asked) return &find_log_format(*asked);
     const std::size_t dot = path.rfind('.');
     std::string extension = dot == std::string::npos ? "" : path.substr(dot);
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     for (const LogFormat* format : log_formats()) {
         const auto& known = format->extensions;
-        if (std::find(known.begin(), known.end(), extension) != known.end()) return *format;
+        if (std::find(known.begin(), known.end(), extension) != known.end()) return format;
     }
-    check_output_name(path, "a log", ".csv .npy");
-    return formats::csv;
+    check_output_name(path, "a log", written_extensions());
+    return nullptr;
+}
+
+}  // namespace
+
+const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked) {
+    return output_format(path, asked, formats::csv);
+}
+
+const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked,
+                               const LogFormat& log) {
+    const LogFormat* told = told_format(path, asked);
+    require_written(told != nullptr ? *told : log, path);
+    return told != nullptr ? *told : formats::csv;
 }
 
 }  // namespace ripplenotch

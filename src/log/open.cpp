@@ -3,34 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-
 #include "log/clock/stamp.hpp"
 #include "log/columns/derived_velocity.hpp"
-#include "log/formats.hpp"
+#include "log/detect_format.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 namespace {
-
-constexpr std::size_t magic_size = 512;
-
-// Files that people hand over by mistake, told by their first bytes, and what to do with them.
-struct Stranger {
-    std::string_view magic, what, remedy;
-};
-constexpr std::array strangers = {
-    Stranger{"\x89HDF", "an HDF5 file", "export the joint's columns as CSV or NPY"},
-    Stranger{"MATLAB 5.0", "a MATLAB file", "export the joint's columns as CSV or NPY"},
-    Stranger{"PK\x03\x04", "a ZIP archive (or .npz, .xlsx)", "unpack it, or export it as CSV"},
-    Stranger{"\x1f\x8b", "a gzip file", "unpack it, e.g. with zcat FILE | ripplenotch ... -"},
-    Stranger{"\x28\xb5\x2f\xfd", "a zstd file", "unpack it, e.g. with zstdcat FILE | ripplenotch ... -"},
-    Stranger{"SQLite format 3", "an SQLite file (a ROS 2 bag?)", "export the joint's topic as CSV"},
-    Stranger{"#ROSBAG", "a ROS 1 bag", "export the joint's topic as CSV"},
-    Stranger{"\x89MCAP", "an MCAP file", "export the joint's topic as CSV"},
-};
 
 std::string clock_words(const Layout& layout) {
     if (!layout.chosen.time) return "none";
@@ -52,6 +32,9 @@ void check_clock(const Layout& whole, const Layout& inside) {
 /// Rows outside the range are gone before anything is decided about the others.
 std::unique_ptr<LogReader> open_cut(const LogFormat& format, std::unique_ptr<ByteSource> source,
                                     std::string first_bytes, const ReadOptions& options) {
+    if (format.cut == nullptr)
+        raise<UsageError>("{}: --from and --to: rows of a log in format {} are read all or none",
+                          source->name(), format.name);
     LogCut cut = format.cut(std::move(source), std::move(first_bytes), options);
     ReadOptions inside = options;
     inside.outside = cut.outside;
@@ -68,28 +51,16 @@ std::unique_ptr<LogReader> open_cut(const LogFormat& format, std::unique_ptr<Byt
 }  // namespace
 
 std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
-    const LogFormat* format = options.format ? &find_log_format(*options.format) : nullptr;
-    std::string first_bytes(magic_size, '\0');
+    std::string first_bytes(first_bytes_size, '\0');
     std::size_t have = 0;
-    for (std::size_t got = 1; have < magic_size && got > 0; have += got) {
-        got = source->read(first_bytes.data() + have, magic_size - have);
+    for (std::size_t got = 1; have < first_bytes.size() && got > 0; have += got) {
+        got = source->read(first_bytes.data() + have, first_bytes.size() - have);
     }
     first_bytes.resize(have);
-    for (const LogFormat* known : log_formats()) {
-        if (format == nullptr && known->sniff(first_bytes)) format = known;
-    }
-    if (!options.format) {
-        for (const Stranger& stranger : strangers) {
-            if (first_bytes.compare(0, stranger.magic.size(), stranger.magic) == 0) {
-                raise<DataError>("{}: read {}, expected a log as CSV or NPY; {}", source->name(),
-                                 stranger.what, stranger.remedy);
-            }
-        }
-    }
-    if (format == nullptr) format = &formats::csv;  // its own messages say what is wrong with the bytes
-    auto reader = options.range.given()
-                      ? open_cut(*format, std::move(source), std::move(first_bytes), options)
-                      : format->open(std::move(source), std::move(first_bytes), options);
+    const LogFormat& format =
+        options.format ? find_log_format(*options.format) : detect_format(first_bytes, source->name());
+    auto reader = options.range.given() ? open_cut(format, std::move(source), std::move(first_bytes), options)
+                                        : format.open(std::move(source), std::move(first_bytes), options);
     if (reader->layout().velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
     return reader;
 }
@@ -101,8 +72,9 @@ std::unique_ptr<LogReader> open_log(const std::string& path, const ReadOptions& 
 std::unique_ptr<LogWriter> rewrite_log(const std::string& path, const LogReader& reader,
                                        const LogFormat& format, const WriteOptions& options,
                                        ByteSink::Overwrite overwrite) {
+    require_written(format, path);
     auto sink = std::make_unique<ByteSink>(path, overwrite, format.binary);
-    const bool same = reader.layout().format == format.name;
+    const bool same = reader.layout().format == format.name && format.rewrite != nullptr;
     return same ? format.rewrite(std::move(sink), reader, options)
                 : format.convert(std::move(sink), reader, options);
 }

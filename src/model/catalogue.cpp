@@ -29,11 +29,6 @@ std::string_view side_name(Side side) {
     return names[static_cast<std::size_t>(side)];
 }
 
-std::string_view domain_name(Domain domain) {
-    constexpr std::string_view names[] = {"time", "position", "speed", "order", "frequency"};
-    return names[static_cast<std::size_t>(domain)];
-}
-
 const Effect& find_effect(std::string_view name) {
     std::vector<std::string> known;
     for (const Effect* effect : catalogue()) {

@@ -247,15 +247,4 @@ Fit fit(const Model& model, const Motion& motion, std::span<const double> torque
     return found;
 }
 
-std::vector<double> torque_per_unit(const Model& model, std::size_t term, std::size_t parameter,
-                                    const Motion& motion) {
-    Model with = model, without = model;
-    with.terms.at(term).values.at(parameter) = 1.0;
-    without.terms.at(term).values.at(parameter) = 0.0;
-    std::vector<double> torque_nm = predict_nm(with, motion);
-    const auto rest_nm = predict_nm(without, motion);
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= rest_nm[k];
-    return torque_nm;
-}
-
 }  // namespace ripplenotch

@@ -19,7 +19,7 @@ inline constexpr Key duration_key = {.name = "duration",
 inline constexpr Key from_key = {
     .name = "from",
     .dimension = Dimension::angle,
-    .above = -largest_angle_deg,
+    .at_least = -largest_angle_deg,
     .at_most = largest_angle_deg,
     .help = "position at its beginning; without it, where the motion before ended, or 0deg"};
 
@@ -44,7 +44,7 @@ constexpr Key swing_phase_key(std::string_view default_text, std::string_view he
     return {.name = "phase",
             .dimension = Dimension::angle,
             .default_text = default_text,
-            .above = -largest_angle_deg,
+            .at_least = -largest_angle_deg,
             .at_most = largest_angle_deg,
             .help = help};
 }

@@ -73,9 +73,13 @@ TEST_CASE("a log at one speed is a map of one row, without a division by zero") 
         REQUIRE(map.speed_deg_s.size() == 1);
         CHECK_THAT(map.speed_deg_s[0], WithinRel(9000.0, 1e-9));
         for (const double value : map.amplitude_nm[0]) CHECK(std::isfinite(value));
+        const auto& row = map.amplitude_nm[0];
+        const auto highest = std::max_element(row.begin(), row.end());
         const double line = axis == Axis::angle ? 1.0 : 25.0;
-        CHECK_THAT(cut_rms_nm(map, 0, line, 4.0 * map.resolution),
-                   WithinRel(0.8 / std::numbers::sqrt2, 0.01));
+        CHECK_THAT(map.axis[static_cast<std::size_t>(highest - row.begin())], WithinAbs(line, map.spacing));
+        // A line between two bins of a Hann window is seen by up to 1.4 dB too low.
+        CHECK(*highest < 0.81);
+        CHECK(*highest > 0.67);
     }
     const auto rest = tests::shaft(tests::straight(0.0, 0.0, 5000), 1000.0);
     CHECK_THROWS_AS(speed_map(rest.view(), rest.turns, rest.speed_deg_s, {}), DataError);
@@ -87,25 +91,4 @@ TEST_CASE("a resolution that no run can give is not pretended") {
                                    {.axis = Axis::angle, .resolution = 0.001, .highest = 7.5});
     CHECK_THAT(map.resolution, WithinRel(1.5 / 125.0, 1e-6));
     CHECK(map.speed_deg_s.size() == 1);
-}
-
-TEST_CASE(
-    "an order cut grows with its width: too narrow loses, the right one is the rms, too wide takes "
-    "neighbours") {
-    auto signal = tests::shaft(tests::straight(20.0, 20.0, 20000), 1000.0);
-    tests::add_line(signal, {4.0, 1.0, 0.0});
-    tests::add_line(signal, {4.5, 0.7, 1.0});
-    tests::add_noise(signal, 0.05, 5);
-    const SpeedMap map = speed_map(signal.view(), signal.turns, signal.speed_deg_s,
-                                   {.axis = Axis::angle, .resolution = 0.05, .highest = 10.0});
-    const double truth = 1.0 / std::numbers::sqrt2;
-    double before = 0.0;
-    for (const double width : {0.02, 0.05, 0.1, 0.15, 0.3, 0.6, 1.2}) {
-        const double rms = cut_rms_nm(map, 0, 4.0, width);
-        CHECK(rms > before);
-        before = rms;
-    }
-    CHECK(cut_rms_nm(map, 0, 4.0, 0.02) < 0.8 * truth);
-    CHECK_THAT(cut_rms_nm(map, 0, 4.0, 0.15), WithinRel(truth, 0.01));
-    CHECK_THAT(cut_rms_nm(map, 0, 4.0, 1.2), WithinRel(std::sqrt(0.5 * (1.0 + 0.49)), 0.02));
 }

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "benchmark.hpp"
+#include "filter/filter_bank.hpp"
 #include "filter/kernels/block_cascade.hpp"
-#include "filter/transitions/filter_bank.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/filter/method.hpp"
 

@@ -12,6 +12,7 @@ import unittest
 import xml.dom.minidom
 
 SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+TOOL = os.environ["RIPPLENOTCH"]
 FIGURES = SOURCE / "docs" / "figures"
 
 
@@ -55,6 +56,16 @@ class Figures(unittest.TestCase):
                 self.assertIn(figure["title"], written)
                 for panel in figure["panels"]:
                     self.assertIn(panel["y"]["label"], written)
+
+    def test_every_listed_figure_is_on_the_page_and_in_its_command_s_help(self):
+        listed = re.findall(r'^FIGURE\("([\w-]+)", "(\w+)"\)', (SOURCE / "src" / "figure" / "figures.def").read_text(), re.M)
+        shown = re.findall(r"!\[[^]]+\]\(([^)]+)\.svg\)", (FIGURES / "README.md").read_text())
+        names = [json.loads((FIGURES / f"{name}.json").read_text())["name"] for name in shown]
+        for name, command in listed:
+            self.assertIn(name, names, f"docs/figures/README.md has no picture of figure {name}")
+            help_text = subprocess.run([TOOL, command, "--help"], capture_output=True, text=True, timeout=60).stdout
+            self.assertRegex(help_text, rf"as a picture \([^)]*\b{name}\b", command)
+        self.assertEqual(set(names), {name for name, _ in listed}, "src/figure/figures.def")
 
     def test_pictures_are_small(self):
         for path in FIGURES.glob("*.svg"):

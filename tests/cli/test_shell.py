@@ -31,6 +31,22 @@ def shell(command):
                           stdin=subprocess.DEVNULL, timeout=60)
 
 
+class Provenance(unittest.TestCase):
+    def test_where_a_result_goes_and_how_much_is_told_is_no_part_of_its_command(self):
+        plain = f"ripplenotch info {LOG}"
+        with tempfile.TemporaryDirectory() as folder:
+            target = pathlib.Path(folder, "info.json")
+            for words in (f"-o {target}", f"-o{target} -qv", f"-vqo {target}", f"-qo{target}", f"--output={target} -q -v",
+                          f"--output {target} --quiet --verbose --json"):
+                done = shell(f"{plain} {words} --force")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(json.loads(target.read_text())["command"], plain, words)
+        done = shell(f"ripplenotch info --json -- {LOG} {LOG} -qv")
+        self.assertIn(b"-qv: ", done.stderr)  # behind -- it is a name
+        done = shell(f"ripplenotch info --json -v --columns -,velocity,torque --sample-rate 1kHz --no-header --skip-lines 1 {LOG}")
+        self.assertIn("--columns -,velocity,torque", json.loads(done.stdout)["command"])
+
+
 class Pipes(unittest.TestCase):
     def test_a_log_flows_through_filter_into_spectrum(self):
         done = shell(f"cat {LOG} | ripplenotch filter --method {LOWPASS} - | ripplenotch spectrum - --json")

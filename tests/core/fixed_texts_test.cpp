@@ -130,18 +130,3 @@ TEST_CASE("ties, signs, zeros and what is no number are printed side by side as 
             for (const double divisor : {1.0, 1e-3, -1.0, 0.11298482902761668})
                 CHECK(misprinted(values, divisor, decimals, avx2, decimals % 2 == 0 ? '.' : ',') == 0);
 }
-
-TEST_CASE("a number with other decimals than its neighbours is printed with these") {
-    const std::vector<double> values = {1.25, -2.0625, 3.5};
-    for (const bool avx2 : instruction_sets()) {
-        FixedTexts texts(',', avx2);
-        texts.prepare(values, 1.0, 2);
-        std::vector<char> text(number_room);
-        const auto put = [&](std::size_t i, int decimals) {
-            return std::string(text.data(), texts.put(text.data(), i, decimals));
-        };
-        CHECK(put(0, 2) == "1,25");
-        CHECK(put(1, 3) == "-2,062");
-        CHECK(put(2, 0) == "4");
-    }
-}

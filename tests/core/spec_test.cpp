@@ -16,7 +16,9 @@ const std::array keys = {
         .required = true,
         .above = 0.0,
         .help = "where it is -3 dB"},
-    Key{.name = "order", .default_text = "1", .above = 0.0, .at_most = 20.0},
+    Key{.name = "order", .default_text = "1", .above = 0.0, .at_most = 20.0, .whole = true},
+    Key{.name = "dwell", .dimension = Dimension::time, .at_least = 0.0},
+    Key{.name = "counts", .kind = KeyKind::list, .at_least = 1.0, .whole = true},
     Key{.name = "centers", .kind = KeyKind::list, .dimension = Dimension::frequency, .above = 0.0},
     Key{.name = "mode", .kind = KeyKind::choice, .default_text = "keep", .choices = modes},
 };
@@ -47,6 +49,15 @@ TEST_CASE("a wrong specification names the piece and the remedy") {
     CHECK_THROWS_WITH(parse_spec("lowpass,a=1,a=2"), Contains("a is given twice"));
     CHECK_THROWS_WITH(parse_spec("cutoff=3"), Contains("starts with 'cutoff=3'"));
     CHECK_THROWS_AS(parse_spec(""), UsageError);
+}
+
+TEST_CASE("a bound may belong to the range, and numbers may have to be whole") {
+    CHECK(settings("lowpass,cutoff=1,dwell=0").number("dwell") == 0.0);
+    CHECK(settings("lowpass,cutoff=1,counts=1:3").list("counts") == std::vector<double>{1.0, 3.0});
+    CHECK_THROWS_WITH(settings("lowpass,cutoff=1,dwell=-1ms"), Contains("dwell: -1ms is below 0 s"));
+    CHECK_THROWS_WITH(settings("lowpass,cutoff=1,counts=3:0"), Contains("counts: 0 is below 1"));
+    CHECK_THROWS_WITH(settings("lowpass,cutoff=1,order=1.5"), Contains("order: 1.5 is not a whole number"));
+    CHECK_THROWS_WITH(settings("lowpass,cutoff=1,counts=1:2.5"), Contains("2.5 is not a whole number"));
 }
 
 TEST_CASE("the nearest name is offered only when it is near") {

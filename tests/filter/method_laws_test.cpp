@@ -18,7 +18,7 @@ constexpr double constant_nm = -0.512;
 
 std::string some_number(const Key& key, std::mt19937& engine) {
     const auto between = [&](double low, double high) {
-        return std::uniform_real_distribution<double>(std::max(low, key.above),
+        return std::uniform_real_distribution<double>(std::max({low, key.above, key.at_least}),
                                                       std::min(high, key.at_most))(engine);
     };
     // Told of another torque at rest, the oscillator would rightly call the constant ripple.
@@ -140,6 +140,27 @@ TEST_CASE("methods have a name, a summary, and keys with help, each name once") 
         CHECK(method->needs_table == (keys.count("table") == 1));
     }
     CHECK_THROWS_WITH(find_method("lowpas"), Catch::Contains("did you mean lowpass?"));
+}
+
+TEST_CASE("one method is the control, and what is exported as coefficients runs as these at any speed") {
+    std::size_t controls = 0;
+    for (const Method* method : methods()) controls += method->part == MethodPart::control ? 1 : 0;
+    CHECK(controls == 1);
+    for_all_methods([](const std::string& text, const CandidateTable&) {
+        const Spec spec = parse_spec(text);
+        const Method& method = find_method(spec.name);
+        if (method.steady == nullptr) return;
+        const Settings settings("method", spec, method.keys);
+        const SteadyDesign design = method.steady(settings);
+        Cascade designed;
+        if (const auto* notches = std::get_if<std::vector<NotchSpec>>(&design)) {
+            for (const NotchSpec& notch : *notches) designed.push_back(design_notch(notch, Hertz(1000.0)));
+        } else {
+            designed = design_low_pass(std::get<LowPassSpec>(design), Hertz(1000.0));
+        }
+        for (const double speed : {0.0, 90.0})
+            CHECK(method.frozen(settings, Hertz(1000.0), nullptr, DegPerSec(speed)).cascade == designed);
+    });
 }
 
 TEST_CASE("a constant torque passes every method bit for bit from the first sample, at any speed") {

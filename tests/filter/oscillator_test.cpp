@@ -404,7 +404,7 @@ TEST_CASE("a torque that jumps comes out at once where a jump is looked for, and
 TEST_CASE("oscillator says what is wrong with its settings") {
     CHECK_THROWS_WITH(start(cold + ",phases=0:0"), Catch::Contains("without amplitudes"));
     CHECK_THROWS_WITH(start(cold + ",amplitudes=0.8"), Catch::Contains("1 values for 2 orders"));
-    CHECK_THROWS_WITH(start(cold + ",amplitudes=0.8:-1"), Catch::Contains("negative"));
+    CHECK_THROWS_WITH(start(cold + ",amplitudes=0.8:-1"), Catch::Contains("amplitudes: -1 is below 0 Nm"));
     CHECK_THROWS_WITH(start(cold + ",bandwidth=300Hz"), Catch::Contains("250 Hz"));
     CHECK_THROWS_AS(start(cold + ",memory=0"), UsageError);
 }

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "core/first_outside.hpp"
+#include "filter/filter_bank.hpp"
 #include "filter/kernels/direct_form.hpp"
 #include "filter/kernels/in_series.hpp"
 #include "filter/tables.hpp"
-#include "filter/transitions/filter_bank.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -266,8 +266,8 @@ TEST_CASE("max-delay narrows a slow line's notch until its delay is that, and le
 TEST_CASE("tracking says what is wrong with its settings") {
     CHECK_THROWS_WITH(start("tracking,orders=1"), Catch::Contains("gear-ratio"));
     CHECK_THROWS_WITH(start(gear + ",weights=1"), Catch::Contains("1 values for 2 orders"));
-    CHECK_THROWS_WITH(start(gear + ",weights=1:-0.5"), Catch::Contains("-0.5 is negative"));
-    CHECK_THROWS_WITH(start(gear + ",fade=-1Hz"), Catch::Contains("-1 Hz is negative"));
+    CHECK_THROWS_WITH(start(gear + ",weights=1:-0.5"), Catch::Contains("weights: -0.5 is below 0"));
+    CHECK_THROWS_WITH(start(gear + ",fade=-1Hz"), Catch::Contains("fade: -1Hz is below 0 Hz"));
     CHECK_THROWS_WITH(start("tracking,gear-ratio=100,orders=2:1:2"), Catch::Contains("2 is given twice"));
     CHECK_THROWS_WITH(start(gear + ",min=460Hz"), Catch::Contains("450 Hz"));
     CHECK_THROWS_AS(start("tracking,gear-ratio=0,orders=1"), UsageError);

@@ -10,6 +10,7 @@ import unittest
 SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
 TOOL = os.environ["RIPPLENOTCH"]
 
+# kind, which is its folder of docs -> (the list, its word)
 REGISTRIES = {
     "commands": ("src/cli/commands.def", "COMMAND"),
     "methods": ("src/filter/methods/methods.def", "METHOD"),
@@ -28,6 +29,49 @@ def listed(kind):
     path, word = REGISTRIES[kind]
     text = (SOURCE / path).read_text()
     return [name.rstrip("_").replace("_", "-") for name in re.findall(rf"^{word}\((\w+)\)", text, re.M)]
+
+
+def named(kind, but=()):
+    return ", ".join(name for name in listed(kind) if name not in but)
+
+
+# Formats that are read and not written; none so far.
+READ_ONLY = [name for name in listed("formats")
+             if ".write_columns" not in (SOURCE / "src/log/formats" / f"{name.replace('-', '_')}.cpp").read_text()]
+# Option -> the list that its help prints, for the commands that have it.
+HELP_LISTS = {
+    ("filter", "--method"): named("methods"),
+    ("compare", "--method"): named("methods"),
+    ("export", "--to"): named("export"),
+    ("simulate", "--motion"): named("motions"),
+    **{(command, "--format"): named("formats")
+       for command in ("info", "spectrum", "identify", "track", "filter", "compare", "diagnose")},
+    ("simulate", "--format"): named("formats", READ_ONLY),
+    ("filter", "--output-format"): named("formats", READ_ONLY),
+}
+
+
+class HelpLists(unittest.TestCase):
+    def help_of(self, command, option):
+        text = run(command, "--help").stdout
+        found = re.search(rf"^ +(?:-\w,)?{option}\b.*?(?=^ +-|^[A-Z\n]|\Z)", text, re.M | re.S)
+        self.assertIsNotNone(found, f"{command} has no {option}")
+        return " ".join(found[0].split())
+
+    def test_help_names_all_that_is_listed_in_the_order_of_the_list(self):
+        for (command, option), names in HELP_LISTS.items():
+            self.assertIn(names, self.help_of(command, option), f"{command} {option}")
+
+    def test_no_list_is_written_by_hand(self):
+        for kind in REGISTRIES:
+            if kind == "commands":
+                continue
+            names = [re.escape(name) for name in listed(kind)]
+            two = re.compile(rf"\b({'|'.join(names)}), ({'|'.join(names)})\b")
+            for path in sorted((SOURCE / "src").rglob("*.cpp")):
+                code = re.sub(r"^ *//.*", "", path.read_text(), flags=re.M)
+                for text in re.findall(r'"((?:[^"\\\n]|\\.)*)"', code):
+                    self.assertIsNone(two.search(text), f"{path.relative_to(SOURCE)} lists {kind} by hand: {text}")
 
 
 class Pages(unittest.TestCase):

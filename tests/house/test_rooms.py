@@ -41,6 +41,23 @@ DOORS = {
     r"Eigen/(?!Sparse)": {"src/core/linear_algebra.hpp"},
 }
 
+# A header in src is its room's own. These go through a wall: header -> the rooms that may include it, and why.
+PRIVATE_DOORS = {
+    "core/": (set(SEES), "what lies in core is for every room of the library; what is public there is for its users too"),
+    "log/opening.hpp": ({"filter"}, "a stream judges the same first rows as a log that is read whole"),
+    "log/account/account.hpp": ({"filter"}, "a stream goes through the same account as a log that is read whole"),
+    "model/fit_coordinates.hpp": ({"diagnose"}, "effects that are tried are screened in the coordinates of the fit"),
+    "model/weighing.hpp": ({"diagnose"}, "effects that are tried are screened by the weights of the fit"),
+    "document/diagnosis_fields.hpp": ({"page"}, "values and places of a finding stand on the page as in the document"),
+    "document/json.hpp": ({"page"}, "the page shows JSON as tables; the library behind it has one door"),
+    "figure/gnuplot_script.hpp": ({"page"}, "a map has the same colours on the page as in a picture"),
+    "figure/picture_layout.hpp": ({"page"}, "names find their places on the page as they do in a picture"),
+}
+
+
+def private_door(header, room):
+    return any(header.startswith(door) and room in rooms for door, (rooms, _) in PRIVATE_DOORS.items())
+
 
 def sources():
     for top in ("include/ripplenotch", "src"):
@@ -96,6 +113,17 @@ class Rooms(unittest.TestCase):
         named = re.findall(r"`((?:src|include)/[\w/.]+)`", page)
         self.assertGreater(len(named), 15)
         self.assertEqual([name for name in named if not (SOURCE / name).exists()], [])
+
+    def test_a_private_header_is_seen_by_another_room_only_where_a_reason_is_listed(self):
+        used = set()
+        for path, room, includes in sources():
+            for include in includes:
+                if include.split("/")[0] in SEES and include.split("/")[0] != room:
+                    self.assertTrue(private_door(include, room),
+                                    f"{path.relative_to(SOURCE)} includes {include}, which is private to its room: "
+                                    "list it in PRIVATE_DOORS with a reason, or make it public")
+                    used.update(door for door in PRIVATE_DOORS if include.startswith(door))
+        self.assertEqual(used, set(PRIVATE_DOORS), "a door that nobody uses")
 
     def test_third_party_headers_have_one_door_each(self):
         for path, _, includes in sources():

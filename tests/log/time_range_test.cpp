@@ -81,6 +81,7 @@ TEST_CASE("in logs of times of day and of dates, fields are times of the first r
 
 TEST_CASE("every format cuts a log to the rows that were asked for, however its bytes arrive", "[log]") {
     for (const LogFormat* format : log_formats()) {
+        if (!format->is_written()) continue;
         INFO(format->name);
         const std::string bytes = written(*format, table(0, 400));
         const Log expected = read_text(written(*format, table(101, 303)));

@@ -249,13 +249,6 @@ TEST_CASE("a first guess takes a fit to the minimum nearby") {
     CHECK(near.values.back().value == Approx(-20.0).margin(0.001));
 }
 
-TEST_CASE("a unit of a linear parameter is its column") {
-    const Model model{
-        GearRatio(100.0),
-        {parse_term("offset,torque_nm=3"), parse_term("viscous-friction"), parse_term("delay,delay_s=0")}};
-    CHECK(largest_difference(torque_per_unit(model, 1, 0, strokes()), strokes().velocity_deg_s) < 1e-11);
-}
-
 TEST_CASE("a fit refuses what it does not search for, and a log that is too short") {
     const Model no_order{GearRatio(100.0), {parse_term("offset"), parse_term("ripple")}};
     const std::vector<double> torque_nm(strokes().size(), 0.0);

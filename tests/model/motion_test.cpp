@@ -216,7 +216,7 @@ TEST_CASE("a wrong motion is refused with the piece and the remedy") {
                Contains("more than 100000000 samples") && Contains("lower"));
     CHECK_THAT(refusal({"rest,duration=1s", "rest,duration=1s,from=3deg"}),
                Contains("from=3deg") && Contains("ends at 0deg") && Contains("leave from= out"));
-    CHECK_THAT(refusal({"poly6,to=1,duration=1s,asymmetry=1.01"}), Contains("between -1 and 1"));
+    CHECK_THAT(refusal({"poly6,to=1,duration=1s,asymmetry=1.01"}), Contains("1.01 is above the limit of 1"));
     CHECK_THROWS_WITH(make_motion("rest,duration=1s", 0_Hz), Contains("not above 0"));
 }
 

@@ -45,9 +45,4 @@ struct SpeedMap {
 [[nodiscard]] SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
                                  std::span<const double> speed_deg_s, const MapOptions& options);
 
-/// Rms torque within `width` around `centre` of one row of a map: what "order cuts" show. A Hann line is
-/// whole in a width of 2.7 resolutions (four bins); a narrower cut loses of it, a wider one takes in
-/// neighbours and noise.
-[[nodiscard]] double cut_rms_nm(const SpeedMap& map, std::size_t speed, double centre, double width);
-
 }  // namespace ripplenotch

@@ -64,9 +64,6 @@ class StretchMeter {
     double tt_ = 0.0, tp_ = 0.0, pp_ = 0.0;
 };
 
-/// True when one steady stretch covers at least nine tenths of the log.
-[[nodiscard]] bool whole_log_is_steady(const TraceView& trace, const std::vector<Stretch>& stretches);
-
 /// Mean of `values` over `width` samples around each (odd width; shorter at the ends). O(n).
 [[nodiscard]] std::vector<double> moving_mean(std::span<const double> values, std::size_t width);
 

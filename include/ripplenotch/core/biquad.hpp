@@ -32,10 +32,6 @@ inline double step(const Biquad& f, BiquadState& s, double x) noexcept {
     return y;
 }
 
-/// The state in which a constant input x has been present for ever, so that filtering starts without a
-/// transient.
-[[nodiscard]] BiquadState settled_at(const Biquad& f, double x) noexcept;
-
 /// Output of a section for a constant input of 1.
 [[nodiscard]] double dc_gain(const Biquad& f) noexcept;
 

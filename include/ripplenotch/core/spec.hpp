@@ -26,7 +26,9 @@ struct Key {
     bool required = false;
     std::span<const std::string_view> choices = {};  ///< for KeyKind::choice
     double above = -1e300;                           ///< numbers and list entries must be > above ...
+    double at_least = -1e300;                        ///< ... and >= at_least ...
     double at_most = 1e300;                          ///< ... and <= at_most, in the base unit
+    bool whole = false;                              ///< numbers and list entries must be whole numbers
     std::string_view help = {};
 };
 

@@ -43,6 +43,9 @@ struct MethodFigures {
     std::optional<double> error_rms_nm;  ///< against ComparedLog::truth_nm
 };
 
+/// The part of its method; a contender's where no method has this name.
+[[nodiscard]] MethodPart part_of(const MethodFigures& figures);
+
 /// How a low-pass was made equal to a method, or why none is.
 struct LowPassMatch {
     std::string subject;                  ///< the method, or "22 dB" when the attenuation was given
@@ -70,10 +73,10 @@ struct Comparison {
     std::size_t rows = 0, windows = 0;  ///< of the log; windows that RippleMeter measured
     double measured_share = 0.0;
 
-    /// The method that the others are held against: the first that is neither `none` nor a low-pass, else the
-    /// first that is not `none`. Null when only the control runs.
+    /// The method that the others are held against: the first contender, else the first rival. Null when only
+    /// the control runs.
     [[nodiscard]] const MethodFigures* subject() const;
-    /// The matched low-pass, else the first low-pass, else the first other method; null when there is no
+    /// The matched low-pass, else the first of the rivals, else the first other method; null when there is no
     /// other.
     [[nodiscard]] const MethodFigures* rival() const;
 };

@@ -28,6 +28,8 @@ struct Target {
     std::string_view name, summary, source;
     std::string_view endings;  ///< of the names that fit its files, with blanks between them
     bool binary = false;
+    bool notches_only = false;  ///< it cannot hold a low-pass
+    bool switches = false;      ///< it holds the bands of a table and puts the one for the speed in force
     std::span<const Key> keys = {};
     /// `heading` says what made the file, one line each, for a comment; it may be empty. Throws UsageError,
     /// naming value, limit and remedy, when the target cannot hold the filters.

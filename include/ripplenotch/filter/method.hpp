@@ -8,11 +8,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/design/candidate_table.hpp"
+#include "ripplenotch/design/low_pass.hpp"
+#include "ripplenotch/design/notch.hpp"
 
 namespace ripplenotch {
 
@@ -72,8 +75,19 @@ class Learner : public CausalFilter {
     [[nodiscard]] virtual std::vector<std::string> notes() const { return {}; }
 };
 
+/// What a comparison makes of a method.
+enum class MethodPart {
+    contender,
+    rival,    ///< what joints have without this tool: contenders are held against it
+    control,  ///< passes the torque; is in every comparison
+};
+
+/// One design of the same coefficients at every speed: notches in series, or a low-pass.
+using SteadyDesign = std::variant<std::vector<NotchSpec>, LowPassSpec>;
+
 struct Method {
     std::string_view name, summary, source;
+    MethodPart part = MethodPart::contender;
     std::span<const Key> keys;
     bool needs_table = false;  ///< the key "table" names a table.json, loaded by the caller
     /// `table` is null unless needs_table. Throws UsageError on what cannot be designed at this sample rate.
@@ -82,6 +96,9 @@ struct Method {
     /// The linear filter in force at a constant speed; empty function for methods that have none.
     FrozenFilter (*frozen)(const Settings& settings, Hertz sample_rate, const CandidateTable* table,
                            DegPerSec speed) = nullptr;
+    bool frozen_is_dear = false;  ///< frozen() takes too long to be asked for every window of a log
+    /// What can be exported as coefficients; null for methods whose coefficients change while they run.
+    SteadyDesign (*steady)(const Settings& settings) = nullptr;
     /// Null for causal methods. Where there is one, start() gives the filter that has learned nothing: it
     /// passes.
     std::unique_ptr<Learner> (*learner)(const Settings& settings, Hertz sample_rate) = nullptr;

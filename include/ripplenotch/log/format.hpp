@@ -81,7 +81,7 @@ class LogReader {
 };
 
 struct WriteOptions {
-    enum class Decimals { shortest, input, fixed };
+    enum class Decimals { shortest, fixed };
     Decimals decimals = Decimals::shortest;
     int fixed_decimals = 6;
     bool append = false;                          ///< add a column instead of replacing the torque
@@ -126,20 +126,24 @@ struct NumberColumn {
     std::vector<double> values;
 };
 
+/// What makes a format one that is read and not written: no rewrite, no convert and no write_columns.
 struct LogFormat {
     std::string_view name, summary;
     std::span<const std::string_view> extensions;  ///< ".csv", ".txt"
     bool binary = false;
-    /// True when these first bytes of a file are surely this format.
+    /// True when these first bytes of a file are surely this format. Null for CSV, which is what a file is
+    /// that no other format knows.
     bool (*sniff)(std::string_view first_bytes) = nullptr;
     /// `first_bytes` have been read from `source` already and come before what it still holds.
     std::unique_ptr<LogReader> (*open)(std::unique_ptr<ByteSource> source, std::string first_bytes,
                                        const ReadOptions& options) = nullptr;
     /// The rows inside options.range, which is given; `first_bytes` as for open. Throws what open throws, and
-    /// UsageError where the range is none or keeps fewer than two rows.
+    /// UsageError where the range is none or keeps fewer than two rows. Null where rows cannot be left out:
+    /// a range is then refused.
     LogCut (*cut)(std::unique_ptr<ByteSource> source, std::string first_bytes,
                   const ReadOptions& options) = nullptr;
-    /// A writer for rows of a log that was read in this same format: other columns pass byte for byte.
+    /// A writer for rows of a log that was read in this same format: other columns pass byte for byte. Null
+    /// where convert does it.
     std::unique_ptr<LogWriter> (*rewrite)(std::unique_ptr<ByteSink> sink, const LogReader& reader,
                                           const WriteOptions& options) = nullptr;
     /// A writer for rows of a log that was read in another format: time_s, velocity_deg_s, torque_nm and
@@ -148,13 +152,24 @@ struct LogFormat {
                                           const WriteOptions& options) = nullptr;
     /// Writes columns of equal length as a new log; finishing the sink stays with the caller.
     void (*write_columns)(ByteSink& sink, std::span<const NumberColumn> columns) = nullptr;
+
+    [[nodiscard]] bool is_written() const { return convert != nullptr && write_columns != nullptr; }
 };
 
 /// All formats, in the order of formats.def.
 [[nodiscard]] std::span<const LogFormat* const> log_formats();
 /// Throws UsageError that lists the known names.
 [[nodiscard]] const LogFormat& find_log_format(std::string_view name);
+/// The names of those that are written, as people read them: "csv, npy".
+[[nodiscard]] std::string written_log_formats();
+/// Throws UsageError, naming `output` and the formats that are written, when `format` is only read.
+void require_written(const LogFormat& format, const std::string& output);
 /// The format of an output: `asked` if given, else by the path's extension, else CSV. ("-" has no extension.)
+/// Throws UsageError where that format is only read.
 [[nodiscard]] const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked);
+/// The same for the rows of a log that was read in `log`. Throws UsageError, too, where nothing says the
+/// output's format and the log's own is only read: nobody asked for another.
+[[nodiscard]] const LogFormat& output_format(const std::string& path, std::optional<std::string_view> asked,
+                                             const LogFormat& log);
 
 }  // namespace ripplenotch

@@ -74,7 +74,6 @@ enum class Side {
 
 /// What an effect's torque is mainly a function of: where it is looked for, and what can pass for it.
 enum class Domain { time, position, speed, order, frequency };
-[[nodiscard]] std::string_view domain_name(Domain domain);
 
 /// Another cause that leaves nearly the same residual, and what tells the two apart.
 struct LookAlike {

@@ -65,9 +65,4 @@ struct FitOptions {
 [[nodiscard]] Fit fit(const Model& model, const Motion& motion, std::span<const double> torque_nm,
                       const FitOptions& options = {});
 
-/// Torque that one unit of a linear parameter adds along the motion: predicted with the value 1 less
-/// predicted with 0. The rest of the model must be stated.
-[[nodiscard]] std::vector<double> torque_per_unit(const Model& model, std::size_t term, std::size_t parameter,
-                                                  const Motion& motion);
-
 }  // namespace ripplenotch

@@ -21,9 +21,8 @@ inline constexpr Seconds default_smoothing{0.05};
 /// * where the speed cannot be told from zero (4.5 standard deviations of its noise, two encoder steps a
 ///   window, 0.5 deg/s at most) for three smoothing windows or more, the joint rests: speed and acceleration
 ///   are 0 there.
-/// * position is the log's, or else the integral of the logged velocity by the trapezoidal rule, from 0:
-/// right
-///   within (2 pi f / sample_rate)^2 / 12 of a component of frequency f.
+/// * position is the log's, or else the integral of the logged velocity by the trapezoidal rule, from 0,
+///   which gives a component of frequency f too small by (2 pi f / sample_rate)^2 / 12 of it.
 /// Throws DataError: fewer than 5 samples, or times that do not increase.
 [[nodiscard]] Motion motion_along(const TraceView& log, Seconds smoothing = default_smoothing);
 

@@ -17,6 +17,9 @@ constexpr int most_alone = 8, most_besides = 16;
 constexpr double match_share = 0.006;  // a line lies on a comb within this share, or four standard errors
 constexpr double same_ratio_share = 0.008;  // candidates nearer than this are one
 constexpr double listed_share = 0.004;
+// Set by judgement, as are the shares of alone_nats(): there are no published statistics of what ripple lines
+// robots show. That all lines seen are even, or multiples of three and more, happens, and more rarely; a line
+// off the comb is a mistake of the finder or of the comb. scripts/prove-identify shows what they come to.
 constexpr double even_nats = -1.6, coarse_nats = -3.0, unexplained_nats = -2.0;
 
 double tolerance(const OrderLine& line) {
@@ -30,8 +33,10 @@ std::optional<int> place_on(double ratio, const OrderLine& line) {
     return n;
 }
 
-/// What is known of drives in general about the n of a line found alone: n = 2 nearly always leads, n = 1 is
-/// often missing.
+/// The n of a line found alone. The wave generator is an ellipse, so that what the gear does repeats twice a
+/// turn of the motor: n = 2 nearly always leads, its multiples follow, and n = 1, from eccentric parts, is
+/// often missing (Tuttle and Seering, IEEE Trans. Robotics and Automation 12, 1996). The shares are
+/// judgement.
 double alone_nats(int n) {
     constexpr std::array share{0.25, 0.55, 0.02, 0.06, 0.01, 0.04, 0.01, 0.06};
     return portable::log(share[static_cast<std::size_t>(n - 1)]);

@@ -13,11 +13,13 @@
 
 namespace ripplenotch {
 
-/// Ratios of joints nearly always lie here, and these are sold.
+/// Ratios of joints nearly always lie here, and these are sold: the usual ones of component sets, and one
+/// more for each of the larger where the circular spline is the output instead of the flexspline.
 inline constexpr double lowest_usual_ratio = 25.0, highest_usual_ratio = 320.0;
 inline constexpr std::array catalogue_ratios{30.0, 50.0, 80.0, 100.0, 101.0, 120.0, 121.0, 160.0, 161.0};
 
-// In nats: how much likelier each makes a candidate.
+// In nats: how much likelier each makes a candidate. By judgement: a ratio out of the catalogue is some four
+// times likelier than any other, and a hint of the user outweighs nearly all that lines say.
 inline constexpr double catalogue_nats = 1.5, unusual_nats = -5.0, hint_nats = 8.0;
 
 inline constexpr double hint_share = 0.015;  // as near as this to a ratio, a hint agrees with it

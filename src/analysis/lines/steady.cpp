@@ -200,9 +200,4 @@ std::vector<Stretch> steady_stretches(const TraceView& trace, const SteadyRule& 
 
 Stretch whole_log(const TraceView& trace) { return measured(trace, 0, trace.size(), SteadyRule{}); }
 
-bool whole_log_is_steady(const TraceView& trace, const std::vector<Stretch>& stretches) {
-    return std::any_of(stretches.begin(), stretches.end(),
-                       [&](const Stretch& stretch) { return 10 * stretch.count >= 9 * trace.size(); });
-}
-
 }  // namespace ripplenotch

@@ -190,17 +190,4 @@ SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
     return map;
 }
 
-double cut_rms_nm(const SpeedMap& map, std::size_t speed, double centre, double width) {
-    double power = 0.0;
-    for (std::size_t k = 1; k < map.axis.size(); ++k) {
-        // A bin at the edge counts by the share of it that lies within.
-        const double inside = std::min(map.axis[k] + 0.5 * map.spacing, centre + 0.5 * width) -
-                              std::max(map.axis[k] - 0.5 * map.spacing, centre - 0.5 * width);
-        if (inside > 0.0)
-            power += 0.5 * portable::pow(map.amplitude_nm[speed][k], 2) * std::min(1.0, inside / map.spacing);
-    }
-    // A line's power over all its bins is its squared amplitude times the noise bandwidth in bins.
-    return std::sqrt(power / bins_per_resolution);
-}
-
 }  // namespace ripplenotch

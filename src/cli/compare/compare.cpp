@@ -12,6 +12,7 @@
 #include "cli/compare/comparison_view.hpp"
 #include "cli/compare/contenders.hpp"
 #include "cli/gear/joint_facts.hpp"
+#include "cli/options/name_list.hpp"
 #include "cli/options/plot_request.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -44,7 +45,7 @@ struct Request {
 
 const MethodFigures& match_subject(const Comparison& comparison) {
     const MethodFigures* const subject = comparison.subject();
-    if (subject == nullptr || subject->method.rfind("lowpass", 0) == 0) {
+    if (subject == nullptr || part_of(*subject) == MethodPart::rival) {
         raise<UsageError>(
             "--match-lowpass needs a method to match that is neither none nor a low-pass; or give "
             "--match-attenuation, for example 22dB");
@@ -249,7 +250,9 @@ ExitCode run(const Request& request, const std::string& command_line) {
 std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
     options.argument("LOG", request->log, false, "a log; - is standard input. Without one, --step or --ramp");
-    options.texts("--method", request->methods, "NAME,KEY=VALUE,...", "a method to compare; repeatable");
+    options.texts(
+        "--method", request->methods, "NAME,KEY=VALUE,...",
+        fmt::format("a method to compare; repeatable; methods: {}; see docs/methods", name_list(methods())));
     attach_gear(options, request->gear);
     options.quantity("--speed", request->speed, Dimension::speed,
                      "joint speed for attenuation and delays; on a log its median moving speed");

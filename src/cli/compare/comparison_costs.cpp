@@ -50,7 +50,7 @@ std::vector<std::string> violations(const Comparison& comparison, const CostRequ
     };
     for (std::size_t i = 0; i < field.contenders.size(); ++i) {
         const Contender& contender = field.contenders[i];
-        if (contender.method->name == "none") continue;
+        if (contender.method->part == MethodPart::control) continue;
         const DegPerSec slowest = comparison.on_log ? comparison.slowest : comparison.speed;
         const DegPerSec fastest = comparison.on_log ? comparison.fastest : comparison.speed;
         add(delay_violations(request.gates, contender, comparison.sample_rate, slowest, fastest));

@@ -17,6 +17,12 @@ int rank_of(const Contender& contender) {
     return contender.made_for() ? 1 : 0;
 }
 
+const Method& control_method() {
+    const auto all = ripplenotch::methods();
+    return **std::find_if(all.begin(), all.end(),
+                          [](const Method* method) { return method->part == MethodPart::control; });
+}
+
 std::optional<GearAccount> common_gear(const std::vector<Contender>& contenders) {
     const auto best =
         std::min_element(contenders.begin(), contenders.end(),
@@ -44,8 +50,10 @@ Field load_contenders(const std::vector<std::string>& methods, const GearOptions
         for (const std::string& file : added.files)
             if (recorded.insert(file).second) provenance.inputs.push_back(input_record(file));
     };
-    const auto is_control = [](const std::string& text) { return parse_spec(text).name == "none"; };
-    if (std::none_of(methods.begin(), methods.end(), is_control)) add("none");
+    const auto is_control = [](const std::string& text) {
+        return find_method(parse_spec(text).name).part == MethodPart::control;
+    };
+    if (std::none_of(methods.begin(), methods.end(), is_control)) add(std::string(control_method().name));
     for (const std::string& text : methods) add(text);
     field.gear = common_gear(field.contenders);
     if (!field.gear && !gear.orders.empty()) raise_no_gear("--orders");

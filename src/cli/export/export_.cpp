@@ -13,6 +13,7 @@
 #include "cli/export/export_text.hpp"
 #include "cli/gear/chosen_method.hpp"
 #include "cli/gear/joint_facts.hpp"
+#include "cli/options/name_list.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/version.hpp"
@@ -34,13 +35,18 @@ struct Request {
     CommonOptions common;
 };
 
-void check(const Request& request) {
-    if (request.to.empty()) {
-        std::string known;
-        for (const Target* target : export_targets())
-            known += fmt::format("{}{}", known.empty() ? "" : ", ", target->name);
-        raise<UsageError>("--to is missing; targets: {}", known);
+/// "fixed or lowpass": the methods that are coefficients, each as `words` has its name.
+std::string steady_methods(const char* words) {
+    std::string joined;
+    for (const Method* method : methods()) {
+        if (method->steady == nullptr) continue;
+        joined += (joined.empty() ? "" : " or ") + fmt::format(fmt::runtime(words), method->name);
     }
+    return joined;
+}
+
+void check(const Request& request) {
+    if (request.to.empty()) raise<UsageError>("--to is missing; targets: {}", name_list(export_targets()));
     if (request.table.empty() == !request.method) {
         raise<UsageError>("{}", request.method
                                     ? "a table and --method: give one of them"
@@ -68,30 +74,14 @@ void check(const Request& request) {
 }
 
 FilterSet filters_of_method(const Request& request) {
-    const Spec spec = parse_spec(*request.method);
-    if (spec.name != "fixed" && spec.name != "lowpass") {
-        raise<UsageError>(
-            "method {} is no set of coefficients; export takes a table.json, --method fixed,... or "
-            "--method lowpass,...",
-            spec.name);
+    const Method& method = find_method(parse_spec(*request.method).name);
+    if (method.steady == nullptr) {
+        raise<UsageError>("method {} is no set of coefficients; export takes a table.json, {}", method.name,
+                          steady_methods("--method {},..."));
     }
     const Contender chosen = choose_method(*request.method);
-    const Settings& settings = chosen.settings;
-    if (spec.name == "lowpass") {
-        // Asking the method for its filter refuses an order that is no whole number, in the method's words.
-        static_cast<void>(chosen.frozen(*request.sample_rate, DegPerSec(0.0)));
-        return filter_set(
-            LowPassSpec{Hertz(settings.number("cutoff")), static_cast<int>(settings.number("order"))},
-            *request.sample_rate);
-    }
-    std::vector<NotchSpec> notches;
-    for (const double center_hz : settings.list("centers")) {
-        NotchSpec notch{Hertz(center_hz), settings.number("q")};
-        if (settings.has("depth")) notch.depth_db = settings.number("depth");
-        if (settings.text("width") == "digital") notch.width = WidthRule::digital;
-        notches.push_back(notch);
-    }
-    return filter_set(notches, *request.sample_rate);
+    return std::visit([&](const auto& design) { return filter_set(design, *request.sample_rate); },
+                      method.steady(chosen.settings));
 }
 
 std::vector<std::string> heading_of(const Provenance& provenance) {
@@ -181,12 +171,11 @@ ExitCode run(const Request& request, const std::string& command_line) {
 std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
     options.argument("TABLE", request->table, false, "table.json from design; - is standard input");
-    options.text(
-        "--to", request->to, "TARGET[,KEY=VALUE...]",
-        "c-header, cmsis-dsp, scipy, matlab, ros-filters, servo-drive, betaflight, ardupilot, json; see "
-        "docs/export");
+    options.text("--to", request->to, "TARGET[,KEY=VALUE...]",
+                 fmt::format("{}; see docs/export", name_list(export_targets())));
     options.text("--method", request->method, "SPEC",
-                 "instead of a table: fixed,centers=25Hz:50Hz,q=1 or lowpass,cutoff=13rad/s,order=1");
+                 fmt::format("instead of a table: {} with its keys, for example fixed,centers=25Hz:50Hz,q=1",
+                             steady_methods("{}")));
     options.quantity("--sample-rate", request->sample_rate, Dimension::frequency,
                      "with --method: rate at which the filter will run");
     options.count("--band", request->band, 0, 1000000,

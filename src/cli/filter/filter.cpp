@@ -12,6 +12,7 @@
 
 #include "cli/command.hpp"
 #include "cli/filter/filter_work.hpp"
+#include "cli/options/name_list.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -154,7 +155,9 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     std::vector<JointWork> works = start_works(request, job, stream, methods, spool);
     std::unique_ptr<LogWriter> writer;
     if (!request.plot.instead_of(job.output)) {
-        writer = rewrite_log(job.output, stream.reader(), output_format(job.output, request.output_format),
+        const LogFormat& log_format = find_log_format(stream.reader().layout().format);
+        writer = rewrite_log(job.output, stream.reader(),
+                             output_format(job.output, request.output_format, log_format),
                              write_options(request, stream.torque_decimals()),
                              request.in_place ? ByteSink::Overwrite::yes : request.common.overwrite());
     }
@@ -195,13 +198,13 @@ std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<FilterRequest>();
     options.arguments("LOG", request->logs, true, "logs to filter; - is standard input");
     options.text("--method", request->method, "SPEC",
-                 "name,key=value,...: switching, tracking, oscillator, subtract, fixed, lowpass, none; see "
-                 "docs/methods");
+                 fmt::format("name,key=value,...: {}; see docs/methods", name_list(methods())));
     options.text("--table", request->table, "FILE",
                  "table.json of method switching, which is then the default");
     options.text("--out-dir", request->out_directory, "DIR", "folder for the outputs of several logs");
     options.text("--output-format", request->output_format, "NAME",
-                 "format of the output: csv, npy (default: by the name of -o, else csv)");
+                 fmt::format("format of the output: {} (default: by the name of -o, else csv)",
+                             written_log_formats()));
     options.flag("--in-place", request->in_place, "the filtered log takes the place of the raw one");
     options.flag("--append", request->append,
                  "add the filtered torque as a column instead of replacing the torque");

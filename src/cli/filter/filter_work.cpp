@@ -38,11 +38,10 @@ LineGains gains_of(const Contender& method, Hertz sample_rate) {
 }
 
 /// Whether what is left of the ripple is predicted along a log: not for methods that look at the whole log
-/// first, and not for the oscillator, whose filter at a speed is the solution of a Riccati equation: too dear
-/// for every window of a log.
+/// first, and not for those whose filter at a speed is too dear for every window of a log.
 bool predictable(const Contender& method) {
     return method.method->learner == nullptr && method.method->frozen != nullptr &&
-           method.method->name != "oscillator";
+           !method.method->frozen_is_dear;
 }
 
 /// All but the filter, which may have to learn from the log first.

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 // The options that every command with a log shares: what is declared, and what it asks of the reader.
+#include <fmt/format.h>
+
 #include <string>
 
+#include "cli/options/name_list.hpp"
 #include "cli/options/number_list.hpp"
 #include "cli/options/options.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
 
 void attach_log(Options& options, LogOptions& log) {
     options.text("--format", log.format, "NAME",
-                 "format of the log: csv, npy (default: found out from its first bytes)");
+                 fmt::format("format of the log: {} (default: found out from its first bytes)",
+                             name_list(log_formats())));
     options.quantity("--sample-rate", log.sample_rate, Dimension::frequency,
                      "rate of a log without time; overrides the log's own time");
     attach_log_columns(options, log);

@@ -174,18 +174,46 @@ void Options::after_parse(std::function<void()> check) {
     implementation_.after_parse.push_back(std::move(check));
 }
 
+namespace {
+
+enum class Word { stays, goes, goes_with_the_next };
+
+// Letters behind one dash: "-q", "-qv", "-oFILE", "-qo FILE".
+Word letters(std::string_view word) {
+    for (std::size_t i = 1; i < word.size(); ++i) {
+        if (word[i] == 'o') return i + 1 == word.size() ? Word::goes_with_the_next : Word::goes;
+        if (word[i] != 'q' && word[i] != 'v') return Word::stays;
+    }
+    return Word::goes;
+}
+
+// What says where a result goes and how much is told on the way is no part of how it was made.
+Word in_command_line(std::string_view word) {
+    if (word.size() < 2 || word.front() != '-') return Word::stays;
+    if (word[1] != '-') return letters(word);
+    for (const std::string_view flag : {"--force", "--quiet", "--verbose", "--json"})
+        if (word == flag) return Word::goes;
+    for (const std::string_view option : {"--output", "--plot"}) {
+        if (word == option) return Word::goes_with_the_next;
+        if (word.starts_with(option) && word[option.size()] == '=') return Word::goes;
+    }
+    return Word::stays;
+}
+
+}  // namespace
+
+std::string Options::command_name() const { return implementation_.command->get_name(); }
+
 std::string Options::command_line() const {
     std::string line = owned(tool_name);
     const auto& words = implementation_.words;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        if (words[i] == "-o" || words[i] == "--output" || words[i] == "--plot") {
-            ++i;
-        } else if (words[i].rfind("--output=", 0) != 0 && words[i].rfind("--plot=", 0) != 0 &&
-                   words[i] != "--force" && words[i] != "-q" && words[i] != "--quiet" && words[i] != "-v" &&
-                   words[i] != "--verbose" && words[i] != "--json") {
-            line += " " + shell_quoted(words[i]);
-        }
+    const auto options_end = std::find(words.begin(), words.end(), "--");
+    for (auto word = words.begin(); word < options_end; ++word) {
+        const Word what = in_command_line(*word);
+        if (what == Word::stays) line += " " + shell_quoted(*word);
+        if (what == Word::goes_with_the_next && word + 1 < options_end) ++word;
     }
+    for (auto word = options_end; word != words.end(); ++word) line += " " + shell_quoted(*word);
     return line;
 }
 

@@ -63,6 +63,7 @@ class Options {
     /// Runs when all options are read, before the work.
     void after_parse(std::function<void()> check);
 
+    [[nodiscard]] std::string command_name() const;
     /// The command line as it would be typed again, without -o, --plot, --force, -q, -v and --json; for
     /// provenance.
     [[nodiscard]] std::string command_line() const;

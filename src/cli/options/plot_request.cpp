@@ -11,6 +11,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/figure/figure_kinds.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 
 namespace ripplenotch {
@@ -53,8 +54,9 @@ std::string joint_in_words(const std::string& path, const std::string& joint) {
 
 void attach_plot(Options& options, PlotRequest& request) {
     options.text("--plot", request.path, "FILE",
-                 "the result as a picture: FILE.svg, .png or .pdf by gnuplot, FILE.json for the data of the "
-                 "figure; - draws it in the terminal");
+                 fmt::format("the result as a picture ({}): FILE.svg, .png or .pdf by gnuplot, FILE.json for "
+                             "the data of the figure; - draws it in the terminal",
+                             figures_of(options.command_name())));
 }
 
 void check_plot(const PlotRequest& request, const CommonOptions& common) {
@@ -84,6 +86,7 @@ void draw_plot(const PlotRequest& request, const CommonOptions& common, const Pr
     if (!request.path) return;
     const std::string& path = *request.path;
     const Figure figure = make();
+    require_listed_figure(figure.name);
     const auto data = [&] { return figure_text(figure, provenance); };
     if (extension_of(path) == ".json") {
         write_all(path, data(), common.overwrite());

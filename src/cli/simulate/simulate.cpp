@@ -9,6 +9,7 @@
 
 #include "cli/command.hpp"
 #include "cli/gear/joint_facts.hpp"
+#include "cli/options/name_list.hpp"
 #include "cli/simulate/joint_model.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
@@ -216,13 +217,6 @@ ExitCode simulate(const SimulateOptions& options) {
     return ExitCode::done;
 }
 
-template <class Entry>
-std::string names(std::span<const Entry* const> entries) {
-    std::string joined;
-    for (const Entry* entry : entries) joined += fmt::format("{}{}", joined.empty() ? "" : ", ", entry->name);
-    return joined;
-}
-
 std::function<ExitCode()> attach(Options& options) {
     auto o = std::make_shared<SimulateOptions>();
     options.argument("LOG", o->log, false, "log whose measured motion is used in place of --motion");
@@ -231,7 +225,7 @@ std::function<ExitCode()> attach(Options& options) {
         "--motion", o->motions, "NAME,KEY=VALUE,...",
         fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one "
                     "another; motions: {}",
-                    names(motion_kinds())));
+                    name_list(motion_kinds())));
     options.quantity("--sample-rate", o->sample_rate, Dimension::frequency,
                      "samples per second; with a LOG, in place of its own time");
     options.quantity("--smoothing", o->smoothing, Dimension::time,
@@ -248,7 +242,8 @@ std::function<ExitCode()> attach(Options& options) {
     options.flag("--faults", o->faults, "let spikes and dropouts of the model act along a LOG too");
     options.flag("--no-position", o->no_position, "leave the position column out");
     options.text("--format", o->format, "NAME",
-                 "format of what is written: csv, npy (default: by the extension of -o, else csv)");
+                 fmt::format("format of what is written: {} (default: by the extension of -o, else csv)",
+                             written_log_formats()));
     attach_log_columns(options, o->log_options);
     attach_common(options, o->common, {});
     o->command_line = [&options] { return options.command_line(); };

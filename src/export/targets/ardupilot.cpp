@@ -160,6 +160,7 @@ const Target targets::ardupilot = {
     .summary = "INS_HNTCH_*: frequency, bandwidth, attenuation, harmonics, in ArduPilot's way",
     .source = "ArduPilot, libraries/Filter: NotchFilter, HarmonicNotchFilter",
     .endings = ".param .parm .txt",
+    .notches_only = true,
     .keys = keys,
     .write = write,
     .read = read,

@@ -156,6 +156,7 @@ const Target targets::betaflight = {
     .summary = "rpm_filter_* for a table, gyro_notch* for one filter, in Betaflight's way",
     .source = "Betaflight, rpm_filter.c and filterGetNotchQ",
     .endings = ".txt",
+    .notches_only = true,
     .keys = keys,
     .write = write,
     .read = read,

@@ -217,6 +217,7 @@ const Target targets::c_header = {
     .summary = "one C99 header: table, step function, test vector; float or double",
     .source = "A. Simper, Linear Trapezoidal Integrated State Variable Filter, 2013; C99, 6.4.4.2",
     .endings = ".h .hpp",
+    .switches = true,
     .keys = keys,
     .write = write,
     .read = read,

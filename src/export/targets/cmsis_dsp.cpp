@@ -109,6 +109,7 @@ const Target targets::cmsis_dsp = {
     .summary = "coefficient arrays for ARM's arm_biquad_cascade_df1_f32 and df2T_f32",
     .source = "ARM CMSIS-DSP, arm_biquad_cascade_df1_f32 and arm_biquad_cascade_df2T_f32",
     .endings = ".h .c",
+    .switches = true,
     .keys = keys,
     .write = write,
     .read = read,

@@ -110,6 +110,7 @@ const Target targets::json = {
     .summary = "everything, unrounded: sections in both forms, speeds, rules",
     .source = "RFC 8259",
     .endings = ".json",
+    .switches = true,
     .write = write,
     .read = read,
 };

@@ -83,6 +83,7 @@ const Target targets::matlab = {
     .summary = "sos and g as a script for MATLAB and Octave",
     .source = "MathWorks, Signal Processing Toolbox, sosfilt and sos2tf",
     .endings = ".m",
+    .switches = true,
     .keys = keys,
     .write = write,
     .read = read,

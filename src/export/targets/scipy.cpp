@@ -104,6 +104,7 @@ const Target targets::scipy = {
     .source = "SciPy, scipy.signal.sosfilt; NumPy Enhancement Proposal 1",
     .endings = ".npy",
     .binary = true,
+    .switches = true,
     .write = write,
     .read = read,
     .usage = usage,

@@ -119,6 +119,7 @@ const Target targets::servo_drive = {
     .source =
         "Omron G5 user's manual, 6, Notch Filter Width and Depth; Panasonic MINAS A5, notch width and depth",
     .endings = ".csv .txt",
+    .notches_only = true,
     .keys = keys,
     .write = write,
     .read = read,

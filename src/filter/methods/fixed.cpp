@@ -35,18 +35,26 @@ constexpr std::array keys = {
                 "iirnotch)"},
 };
 
-Cascade cascade(const Settings& settings, Hertz sample_rate) {
+std::vector<NotchSpec> notches(const Settings& settings) {
     NotchSpec spec;
     spec.q = settings.number("q");
     if (settings.has("depth")) spec.depth_db = settings.number("depth");
     spec.width = settings.text("width") == "digital" ? WidthRule::digital : WidthRule::analog;
-    Cascade sections;
+    std::vector<NotchSpec> notches;
     for (const double center_hz : settings.list("centers")) {
         spec.center = Hertz(center_hz);
-        sections.push_back(design_notch(spec, sample_rate));
+        notches.push_back(spec);
     }
+    return notches;
+}
+
+Cascade cascade(const Settings& settings, Hertz sample_rate) {
+    Cascade sections;
+    for (const NotchSpec& notch : notches(settings)) sections.push_back(design_notch(notch, sample_rate));
     return sections;
 }
+
+SteadyDesign steady(const Settings& settings) { return notches(settings); }
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
     return std::make_unique<CascadeFilter>(cascade(settings, sample_rate));
@@ -65,6 +73,7 @@ const Method filter_methods::fixed = {
     .keys = keys,
     .start = start,
     .frozen = frozen,
+    .steady = steady,
 };
 
 }  // namespace ripplenotch

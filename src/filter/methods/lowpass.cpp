@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 
 #include "filter/cascade_filter.hpp"
 #include "filter/methods/list.hpp"
-#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/design/low_pass.hpp"
 
@@ -24,16 +22,19 @@ constexpr std::array keys = {
         .default_text = "1",
         .above = 0.0,
         .at_most = 20.0,
+        .whole = true,
         .help = "1 (one real pole) to 20"},
 };
 
-Cascade cascade(const Settings& settings, Hertz sample_rate) {
-    const double order = settings.number("order");
-    if (order != std::floor(order))
-        raise<UsageError>("method lowpass, order: {} is not a whole number", shortest(order));
-    return design_low_pass({.cutoff = Hertz(settings.number("cutoff")), .order = static_cast<int>(order)},
-                           sample_rate);
+LowPassSpec low_pass(const Settings& settings) {
+    return {.cutoff = Hertz(settings.number("cutoff")), .order = static_cast<int>(settings.number("order"))};
 }
+
+Cascade cascade(const Settings& settings, Hertz sample_rate) {
+    return design_low_pass(low_pass(settings), sample_rate);
+}
+
+SteadyDesign steady(const Settings& settings) { return low_pass(settings); }
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
     return std::make_unique<CascadeFilter>(cascade(settings, sample_rate));
@@ -50,9 +51,11 @@ const Method filter_methods::lowpass = {
     .name = "lowpass",
     .summary = "Butterworth low-pass of any order, cut-off in Hz or rad/s",
     .source = "S. Butterworth 1930; bilinear transform prewarped at the cut-off",
+    .part = MethodPart::rival,
     .keys = keys,
     .start = start,
     .frozen = frozen,
+    .steady = steady,
 };
 
 }  // namespace ripplenotch

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -48,6 +47,7 @@ constexpr std::array keys = {
     Key{.name = "amplitudes",
         .kind = KeyKind::list,
         .dimension = Dimension::torque,
+        .at_least = 0.0,
         .help = "warm start: zero to peak, one per order, e.g. 0.8Nm:0.5Nm"},
     Key{.name = "phases",
         .kind = KeyKind::list,
@@ -93,14 +93,14 @@ constexpr std::array keys = {
         .help = "angle from velocity: largest offset of the velocity that the ripple may correct"},
     Key{.name = "jump",
         .default_text = "0",
-        .above = -std::numeric_limits<double>::min(),
+        .at_least = 0.0,
         .at_most = 1e6,
         .help = "a sample that is off by more than this many of its deviations is a jump of the torque, not "
                 "ripple; "
                 "0: none is"},
     Key{.name = "slip",
         .default_text = "0.03",
-        .above = -std::numeric_limits<double>::min(),
+        .at_least = 0.0,
         .at_most = 0.2,
         .help = "angle from position: largest share by which the ripple may correct the gear ratio"},
     Key{.name = "output",
@@ -125,13 +125,6 @@ struct Plan {
     double noise_nm = 0.0;
 };
 
-void check_amplitudes(const std::vector<double>& amplitudes) {
-    for (const double amplitude : amplitudes) {
-        if (!(amplitude >= 0.0))
-            raise<UsageError>("method oscillator, amplitudes: {} Nm is negative", shortest(amplitude));
-    }
-}
-
 void plan_priors(Plan& p, const Settings& settings) {
     const double largest = settings.number("largest") / p.noise_nm;
     p.cold.assign(p.ripple.orders.size(), {0.0, 0.0, largest});
@@ -140,7 +133,6 @@ void plan_priors(Plan& p, const Settings& settings) {
     }
     if (settings.has("amplitudes")) {
         auto amplitudes = per_order("oscillator", settings, "amplitudes", p.ripple, 0.0);
-        check_amplitudes(amplitudes);
         for (double& amplitude : amplitudes) amplitude = std::max(amplitude / p.noise_nm, 1.0);
         for (std::size_t i = 0; i < amplitudes.size(); ++i) p.cold[i].deviation = amplitudes[i];
         p.warm = p.cold;
@@ -285,6 +277,7 @@ const Method filter_methods::oscillator = {
     .keys = keys,
     .start = start,
     .frozen = frozen,
+    .frozen_is_dear = true,  // the solution of a Riccati equation
 };
 
 }  // namespace ripplenotch

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "filter/methods/list.hpp"
+#include "filter/rate_edge.hpp"
 #include "filter/ripple_course.hpp"
 #include "filter/ripple_keys.hpp"
 #include "filter/ripple_windows.hpp"
@@ -75,9 +76,7 @@ class SubtractingFilter final : public CausalFilter {
         const double share = between > 0.0 ? std::clamp((at - before.middle) / between, 0.0, 1.0) : 1.0;
         double sum = 0.0;
         for (std::size_t i = 0; i < orders_.size(); ++i) {
-            // A line that nears half the sample rate is let go, as everywhere.
-            const double near =
-                std::clamp((0.48 - orders_[i] * std::abs(path_.step_turns())) / 0.03, 0.0, 1.0);
+            const double near = share_below_rate(orders_[i] * std::abs(path_.step_turns()));
             if (near == 0.0) continue;
             const double cycles = orders_[i] * path_.turns();
             const double phase = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));

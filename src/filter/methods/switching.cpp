@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "filter/methods/list.hpp"
-#include "filter/transitions/transition.hpp"
+#include "filter/transition.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/filter/supervisor.hpp"
@@ -17,8 +18,17 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 5> transitions = {"parallel", "keep", "keep-state-variable", "reset",
-                                                         "crossfade"};
+constexpr const TransitionKind* transition_kinds[] = {
+#define TRANSITION(name) &transitions::name,
+#include "filter/transitions/transitions.def"
+#undef TRANSITION
+};
+const std::array transition_names = [] {
+    std::array<std::string_view, std::size(transition_kinds)> names;
+    std::transform(std::begin(transition_kinds), std::end(transition_kinds), names.begin(),
+                   [](const TransitionKind* kind) { return kind->name; });
+    return names;
+}();
 constexpr std::array<std::string_view, 3> rules = {"pass", "hold", "fade"};
 
 constexpr std::array keys = {
@@ -26,20 +36,23 @@ constexpr std::array keys = {
     Key{.name = "transition",
         .kind = KeyKind::choice,
         .default_text = "parallel",
-        .choices = transitions,
+        .choices = transition_names,
         .help = "what becomes of the filters' memories at a switch"},
     Key{.name = "crossfade",
         .dimension = Dimension::time,
         .default_text = "50ms",
+        .at_least = 0.0,
         .at_most = 60.0,
         .help = "how long transition=crossfade blends"},
     Key{.name = "hysteresis",
         .dimension = Dimension::speed,
         .default_text = "0",
+        .at_least = 0.0,
         .help = "a band is left only when the speed is this far outside it"},
     Key{.name = "dwell",
         .dimension = Dimension::time,
         .default_text = "0",
+        .at_least = 0.0,
         .at_most = 3600.0,
         .help = "shortest time between two switches"},
     Key{.name = "below",
@@ -60,7 +73,6 @@ OutsideRule rule(const Settings& settings, std::string_view key, OutsideRule oth
 
 std::size_t samples(const Settings& settings, std::string_view key, Hertz sample_rate) {
     const double time_s = settings.number(key);
-    if (!(time_s >= 0.0)) raise<UsageError>("method switching, {}: {} s is negative", key, shortest(time_s));
     // A time that is a whole number of samples but for rounding must not become one more.
     return static_cast<std::size_t>(std::ceil(time_s * sample_rate.value() - 1e-6));
 }
@@ -77,12 +89,9 @@ std::unique_ptr<Transition> transition(const Settings& settings, Hertz sample_ra
                                        const CandidateTable& table) {
     Candidates candidates(table.bands());
     const std::string name = settings.text("transition");
-    if (name == "keep") return make_keep(std::move(candidates));
-    if (name == "keep-state-variable") return make_keep_state_variable(candidates);
-    if (name == "reset") return make_reset(std::move(candidates));
-    if (name == "crossfade")
-        return make_crossfade(std::move(candidates), samples(settings, "crossfade", sample_rate));
-    return make_parallel(std::move(candidates));
+    const auto kind = std::find_if(std::begin(transition_kinds), std::end(transition_kinds),
+                                   [&](const TransitionKind* known) { return known->name == name; });
+    return (*kind)->make(std::move(candidates), samples(settings, "crossfade", sample_rate));
 }
 
 class SwitchingFilter final : public CausalFilter {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "filter/methods/list.hpp"
+#include "filter/rate_edge.hpp"
 #include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -41,6 +42,7 @@ constexpr std::array keys = {
         .help = "attenuation at the centre, e.g. 40dB; a full null when not given"},
     Key{.name = "weights",
         .kind = KeyKind::list,
+        .at_least = 0.0,
         .at_most = 1.0,
         .help = "share of each order that is taken out, one per order, e.g. 1:0.5"},
     Key{.name = "composite",
@@ -56,6 +58,7 @@ constexpr std::array keys = {
     Key{.name = "fade",
         .dimension = Dimension::frequency,
         .default_text = "1.5Hz",
+        .at_least = 0.0,
         .help = "low=fade: the share rises from 0 at min to all of it at min + fade"},
     Key{.name = "low",
         .kind = KeyKind::choice,
@@ -75,9 +78,6 @@ constexpr std::array keys = {
 };
 
 constexpr double usual_q = 1.7, usual_max_delay_s = 0.0045;
-
-// Lines near half the sample rate cannot be notched; the share falls to nothing before they get there.
-constexpr double full_below_rate = 0.45, none_above_rate = 0.48;
 
 struct Plan {
     RippleOrders ripple;
@@ -99,13 +99,9 @@ struct Plan {
     [[nodiscard]] double q_at(double center_hz) const noexcept {
         return q_each * std::max(1.0, narrow_hz / center_hz);
     }
-    [[nodiscard]] double high_share(double hz) const noexcept {
-        const double full = full_below_rate * sample_rate_hz, none = none_above_rate * sample_rate_hz;
-        return std::clamp((none - hz) / (none - full), 0.0, 1.0);
-    }
     /// What is left of the line at the centre, for a line at `hz`.
     [[nodiscard]] double left_at_center(std::size_t line, double hz) const noexcept {
-        double share = weights[line] * high_share(hz);
+        double share = weights[line] * share_below_rate(hz / sample_rate_hz);
         double gain = depth_gain;
         if (parks) {
             // The square root of the gain moves linearly, as ArduPilot has it.
@@ -161,11 +157,6 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
         raise<UsageError>("method tracking, min: {} Hz is not below {} Hz, which is {} of the sample rate",
                           shortest(p.min_hz), shortest(full_below_rate * p.sample_rate_hz),
                           shortest(full_below_rate));
-    }
-    if (!(p.fade_hz >= 0.0))
-        raise<UsageError>("method tracking, fade: {} Hz is negative", shortest(p.fade_hz));
-    for (const double weight : p.weights) {
-        if (!(weight >= 0.0)) raise<UsageError>("method tracking, weights: {} is negative", shortest(weight));
     }
     if (settings.has("speed-lowpass")) {
         const double cutoff_hz = settings.number("speed-lowpass");

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/transitions/filter_bank.hpp"
+#include "filter/filter_bank.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -89,11 +89,13 @@ class Crossfade final : public Transition {
         leaving_;  ///< what the blend under way comes from; never more entries than candidates + 1
 };
 
-}  // namespace
-
-std::unique_ptr<Transition> make_crossfade(Candidates candidates, std::size_t blend_samples) {
-    if (blend_samples == 0) return make_parallel(std::move(candidates));
+std::unique_ptr<Transition> make(Candidates candidates, std::size_t blend_samples) {
+    if (blend_samples == 0) return transitions::parallel.make(std::move(candidates), 0);
     return std::make_unique<Crossfade>(candidates, blend_samples);
 }
+
+}  // namespace
+
+const TransitionKind transitions::crossfade{.name = "crossfade", .make = make};
 
 }  // namespace ripplenotch

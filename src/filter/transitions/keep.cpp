@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "filter/kernels/direct_form.hpp"
-#include "filter/transitions/transition.hpp"
+#include "filter/transition.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -62,10 +62,12 @@ class Keep final : public Transition {
     int candidate_ = no_candidate;
 };
 
-}  // namespace
-
-std::unique_ptr<Transition> make_keep(Candidates candidates) {
+std::unique_ptr<Transition> make(Candidates candidates, std::size_t /*blend_samples*/) {
     return std::make_unique<Keep>(std::move(candidates));
 }
+
+}  // namespace
+
+const TransitionKind transitions::keep{.name = "keep", .make = make};
 
 }  // namespace ripplenotch

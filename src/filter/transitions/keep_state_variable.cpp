@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "filter/kernels/in_series.hpp"
-#include "filter/transitions/transition.hpp"
+#include "filter/transition.hpp"
 #include "ripplenotch/core/state_variable.hpp"
 
 namespace ripplenotch {
@@ -94,10 +94,12 @@ class KeepStateVariable final : public Transition {
     int candidate_ = no_candidate;
 };
 
-}  // namespace
-
-std::unique_ptr<Transition> make_keep_state_variable(const Candidates& candidates) {
+std::unique_ptr<Transition> make(Candidates candidates, std::size_t /*blend_samples*/) {
     return std::make_unique<KeepStateVariable>(candidates);
 }
+
+}  // namespace
+
+const TransitionKind transitions::keep_state_variable{.name = "keep-state-variable", .make = make};
 
 }  // namespace ripplenotch

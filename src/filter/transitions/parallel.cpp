@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "filter/transitions/filter_bank.hpp"
+#include "filter/filter_bank.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -43,10 +43,12 @@ class Parallel final : public Transition {
     int candidate_ = no_candidate;
 };
 
-}  // namespace
-
-std::unique_ptr<Transition> make_parallel(Candidates candidates) {
+std::unique_ptr<Transition> make(Candidates candidates, std::size_t /*blend_samples*/) {
     return std::make_unique<Parallel>(candidates);
 }
+
+}  // namespace
+
+const TransitionKind transitions::parallel{.name = "parallel", .make = make};
 
 }  // namespace ripplenotch

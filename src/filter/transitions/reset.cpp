@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "filter/kernels/serial_cascade.hpp"
-#include "filter/transitions/transition.hpp"
+#include "filter/transition.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -59,10 +59,12 @@ class Reset final : public Transition {
     int candidate_ = no_candidate;
 };
 
-}  // namespace
-
-std::unique_ptr<Transition> make_reset(Candidates candidates) {
+std::unique_ptr<Transition> make(Candidates candidates, std::size_t /*blend_samples*/) {
     return std::make_unique<Reset>(std::move(candidates));
 }
+
+}  // namespace
+
+const TransitionKind transitions::reset{.name = "reset", .make = make};
 
 }  // namespace ripplenotch

@@ -20,13 +20,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> extensions = {".csv", ".txt", ".tsv", ".dat", ".log"};
 
-// Any text may be a text log; what is not text has its own magic bytes or a zero byte near its start.
-bool sniff(std::string_view first_bytes) {
-    return !first_bytes.empty() && first_bytes.find('\0') == std::string_view::npos &&
-           static_cast<unsigned char>(first_bytes[0]) != 0x93 &&
-           static_cast<unsigned char>(first_bytes[0]) != 0x89;
-}
-
 /// Some rows at a time: first all their numbers, then the text.
 template <typename Cells>
 void write_cells(TextRoom& room, std::span<const std::span<const double>> columns, int decimals) {
@@ -37,11 +30,11 @@ void write_cells(TextRoom& room, std::span<const std::span<const double>> column
     for (std::size_t first = 0; first < rows; first += at_once) {
         const std::size_t count = std::min(at_once, rows - first);
         for (std::size_t c = 0; c < columns.size(); ++c)
-            cells[c].prepare({columns[c].subspan(first, count), 1.0, {}});
+            cells[c].prepare({columns[c].subspan(first, count), 1.0});
         char* into = room.ensure(count * columns.size() * (number_room + 1));
         for (std::size_t row = 0; row < count; ++row) {
             for (const Cells& column : cells) {
-                into = column.put(into, row, {});
+                into = column.put(into, row);
                 *into++ = ',';
             }
             into[-1] = '\n';
@@ -81,7 +74,7 @@ const LogFormat formats::csv{
     .summary = "text: comma, semicolon, tab or blanks, with or without header",
     .extensions = extensions,
     .binary = false,
-    .sniff = sniff,
+    .sniff = nullptr,  // any text may be a text log
     .open = open_with<CsvReader>,
     .cut = cut_text,
     .rewrite = rewrite_with<CsvWriter, CsvReader>,

@@ -111,9 +111,6 @@ std::string_view CsvWriter::prepare(RowBlock& block, Torques torque_nm, std::str
         case WriteOptions::Decimals::shortest:
             rewrite(RowRewriter<ShortestCells>(plan_, block, torque_nm, text));
             break;
-        case WriteOptions::Decimals::input:
-            rewrite(RowRewriter<CellsAsBefore>(plan_, block, torque_nm, text));
-            break;
         case WriteOptions::Decimals::fixed:
             rewrite(RowRewriter<FixedCells>(plan_, block, torque_nm, text));
             break;

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "log/text/printed_cells.hpp"
@@ -61,10 +60,6 @@ class RowRewriter {
     };
     static constexpr std::size_t cell_room = number_room + 3;  // with a delimiter and quotes
 
-    [[nodiscard]] std::string_view cell(const Column& column, std::size_t row) const {
-        return {block_.bytes.data() + column.begin[row], column.end[row] - column.begin[row]};
-    }
-
     template <typename Rewrite>
     void stretch_by_stretch(const Rewrite& rewrite) {
         const std::size_t rows_at_once =
@@ -73,7 +68,7 @@ class RowRewriter {
             const Stretch rows = {first, std::min(first + rows_at_once, block_.size())};
             for (Column& column : columns_) {
                 const std::span values(column.torque_nm + rows.first, rows.end - rows.first);
-                column.cells->prepare({values, column.factor, cell(column, rows.first)});
+                column.cells->prepare({values, column.factor});
             }
             const std::size_t between = block_.row_end[rows.end - 1] - pieces_.done();
             const std::size_t numbers = (rows.end - rows.first) * columns_.size() * cell_room;
@@ -94,7 +89,7 @@ class RowRewriter {
             if constexpr (Cells::keeps_unchanged)
                 if (as_written && column.torque_nm[row] == column.torque_before_nm[row]) return;
             into = pieces.copy_until(column.begin[row], into);
-            into = column.cells->put(into, row - rows.first, cell(column, row));
+            into = column.cells->put(into, row - rows.first);
             pieces.skip_until(column.end[row]);
         };
         if (columns_.size() == 1) {
@@ -116,7 +111,7 @@ class RowRewriter {
             for (const Column& column : columns_) {
                 *into++ = delimiter;
                 if (quoted) *into++ = '"';
-                into = column.cells->put(into, row - rows.first, cell(column, row));
+                into = column.cells->put(into, row - rows.first);
                 if (quoted) *into++ = '"';
             }
         }

@@ -8,7 +8,7 @@ constexpr Key keys[] = {
     {.name = "speed",
      .dimension = Dimension::speed,
      .required = true,
-     .above = -largest_speed_deg_s,
+     .at_least = -largest_speed_deg_s,
      .at_most = largest_speed_deg_s,
      .help = "speed of the joint; negative turns it the other way"},
     duration_key,

@@ -18,6 +18,7 @@ constexpr Key keys[] = {
      .default_text = "5",
      .above = 0.0,
      .at_most = 1000.0,
+     .whole = true,
      .help = "number of sines, a whole number"},
     swing_phase_key("0deg", "added to the phase of every sine; 180deg turns the motion round"),
     duration_key,
@@ -32,8 +33,6 @@ struct Sine {
 // peaks apart.
 std::vector<Sine> make_sines(const Settings& settings) {
     const double count = settings.number("count");
-    if (count != std::floor(count))
-        raise<UsageError>("motion multisine, count: {} is not a whole number", shortest(count));
     double sum = 0.0;
     for (double k = 1.0; k <= count; ++k) sum += 1.0 / k;
     std::vector<Sine> sines;

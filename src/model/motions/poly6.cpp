@@ -16,13 +16,15 @@ constexpr Key keys[] = {
     {.name = "to",
      .dimension = Dimension::angle,
      .required = true,
-     .above = -largest_angle_deg,
+     .at_least = -largest_angle_deg,
      .at_most = largest_angle_deg,
      .help = "position at its end"},
     duration_key,
     from_key,
     {.name = "asymmetry",
      .default_text = "0",
+     .at_least = -1.0,  // beyond, the joint would turn back on its way
+     .at_most = 1.0,
      .help =
          "-1 to 1: above 0 the greatest speed comes early, below 0 late; 0 is the polynomial of degree five"},
 };
@@ -47,12 +49,6 @@ MotionPiece make(const Settings& settings, const std::optional<MotionState>& bef
     const double travel_deg = settings.number("to") - from_deg;
     const double duration_s = settings.number("duration");
     const double asymmetry = settings.number("asymmetry");
-    if (std::abs(asymmetry) > 1.0) {
-        raise<UsageError>(
-            "motion poly6, asymmetry: {} is not between -1 and 1; beyond, the joint would turn back on its "
-            "way",
-            shortest(asymmetry));
-    }
     return {Seconds(duration_s), [=](Seconds elapsed) {
                 const Shape s = shape(elapsed.value() / duration_s, asymmetry);
                 return MotionState{from_deg + travel_deg * s.position, travel_deg * s.velocity / duration_s,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "filter/transitions/transition.hpp"
+#include "filter/transition.hpp"
 
 namespace ripplenotch {
 

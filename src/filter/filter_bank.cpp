@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "filter/transitions/filter_bank.hpp"
+#include "filter/filter_bank.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What happens to the filters' memories when the supervisor puts another candidate in force. One file per
-// way.
+// What happens to the filters' memories when the supervisor puts another candidate in force.
 
 #include <cstddef>
 #include <memory>
@@ -45,10 +44,17 @@ struct Candidates {
     [[nodiscard]] bool same(int a, int b) const noexcept;
 };
 
-std::unique_ptr<Transition> make_parallel(Candidates candidates);
-std::unique_ptr<Transition> make_crossfade(Candidates candidates, std::size_t blend_samples);
-std::unique_ptr<Transition> make_keep(Candidates candidates);
-std::unique_ptr<Transition> make_keep_state_variable(const Candidates& candidates);
-std::unique_ptr<Transition> make_reset(Candidates candidates);
+/// A way is a record: one file in src/filter/transitions, one line in transitions.def.
+struct TransitionKind {
+    std::string_view name;
+    /// `blend_samples`: over which outputs are blended, for ways that blend.
+    std::unique_ptr<Transition> (*make)(Candidates candidates, std::size_t blend_samples) = nullptr;
+};
+
+namespace transitions {
+#define TRANSITION(name) extern const TransitionKind name;
+#include "filter/transitions/transitions.def"
+#undef TRANSITION
+}  // namespace transitions
 
 }  // namespace ripplenotch

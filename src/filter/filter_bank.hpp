@@ -8,7 +8,7 @@
 
 #include "core/processor.hpp"
 #include "filter/kernels/bank_sections.hpp"
-#include "filter/transitions/transition.hpp"
+#include "filter/transition.hpp"
 
 namespace ripplenotch {
 
