@@ -165,7 +165,7 @@ TEST_CASE("targets that hold coefficients hold low-passes, and those that follow
         const Settings settings = settings_of(*target);
         if (target->notches_only) {
             CHECK_THROWS_WITH(target->write(low_pass, settings, {}),
-                              Contains("c-header, cmsis-dsp, scipy, matlab, ros-filters and json hold both"));
+                              Contains("c-header, ") && Contains(" hold both"));
             continue;
         }
         const auto loaded =
@@ -185,7 +185,7 @@ TEST_CASE("targets that hold coefficients hold low-passes, and those that follow
     }
     const Target& ros = find_target("ros-filters");
     CHECK_THROWS_WITH(ros.write(small_table(), settings_of(ros), {}),
-                      Contains("a target that switches: c-header, cmsis-dsp, scipy, matlab, json"));
+                      Contains("a target that switches: c-header, "));
     CHECK_THROWS_WITH(ros.write(small_table(), settings_of(ros), {}),
                       Contains("3 bands") && Contains("--band"));
     CHECK_NOTHROW(ros.write(only_band(small_table(), 2), settings_of(ros), {}));
