@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A part of a model that the user states and that is never searched: the torque of an arm's rigid bodies, or
+// of the user's own simulation. Unlike an effect it has columns of the whole log, and values that nobody asks
+// for one by one.
+
+#include <string>
+#include <vector>
+
+namespace ripplenotch {
+
+/// Columns whose values are fitted together with everything else.
+struct GivenTerm {
+    std::string name;  ///< "arm", "simulated"
+    /// One column a value: the torque in newton-metres that one unit of the value brings, an entry per row of
+    /// the log.
+    std::vector<std::vector<double>> torque_nm;
+    /// What is known of each value before the log: drawn towards `mean` as by a measurement with this
+    /// standard deviation, in the value's own unit. A deviation of infinity leaves it free.
+    std::vector<double> mean, deviation;
+};
+
+}  // namespace ripplenotch
