@@ -83,7 +83,8 @@ void LogPasses::Work::first(const Take& take) {
     const double sign = recording.angle.verdict == AngleFacts::Verdict::reversed ? -1.0 : 1.0;
     if (by_position && has_position_) facts.mean_position_deg = sign * wrap_.sum() / rows;
     facts.sample_rate = recording.clock.mean_rate;
-    if (const auto period = wrap_.period()) layout.warnings.push_back(wrap_in_words(*period));
+    if (const auto period = wrap_.period())
+        layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
 }
 
 void LogPasses::Work::again(const Take& take) {

@@ -72,7 +72,7 @@ Log read_log(LogReader& reader, const ReadOptions& options) {
             std::minmax_element(log.trace.position_deg.begin(), log.trace.position_deg.end());
         log.position_range_deg.emplace(*low, *high);
     }
-    if (period) log.layout.warnings.push_back(wrap_in_words(*period));
+    if (period) log.layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
     settle_angle(log);
     return log;
 }

@@ -65,7 +65,9 @@ LocalFit::LocalFit(const TraceView& log, MotionNoise noise)
     : log_(log), noise_(noise), uniform_(is_uniform(log)) {}
 
 void LocalFit::weigh(std::size_t k, SampleWindow window) {
-    if (uniform_ && before_ == k - window.first && after_ == window.end - k) return;
+    const bool as_before = before_ == k - window.first && after_ == window.end - k;
+    if (as_before && (uniform_ || weighed_ == k)) return;
+    weighed_ = k;
     before_ = k - window.first;
     after_ = window.end - k;
     const double now_s = log_.time_s[k];

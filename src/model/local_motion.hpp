@@ -43,7 +43,7 @@ class LocalFit {
     bool uniform_;
     // Factors of the samples of the window weighed last, of velocities and of positions, for the velocity and
     // for the acceleration.
-    std::size_t before_ = 0, after_ = 0;
+    std::size_t weighed_ = 0, before_ = 0, after_ = 0;
     std::vector<double> velocity_by_velocity_, velocity_by_position_, acceleration_by_velocity_,
         acceleration_by_position_;
     double variance_ = 0.0;

@@ -5,8 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <span>
 
 #include "ripplenotch/analysis/steady.hpp"
 
@@ -64,41 +64,30 @@ JointInfo joint_info(const Log& log) {
     return joint;
 }
 
-// A warning without its names and figures: what two joints' warnings have in common when they say the same.
-std::string gist(const std::string& warning) {
-    std::string text;
-    bool quoted = false;
-    for (const char c : warning) {
-        if (c == '\'') quoted = !quoted;
-        if (!quoted && std::isdigit(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '-') text += c;
-    }
-    return text;
-}
-
-// Each warning once: of several joints that are warned alike, the first one's text stands for all.
+// Several joints that are warned of the same are told in one warning, with the text of the first.
 void add_warnings(LogInfo& info, const std::vector<Log>& logs) {
-    struct Entry {
-        std::string text, gist;
+    struct Told {
+        const LogWarning* first;
         std::vector<std::string> joints;
     };
-    std::vector<Entry> entries;
+    std::vector<Told> all;
     for (const Log& log : logs) {
-        for (const std::vector<std::string>& list : {log.layout.warnings, log.recording.warnings}) {
-            for (const std::string& warning : list) {
-                const std::string key = gist(warning);
-                auto same = std::find_if(entries.begin(), entries.end(),
-                                         [&](const Entry& e) { return e.gist == key; });
-                if (same == entries.end()) same = entries.insert(same, {warning, key, {}});
+        for (const std::vector<LogWarning>* list : {&log.layout.warnings, &log.recording.warnings}) {
+            for (const LogWarning& warning : *list) {
+                auto same = std::find_if(all.begin(), all.end(), [&](const Told& told) {
+                    return told.first->about == warning.about &&
+                           (warning.of_one_joint || told.first->text == warning.text);
+                });
+                if (same == all.end()) same = all.insert(same, {&warning, {}});
                 same->joints.push_back(log.layout.chosen.joint);
             }
         }
     }
-    for (const Entry& entry : entries) {
-        const bool all = entry.joints.size() == logs.size();
-        std::string text = entry.text;
-        if (logs.size() > 1 && (!all || text.find('\'') != std::string::npos)) {
-            const auto others = std::vector<std::string>(entry.joints.begin() + 1, entry.joints.end());
-            text = fmt::format("joint {}{}: {}", entry.joints.front(),
+    for (const Told& told : all) {
+        std::string text = told.first->text;
+        if (logs.size() > 1 && (told.first->of_one_joint || told.joints.size() < logs.size())) {
+            const auto others = std::span(told.joints).subspan(1);
+            text = fmt::format("joint {}{}: {}", told.joints.front(),
                                others.empty() ? "" : fmt::format(" (and {} alike)", fmt::join(others, ", ")),
                                text);
         }

@@ -75,9 +75,9 @@ TEST_CASE("a recording whose encoder zero was moved is told, with the angle for 
     }
 }
 
-TEST_CASE("recordings that agree are never said to differ in phase: twenty seeds, wherever they move") {
+TEST_CASE("recordings that agree are never said to differ in phase: eight seeds, wherever they move") {
     int told = 0;
-    for (std::uint32_t run = 0; run < 20; ++run) {
+    for (std::uint32_t run = 0; run < 8; ++run) {
         std::vector<Trace> logs;
         for (std::uint32_t i = 0; i < 3; ++i)
             logs.push_back(record({.start_deg = 70.0 * i, .seed = 100 + 10 * run + i}));

@@ -23,7 +23,7 @@ import tempfile
 
 RECORDED = pathlib.Path(__file__).with_name("instructions.json")
 SKIPPED = 77
-SHORT, LONG = 20_000, 60_000  # both beyond the first 16384 rows, which filter looks at before it begins
+SHORT, LONG = 17_000, 29_000  # both beyond the first 16384 rows, which filter looks at before it begins
 COLUMNS = ("time_s", "velocity_deg_s", "torque_nm")
 
 CASES = {

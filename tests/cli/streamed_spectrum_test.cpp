@@ -205,7 +205,7 @@ TEST_CASE("the cases of streaming are what their names say") {
             const Log log = test::read_text(text_of(one), one.options);
             std::string all;
             for (const auto& list : {log.layout.warnings, log.recording.warnings})
-                for (const std::string& warning : list) all += warning + "\n";
+                for (const LogWarning& warning : list) all += warning.text + "\n";
             return all;
         }
         return std::string("no such case");

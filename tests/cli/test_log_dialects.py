@@ -318,24 +318,24 @@ class WhatIsSaidWithoutAUnit(unittest.TestCase):
         motion = ["--motion", "rest,duration=0.4s,from=0deg"]
         for target, seconds in ((120, 1.4), (-60, 1.9), (30, 2.4), (-40, 1.4)):
             motion += ["--motion", f"poly6,to={target}deg,duration={seconds}s", "--motion", "rest,duration=0.4s"]
-        for hidden in ("viscous-friction,coefficient_nm_per_deg_s=0.006", "coulomb-friction,torque_nm=0.8,width_deg_s=2"):
-            done = self.tool("simulate", "--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple",
-                             "2:0.4Nm:-60deg", "--effect", hidden, *motion, "--sample-rate", "250Hz", "--noise", "0.05Nm",
-                             "--velocity-noise", "0.05deg/s", "--seed", "3", "-o", "log.csv", "--force")
-            self.assertEqual(done.returncode, 0, done.stderr)
-            expected = json.loads(self.tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q").stdout)
-            for header in ("t,dq,tau_J,q", "time,velocity,torque,position"):
-                with self.subTest(hidden=hidden, header=header):
-                    (self.folder / "bare.csv").write_text(in_radians(self.folder / "log.csv", header))
-                    done = self.tool("diagnose", "bare.csv", "--model", "model.json", "--json", "-q")
-                    self.assertEqual(done.returncode, 0, done.stderr)
-                    found = json.loads(done.stdout)
-                    if found["verdict"] == "undecided":
-                        self.assertIn("--unit velocity=", found["doubt"])
-                        self.assertEqual(found["named"], [])
-                    else:
-                        self.assertEqual((found["verdict"], found["named"]), (expected["verdict"], expected["named"]))
-                    self.assertTrue(header.startswith("time") or found["verdict"] != "undecided")
+        done = self.tool("simulate", "--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple",
+                         "2:0.4Nm:-60deg", "--effect", "coulomb-friction,torque_nm=0.8,width_deg_s=2", *motion,
+                         "--sample-rate", "250Hz", "--noise", "0.05Nm", "--velocity-noise", "0.05deg/s", "--seed", "3",
+                         "-o", "log.csv", "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        expected = json.loads(self.tool("diagnose", "log.csv", "--model", "model.json", "--json", "-q").stdout)
+        for header in ("t,dq,tau_J,q", "time,velocity,torque,position"):
+            with self.subTest(header=header):
+                (self.folder / "bare.csv").write_text(in_radians(self.folder / "log.csv", header))
+                done = self.tool("diagnose", "bare.csv", "--model", "model.json", "--json", "-q")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                found = json.loads(done.stdout)
+                if found["verdict"] == "undecided":
+                    self.assertIn("--unit velocity=", found["doubt"])
+                    self.assertEqual(found["named"], [])
+                else:
+                    self.assertEqual((found["verdict"], found["named"]), (expected["verdict"], expected["named"]))
+                self.assertTrue(header.startswith("time") or found["verdict"] != "undecided")
 
 
 def in_radians(path, header):

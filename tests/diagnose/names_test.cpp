@@ -54,7 +54,6 @@ TEST_CASE("with an effect taken out of the list, no look-alike takes its place")
         tell(found);
         CHECK(found.named.empty());
         CHECK(!found.unexplained.empty());
-        CHECK(diagnose(opened(joint()), log.view(), nullptr).named == without);
     }
 }
 

@@ -122,7 +122,7 @@ TEST_CASE("a column called time that only counts rows is never taken as the cloc
     const Log log = read_text(rival);
     CHECK(log.trace.time_s[3] == 7.62);
     REQUIRE_FALSE(log.layout.warnings.empty());
-    CHECK_THAT(log.layout.warnings.front(),
+    CHECK_THAT(log.layout.warnings.front().text,
                Contains("'time'") && Contains("counts rows") && Contains("'timestamp'"));
 
     const std::string alone = "time,velocity_deg_s,torque_nm\n0,10,1\n1,10,2\n2,10,3\n3,10,4\n";
@@ -158,7 +158,7 @@ TEST_CASE("what was wished is left alone where a measurement stands beside it", 
     }
     const Log only = read_text("time_s,target_torque_nm,velocity_deg_s\n0,9,1\n1,8,1\n");
     CHECK(only.trace.torque_nm == std::vector<double>{9, 8});
-    CHECK_THAT(only.layout.warnings.at(0), Contains("a wish or a model"));
+    CHECK_THAT(only.layout.warnings.at(0).text, Contains("a wish or a model"));
 }
 
 TEST_CASE("of several joints one must be chosen, by any of its names", "[log]") {
@@ -183,7 +183,7 @@ TEST_CASE("motor current is torque with its constant, and amperes without", "[lo
     const Log bare = read_text(text);
     CHECK(bare.trace.torque_nm == std::vector<double>{2, 3});
     CHECK(bare.layout.columns[2].unit == "A");
-    CHECK_THAT(bare.layout.warnings.at(0), Contains("motor current") && Contains("--kt"));
+    CHECK_THAT(bare.layout.warnings.at(0).text, Contains("motor current") && Contains("--kt"));
     ReadOptions options;
     options.nm_per_ampere = 0.5;
     const Log converted = read_text(text, options);
@@ -195,7 +195,7 @@ TEST_CASE("a column without unit is taken in the tool's own, and that is said", 
     const Log log = read_text("time,velocity,torque\n0,60,2\n0.01,61,3\n0.02,62,4\n");
     CHECK(log.trace.velocity_deg_s[0] == 60.0);
     REQUIRE(log.layout.warnings.size() == 1);
-    CHECK_THAT(log.layout.warnings[0],
+    CHECK_THAT(log.layout.warnings[0].text,
                Contains("'velocity' (column 2) as deg/s") && Contains("--unit velocity=deg/s"));
     CHECK(log.layout.assumptions.size() == 2);
     ReadOptions options;

@@ -86,7 +86,7 @@ TEST_CASE("a position is judged by scale, sign and motion, and what was decided 
             CHECK(recording.warnings.empty());
         } else {
             REQUIRE(recording.warnings.size() == 1);
-            CHECK_THAT(recording.warnings.front(), Contains(cases[i].told));
+            CHECK_THAT(recording.warnings.front().text, Contains(cases[i].told));
         }
     }
 }
@@ -108,7 +108,7 @@ TEST_CASE("what is read is the joint's angle: turned, left out, or carried on by
     const std::size_t row = log.recording.angle.contradicted->row;
     CHECK(row > 20000);
     CHECK(row < 21500);
-    CHECK_THAT(log.recording.warnings.front(), Contains(fmt::format("data row {}", row + 1)));
+    CHECK_THAT(log.recording.warnings.front().text, Contains(fmt::format("data row {}", row + 1)));
     CHECK(log.trace.position_deg[row - 1] == 12.0);
     for (std::size_t k = row; k < plain.size(); k += 100) {
         const double moved = log.trace.position_deg[k] - log.trace.position_deg[row];

@@ -52,7 +52,7 @@ TEST_CASE("joints in an array column are told apart", "[log]") {
 }
 
 TEST_CASE("a plain array is taken by place, with a warning, or as told", "[log]") {
-    CHECK_THAT(read_text(reference("plain_f8.npy")).layout.warnings.at(0),
+    CHECK_THAT(read_text(reference("plain_f8.npy")).layout.warnings.at(0).text,
                Contains("time, velocity, torque, position by place"));
     const auto told = with_columns({"position", "-", "torque", "velocity"});
     ReadOptions options = told;

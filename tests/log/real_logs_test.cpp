@@ -103,8 +103,8 @@ TEST_CASE("real: 115 columns with an unnamed index, torque measured in two ways 
     CHECK(log.layout.columns[log.layout.chosen.torque.value()].name == "joint_torque_current_3");
     CHECK(log.trace.time_s[0] == 2315.505423811);
     REQUIRE(log.layout.warnings.size() == 2);
-    CHECK_THAT(log.layout.warnings[0], Contains("'encoder_torques_3'") && Contains("does not change"));
-    CHECK_THAT(log.layout.warnings[1], Contains("no unit is stated"));
+    CHECK_THAT(log.layout.warnings[0].text, Contains("'encoder_torques_3'") && Contains("does not change"));
+    CHECK_THAT(log.layout.warnings[1].text, Contains("no unit is stated"));
     CHECK(log.layout.columns[log.layout.chosen.velocity.value()].unit == "rad/s");
     const std::string bytes = file_bytes(folder + "/" + name);
     CHECK(rewritten(bytes, identity, {}, joint("3")) == bytes);
@@ -131,7 +131,7 @@ TEST_CASE("real: line ends of CR alone, a row counter called time, motor current
     const Log log = read_log(folder + "/" + prepared, joint("j3"));
     CHECK(original.layout.columns.size() == 175);
     CHECK(original.layout.columns[original.layout.chosen.time.value()].name == "timestamp");
-    CHECK_THAT(original.layout.warnings.at(0), Contains("'time' (column 1) only counts rows"));
+    CHECK_THAT(original.layout.warnings.at(0).text, Contains("'time' (column 1) only counts rows"));
     CHECK(original.layout.columns[original.layout.chosen.torque.value()].name == "actual_current_2");
     CHECK(original.layout.columns[original.layout.chosen.torque.value()].unit == "A");
     REQUIRE(original.trace.size() == 65);

@@ -59,7 +59,7 @@ TEST_CASE("a gap is left out of the rate and splits the log", "[log]") {
     CHECK(log.recording.clock.gaps[0].row == 4999);
     CHECK_THAT(log.recording.clock.gaps[0].to_s - log.recording.clock.gaps[0].from_s, WithinAbs(3.001, 1e-9));
     CHECK_THAT(log.recording.clock.mean_rate.value(), WithinRel(1000.0, 1e-6));
-    CHECK_THAT(log.recording.warnings.at(0), Contains("1 gap"));
+    CHECK_THAT(log.recording.warnings.at(0).text, Contains("1 gap"));
     REQUIRE(log.clock_factor);
     CHECK_THAT(*log.clock_factor, WithinAbs(1.0, 0.002));
 }
@@ -72,7 +72,7 @@ TEST_CASE("repeated times are counted", "[log]") {
     CHECK(log.recording.clock.repeated_times == 9000);  // ten rows share a time: nine of ten steps are zero
     CHECK(log.recording.clock.gaps.empty());
     CHECK_THAT(log.recording.clock.mean_rate.value(), WithinRel(1000.0, 2e-3));
-    CHECK_THAT(log.recording.warnings.at(0), Contains("repeat the time"));
+    CHECK_THAT(log.recording.warnings.at(0).text, Contains("repeat the time"));
 }
 
 TEST_CASE("the clock check gives 1 for a right clock and names what is wrong with others", "[log]") {
@@ -102,7 +102,7 @@ TEST_CASE("the clock check gives 1 for a right clock and names what is wrong wit
         REQUIRE(log.clock_factor);
         CHECK_THAT(*log.clock_factor, WithinRel(mistake.position / mistake.velocity / mistake.time, 0.003));
         REQUIRE(log.recording.warnings.size() == 1);
-        CHECK_THAT(log.recording.warnings[0], Contains(mistake.named));
+        CHECK_THAT(log.recording.warnings[0].text, Contains(mistake.named));
     }
 }
 

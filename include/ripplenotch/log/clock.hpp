@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ripplenotch/core/units.hpp"
+#include "ripplenotch/log/log_warning.hpp"
 #include "ripplenotch/log/rate_estimate.hpp"
 
 namespace ripplenotch {
@@ -134,7 +135,7 @@ class Clock {
     std::size_t steps_ = 0;
 };
 
-/// One sentence each about gaps, changes of rate, repeated times and a mean far from the nominal rate.
-[[nodiscard]] std::vector<std::string> clock_warnings(const ClockFacts& clock);
+/// What there is to say about gaps, changes of rate, repeated times and a mean far from the nominal rate.
+[[nodiscard]] std::vector<LogWarning> clock_warnings(const ClockFacts& clock);
 
 }  // namespace ripplenotch

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ripplenotch/core/units.hpp"
+#include "ripplenotch/log/log_warning.hpp"
 #include "ripplenotch/log/time_range.hpp"
 
 namespace ripplenotch {
@@ -92,7 +93,7 @@ struct Layout {
     bool motor_units = false;             ///< motion is the motor's, and no ratio was known to divide it by
     std::optional<Hertz> stated_rate;     ///< from --sample-rate, or from the head of a file without a clock
     std::string options;                  ///< the option line that would force this reading
-    std::vector<std::string> warnings;    ///< one sentence each
+    std::vector<LogWarning> warnings;     ///< about columns, units and the time
     std::vector<Assumption> assumptions;  ///< what no rule decided
     std::vector<Assumption> inferences;   ///< what the log does not say and a rule decided, with its reason
     std::shared_ptr<const RowsOutside>

@@ -26,13 +26,13 @@ struct Recording {
     AngleFacts angle;
     std::vector<Assumption> assumptions, inferences;  ///< as in Layout
     std::optional<RowsOutside> outside;               ///< where a range was asked for
-    std::vector<std::string> warnings;  ///< about clock, held samples and angle, a sentence each
+    std::vector<LogWarning> warnings;                 ///< about clock, held samples and angle
 
     [[nodiscard]] std::size_t rows() const { return clock.rows; }
 };
 
 /// The warnings of what is known; `clock_check` is what comparing the clock with the motion gave, if it did.
-[[nodiscard]] std::vector<std::string> recording_warnings(const Recording& recording,
-                                                          const std::string& clock_check = {});
+[[nodiscard]] std::vector<LogWarning> recording_warnings(const Recording& recording,
+                                                         const std::string& clock_check = {});
 
 }  // namespace ripplenotch

@@ -76,8 +76,8 @@ std::string delay_line(const std::vector<LedgerEntry>& delays) {
 
 std::vector<std::string> filter_warnings(const FilterMetrics& metrics) {
     std::vector<std::string> warnings;
-    for (const std::string& warning : metrics.stream.recording.warnings)
-        warnings.push_back(fmt::format("{}: {}", metrics.source, warning));
+    for (const LogWarning& warning : metrics.stream.recording.warnings)
+        warnings.push_back(fmt::format("{}: {}", metrics.source, warning.text));
     if (metrics.table_rate) {
         const auto warning = table_rate_warning(*metrics.table_rate, metrics.sample_rate, metrics.source);
         if (warning) warnings.push_back(*warning);

@@ -240,6 +240,10 @@ void say_warnings(const CommonOptions& common, std::span<const std::string> warn
     for (const std::string& warning : warnings) fmt::print(stderr, "{}: warning: {}\n", tool_name, warning);
 }
 
+void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings) {
+    for (const LogWarning& warning : warnings) say_warnings(common, {&warning.text, 1});
+}
+
 void say(const CommonOptions& common, std::string_view sentence) {
     Progress::current().step_aside();
     if (common.verbose && !common.quiet) fmt::print(stderr, "{}: {}\n", tool_name, sentence);

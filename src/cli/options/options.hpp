@@ -110,6 +110,7 @@ void attach_log_columns(Options& options, LogOptions& log);
 
 /// Messages for people, on standard error: "ripplenotch: warning: ...". Nothing at all when quiet.
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings);
+void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings);
 void say(const CommonOptions& common, std::string_view sentence);  ///< only with -v
 /// The option line that would force the reading of a log, with -v; its warnings always unless quiet.
 void say_layout(const CommonOptions& common, const Layout& layout);

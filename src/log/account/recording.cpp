@@ -5,20 +5,23 @@
 
 namespace ripplenotch {
 
-std::vector<std::string> recording_warnings(const Recording& recording, const std::string& clock_check) {
-    std::vector<std::string> warnings = clock_warnings(recording.clock);
+std::vector<LogWarning> recording_warnings(const Recording& recording, const std::string& clock_check) {
+    std::vector<LogWarning> warnings = clock_warnings(recording.clock);
     const double held = 100.0 * static_cast<double>(recording.held.count) /
                         static_cast<double>(recording.rows() > 0 ? recording.rows() : 1);
     if (held >= 0.1) {
         warnings.push_back(
-            fmt::format("{} rows ({:.2g} %) hold the sample before while the joint moves, up to {} in a row",
-                        recording.held.count, held, recording.held.longest));
+            {"held samples",
+             fmt::format("{} rows ({:.2g} %) hold the sample before while the joint moves, up to {} in a row",
+                         recording.held.count, held, recording.held.longest),
+             true});
     }
     using Verdict = AngleFacts::Verdict;
     const Verdict verdict = recording.angle.verdict;
-    if (const std::string angle = recording.angle.warning(); !angle.empty()) warnings.push_back(angle);
+    if (const std::string angle = recording.angle.warning(); !angle.empty())
+        warnings.push_back({"angle", angle, true});
     if ((verdict == Verdict::agrees || verdict == Verdict::too_little_motion) && !clock_check.empty())
-        warnings.push_back(clock_check);
+        warnings.push_back({"clock against motion", clock_check, true});
     return warnings;
 }
 

@@ -139,8 +139,10 @@ void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOpt
     if (clocks.broken.size() > 1)
         why = fmt::format("neither of {} runs forward in numbers", labels(facts, clocks.broken));
     if (!options.needs_torque) {
-        layout.warnings.push_back(fmt::format(
-            "{}: no sample rate; say --sample-rate 1kHz, --unit time=ms, or --columns time=NAME", why));
+        layout.warnings.push_back(
+            {"no sample rate",
+             fmt::format("{}: no sample rate; say --sample-rate 1kHz, --unit time=ms, or --columns time=NAME",
+                         why)});
         return;
     }
     raise<DataError>("{}: {}, expected a time column; say --sample-rate 1kHz, {}or --columns time=NAME",
@@ -181,7 +183,7 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
         layout.time_fraction = pair->nanoseconds;
     }
     if (layout.chosen.time) return;
-    std::vector<std::string>& warnings = layout.warnings;
+    std::vector<LogWarning>& warnings = layout.warnings;
     const Clocks found = find_clocks(facts, forced, options);
     const auto& [clocks, texts, counters, broken] = found;
     if (clocks.size() > 1) {
@@ -193,9 +195,11 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
     if (clocks.size() == 1) {
         layout.chosen.time = clocks[0];
         if (!counters.empty()) {
-            warnings.push_back(fmt::format(
-                "{} only counts rows; the time is taken from {}; --columns time=NAME decides otherwise",
-                labels(facts, counters), column_label(facts.names, clocks[0])));
+            warnings.push_back(
+                {"row counter",
+                 fmt::format(
+                     "{} only counts rows; the time is taken from {}; --columns time=NAME decides otherwise",
+                     labels(facts, counters), column_label(facts.names, clocks[0]))});
         }
         // A date written as text beside a numeric clock is common; a numeric time that stands still or jumps
         // back means that the columns are not what their names say.
@@ -208,9 +212,10 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
                     facts.names[clocks[0]]);
             }
             warnings.push_back(
-                fmt::format("{} is not a number of seconds; the time is taken from {}; --columns time=NAME "
-                            "decides otherwise",
-                            column_label(facts.names, column), column_label(facts.names, clocks[0])));
+                {"time as text",
+                 fmt::format("{} is not a number of seconds; the time is taken from {}; --columns time=NAME "
+                             "decides otherwise",
+                             column_label(facts.names, column), column_label(facts.names, clocks[0]))});
         }
         return;
     }

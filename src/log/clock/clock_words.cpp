@@ -33,25 +33,28 @@ std::string changes_in_words(const ClockFacts& clock) {
 
 }  // namespace
 
-std::vector<std::string> clock_warnings(const ClockFacts& clock) {
-    std::vector<std::string> warnings;
-    if (clock.gap_count > 0) warnings.push_back(gaps_in_words(clock));
-    if (!clock.rate_changes.empty()) warnings.push_back(changes_in_words(clock));
+std::vector<LogWarning> clock_warnings(const ClockFacts& clock) {
+    std::vector<LogWarning> warnings;
+    if (clock.gap_count > 0) warnings.push_back({"gaps", gaps_in_words(clock)});
+    if (!clock.rate_changes.empty()) warnings.push_back({"changes of rate", changes_in_words(clock)});
     if (clock.repeated_times > 0) {
         warnings.push_back(
-            fmt::format("{} rows ({:.2g} %) repeat the time of the row before: the clock is coarser than the "
-                        "rows, or rows "
-                        "were doubled",
-                        clock.repeated_times,
-                        100.0 * static_cast<double>(clock.repeated_times) / static_cast<double>(clock.rows)));
+            {"repeated times",
+             fmt::format(
+                 "{} rows ({:.2g} %) repeat the time of the row before: the clock is coarser than the "
+                 "rows, or rows "
+                 "were doubled",
+                 clock.repeated_times,
+                 100.0 * static_cast<double>(clock.repeated_times) / static_cast<double>(clock.rows))});
     }
     const double mean = clock.mean_rate.value(), nominal = clock.nominal_rate.value();
     if (nominal > 0.0 && std::abs(mean / nominal - 1.0) > rate_worth_a_word) {
         warnings.push_back(
-            fmt::format("the rows come at {:.6g} Hz in the mean, but at {:.6g} Hz by the usual step: rows "
-                        "are lost or late; "
-                        "filters are designed for {:.6g} Hz",
-                        mean, nominal, nominal));
+            {"mean rate",
+             fmt::format("the rows come at {:.6g} Hz in the mean, but at {:.6g} Hz by the usual step: rows "
+                         "are lost or late; "
+                         "filters are designed for {:.6g} Hz",
+                         mean, nominal, nominal)});
     }
     return warnings;
 }

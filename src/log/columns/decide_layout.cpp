@@ -240,7 +240,8 @@ class Decision {
         std::set<std::string> seen, told;
         for (const std::string& name : facts_.names) {
             if (name.empty() || seen.insert(name).second || !told.insert(name).second) continue;
-            layout_.warnings.push_back(fmt::format("several columns are named '{}'", name));
+            layout_.warnings.push_back(
+                {"repeated names", fmt::format("several columns are named '{}'", name)});
         }
     }
 

@@ -88,7 +88,7 @@ std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked
 }
 
 std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group, Role role,
-                                         std::vector<std::string>& warnings) {
+                                         std::vector<LogWarning>& warnings) {
     if (const auto forced = known.forced.column_of(role)) return forced;
     const auto found = group.candidates.find(role);
     if (found == group.candidates.end()) return std::nullopt;
@@ -107,14 +107,18 @@ std::optional<std::size_t> choose_column(const KnownColumns& known, const JointG
     if (best.size() > 1) refuse_tie(known, role, best);
     if (!still.empty()) {
         warnings.push_back(
-            fmt::format("{} does not change at the start of the log; the {} is taken from {}; --columns "
-                        "{}=NAME decides otherwise",
-                        column_label(known.facts.names, still.front()), role_name(role),
-                        column_label(known.facts.names, best.front()), role_name(role)));
+            {"standing column",
+             fmt::format("{} does not change at the start of the log; the {} is taken from {}; --columns "
+                         "{}=NAME decides otherwise",
+                         column_label(known.facts.names, still.front()), role_name(role),
+                         column_label(known.facts.names, best.front()), role_name(role)),
+             true});
     }
     if (known.names[best.front()].reference) {
-        warnings.push_back(fmt::format("{} is a wish or a model, not a measurement, and the only {} here",
-                                       column_label(known.facts.names, best.front()), role_name(role)));
+        warnings.push_back({"reference",
+                            fmt::format("{} is a wish or a model, not a measurement, and the only {} here",
+                                        column_label(known.facts.names, best.front()), role_name(role)),
+                            true});
     }
     return best.front();
 }

@@ -37,6 +37,6 @@ struct KnownColumns {
 
 /// The one column for a role, empty when there is none. Throws DataError where several are equally good.
 [[nodiscard]] std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group,
-                                                       Role role, std::vector<std::string>& warnings);
+                                                       Role role, std::vector<LogWarning>& warnings);
 
 }  // namespace ripplenotch::layout_detail

@@ -32,8 +32,10 @@ void say_assumed_units(Layout& layout, const ColumnFacts& facts) {
                                       {}});
     }
     if (!taken.empty()) {
-        layout.warnings.push_back(fmt::format("no unit is stated for what is read: took {}; {} settles it",
-                                              fmt::join(taken, ", "), fmt::join(asked, " ")));
+        layout.warnings.push_back({"assumed units",
+                                   fmt::format("no unit is stated for what is read: took {}; {} settles it",
+                                               fmt::join(taken, ", "), fmt::join(asked, " ")),
+                                   true});
     }
 }
 
@@ -43,14 +45,18 @@ void say_torque_constant(Layout& layout, const ColumnFacts& facts, const ReadOpt
     const bool current = is_current_unit(layout.columns[*torque].unit);
     if (current && !options.nm_per_ampere) {
         layout.warnings.push_back(
-            fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
-                        "amperes; --kt gives the joint's torque constant in Nm/A",
-                        column_label(facts.names, *torque)));
+            {"motor current",
+             fmt::format("{} is a motor current: 1 A is taken as 1 Nm, so every torque is in "
+                         "amperes; --kt gives the joint's torque constant in Nm/A",
+                         column_label(facts.names, *torque)),
+             true});
     }
     if (!current && options.nm_per_ampere) {
-        layout.warnings.push_back(fmt::format("--kt has no effect: {} is in {}",
-                                              column_label(facts.names, *torque),
-                                              layout.columns[*torque].unit));
+        layout.warnings.push_back(
+            {"--kt",
+             fmt::format("--kt has no effect: {} is in {}", column_label(facts.names, *torque),
+                         layout.columns[*torque].unit),
+             true});
     }
 }
 
@@ -91,10 +97,13 @@ void state_derived_velocity(Layout& layout, const ColumnFacts& facts) {
         if (joint.velocity || !joint.position) continue;
         const std::string label = column_label(facts.names, *joint.position);
         layout.velocity_from_position = true;
-        layout.warnings.push_back(fmt::format(
-            "no velocity is logged: it is the slope of {}, from row to row; --columns velocity=NAME "
-            "decides otherwise",
-            label));
+        layout.warnings.push_back(
+            {"derived velocity",
+             fmt::format(
+                 "no velocity is logged: it is the slope of {}, from row to row; --columns velocity=NAME "
+                 "decides otherwise",
+                 label),
+             true});
         layout.inferences.push_back({"velocity",
                                      fmt::format("the slope of {}", label),
                                      "no column is a velocity",

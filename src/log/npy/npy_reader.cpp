@@ -85,9 +85,9 @@ void NpyReader::decide(const ReadOptions& options) {
     if (by_place) {
         layout_.warnings.insert(
             layout_.warnings.begin(),
-            fmt::format(
-                "the array names no columns: took time, velocity, torque{} by place; --columns settles it",
-                facts.columns == 4 ? ", position" : ""));
+            LogWarning{"columns by place", fmt::format("the array names no columns: took time, velocity, "
+                                                       "torque{} by place; --columns settles it",
+                                                       facts.columns == 4 ? ", position" : "")});
     }
     plan_columns(facts.names);
 }
