@@ -8,9 +8,8 @@
 namespace ripplenotch {
 namespace {
 
-std::string from_to(std::optional<double> before_nm, std::optional<double> after_nm) {
-    const auto shown = [](std::optional<double> nm) { return nm ? coarse_text(*nm) : "-"; };
-    return fmt::format("{} to {}", shown(before_nm), shown(after_nm));
+std::string from_to(double before_nm, double after_nm) {
+    return fmt::format("{} to {}", coarse_text(before_nm), coarse_text(after_nm));
 }
 
 Json row_of(const Finding& finding) {
@@ -20,7 +19,8 @@ Json row_of(const Finding& finding) {
     row["where"] = place_json(finding.where);
     row["explains_nm"] = finite_or_null(finding.evidence.share_nm);
     row["gap_nm"] = from_to(finding.gap_before_nm, finding.gap_after_nm);
-    row["validation_nm"] = from_to(finding.validation_before_nm, finding.validation_after_nm);
+    if (finding.validation_before_nm)
+        row["validation_nm"] = from_to(*finding.validation_before_nm, *finding.validation_after_nm);
     std::string rivals;
     for (const RivalFinding& rival : finding.alternatives)
         rivals += fmt::format("{}{}", rivals.empty() ? "" : ", ", rival.effect);

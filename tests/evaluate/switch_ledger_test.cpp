@@ -95,7 +95,7 @@ TEST_CASE("what leaves its band again has settled only after that") {
 
 TEST_CASE("the switching ledger does not depend on how the log is cut into blocks") {
     const auto whole = two_changes().ledger(100);
-    for (const std::size_t block : {1, 7, 20, 33}) {
+    for (const std::size_t block : {1U, 7U, 20U, 33U}) {
         const auto cut = two_changes().ledger(block);
         REQUIRE(cut.size() == whole.size());
         for (std::size_t i = 0; i < whole.size(); ++i) {

@@ -61,7 +61,7 @@ std::vector<std::size_t> first(std::size_t count) {
 }  // namespace
 
 TEST_CASE("blocks are filtered and put in their order, and no more are on their way than there are threads") {
-    for (const std::size_t threads : {1, 2, 3, 8}) {
+    for (const std::size_t threads : {1U, 2U, 3U, 8U}) {
         INFO(threads << " threads");
         Course course;
         run_blocks(course.steps(), threads);
@@ -77,7 +77,7 @@ TEST_CASE(
     "a failure comes after every block before it has been put, whichever step it is in and however many "
     "threads") {
     const std::size_t failing = 25;
-    for (const std::size_t threads : {1, 2, 5}) {
+    for (const std::size_t threads : {1U, 2U, 5U}) {
         for (int which = 0; which < 4; ++which) {
             INFO(threads << " threads, step " << which);
             Course course;
@@ -103,7 +103,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a source that breaks off is told after everything that came before has been put") {
-    for (const std::size_t threads : {1, 3}) {
+    for (const std::size_t threads : {1U, 3U}) {
         Course course;
         BlockSteps steps = course.steps();
         steps.fetch = [&course, fetch = steps.fetch](BlockItem& item) {

@@ -30,9 +30,13 @@ struct ClockTime {
 /// What a time cell says, less the origin, exact to a double's last digit of the difference.
 [[nodiscard]] std::optional<double> read_stamp(std::string_view text, const StampRule& rule);
 
-/// `count - origin` as a double: of whole numbers, with no rounding before the difference.
+/// `count - origin` as a double: of whole numbers, with no rounding before the difference where that is one
+/// too.
 [[nodiscard]] inline double since(std::int64_t count, std::int64_t origin) {
-    return static_cast<double>(count - origin);
+    std::int64_t difference = 0;
+    return __builtin_sub_overflow(count, origin, &difference)
+               ? static_cast<double>(count) - static_cast<double>(origin)
+               : static_cast<double>(difference);
 }
 
 }  // namespace ripplenotch

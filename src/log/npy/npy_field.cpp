@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "log/clock/stamp.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -89,7 +91,7 @@ std::int64_t load_count(const char* record, const NpyField& field) {
 
 double load_since(const char* record, const NpyField& field, std::int64_t origin) {
     if (field.kind == 'f') return load_field(record, field) - static_cast<double>(origin);
-    return static_cast<double>(load_count(record, field) - origin);
+    return since(load_count(record, field), origin);
 }
 
 void store_float(char* record, const NpyField& field, double value) {

@@ -20,8 +20,7 @@ struct CellMasks {
     alignas(64) std::array<Lane, 17> keep{};   ///< the number
     alignas(16) std::array<Lane, 17> most{};   ///< the greatest value of a byte
     alignas(16) std::array<Lane, 17> apart{};  ///< all but the mark
-    alignas(
-        16) std::array<Lane, 17> spare{};  ///< all that a number may do without: not its mark or last digit
+    alignas(16) std::array<Lane, 17> spare{};  ///< bytes that may be missing: all but the mark and last digit
     alignas(16) std::array<Lane, 17> close{};  ///< a shuffle that closes the gap which the mark leaves
     alignas(32) std::array<std::array<std::uint8_t, 32>, 33> keep_long{};  ///< a number in 32 bytes
     alignas(16) std::array<std::array<double, 2>, 4> signs{
