@@ -28,7 +28,7 @@ Curve noise(std::size_t count, unsigned seed) {
 }  // namespace
 
 TEST_CASE("thinning hides no peak: one sample that sticks out anywhere is still there") {
-    const std::size_t count = GENERATE(10001, 65536, 99999, 250000);
+    const std::size_t count = GENERATE(10001U, 65536U, 99999U, 250000U);
     Curve curve = noise(count, 1);
     for (const std::size_t at :
          {std::size_t{0}, std::size_t{1}, count / 3, count / 2 + 17, count - 2, count - 1}) {
@@ -111,8 +111,8 @@ TEST_CASE("a map on fewer cells keeps its highest cell, and empty cells stay emp
     for (int i = 0; i <= 1000; ++i) map.x_edges.push_back(i);
     for (int i = 0; i <= 700; ++i) map.y_edges.push_back(i);
     map.cells.assign(1000 * 700, 0.1);
-    const std::size_t column = GENERATE(0, 1, 333, 998, 999);
-    const std::size_t row = GENERATE(0, 350, 699);
+    const std::size_t column = GENERATE(0U, 1U, 333U, 998U, 999U);
+    const std::size_t row = GENERATE(0U, 350U, 699U);
     map.cells[row * 1000 + column] = 7.0;
     for (std::size_t r = 0; r < 700; ++r)
         for (std::size_t c = 400; c < 500; ++c) map.cells[r * 1000 + c] = nothing;
