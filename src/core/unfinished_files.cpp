@@ -14,7 +14,7 @@ namespace {
 std::array<std::atomic<const char*>, 64> unfinished;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-std::size_t take_slot(const char* path) {
+std::size_t claim_slot(const char* path) {
     for (std::size_t slot = 0; slot < unfinished.size(); ++slot) {
         const char* free = nullptr;
         if (unfinished[slot].compare_exchange_strong(free, path)) return slot;
@@ -32,7 +32,7 @@ void remove_and_end(int signal) {
 
 }  // namespace
 
-UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), slot_(take_slot(path_.c_str())) {}
+UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), slot_(claim_slot(path_.c_str())) {}
 
 UnfinishedFile::~UnfinishedFile() {
     if (slot_ < unfinished.size()) unfinished[slot_] = nullptr;

@@ -136,17 +136,17 @@ Unevenness unevenness(const ModelBench& bench, const Model& stated, std::size_t 
     const Torques torques = torques_of(bench, stated, term);
     if (only_constant(torques)) return {1.0, "where it changes and where it does not"};
     Unevenness worst;
-    const auto take = [&](double part, std::string_view where) {
+    const auto compare = [&](double part, std::string_view where) {
         if (part > worst.part) worst = {part, where};
     };
     const EvennessRules& rules = bench.rules().evenness;
-    take(between(torques, rules.least_sigma, by_time(bench, rules.times), rules.times),
-         "early and late in the log");
-    take(between(torques, rules.least_sigma, by_speed(bench, rules.speeds), 2 * rules.speeds),
-         "slow and fast, forth and back");
+    compare(between(torques, rules.least_sigma, by_time(bench, rules.times), rules.times),
+            "early and late in the log");
+    compare(between(torques, rules.least_sigma, by_speed(bench, rules.speeds), 2 * rules.speeds),
+            "slow and fast, forth and back");
     for (const std::size_t stretches : {rules.short_stretches, rules.long_stretches})
-        take(within(torques, rules.telling_deviations, by_time(bench, stretches), stretches),
-             "within short stretches of the log");
+        compare(within(torques, rules.telling_deviations, by_time(bench, stretches), stretches),
+                "within short stretches of the log");
     return worst;
 }
 

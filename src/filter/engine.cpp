@@ -114,7 +114,7 @@ std::vector<StreamReport> LogStream::run(std::span<const JointRun> joints, LogWr
     steps.parse = [&](BlockItem& item) { reader.parse(item.block); };
     steps.filter = [&](BlockItem& item) {
         if (!item.accepted) reader.accept(item.block);
-        pass.take(item.block, item.torque_nm);
+        pass.filter(item.block, item.torque_nm);
     };
     steps.prepare = [&](BlockItem& item) {
         if (writer != nullptr) item.bytes = writer->prepare(item.block, item.torque_nm, item.room);

@@ -12,9 +12,9 @@ StreamPass::StreamPass(Account& account, std::span<const JointRun> joints) : acc
     for (const JointRun& run : joints) lanes_.push_back({run});
 }
 
-void StreamPass::take(const RowBlock& block, std::vector<std::vector<double>>& torque_nm) {
+void StreamPass::filter(const RowBlock& block, std::vector<std::vector<double>>& torque_nm) {
     torque_nm.resize(lanes_.size());
-    const std::span<const RunPart> parts = account_.take(block);
+    const std::span<const RunPart> parts = account_.add(block);
     for (std::size_t j = 0; j < lanes_.size(); ++j) {
         Lane& lane = lanes_[j];
         note_motion(block.joints[j], lane);

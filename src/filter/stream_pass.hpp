@@ -16,7 +16,7 @@ class StreamPass {
     StreamPass(Account& account, std::span<const JointRun> joints);
 
     /// Filters the block's joints into `torque_nm`. Throws DataError when time runs backward.
-    void take(const RowBlock& block, std::vector<std::vector<double>>& torque_nm);
+    void filter(const RowBlock& block, std::vector<std::vector<double>>& torque_nm);
 
     /// By joint, after the last block; `layout` as it stands then.
     [[nodiscard]] std::vector<StreamReport> reports(const Layout& layout) const;

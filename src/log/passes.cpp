@@ -19,16 +19,16 @@ class LogPasses::Work {
     Work(const std::string& path, ReadOptions options)
         : spool_(path), options_(std::move(options)), reader_(open_log(spool_.open(), options_)) {}
 
-    void first(const Take& take);
-    void second(const Take& take);
-    void again(const Take& take);
+    void first(const Use& use);
+    void second(const Use& use);
+    void again(const Use& use);
 
     Layout layout;
     LogFacts facts;
     Recording recording;
 
   private:
-    Account run(const Take& take);
+    Account run(const Use& use);
     void look_at(const TraceView& rows);
 
     Spool spool_;
@@ -40,19 +40,19 @@ class LogPasses::Work {
     bool has_position_ = false;
 };
 
-Account LogPasses::Work::run(const Take& take) {
+Account LogPasses::Work::run(const Use& use) {
     if (!reader_) reader_ = open_log(spool_.open(), options_);
     Opening opening = read_opening(*reader_);
     Account account(reader_->layout(), opening);
     constexpr std::array<std::size_t, 1> at_first_row = {0};
     RowBlock block;
     while (next_block(opening, *reader_, block)) {
-        for (const RunPart& part : account.take(block)) {
+        for (const RunPart& part : account.add(block)) {
             if (!part.usable || part.count == 0) continue;
             TraceView rows = view_of(block, 0, part.first, part.count);
             rows.sample_rate = facts.sample_rate;
             if (part.begins_run) rows.run_starts = at_first_row;
-            take(rows);
+            use(rows);
         }
     }
     if (options_.needs_torque) account.clock().require();
@@ -66,14 +66,14 @@ void LogPasses::Work::look_at(const TraceView& rows) {
     rows_ += rows.size();
     facts.last_s = rows.time_s.back();
     for (const double time : rows.time_s) sum_s_ += time;
-    wrap_.take(rows.position_deg);
+    wrap_.follow(rows.position_deg);
     has_position_ = has_position_ || rows.has_position();
 }
 
-void LogPasses::Work::first(const Take& take) {
+void LogPasses::Work::first(const Use& use) {
     const Account account = run([&](const TraceView& rows) {
         look_at(rows);
-        take(rows);
+        use(rows);
     });
     facts.rows = rows_;
     recording = account.recording(layout, 0);
@@ -87,7 +87,7 @@ void LogPasses::Work::first(const Take& take) {
         layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
 }
 
-void LogPasses::Work::again(const Take& take) {
+void LogPasses::Work::again(const Use& use) {
     std::optional<Unwrapper> unwrapper;
     if (const auto period = wrap_.period()) unwrapper.emplace(*period);
     std::vector<double> continuous;
@@ -100,17 +100,17 @@ void LogPasses::Work::again(const Take& take) {
             rows.position_deg = continuous;
         }
         rows.position_deg = joints.of(recording.angle, rows);
-        take(rows);
+        use(rows);
     }));
 }
 
 // The clock is compared with the motion by the position as it was logged.
-void LogPasses::Work::second(const Take& take) {
+void LogPasses::Work::second(const Use& use) {
     MotionPieces motion(facts.rows);
     const bool turned = recording.angle.verdict == AngleFacts::Verdict::reversed;
     again([&](const TraceView& rows) {
-        if (!turned) motion.take(rows);
-        take(rows);
+        if (!turned) motion.add(rows);
+        use(rows);
     });
     recording.warnings = recording_warnings(recording, motion.check(facts.sample_rate).warning);
 }
@@ -119,9 +119,9 @@ LogPasses::LogPasses(const std::string& path, const ReadOptions& options)
     : work_(std::make_unique<Work>(path, options)) {}
 LogPasses::~LogPasses() = default;
 
-void LogPasses::first(const Take& take) { work_->first(take); }
-void LogPasses::second(const Take& take) { work_->second(take); }
-void LogPasses::again(const Take& take) { work_->again(take); }
+void LogPasses::first(const Use& use) { work_->first(use); }
+void LogPasses::second(const Use& use) { work_->second(use); }
+void LogPasses::again(const Use& use) { work_->again(use); }
 const LogFacts& LogPasses::facts() const { return work_->facts; }
 const Layout& LogPasses::layout() const { return work_->layout; }
 const Recording& LogPasses::recording() const { return work_->recording; }

@@ -33,7 +33,7 @@ void settle_angle(Log& log) {
     const bool as_logged = position.empty() || log.recording.angle.verdict == AngleFacts::Verdict::reversed;
     if (!as_logged) log.trace.position_deg = position;
     MotionPieces motion(log.trace.size());
-    motion.take(log.trace.view());
+    motion.add(log.trace.view());
     const ClockCheck check = motion.check(log.trace.sample_rate);
     log.clock_factor = check.factor;
     log.recording.warnings = recording_warnings(log.recording, check.warning);
@@ -54,7 +54,7 @@ Log read_log(LogReader& reader, const ReadOptions& options) {
     Account account(reader.layout(), opening);
     RowBlock block;
     while (next_block(opening, reader, block)) {
-        for (const RunPart& part : account.take(block)) {
+        for (const RunPart& part : account.add(block)) {
             if (part.usable) append(log.trace, view_of(block, 0, part.first, part.count), part.begins_run);
         }
         log.held_bad_values += block.held_bad_values;

@@ -35,7 +35,7 @@ RowCut::RowCut(const ReadOptions& options, const Layout& whole)
     }
 }
 
-bool RowCut::take(std::optional<double> time) {
+bool RowCut::keeps(std::optional<double> time) {
     if (rate_hz_) time = static_cast<double>(rows_) / *rate_hz_;
     ++rows_;
     if (time) {
@@ -108,9 +108,9 @@ std::string range_in_words(const RowsOutside& outside) {
     return words;
 }
 
-void KeptNumbers::take(bool keeps) {
+void KeptNumbers::add(bool kept) {
     ++seen_;
-    if (!keeps) return;
+    if (!kept) return;
     const std::size_t left_out = seen_ - ++kept_;
     const std::size_t before = holes_.empty() ? 0 : holes_.back().left_out;
     if (left_out == before) return;

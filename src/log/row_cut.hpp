@@ -25,7 +25,7 @@ class RowCut {
     /// Whether the next row is inside. One whose time cannot be read goes with the row before. `time`: as in
     /// the file, less the origin; not asked where a rate was stated, for then rows tell the time. Throws
     /// UsageError at the first row where no range can hold.
-    bool take(std::optional<double> time);
+    bool keeps(std::optional<double> time);
     [[nodiscard]] bool inside() const { return place_ == Place::inside; }
     [[nodiscard]] std::size_t kept() const { return kept_; }
     /// At the end of the log, or as soon as kept() is 2. Throws UsageError where fewer are kept.
@@ -61,7 +61,7 @@ class KeptNumbers {
   public:
     explicit KeptNumbers(std::size_t head = 0) : seen_(head), kept_(head) {}
     /// The next line or record.
-    void take(bool keeps);
+    void add(bool kept);
     /// Both count from 1.
     [[nodiscard]] std::size_t in_file(std::size_t number) const;
 

@@ -41,7 +41,7 @@ Watched watch(const std::vector<double>& times, const std::function<std::size_t(
     Watched watched;
     for (std::size_t at = 0; at < times.size();) {
         const std::size_t count = std::min(block(), times.size() - at);
-        for (const RunPart& part : clock.take(std::span(times).subspan(at, count))) {
+        for (const RunPart& part : clock.add(std::span(times).subspan(at, count))) {
             if (part.begins_run) watched.run_starts.push_back(at + part.first);
             watched.usable.insert(watched.usable.end(), part.count, part.usable);
         }
@@ -218,5 +218,5 @@ TEST_CASE("time that runs backward is an error that names the row", "[log]") {
     std::vector<double> times = even(1000, 1000.0);
     times[700] = 0.1;
     Clock clock("log.csv", std::span(times).first(500), std::nullopt);
-    CHECK_THROWS_WITH(clock.take(times), Contains("log.csv: data row 701") && Contains("--sample-rate"));
+    CHECK_THROWS_WITH(clock.add(times), Contains("log.csv: data row 701") && Contains("--sample-rate"));
 }

@@ -39,20 +39,20 @@ TEST_CASE("held rows and the longest hold are the same however a log is cut into
         rows.torque_nm[k] = rows.torque_nm[300];
     }
     HeldCounter whole;
-    whole.take(rows.view(0, 500), true);
+    whole.count(rows.view(0, 500), true);
     CHECK(whole.held().longest == 5);  // rows 300 to 304 repeat row 299
     for (std::size_t i = 0; i < 50; ++i) {
         HeldCounter held;
         for (std::size_t first = 0; first < 500;) {
             const std::size_t end = std::min<std::size_t>(500, first + 1 + engine() % 40);
-            held.take(rows.view(first, end - first), first == 0);
+            held.count(rows.view(first, end - first), first == 0);
             first = end;
         }
         CHECK(held.held().count == whole.held().count);
         CHECK(held.held().longest == whole.held().longest);
     }
     HeldCounter plain;
-    plain.take(every_third(500).view(0, 500), true);
+    plain.count(every_third(500).view(0, 500), true);
     CHECK(plain.held().count == 499 / 3);
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("a torque that is held at a commanded speed counts, with and without a
             if (position) rows.position_deg.push_back(k % 2 == 1 ? rows.position_deg.back() : now);
         }
         HeldCounter held;
-        held.take(rows.view(0, 4000), true);
+        held.count(rows.view(0, 4000), true);
         CHECK(held.held().count == 2000);
         CHECK(held.held().longest == 1);
     }
@@ -77,7 +77,7 @@ TEST_CASE("a torque that is held at a commanded speed counts, with and without a
 TEST_CASE("the row after a gap holds nothing", "[log]") {
     Rows rows = every_third(30);
     HeldCounter held;
-    held.take(rows.view(0, 15), true);
-    held.take(rows.view(15, 15), true);  // row 15 repeats row 14
+    held.count(rows.view(0, 15), true);
+    held.count(rows.view(15, 15), true);  // row 15 repeats row 14
     CHECK(held.held().count == 8);
 }

@@ -126,7 +126,7 @@ TEST_CASE("a time column that is another inside the range is refused with the wa
 
 TEST_CASE("numbers of what was kept are told as they are in the file", "[log]") {
     KeptNumbers numbers(2);
-    for (const bool keeps : {false, false, true, true, false, true}) numbers.take(keeps);
+    for (const bool keeps : {false, false, true, true, false, true}) numbers.add(keeps);
     const std::vector<std::size_t> expected = {1, 2, 5, 6, 8, 9};
     for (std::size_t k = 0; k < expected.size(); ++k) CHECK(numbers.in_file(k + 1) == expected[k]);
 }

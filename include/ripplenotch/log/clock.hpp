@@ -74,7 +74,7 @@ class Clock {
 
     /// The next times, from the first row on, and how they belong together; valid until the next call.
     /// Throws DataError when time runs backward.
-    std::span<const RunPart> take(std::span<const double> time_s);
+    std::span<const RunPart> add(std::span<const double> time_s);
     [[nodiscard]] ClockFacts facts() const;
     [[nodiscard]] Hertz nominal_rate() const { return facts_.nominal_rate; }
     [[nodiscard]] double gap_s() const { return limit_s_; }  ///< a longer step is a gap
@@ -103,8 +103,8 @@ class Clock {
     void sum_up_window();
     std::size_t usual_rows(std::span<const double> time_s) const;
     void add_rows(std::span<const double> time_s);
-    void take_odd(double time_s, std::size_t at);
-    void take_long(double time_s, std::size_t at);
+    void add_odd(double time_s, std::size_t at);
+    void add_long(double time_s, std::size_t at);
     void note(const Gap& gap);
     void note_pending_gap();
     void end_slow_spell();

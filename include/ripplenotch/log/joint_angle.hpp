@@ -55,7 +55,7 @@ class JointAngle {
     /// The opening has been seen.
     void decide();
     /// Consecutive rows; `begins_run`: the row before is no past of theirs.
-    void take(const TraceView& rows, bool begins_run);
+    void follow(const TraceView& rows, bool begins_run);
     /// Rows that are not used.
     void skip(std::size_t rows) {
         rows_ += rows;

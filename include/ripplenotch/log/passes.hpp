@@ -26,7 +26,7 @@ struct LogFacts {
 class LogPasses {
   public:
     /// Gets consecutive rows, of the joint that options choose; a run starts at their first or nowhere.
-    using Take = std::function<void(const TraceView&)>;
+    using Use = std::function<void(const TraceView&)>;
 
     /// A pipe is kept in a temporary file (Spool). Throws what open_log throws.
     LogPasses(const std::string& path, const ReadOptions& options);
@@ -36,17 +36,17 @@ class LogPasses {
 
     /// Once, first: rows without a sample rate, their position as it stands in the file. Throws DataError as
     /// read_log does.
-    void first(const Take& take);
+    void first(const Use& use);
     [[nodiscard]] const LogFacts& facts() const;
 
     /// Once, second: rows with a sample rate, and a continuous position if it is the joint's. Then all is
     /// known that read_log would say.
-    void second(const Take& take);
+    void second(const Use& use);
     [[nodiscard]] const Layout& layout() const;        ///< as Log::layout
     [[nodiscard]] const Recording& recording() const;  ///< as Log::recording
 
     /// Any number of times: as second.
-    void again(const Take& take);
+    void again(const Use& use);
 
   private:
     class Work;

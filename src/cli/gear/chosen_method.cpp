@@ -44,7 +44,7 @@ void fill_gear(Spec& spec, const Method& method, const GearAccount& gear) {
     fill(spec, method, "phases", gear.phase_deg);
 }
 
-void take_table(Spec& spec, const Method& method, const std::optional<std::string>& table) {
+void use_table(Spec& spec, const Method& method, const std::optional<std::string>& table) {
     if (!table) return;
     if (!method.needs_table) {
         raise<UsageError>("--table is for methods that switch between bands; method {} has no table",
@@ -93,7 +93,7 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
                         const GearChoice& choice) {
     Spec spec = parse_spec(spec_text);
     const Method& method = find_method(spec.name);
-    take_table(spec, method, table);
+    use_table(spec, method, table);
     MethodGear stated = stated_gear(spec, method, choice);
     std::shared_ptr<const CandidateTable> loaded;
     if (method.needs_table && given(spec, "table")) {

@@ -17,7 +17,7 @@ class GuessedSpectrum {
   public:
     explicit GuessedSpectrum(const SpectrumOptions& options) : options_(options) {}
 
-    void take(const TraceView& rows) {
+    void add(const TraceView& rows) {
         if (length_ == 0) length_ = begin(rows);
         if (stream_) stream_->add(rows.time_s, rows.torque_nm);
     }
@@ -48,7 +48,7 @@ class GuessedSpectrum {
 StretchSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options,
                                   const std::function<void()>& tell) {
     GuessedSpectrum guess(options);
-    log.first([&](const TraceView& rows) { guess.take(rows); });
+    log.first([&](const TraceView& rows) { guess.add(rows); });
     const LogFacts& facts = log.facts();
     const std::size_t length = piece_length(facts.rows, facts.sample_rate, options);
     const bool enough = length >= fewest_spectrum_samples;

@@ -65,7 +65,7 @@ void check(const Request& request) {
     if (request.log.joint == "all") raise<UsageError>("--joint all: track looks at one joint; name it");
 }
 
-void take_gear(Request& request, Provenance& provenance) {
+void read_gear(Request& request, Provenance& provenance) {
     const GearChoice choice(request.gear_options);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
     request.gear = choice.of();
@@ -195,7 +195,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     check(request);
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
-    take_gear(request, provenance);
+    read_gear(request, provenance);
     const Log log = read_log(request.path, read_options(request.log, request.gear));
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);

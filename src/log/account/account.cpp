@@ -35,7 +35,7 @@ Account::Account(const Layout& layout, const Opening& opening, double gap_steps)
     Clock clock = clock_;
     for (std::size_t b = 0; b < opening.blocks.size(); ++b) {
         const RowBlock& block = opening.blocks[b];
-        for (const RunPart& part : clock.take(std::span(block.time_s).first(opening.counts[b]))) {
+        for (const RunPart& part : clock.add(std::span(block.time_s).first(opening.counts[b]))) {
             for (std::size_t j = 0; j < joints_.size() && part.usable && judged_; ++j)
                 joints_[j].angle.look(view_of(block, j, part.first, part.count), part.begins_run);
         }
@@ -43,14 +43,14 @@ Account::Account(const Layout& layout, const Opening& opening, double gap_steps)
     for (Joint& joint : joints_) joint.angle.decide();
 }
 
-std::span<const RunPart> Account::take(const RowBlock& block) {
-    const std::span<const RunPart> parts = clock_.take(block.time_s);
+std::span<const RunPart> Account::add(const RowBlock& block) {
+    const std::span<const RunPart> parts = clock_.add(block.time_s);
     for (const RunPart& part : parts) {
         for (std::size_t j = 0; j < joints_.size(); ++j) {
             const TraceView rows = view_of(block, j, part.first, part.count);
-            if (part.usable) joints_[j].held.take(rows, part.begins_run);
+            if (part.usable) joints_[j].held.count(rows, part.begins_run);
             if (part.usable && judged_)
-                joints_[j].angle.take(rows, part.begins_run);
+                joints_[j].angle.follow(rows, part.begins_run);
             else
                 joints_[j].angle.skip(part.count);
         }

@@ -25,7 +25,7 @@ class Account {
 
     /// The next rows, from the first of the log on, as the clock parts them; valid until the next call.
     /// Throws DataError when time runs backward.
-    std::span<const RunPart> take(const RowBlock& block);
+    std::span<const RunPart> add(const RowBlock& block);
 
     [[nodiscard]] const Clock& clock() const { return clock_; }
     /// Of the rows so far; by joint, as Layout::all_chosen().

@@ -20,25 +20,25 @@ HeldCounter::Row HeldCounter::row_of(const TraceView& rows, std::size_t k) {
     return {rows.velocity_deg_s[k], rows.torque_nm[k], rows.has_position() ? rows.position_deg[k] : 0.0};
 }
 
-void HeldCounter::take(const TraceView& rows, bool begins_run) {
+void HeldCounter::count(const TraceView& rows, bool begins_run) {
     if (rows.size() == 0) return;
     has_position_ = rows.has_position();
     if (any_ && !begins_run) {
         const Row now = row_of(rows, 0);
         const std::array velocity = {last_.velocity, now.velocity}, torque = {last_.torque, now.torque},
                          position = {last_.position, now.position};
-        take_pairs({velocity.data(), torque.data(), has_position_ ? position.data() : nullptr}, 1);
+        count_pairs({velocity.data(), torque.data(), has_position_ ? position.data() : nullptr}, 1);
     } else {
         run_ = {};
     }
-    take_pairs({rows.velocity_deg_s.data(), rows.torque_nm.data(),
-                has_position_ ? rows.position_deg.data() : nullptr},
-               rows.size() - 1);
+    count_pairs({rows.velocity_deg_s.data(), rows.torque_nm.data(),
+                 has_position_ ? rows.position_deg.data() : nullptr},
+                rows.size() - 1);
     last_ = row_of(rows, rows.size() - 1);
     any_ = true;
 }
 
-void HeldCounter::take_pairs(const RowChannels& rows, std::size_t pairs) {
+void HeldCounter::count_pairs(const RowChannels& rows, std::size_t pairs) {
     const RepeatCounts counts = count_repeats(rows, pairs, moving_deg_s);
     counts_ += counts;
     if (counts.torque > 0)

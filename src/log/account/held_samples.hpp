@@ -20,7 +20,7 @@ namespace ripplenotch {
 class HeldCounter {
   public:
     /// Consecutive rows; `begins_run`: the row before is no past of theirs.
-    void take(const TraceView& rows, bool begins_run);
+    void count(const TraceView& rows, bool begins_run);
     [[nodiscard]] HeldSamples held() const;
 
   private:
@@ -30,7 +30,7 @@ class HeldCounter {
     enum Way { torque_alone, with_velocity, with_position, with_both };
 
     static Row row_of(const TraceView& rows, std::size_t k);
-    void take_pairs(const RowChannels& rows, std::size_t pairs);
+    void count_pairs(const RowChannels& rows, std::size_t pairs);
     void measure_runs(const RowChannels& rows, std::size_t pairs);
     void note_changes(const RowChannels& rows, std::size_t pairs);
     [[nodiscard]] Way way() const;

@@ -124,7 +124,7 @@ void JointAngle::decide() {
     piece_ = {};
 }
 
-void JointAngle::take(const TraceView& rows, bool begins_run) {
+void JointAngle::follow(const TraceView& rows, bool begins_run) {
     add(rows, begins_run);
     rows_ += rows.size();
 }

@@ -31,7 +31,7 @@ void WrapWatch::look_at(double step, Turn& turn) const {
     }
 }
 
-void WrapWatch::take(std::span<const double> position_deg) {
+void WrapWatch::follow(std::span<const double> position_deg) {
     constexpr double harmless = 0.25 * 2.0 * std::numbers::pi;  // no turn is ruled out by less, none begun
     for (const double angle : position_deg) {
         const double step = count_++ > 0 ? angle - before_ : 0.0;
@@ -73,7 +73,7 @@ std::string wrap_in_words(double period_deg) {
 
 std::optional<double> wrap_period(std::span<const double> position_deg) {
     WrapWatch watch;
-    watch.take(position_deg);
+    watch.follow(position_deg);
     return watch.period();
 }
 

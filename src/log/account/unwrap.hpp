@@ -35,7 +35,7 @@ class Unwrapper {
 /// when the unit is mistaken (2 pi, 360 * 180 / pi). Says also what they are once made continuous.
 class WrapWatch {
   public:
-    void take(std::span<const double> position_deg);
+    void follow(std::span<const double> position_deg);
 
     /// Empty when nothing jumps, or when jumps are no full turn.
     [[nodiscard]] std::optional<double> period() const;

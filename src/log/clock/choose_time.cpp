@@ -150,7 +150,7 @@ void refuse_clocks(const ColumnFacts& facts, const Clocks& clocks, const ReadOpt
 }
 
 // A file without a clock whose head says how long a row is.
-bool take_step_of_head(const ColumnFacts& facts, const Clocks& clocks, Layout& layout) {
+bool use_step_of_head(const ColumnFacts& facts, const Clocks& clocks, Layout& layout) {
     const auto is_empty = [&](std::size_t column) { return finite_values(facts, column).empty(); };
     if (!facts.row_step_s || !std::all_of(clocks.broken.begin(), clocks.broken.end(), is_empty)) return false;
     layout.stated_rate = Hertz(1.0 / *facts.row_step_s);
@@ -223,7 +223,7 @@ void choose_time(const ColumnFacts& facts, const Forced& forced, const ReadOptio
         layout.chosen.time = texts[0];
         return;
     }
-    if (take_step_of_head(facts, found, layout)) return;
+    if (use_step_of_head(facts, found, layout)) return;
     // One column called time that is no clock: the reader's own message names the row where it fails.
     if (counters.empty() && broken.size() == 1) {
         layout.chosen.time = broken[0];

@@ -59,9 +59,9 @@ void Clock::open(std::span<const double> opening_s) {
     advances_ = first.step_s > 0.0;
     if (!advances_) return;
     Clock scout(source_, gap_steps_, rate_of(first), first.nominal);
-    scout.take(opening_s);
+    scout.add(opening_s);
     std::size_t begin = 0, most = 0;
-    const auto take_part = [&](std::size_t end) {
+    const auto end_part = [&](std::size_t end) {
         const RateEstimate part = estimate_rate(opening_s.subspan(begin, end - begin), gap_steps_);
         if (begin == 0) first = part;
         if (end - begin > most) {
@@ -71,8 +71,8 @@ void Clock::open(std::span<const double> opening_s) {
         }
         begin = end;
     };
-    for (const RateChange& change : scout.facts_.rate_changes) take_part(change.row + 1);
-    take_part(opening_s.size());
+    for (const RateChange& change : scout.facts_.rate_changes) end_part(change.row + 1);
+    end_part(opening_s.size());
     run_at(rate_of(first));
     usable_ = std::abs(first.nominal / facts_.nominal_rate - 1.0) <= rate_refused;
 }
@@ -114,7 +114,7 @@ void Clock::begin_run(double time_s, std::size_t at) {
     restart_ = false;
 }
 
-std::span<const RunPart> Clock::take(std::span<const double> time_s) {
+std::span<const RunPart> Clock::add(std::span<const double> time_s) {
     parts_.assign(1, {0, 0, false, usable_ && slow_steps_.empty()});
     if (!time_s.empty()) {
         if (facts_.rows == 0) facts_.first_s = time_s.front();
@@ -137,7 +137,7 @@ std::span<const RunPart> Clock::take(std::span<const double> time_s) {
             add_rows(time_s.subspan(k, count));
             k += count;
         } else {
-            take_odd(time_s[k], k);
+            add_odd(time_s[k], k);
             last_s_ = time_s[k++];
         }
         if (window_.time_s.size() > window_steps) end_window();
@@ -178,7 +178,7 @@ void Clock::sum_up_window() {
     steps_ += steps.size() - 1;
 }
 
-void Clock::take_odd(double time_s, std::size_t at) {
+void Clock::add_odd(double time_s, std::size_t at) {
     const double step = time_s - *last_s_;
     if (step < 0.0) {
         raise<DataError>(
@@ -187,7 +187,7 @@ void Clock::take_odd(double time_s, std::size_t at) {
             source_, facts_.rows + at + 1, shortest(*last_s_), shortest(time_s));
     }
     if (step > 0.0) {
-        take_long(time_s, at);
+        add_long(time_s, at);
         return;
     }
     ++facts_.repeated_times;
@@ -196,7 +196,7 @@ void Clock::take_odd(double time_s, std::size_t at) {
 
 // The second long step of a length tells that the first was no gap, or that gaps come in rows. Either way
 // there is no filter for such rows; what they were is known some windows later.
-void Clock::take_long(double time_s, std::size_t at) {
+void Clock::add_long(double time_s, std::size_t at) {
     const double step = time_s - *last_s_;
     const Gap here{facts_.rows + at - 1, *last_s_, time_s};
     shortest_s_ = std::min(shortest_s_, step);

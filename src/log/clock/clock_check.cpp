@@ -191,7 +191,7 @@ void MotionPieces::end_piece() {
     in_piece_ = 0;
 }
 
-void MotionPieces::take(const Row& row) {
+void MotionPieces::add(const Row& row) {
     const double step = row.time_s - before_->time_s;
     piece_.position_change += row.position_deg - before_->position_deg;
     piece_.velocity_change += row.velocity_deg_s - before_->velocity_deg_s;
@@ -199,12 +199,12 @@ void MotionPieces::take(const Row& row) {
     if (++in_piece_ == rows_in_piece_) end_piece();
 }
 
-void MotionPieces::take(const TraceView& rows) {
+void MotionPieces::add(const TraceView& rows) {
     if (!rows.has_position()) return;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const Row row{rows.time_s[i], rows.velocity_deg_s[i], rows.position_deg[i]};
         if (before_ && rows.starts_run(i)) end_piece();
-        if (before_ && !rows.starts_run(i)) take(row);
+        if (before_ && !rows.starts_run(i)) add(row);
         before_ = row;
     }
 }

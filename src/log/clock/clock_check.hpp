@@ -25,7 +25,7 @@ class MotionPieces {
     explicit MotionPieces(std::size_t rows);
 
     /// Rows with a continuous position, one after another; where a run starts, a piece ends.
-    void take(const TraceView& rows);
+    void add(const TraceView& rows);
     [[nodiscard]] ClockCheck check(Hertz sample_rate);
 
     // The change of velocity is there because a filtered velocity lags: position = integrated velocity + lag
@@ -38,7 +38,7 @@ class MotionPieces {
     struct Row {
         double time_s, velocity_deg_s, position_deg;
     };
-    void take(const Row& row);
+    void add(const Row& row);
     void end_piece();
 
     std::size_t rows_, rows_in_piece_;

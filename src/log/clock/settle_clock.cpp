@@ -76,7 +76,7 @@ const ClockUnit* unit_of(const Opening& opening, std::string& reason) {
     return seconds ? &units[0] : nullptr;
 }
 
-void take_origin(const ColumnFacts& facts, const Opening& opening, Layout& layout) {
+void set_origin(const ColumnFacts& facts, const Opening& opening, Layout& layout) {
     if (std::abs(opening.first) < long_ago || std::abs(opening.first) > 9.2e18) return;
     const std::size_t column = *layout.chosen.time;
     const std::int64_t exact = column < facts.first_counts.size() ? facts.first_counts[column] : 0;
@@ -90,7 +90,7 @@ void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout)
     Column& column = layout.columns[*layout.chosen.time];
     const Opening opening = opening_of(facts, *layout.chosen.time);
     layout.time_as_text = !facts.clock_texts.empty() && facts.clock_texts[*layout.chosen.time];
-    take_origin(facts, opening, layout);
+    set_origin(facts, opening, layout);
     const std::string label = column_label(facts.names, *layout.chosen.time);
     if (layout.time_as_text || layout.time_fraction) {
         column.unit = "s";

@@ -13,7 +13,7 @@ namespace {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Takes digits off the front of `text`: at least `fewest`, at most `most` of them.
-std::optional<int> take_number(std::string_view& text, std::size_t fewest, std::size_t most) {
+std::optional<int> read_number(std::string_view& text, std::size_t fewest, std::size_t most) {
     std::size_t length = 0;
     while (length < text.size() && length < most && is_digit(text[length])) ++length;
     if (length < fewest) return std::nullopt;
@@ -23,7 +23,7 @@ std::optional<int> take_number(std::string_view& text, std::size_t fewest, std::
     return value;
 }
 
-bool take(std::string_view& text, std::string_view one_of) {
+bool skip(std::string_view& text, std::string_view one_of) {
     if (text.empty() || one_of.find(text.front()) == std::string_view::npos) return false;
     text.remove_prefix(1);
     return true;
@@ -37,27 +37,27 @@ std::int64_t days_since_1970(int year, int month, int day) {
 }
 
 /// "2024-05-01T" or "2024/05/01 ", and "2024:05:01:" as some loggers write it.
-std::optional<std::int64_t> take_date(std::string_view& text) {
+std::optional<std::int64_t> read_date(std::string_view& text) {
     std::string_view rest = text;
-    const auto year = take_number(rest, 4, 4);
-    if (!year || !take(rest, "-/:")) return std::nullopt;
-    const auto month = take_number(rest, 1, 2);
-    if (!month || !take(rest, "-/:")) return std::nullopt;
-    const auto day = take_number(rest, 1, 2);
-    if (!day || !take(rest, "T :_")) return std::nullopt;
+    const auto year = read_number(rest, 4, 4);
+    if (!year || !skip(rest, "-/:")) return std::nullopt;
+    const auto month = read_number(rest, 1, 2);
+    if (!month || !skip(rest, "-/:")) return std::nullopt;
+    const auto day = read_number(rest, 1, 2);
+    if (!day || !skip(rest, "T :_")) return std::nullopt;
     if (*month < 1 || *month > 12 || *day < 1 || *day > 31) return std::nullopt;
     text = rest;
     return days_since_1970(*year, *month, *day);
 }
 
 /// "Z", "+02:00", "-0700"; in seconds.
-std::optional<std::int64_t> take_zone(std::string_view& text) {
+std::optional<std::int64_t> read_zone(std::string_view& text) {
     if (text == "Z" || text == "UTC") return 0;
     const bool west = text.front() == '-';
-    if (!take(text, "+-")) return std::nullopt;
-    const auto hours = take_number(text, 2, 2);
-    take(text, ":");
-    const auto minutes = text.empty() ? std::optional<int>(0) : take_number(text, 2, 2);
+    if (!skip(text, "+-")) return std::nullopt;
+    const auto hours = read_number(text, 2, 2);
+    skip(text, ":");
+    const auto minutes = text.empty() ? std::optional<int>(0) : read_number(text, 2, 2);
     if (!hours || !minutes || !text.empty()) return std::nullopt;
     const std::int64_t offset = 3600 * *hours + 60 * *minutes;
     return west ? -offset : offset;
@@ -66,27 +66,27 @@ std::optional<std::int64_t> take_zone(std::string_view& text) {
 }  // namespace
 
 std::optional<ClockTime> clock_text(std::string_view text) {
-    const auto days = take_date(text);
-    const auto hours = take_number(text, 1, 2);
-    if (!hours || !take(text, ":")) return std::nullopt;
-    const auto minutes = take_number(text, 2, 2);
-    if (!minutes || !take(text, ":")) return std::nullopt;
-    const auto seconds = take_number(text, 2, 2);
+    const auto days = read_date(text);
+    const auto hours = read_number(text, 1, 2);
+    if (!hours || !skip(text, ":")) return std::nullopt;
+    const auto minutes = read_number(text, 2, 2);
+    if (!minutes || !skip(text, ":")) return std::nullopt;
+    const auto seconds = read_number(text, 2, 2);
     if (!seconds || *hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
     ClockTime time{
         days.value_or(0) * 86400 + *hours * 3600 + *minutes * 60 + *seconds, 0.0, days.has_value(), {}};
     // ISO 8601 allows the comma; LabVIEW puts a colon before the point.
-    take(text, ":");
-    if (take(text, ".,")) {
+    skip(text, ":");
+    if (skip(text, ".,")) {
         const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
         if (digits == 0) return std::nullopt;
         time.fraction_s = parse_number("0." + std::string(text.substr(0, digits))).value_or(0.0);
         text.remove_prefix(digits);
     }
-    while (take(text, " ")) {
+    while (skip(text, " ")) {
     }
     if (text.empty()) return time;
-    time.zone_s = take_zone(text);
+    time.zone_s = read_zone(text);
     if (!time.zone_s || (!days && *time.zone_s != 0)) return std::nullopt;
     time.whole_s -= *time.zone_s;
     return time;

@@ -33,7 +33,7 @@ class Inference {
         if (readings.empty()) return;  // --side says what cannot be
         if (!fits) readings.insert(readings.end(), fitting.begin(), fitting.end());
         best_ = readings.front();
-        take_best();
+        settle_on_best();
         refuse_motor_units();
         const std::vector<OtherReading> possible = others(readings, open_margin);
         if (!stated() || best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor ||
@@ -92,10 +92,10 @@ class Inference {
                (!subject_->position || subject_->position->unit_is_stated);
     }
 
-    void take_best() {
+    void settle_on_best() {
         for (const MotionColumns& joint : joints_) {
-            if (joint.velocity) take(*joint.velocity, best_.velocity);
-            if (joint.position) take(*joint.position, best_.position);
+            if (joint.velocity) settle(*joint.velocity, best_.velocity);
+            if (joint.position) settle(*joint.position, best_.position);
         }
         const bool motor = best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor;
         if (motor) layout_.motor_ratio = best_.ratio;
@@ -131,7 +131,7 @@ class Inference {
             layout_.source, label(*column));
     }
 
-    void take(const MotionColumn& known, const ReadColumn& read) {
+    void settle(const MotionColumn& known, const ReadColumn& read) {
         Column& column = layout_.columns[known.column];
         column.side = read.side;
         if (!known.unit_is_stated) {

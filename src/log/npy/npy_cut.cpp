@@ -16,7 +16,7 @@ class NpyCut : public ByteSource {
   public:
     NpyCut(NpyReader& whole, const ReadOptions& options)
         : ByteSource(Name{whole.layout().source}), cut_(options, whole.layout()) {
-        take_rows(whole);
+        cut_rows(whole);
         cut_.require_rows();
         const NpyHeader& header = whole.header();
         const std::string shape = header.structured
@@ -38,7 +38,7 @@ class NpyCut : public ByteSource {
     [[nodiscard]] const RowCut& rows() const { return cut_; }
 
   private:
-    void take_rows(NpyReader& whole) {
+    void cut_rows(NpyReader& whole) {
         const std::size_t size = whole.header().record_size;
         const bool timed = whole.layout().chosen.time.has_value();
         RowBlock block;
@@ -47,8 +47,8 @@ class NpyCut : public ByteSource {
             for (std::size_t at = 0; at < bytes.size(); at += size) {
                 std::optional<double> time;
                 if (timed) time = whole.time_of(bytes.data() + at);
-                const bool stays = cut_.take(time && std::isfinite(*time) ? time : std::nullopt);
-                numbers_.take(stays);
+                const bool stays = cut_.keeps(time && std::isfinite(*time) ? time : std::nullopt);
+                numbers_.add(stays);
                 if (stays) rows_.put(bytes.substr(at, size));
             }
         }

@@ -31,7 +31,7 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes
     const std::size_t header_size = npy_header_size(first_bytes);
     if (header_size <= largest_header) read_up_to(first_bytes, header_size);
     header_ = parse_npy_header(first_bytes, source_->name());
-    if (header_.by_columns || header_.transposed) take_whole(first_bytes);
+    if (header_.by_columns || header_.transposed) read_whole(first_bytes);
     read_up_to(first_bytes, header_.data_offset + std::min(sample_size, header_.rows * header_.record_size));
     head_ = first_bytes.substr(0, header_.data_offset);
     carry_ = first_bytes.substr(header_.data_offset);
@@ -152,7 +152,7 @@ bool NpyReader::fetch(RowBlock& block) {
 }
 
 void NpyReader::parse(RowBlock& block) const {
-    if (take_columns(block))
+    if (read_columns(block))
         block.parsed_bytes = block.bytes.size();
     else
         block.drop_rows();
@@ -167,7 +167,7 @@ void NpyReader::accept(RowBlock& block) {
     block.drop_rows();
     std::size_t at = 0;
     try {
-        for (; at < block.bytes.size(); at += header_.record_size) take_row(block, at);
+        for (; at < block.bytes.size(); at += header_.record_size) read_row(block, at);
     } catch (const Error&) {
         block.failure = std::current_exception();
         block.bytes.resize(at);
@@ -175,12 +175,12 @@ void NpyReader::accept(RowBlock& block) {
 }
 
 // False where a number is not finite or time runs backward: the careful way has the place and the words.
-bool NpyReader::take_columns(RowBlock& block) const {
+bool NpyReader::read_columns(RowBlock& block) const {
     const std::size_t rows = block.bytes.size() / header_.record_size;
     for (const WantedColumn& wanted : wanted_) {
         std::vector<double>& numbers = numbers_of(block, wanted.slot);
         numbers.resize(rows);
-        if (!take_column(block.bytes.data(), wanted, numbers)) return false;
+        if (!read_column(block.bytes.data(), wanted, numbers)) return false;
         if (wanted.slot == time_slot && !std::is_sorted(numbers.begin(), numbers.end())) return false;
         const double factor = factors_[wanted.slot];
         if (factor != 1.0)
@@ -211,7 +211,7 @@ void NpyReader::count_rows(RowBlock& block) {
     rows_ += count;
 }
 
-double NpyReader::take_value(RowBlock& block, const char* record, const WantedColumn& wanted) {
+double NpyReader::read_value(RowBlock& block, const char* record, const WantedColumn& wanted) {
     const double value = value_at(record, wanted);
     const bool time = wanted.slot == time_slot;
     if (time && value < before_[time_slot]) {
@@ -233,10 +233,10 @@ double NpyReader::take_value(RowBlock& block, const char* record, const WantedCo
                              : "remove the row"));
 }
 
-void NpyReader::take_row(RowBlock& block, std::size_t offset) {
+void NpyReader::read_row(RowBlock& block, std::size_t offset) {
     std::vector<double> row = before_;
     for (const WantedColumn& wanted : wanted_)
-        row[wanted.slot] = take_value(block, block.bytes.data() + offset, wanted);
+        row[wanted.slot] = read_value(block, block.bytes.data() + offset, wanted);
     before_ = row;
     for (std::size_t slot = 0; slot < row.size(); ++slot) row[slot] *= factors_[slot];
     if (!layout_.chosen.time && layout_.stated_rate)

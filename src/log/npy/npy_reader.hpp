@@ -31,20 +31,20 @@ class NpyReader : public LogReader {
     [[nodiscard]] double time_of(const char* record) const { return time_at(record, layout_); }
 
   private:
-    void take_whole(std::string& first_bytes);
+    void read_whole(std::string& first_bytes);
     void decide(const ReadOptions& options);
     [[nodiscard]] double time_at(const char* record, const Layout& layout) const;
     [[nodiscard]] double value_at(const char* record, const WantedColumn& wanted) const;
     [[nodiscard]] MotionSample motion_sample(const MotionPlaces& places) const;
-    bool take_column(const char* records, const WantedColumn& wanted, std::span<double> numbers) const;
+    bool read_column(const char* records, const WantedColumn& wanted, std::span<double> numbers) const;
     void read_up_to(std::string& bytes, std::size_t size);
     std::size_t read_behind(std::string& bytes, std::size_t have, std::size_t size);
     void plan_columns(const std::vector<std::string>& names);
-    bool take_columns(RowBlock& block) const;
+    bool read_columns(RowBlock& block) const;
     [[nodiscard]] bool continues(const RowBlock& block) const;
     void count_rows(RowBlock& block);
-    void take_row(RowBlock& block, std::size_t offset);
-    double take_value(RowBlock& block, const char* record, const WantedColumn& wanted);
+    void read_row(RowBlock& block, std::size_t offset);
+    double read_value(RowBlock& block, const char* record, const WantedColumn& wanted);
     [[noreturn]] void complain(std::size_t column, const std::string& sentence) const;
 
     std::unique_ptr<ByteSource> source_;

@@ -12,7 +12,7 @@
 namespace ripplenotch {
 
 // An array that is not stored row by row cannot be read a row at a time.
-void NpyReader::take_whole(std::string& first_bytes) {
+void NpyReader::read_whole(std::string& first_bytes) {
     constexpr std::size_t piece = std::size_t{1} << 20;
     for (std::size_t have = first_bytes.size(), got = 1; got > 0; have += got) {
         first_bytes.resize(have + piece);
@@ -54,7 +54,7 @@ MotionSample NpyReader::motion_sample(const MotionPlaces& places) const {
     return sample;
 }
 
-bool NpyReader::take_column(const char* records, const WantedColumn& wanted,
+bool NpyReader::read_column(const char* records, const WantedColumn& wanted,
                             std::span<double> numbers) const {
     const bool stamp = wanted.slot == time_slot && (layout_.time_origin != 0 || layout_.time_fraction);
     if (!stamp) return load_column(records, header_.record_size, header_.fields[wanted.column], numbers);

@@ -22,7 +22,7 @@ class TextCut : public ByteSource {
           row_(whole_->dialect(), time_columns(whole_->layout()),
                stamp_rule(whole_->layout(), whole_->dialect().rules.decimal_mark)),
           kept_(whole_->head()) {
-        while (cut_.kept() < 2 && take_lines()) {
+        while (cut_.kept() < 2 && cut_lines()) {
         }
         cut_.require_rows();
     }
@@ -31,11 +31,11 @@ class TextCut : public ByteSource {
         while (given_ == kept_.size()) {
             kept_.clear();
             given_ = 0;
-            if (!take_lines()) return 0;
+            if (!cut_lines()) return 0;
         }
-        const std::size_t taken = kept_.copy(into, size, given_);
-        given_ += taken;
-        return taken;
+        const std::size_t given = kept_.copy(into, size, given_);
+        given_ += given;
+        return given;
     }
     [[nodiscard]] std::size_t number_in_file(std::size_t number) const override {
         return numbers_.in_file(number);
@@ -44,7 +44,7 @@ class TextCut : public ByteSource {
 
   private:
     /// The next lines of the log, those that stay to kept_; false when there are none left.
-    bool take_lines() {
+    bool cut_lines() {
         if (!whole_->fetch(block_)) return false;
         const std::string_view bytes = block_.bytes;
         const char line_end = whole_->dialect().line_end;
@@ -55,7 +55,7 @@ class TextCut : public ByteSource {
             const bool was_inside = cut_.inside(),
                        whole_line = !std::exchange(unended_, bytes[end - 1] != line_end);
             const bool stays =
-                whole_line ? take_line(bytes.substr(begin, end - begin - (unended_ ? 0 : 1))) : was_inside;
+                whole_line ? cut_line(bytes.substr(begin, end - begin - (unended_ ? 0 : 1))) : was_inside;
             if (!stays) {
                 kept_.append(bytes, staying, begin - staying);
                 staying = end;
@@ -66,11 +66,11 @@ class TextCut : public ByteSource {
         return true;
     }
 
-    bool take_line(std::string_view line) {
+    bool cut_line(std::string_view line) {
         line = line_content(line);
         bool stays = cut_.inside();
-        if (is_row(line)) stays = cut_.take(time_);
-        numbers_.take(stays);
+        if (is_row(line)) stays = cut_.keeps(time_);
+        numbers_.add(stays);
         return stays;
     }
 
