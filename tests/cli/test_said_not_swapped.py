@@ -35,6 +35,7 @@ class NamesOfJson(Told):
                 json.loads(expected)
 
     def test_what_cannot_be_json_is_refused_under_such_a_name(self):
+        self.refused(["filter", MOVE, *LOW, "-o", "x.csv", "--metrics", "x.npy"], "metrics", ".json")
         self.refused(["filter", MOVE, *LOW, "-o", "x.json"], "a log is not written as JSON; name it .csv or .npy")
         self.refused(["simulate", "--gear-ratio", 100, "--ripple", "1:1Nm", "--motion", "constant,speed=60deg/s,duration=1s",
                       "--sample-rate", "1kHz", "-o", "x.json"], "a log is not written as JSON")

@@ -14,6 +14,7 @@
 #include "cli/filter/filter_work.hpp"
 #include "cli/options/name_list.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
@@ -113,6 +114,8 @@ void check(const FilterRequest& request) {
             "--method is missing, for example --method lowpass,cutoff=13rad/s or --table table.json");
     }
     if (request.every_joint()) check_joints(request);
+    if (request.metrics && !metrics_in_folder(request))
+        check_output_name(*request.metrics, "metrics", ".json .txt");
     if (!(request.gap_steps > 1.0))
         raise<UsageError>("--gap: {} median steps is not above 1", shortest(request.gap_steps));
     const bool log_on_stdout = request.common.output == "-" && !request.out_directory && !request.in_place &&
