@@ -12,7 +12,7 @@ void FixedTexts::prepare(std::span<const double> values, double divisor, int dec
     values_ = values;
     divisor_ = divisor;
     decimals_ = decimals;
-    if (!avx2_ || decimals < 0 || decimals > most_decimals_avx2) {
+    if (!wide_vectors() || decimals < 0 || decimals > most_decimals_avx2) {
         std::fill_n(lengths_.begin(), values.size(), 0);
         return;
     }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -16,26 +16,30 @@ constexpr std::size_t lanes = lane_count;
 constexpr std::size_t groups = 4;
 constexpr double next_groups = groups * lanes;
 
-}  // namespace
+struct LookAtEven {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static EvenPart run(std::span<const double> time, std::span<const double> values,
+                                            double step, std::size_t from);
+};
 
-RIPPLENOTCH_FOR_AVX2_TOO
-EvenPart look_at_even(std::span<const double> time, std::span<const double> values, double step,
-                      std::size_t from) {
+template <class Lanes>
+EvenPart LookAtEven::run(std::span<const double> time, std::span<const double> values, double step,
+                         std::size_t from) {
     const double *const t = time.data(), *const x = values.data();
     const std::size_t n = time.size(), even = n - (n - from) % (groups * lanes);
     const double begin = n > from ? t[0] : 0.0;
     const double middle = 0.5 * (static_cast<double>(n + from) - 1.0);
-    Four place = {0.0, 1.0, 2.0, 3.0}, now, value;
-    Four most[groups] = {}, least[groups] = {}, sums[groups] = {}, tilts[groups] = {};
-    place += static_cast<double>(from);
+    Lanes place, now, value;
+    Lanes most[groups] = {}, least[groups] = {}, sums[groups] = {}, tilts[groups] = {};
+    count_up(place, static_cast<double>(from));
     for (std::size_t k = from; k < even; k += groups * lanes, place += next_groups) {
 #pragma GCC unroll 4
         for (std::size_t g = 0; g < groups; ++g) {
-            const Four at = place + static_cast<double>(g * lanes);
+            const Lanes at = place + static_cast<double>(g * lanes);
             load(now, t + k + g * lanes);
-            const Four off = now - begin - at * step;
-            most[g] = off > most[g] ? off : most[g];
-            least[g] = off < least[g] ? off : least[g];
+            const Lanes off = now - begin - at * step;
+            raise(most[g], off);
+            lower(least[g], off);
             load(value, x + k + g * lanes);
             sums[g] += value;
             tilts[g] += (at - middle) * value;
@@ -43,9 +47,11 @@ EvenPart look_at_even(std::span<const double> time, std::span<const double> valu
     }
     EvenPart part;
     part.count = n - from;
-    for (std::size_t i = 0; i < groups * lanes; ++i)
-        part.worst = std::max({part.worst, most[i / lanes][i % lanes], -least[i / lanes][i % lanes]});
     for (std::size_t g = 0; g < groups; ++g) {
+        double late[lanes], early[lanes];
+        store(late, most[g]);
+        store(early, least[g]);
+        for (std::size_t i = 0; i < lanes; ++i) part.worst = std::max({part.worst, late[i], -early[i]});
         part.sum += sum(sums[g]);
         part.tilt += sum(tilts[g]);
     }
@@ -58,34 +64,26 @@ EvenPart look_at_even(std::span<const double> time, std::span<const double> valu
     return part;
 }
 
-EvenPart together(const EvenPart& early, const EvenPart& late) {
-    const auto before = static_cast<double>(early.count), behind = static_cast<double>(late.count);
-    // Each part's middle lies half the other part away from the middle of both.
-    return {std::max(early.worst, late.worst), early.sum + late.sum,
-            early.tilt - 0.5 * behind * early.sum + late.tilt + 0.5 * before * late.sum,
-            early.count + late.count};
-}
+struct SubtractLineAndWindow {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(std::span<const double> values, const EvenLine& line,
+                                        std::span<const double> window, std::span<double> to);
+};
 
-EvenLine even_line(const EvenPart& values) {
-    const auto count = static_cast<double>(values.count);
-    const double squares = count * (count * count - 1.0) / 12.0;
-    return {values.sum / count, squares > 0.0 ? values.tilt / squares : 0.0};
-}
-
-RIPPLENOTCH_FOR_AVX2_TOO
-void subtract_line_and_window(std::span<const double> values, const EvenLine& line,
-                              std::span<const double> window, std::span<double> to) {
+template <class Lanes>
+void SubtractLineAndWindow::run(std::span<const double> values, const EvenLine& line,
+                                std::span<const double> window, std::span<double> to) {
     const std::size_t n = values.size(), even = n - n % (groups * lanes);
     const double middle = 0.5 * (static_cast<double>(n) - 1.0);
-    Four place = {0.0, 1.0, 2.0, 3.0}, value, weight;
-    place -= middle;
+    Lanes place, value, weight;
+    count_up(place, -middle);
     for (std::size_t k = 0; k < even; k += groups * lanes, place += next_groups) {
 #pragma GCC unroll 4
         for (std::size_t g = 0; g < groups; ++g) {
             const std::size_t at = k + g * lanes;
             load(value, values.data() + at);
             load(weight, window.data() + at);
-            const Four trend = (place + static_cast<double>(g * lanes)) * line.slope + line.mean;
+            const Lanes trend = (place + static_cast<double>(g * lanes)) * line.slope + line.mean;
             store(to.data() + at, (value - trend) * weight);
         }
     }
@@ -95,13 +93,19 @@ void subtract_line_and_window(std::span<const double> values, const EvenLine& li
     }
 }
 
-RIPPLENOTCH_FOR_AVX2_TOO
-Moments turned_moments(std::span<const double> value, std::span<const double> place,
-                       std::span<const double> cosine, std::span<const double> sine) {
+struct TurnedMoments {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static Moments run(std::span<const double> value, std::span<const double> place,
+                                           std::span<const double> cosine, std::span<const double> sine);
+};
+
+template <class Lanes>
+Moments TurnedMoments::run(std::span<const double> value, std::span<const double> place,
+                           std::span<const double> cosine, std::span<const double> sine) {
     constexpr std::size_t orders = std::tuple_size_v<Moments>;
     const std::size_t n = value.size(), even = n - n % lanes;
-    Four real[orders] = {}, imaginary[orders] = {};
-    Four x, at, c, s;
+    Lanes real[orders] = {}, imaginary[orders] = {};
+    Lanes x, at, c, s;
     for (std::size_t k = 0; k < even; k += lanes) {
         load(x, value.data() + k);
         load(at, place.data() + k);
@@ -125,6 +129,37 @@ Moments turned_moments(std::span<const double> value, std::span<const double> pl
             moments[d] += std::complex<double>(weight * cosine[k], weight * sine[k]);
     }
     return moments;
+}
+
+}  // namespace
+
+EvenPart look_at_even(std::span<const double> time, std::span<const double> values, double step,
+                      std::size_t from) {
+    return in_lanes<LookAtEven>(time, values, step, from);
+}
+
+void subtract_line_and_window(std::span<const double> values, const EvenLine& line,
+                              std::span<const double> window, std::span<double> to) {
+    in_lanes<SubtractLineAndWindow>(values, line, window, to);
+}
+
+Moments turned_moments(std::span<const double> value, std::span<const double> place,
+                       std::span<const double> cosine, std::span<const double> sine) {
+    return in_lanes<TurnedMoments>(value, place, cosine, sine);
+}
+
+EvenPart together(const EvenPart& early, const EvenPart& late) {
+    const auto before = static_cast<double>(early.count), behind = static_cast<double>(late.count);
+    // Each part's middle lies half the other part away from the middle of both.
+    return {std::max(early.worst, late.worst), early.sum + late.sum,
+            early.tilt - 0.5 * behind * early.sum + late.tilt + 0.5 * before * late.sum,
+            early.count + late.count};
+}
+
+EvenLine even_line(const EvenPart& values) {
+    const auto count = static_cast<double>(values.count);
+    const double squares = count * (count * count - 1.0) / 12.0;
+    return {values.sum / count, squares > 0.0 ? values.tilt / squares : 0.0};
 }
 
 }  // namespace ripplenotch

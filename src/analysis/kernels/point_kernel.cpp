@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -31,18 +31,22 @@ Phasors turns_of(double angle) {
     return turns;
 }
 
-}  // namespace
+struct EvenPoint {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static FourierPoint run(std::span<const double> where, std::span<const double> value,
+                                                double middle, double step, double frequency);
+};
 
-RIPPLENOTCH_FOR_AVX2_TOO
-FourierPoint even_point(std::span<const double> where, std::span<const double> value, double middle,
-                        double step, double frequency) {
+template <class Lanes>
+FourierPoint EvenPoint::run(std::span<const double> where, std::span<const double> value, double middle,
+                            double step, double frequency) {
     const double radians = -2.0 * std::numbers::pi * frequency;
     const Phasors lane_turns = turns_of(radians * step);
     const double turn_real = portable::cos(radians * step * at_once),
                  turn_imaginary = portable::sin(radians * step * at_once);
-    Four real[groups], imaginary[groups], weight, place;
-    Four value_real[groups] = {}, value_imaginary[groups] = {}, first_real[groups] = {},
-         first_imaginary[groups] = {}, second_real[groups] = {}, second_imaginary[groups] = {};
+    Lanes real[groups], imaginary[groups], weight, place;
+    Lanes value_real[groups] = {}, value_imaginary[groups] = {}, first_real[groups] = {},
+          first_imaginary[groups] = {}, second_real[groups] = {}, second_imaginary[groups] = {};
     FourierPoint point;
     for (std::size_t begin = 0; begin < where.size(); begin += anew) {
         const std::size_t end = std::min(begin + anew, where.size()), even = end - (end - begin) % at_once;
@@ -69,14 +73,18 @@ FourierPoint even_point(std::span<const double> where, std::span<const double> v
                 weight *= place;
                 second_real[g] += weight * real[g];
                 second_imaginary[g] += weight * imaginary[g];
-                const Four turned = real[g] * turn_real - imaginary[g] * turn_imaginary;
+                const Lanes turned = real[g] * turn_real - imaginary[g] * turn_imaginary;
                 imaginary[g] = real[g] * turn_imaginary + imaginary[g] * turn_real;
                 real[g] = turned;
             }
         }
+        Phasors last;
+        for (std::size_t g = 0; g < groups; ++g) {
+            store(&last.real[g * lanes], real[g]);
+            store(&last.imaginary[g * lanes], imaginary[g]);
+        }
         for (std::size_t k = even; k < end; ++k) {
-            const std::size_t g = (k - even) / lanes, lane = (k - even) % lanes;
-            const std::complex<double> phasor(real[g][lane], imaginary[g][lane]);
+            const std::complex<double> phasor(last.real[k - even], last.imaginary[k - even]);
             const double at = where[k] - middle;
             point.value += value[k] * phasor;
             point.first += value[k] * at * phasor;
@@ -90,6 +98,13 @@ FourierPoint even_point(std::span<const double> where, std::span<const double> v
         point.second += std::complex<double>(sum(second_real[g]), sum(second_imaginary[g]));
     }
     return point;
+}
+
+}  // namespace
+
+FourierPoint even_point(std::span<const double> where, std::span<const double> value, double middle,
+                        double step, double frequency) {
+    return in_lanes<EvenPoint>(where, value, middle, step, frequency);
 }
 
 }  // namespace ripplenotch

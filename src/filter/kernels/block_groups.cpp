@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "filter/kernels/block_groups.hpp"
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -95,9 +95,15 @@ RIPPLENOTCH_INLINED void run_pass(BlockPass& pass, const Stretch& stretch, Lanes
     store(pass.memory.data(), memory);
 }
 
+struct RunGroups {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static bool run(std::span<BlockPass> passes, std::span<const double> in,
+                                        double origin, std::span<double> out, bool whatever);
+};
+
 template <class Lanes>
-RIPPLENOTCH_INLINED bool run_all(std::span<BlockPass> passes, std::span<const double> in, double origin,
-                                 std::span<double> out, bool whatever) {
+bool RunGroups::run(std::span<BlockPass> passes, std::span<const double> in, double origin,
+                    std::span<double> out, bool whatever) {
     Lanes values, excess;
     fill(excess, 0.0);
     for (const BlockPass& pass : passes) {
@@ -123,12 +129,7 @@ RIPPLENOTCH_INLINED bool run_all(std::span<BlockPass> passes, std::span<const do
 
 bool run_groups(std::span<BlockPass> passes, std::span<const double> in, double origin, std::span<double> out,
                 bool whatever) {
-    return run_all<TwoAndTwo>(passes, in, origin, out, whatever);
-}
-
-RIPPLENOTCH_TARGET_AVX2 bool run_groups_avx2(std::span<BlockPass> passes, std::span<const double> in,
-                                             double origin, std::span<double> out, bool whatever) {
-    return run_all<Four>(passes, in, origin, out, whatever);
+    return in_lanes<RunGroups>(passes, in, origin, out, whatever);
 }
 
 }  // namespace ripplenotch
