@@ -71,16 +71,24 @@ RIPPLENOTCH_INLINED TwoRegisters<N> operator-(const TwoRegisters<N>& a) {
     return {-a.low, -a.high};
 }
 template <class N>
+RIPPLENOTCH_INLINED TwoRegisters<N> operator~(const TwoRegisters<N>& a) {
+    return {~a.low, ~a.high};
+}
+template <class N>
 RIPPLENOTCH_INLINED TwoRegisters<N> operator<<(const TwoRegisters<N>& a, int bits) {
     return {a.low << bits, a.high << bits};
 }
+template <class N>
+RIPPLENOTCH_INLINED TwoRegisters<N> operator>>(const TwoRegisters<N>& a, int bits) {
+    return {a.low >> bits, a.high >> bits};
+}
 
-#define RIPPLENOTCH_COMPARISON(op)                                                                 \
-    template <class N>                                                                             \
-    RIPPLENOTCH_INLINED BitsOf<TwoRegisters<N>> operator op(const TwoRegisters<N>& a,              \
-                                                            const TwoRegisters<N>& b) {            \
-        using Half = HalfRegister<long long>;                                                      \
-        return {reinterpret_cast<Half>(a.low op b.low), reinterpret_cast<Half>(a.high op b.high)}; \
+#define RIPPLENOTCH_COMPARISON(op)                                                             \
+    template <class N>                                                                         \
+    RIPPLENOTCH_INLINED auto operator op(const TwoRegisters<N>& a, const TwoRegisters<N>& b) { \
+        using Bits = std::conditional_t<sizeof(N) == 1, signed char, long long>;               \
+        return TwoRegisters<Bits>{reinterpret_cast<HalfRegister<Bits>>(a.low op b.low),        \
+                                  reinterpret_cast<HalfRegister<Bits>>(a.high op b.high)};     \
     }
 RIPPLENOTCH_COMPARISON(==)
 RIPPLENOTCH_COMPARISON(<)
