@@ -22,29 +22,27 @@ RIPPLENOTCH_INLINED void sum_series(Lanes& sum, const std::array<double, 9>& ter
 struct Cosines {
     template <class Lanes>
     RIPPLENOTCH_INLINED static void run(const double* angle_deg, std::size_t fours, long long quarters_on,
-                                        double* cosine);
-};
-
-template <class Lanes>
-void Cosines::run(const double* angle_deg, std::size_t fours, long long quarters_on, double* cosine) {
-    constexpr double round_by_adding = 6755399441055744.0;  // its last bits are those of the integer added
-    for (std::size_t k = 0; k < fours * lane_count; k += lane_count) {
-        Lanes angle, even, odd;
-        BitsOf<Lanes> quadrant;
-        load(angle, angle_deg + k);
-        const Lanes rounding = angle / 90.0 + round_by_adding;
-        const Lanes x = (angle - (rounding - round_by_adding) * 90.0) * (std::numbers::pi / 180.0);
-        const Lanes z = x * x;
-        sum_series(even, cosine_terms, z);
-        sum_series(odd, sine_terms, z);
-        odd = x * odd;
-        to_bits(quadrant, rounding);
-        quadrant += quarters_on;
-        choose<Lanes>(odd, -(quadrant & 1), even);
-        flip_signs<Lanes>(odd, ((quadrant + 1) & 2) << 62);
-        store(cosine + k, odd + 0.0);  // + 0.0: no negative zero
+                                        double* cosine) {
+        constexpr double round_by_adding =
+            6755399441055744.0;  // its last bits are those of the integer added
+        for (std::size_t k = 0; k < fours * lane_count; k += lane_count) {
+            Lanes angle, even, odd;
+            BitsOf<Lanes> quadrant;
+            load(angle, angle_deg + k);
+            const Lanes rounding = angle / 90.0 + round_by_adding;
+            const Lanes x = (angle - (rounding - round_by_adding) * 90.0) * (std::numbers::pi / 180.0);
+            const Lanes z = x * x;
+            sum_series(even, cosine_terms, z);
+            sum_series(odd, sine_terms, z);
+            odd = x * odd;
+            to_bits(quadrant, rounding);
+            quadrant += quarters_on;
+            choose<Lanes>(odd, -(quadrant & 1), even);
+            flip_signs<Lanes>(odd, ((quadrant + 1) & 2) << 62);
+            store(cosine + k, odd + 0.0);  // + 0.0: no negative zero
+        }
     }
-}
+};
 
 void cosines_of(std::span<const double> angle_deg, long long quarters_on, double (*one)(double),
                 std::span<double> cosine) {

@@ -93,39 +93,36 @@ RepeatCounts count_pair(const RowChannels& rows, std::size_t k, double moving_de
 
 struct Widen {
     template <class Lanes>
-    RIPPLENOTCH_INLINED static SpeedExtent run(SpeedExtent range, std::span<const double> velocity_deg_s);
-};
-
-template <class Lanes>
-SpeedExtent Widen::run(SpeedExtent range, std::span<const double> velocity_deg_s) {
-    constexpr std::size_t groups = 2, step = groups * lane_count;
-    const std::size_t n = velocity_deg_s.size(), even = n - n % step;
-    Lanes slowest[groups], fastest[groups], speed;
-    for (std::size_t g = 0; g < groups; ++g) {
-        fill(slowest[g], range.slowest_deg_s);
-        fill(fastest[g], range.fastest_deg_s);
-    }
-    for (std::size_t k = 0; k < even; k += step) {
+    RIPPLENOTCH_INLINED static SpeedExtent run(SpeedExtent range, std::span<const double> velocity_deg_s) {
+        constexpr std::size_t groups = 2, step = groups * lane_count;
+        const std::size_t n = velocity_deg_s.size(), even = n - n % step;
+        Lanes slowest[groups], fastest[groups], speed;
         for (std::size_t g = 0; g < groups; ++g) {
-            load(speed, velocity_deg_s.data() + k + g * lane_count);
-            drop_signs(speed);
-            lower(slowest[g], speed);
-            raise(fastest[g], speed);
+            fill(slowest[g], range.slowest_deg_s);
+            fill(fastest[g], range.fastest_deg_s);
         }
+        for (std::size_t k = 0; k < even; k += step) {
+            for (std::size_t g = 0; g < groups; ++g) {
+                load(speed, velocity_deg_s.data() + k + g * lane_count);
+                drop_signs(speed);
+                lower(slowest[g], speed);
+                raise(fastest[g], speed);
+            }
+        }
+        double least[step], most[step];
+        for (std::size_t g = 0; g < groups; ++g) {
+            store(least + g * lane_count, slowest[g]);
+            store(most + g * lane_count, fastest[g]);
+        }
+        range.slowest_deg_s = std::min(range.slowest_deg_s, *std::min_element(least, least + step));
+        range.fastest_deg_s = std::max(range.fastest_deg_s, *std::max_element(most, most + step));
+        for (std::size_t k = even; k < n; ++k) {
+            range.slowest_deg_s = std::min(range.slowest_deg_s, std::abs(velocity_deg_s[k]));
+            range.fastest_deg_s = std::max(range.fastest_deg_s, std::abs(velocity_deg_s[k]));
+        }
+        return range;
     }
-    double least[step], most[step];
-    for (std::size_t g = 0; g < groups; ++g) {
-        store(least + g * lane_count, slowest[g]);
-        store(most + g * lane_count, fastest[g]);
-    }
-    range.slowest_deg_s = std::min(range.slowest_deg_s, *std::min_element(least, least + step));
-    range.fastest_deg_s = std::max(range.fastest_deg_s, *std::max_element(most, most + step));
-    for (std::size_t k = even; k < n; ++k) {
-        range.slowest_deg_s = std::min(range.slowest_deg_s, std::abs(velocity_deg_s[k]));
-        range.fastest_deg_s = std::max(range.fastest_deg_s, std::abs(velocity_deg_s[k]));
-    }
-    return range;
-}
+};
 
 }  // namespace
 

@@ -108,10 +108,10 @@ void check_batches(std::uint64_t seed, std::size_t batches, bool wide) {
 }  // namespace
 
 TEST_CASE("numbers printed side by side are printf's, whatever their decimals and however many they are") {
-    for (const bool wide : widths()) check_batches(23, 50, wide);
+    for (const bool wide : widths()) check_batches(23, 150, wide);
 }
 
-// Half a minute: ctest leaves it out, `test_core "[.kernels]"` runs it.
+// The same for half a minute: ctest leaves it out, `test_core "[.kernels]"` runs it.
 TEST_CASE("forty million numbers printed side by side are printf's", "[.kernels]") {
     for (std::uint64_t seed = 1000; seed < 10000; seed += 1000) check_batches(seed, 1000, true);
 }

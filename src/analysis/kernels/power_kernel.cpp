@@ -38,74 +38,52 @@ RIPPLENOTCH_INLINED void powers(const Pair<Number>& pair, Number& here, Number& 
     mirror = far_real * far_real + far_imaginary * far_imaginary;
 }
 
-struct AddPower {
-    template <class Lanes>
-    RIPPLENOTCH_INLINED static void run(std::span<const std::complex<double>> sums, double scale,
-                                        std::span<double> power);
-};
-
-template <class Lanes>
-void AddPower::run(std::span<const std::complex<double>> sums, double scale, std::span<double> power) {
-    const auto* const parts = reinterpret_cast<const double*>(sums.data());
-    const std::size_t n = sums.size(), even = n - n % lanes;
-    Lanes real, imaginary, there;
-    for (std::size_t k = 0; k < even; k += lanes) {
-        load_complex(real, imaginary, parts + 2 * k);
-        load(there, power.data() + k);
-        store(power.data() + k, there + (real * real + imaginary * imaginary) * scale);
-    }
-    for (std::size_t k = even; k < n; ++k)
-        power[k] += (parts[2 * k] * parts[2 * k] + parts[2 * k + 1] * parts[2 * k + 1]) * scale;
-}
-
 struct AddHalfPower {
     template <class Lanes>
     RIPPLENOTCH_INLINED static void run(std::span<const std::complex<double>> sums, double scale,
-                                        std::span<double> power, const double* cosines, const double* sines);
+                                        std::span<double> power, const double* cosines, const double* sines) {
+        const auto* const parts = reinterpret_cast<const double*>(sums.data());
+        const std::size_t half = sums.size();
+        const double sum = parts[0] + parts[1], difference = parts[0] - parts[1], quarter = 0.25 * scale;
+        power[0] += scale * (sum * sum);
+        power[half] += scale * (difference * difference);
+        Lanes real, imaginary, far_real, far_imaginary, cosine, sine, here, mirror, there;
+        Pair<Lanes> four;
+        std::size_t k = 1;
+        for (; 2 * (k + lanes - 1) < half; k += lanes) {
+            const std::size_t far = half - k - (lanes - 1);
+            load_complex(real, imaginary, parts + 2 * k);
+            load_complex(far_real, far_imaginary, parts + 2 * far);
+            reverse(far_real);
+            reverse(far_imaginary);
+            load(cosine, cosines + k);
+            load(sine, sines + k);
+            untangle(real, imaginary, far_real, far_imaginary, cosine, sine, four);
+            powers(four, here, mirror);
+            load(there, power.data() + k);
+            store(power.data() + k, there + here * quarter);
+            reverse(mirror);
+            load(there, power.data() + far);
+            store(power.data() + far, there + mirror * quarter);
+        }
+        Pair<double> one;
+        for (double near_power, far_power; 2 * k <= half; ++k) {
+            const std::size_t far = half - k;
+            untangle(parts[2 * k], parts[2 * k + 1], parts[2 * far], parts[2 * far + 1], cosines[k], sines[k],
+                     one);
+            powers(one, near_power, far_power);
+            power[k] += near_power * quarter;
+            if (far > k) power[far] += far_power * quarter;
+        }
+    }
 };
-
-template <class Lanes>
-void AddHalfPower::run(std::span<const std::complex<double>> sums, double scale, std::span<double> power,
-                       const double* cosines, const double* sines) {
-    const auto* const parts = reinterpret_cast<const double*>(sums.data());
-    const std::size_t half = sums.size();
-    const double sum = parts[0] + parts[1], difference = parts[0] - parts[1], quarter = 0.25 * scale;
-    power[0] += scale * (sum * sum);
-    power[half] += scale * (difference * difference);
-    Lanes real, imaginary, far_real, far_imaginary, cosine, sine, here, mirror, there;
-    Pair<Lanes> four;
-    std::size_t k = 1;
-    for (; 2 * (k + lanes - 1) < half; k += lanes) {
-        const std::size_t far = half - k - (lanes - 1);
-        load_complex(real, imaginary, parts + 2 * k);
-        load_complex(far_real, far_imaginary, parts + 2 * far);
-        reverse(far_real);
-        reverse(far_imaginary);
-        load(cosine, cosines + k);
-        load(sine, sines + k);
-        untangle(real, imaginary, far_real, far_imaginary, cosine, sine, four);
-        powers(four, here, mirror);
-        load(there, power.data() + k);
-        store(power.data() + k, there + here * quarter);
-        reverse(mirror);
-        load(there, power.data() + far);
-        store(power.data() + far, there + mirror * quarter);
-    }
-    Pair<double> one;
-    for (double near_power, far_power; 2 * k <= half; ++k) {
-        const std::size_t far = half - k;
-        untangle(parts[2 * k], parts[2 * k + 1], parts[2 * far], parts[2 * far + 1], cosines[k], sines[k],
-                 one);
-        powers(one, near_power, far_power);
-        power[k] += near_power * quarter;
-        if (far > k) power[far] += far_power * quarter;
-    }
-}
 
 }  // namespace
 
+// Only for lengths whose transform takes many times as long.
 void add_power(std::span<const std::complex<double>> sums, double scale, std::span<double> power) {
-    in_lanes<AddPower>(sums, scale, power);
+    for (std::size_t k = 0; k < sums.size(); ++k)
+        power[k] += (sums[k].real() * sums[k].real() + sums[k].imag() * sums[k].imag()) * scale;
 }
 
 HalfPower::HalfPower(std::size_t length) {

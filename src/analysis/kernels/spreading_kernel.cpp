@@ -21,33 +21,30 @@ double kernel(double x) {
 /// Even and odd powers apart, so that half as many steps wait for each other.
 struct Weigh {
     template <class Lanes>
-    RIPPLENOTCH_INLINED static void run(const Row* coefficients, double offset, double* row);
-};
-
-template <class Lanes>
-void Weigh::run(const Row* coefficients, double offset, double* row) {
-    constexpr std::size_t lanes = lane_count;
-    constexpr std::size_t groups = SpreadingKernel::padded / lanes;
-    const double z = 2.0 * offset - 1.0, square = z * z;
-    Lanes even[groups], odd[groups], term;
-#pragma GCC unroll 3
-    for (std::size_t g = 0; g < groups; ++g) {
-        load(even[g], &coefficients[terms - 2][g * lanes]);
-        load(odd[g], &coefficients[terms - 1][g * lanes]);
-    }
-#pragma GCC unroll 7
-    for (std::size_t d = terms - 2; d > 0; d -= 2) {
+    RIPPLENOTCH_INLINED static void run(const Row* coefficients, double offset, double* row) {
+        constexpr std::size_t lanes = lane_count;
+        constexpr std::size_t groups = SpreadingKernel::padded / lanes;
+        const double z = 2.0 * offset - 1.0, square = z * z;
+        Lanes even[groups], odd[groups], term;
 #pragma GCC unroll 3
         for (std::size_t g = 0; g < groups; ++g) {
-            load(term, &coefficients[d - 2][g * lanes]);
-            even[g] = even[g] * square + term;
-            load(term, &coefficients[d - 1][g * lanes]);
-            odd[g] = odd[g] * square + term;
+            load(even[g], &coefficients[terms - 2][g * lanes]);
+            load(odd[g], &coefficients[terms - 1][g * lanes]);
         }
-    }
+#pragma GCC unroll 7
+        for (std::size_t d = terms - 2; d > 0; d -= 2) {
 #pragma GCC unroll 3
-    for (std::size_t g = 0; g < groups; ++g) store(row + g * lanes, even[g] + odd[g] * z);
-}
+            for (std::size_t g = 0; g < groups; ++g) {
+                load(term, &coefficients[d - 2][g * lanes]);
+                even[g] = even[g] * square + term;
+                load(term, &coefficients[d - 1][g * lanes]);
+                odd[g] = odd[g] * square + term;
+            }
+        }
+#pragma GCC unroll 3
+        for (std::size_t g = 0; g < groups; ++g) store(row + g * lanes, even[g] + odd[g] * z);
+    }
+};
 
 }  // namespace
 

@@ -98,32 +98,28 @@ RIPPLENOTCH_INLINED void run_pass(BlockPass& pass, const Stretch& stretch, Lanes
 struct RunGroups {
     template <class Lanes>
     RIPPLENOTCH_INLINED static bool run(std::span<BlockPass> passes, std::span<const double> in,
-                                        double origin, std::span<double> out, bool whatever);
+                                        double origin, std::span<double> out, bool whatever) {
+        Lanes values, excess;
+        fill(excess, 0.0);
+        for (const BlockPass& pass : passes) {
+            load(values, pass.memory.data());
+            weigh(excess, values);
+        }
+        const BlockForm::Memory before = passes.front().memory;
+        const auto plus = [&](std::size_t pass) { return pass + 1 == passes.size() ? origin : 0.0; };
+        run_pass<true>(passes.front(), {in.data(), origin, out.data(), plus(0), in.size()}, excess);
+        double lanes[4];
+        store(lanes, excess);
+        const bool moderate = lanes[0] == 0.0 && lanes[1] == 0.0 && lanes[2] == 0.0 && lanes[3] == 0.0;
+        if (!moderate && !whatever) {
+            passes.front().memory = before;
+            return false;
+        }
+        for (std::size_t i = 1; i < passes.size(); ++i)
+            run_pass<false>(passes[i], {out.data(), 0.0, out.data(), plus(i), out.size()}, excess);
+        return true;
+    }
 };
-
-template <class Lanes>
-bool RunGroups::run(std::span<BlockPass> passes, std::span<const double> in, double origin,
-                    std::span<double> out, bool whatever) {
-    Lanes values, excess;
-    fill(excess, 0.0);
-    for (const BlockPass& pass : passes) {
-        load(values, pass.memory.data());
-        weigh(excess, values);
-    }
-    const BlockForm::Memory before = passes.front().memory;
-    const auto plus = [&](std::size_t pass) { return pass + 1 == passes.size() ? origin : 0.0; };
-    run_pass<true>(passes.front(), {in.data(), origin, out.data(), plus(0), in.size()}, excess);
-    double lanes[4];
-    store(lanes, excess);
-    const bool moderate = lanes[0] == 0.0 && lanes[1] == 0.0 && lanes[2] == 0.0 && lanes[3] == 0.0;
-    if (!moderate && !whatever) {
-        passes.front().memory = before;
-        return false;
-    }
-    for (std::size_t i = 1; i < passes.size(); ++i)
-        run_pass<false>(passes[i], {out.data(), 0.0, out.data(), plus(i), out.size()}, excess);
-    return true;
-}
 
 }  // namespace
 
