@@ -165,6 +165,22 @@ TEST_CASE("rows are taken at once up to the first that is not certainly right, w
     }
 }
 
+TEST_CASE("a delimiter within quotes is none, in columns that nobody reads as well", "[log]") {
+    std::string text;
+    for (int i = 0; i < 40; ++i) text += "1.5,a,b,-2.25\n";
+    const std::size_t end = text.size();
+    text += "3,\"a,b\",4\n";
+    for (const bool wide : widths()) {
+        const Width here(wide);
+        RowBlock block;
+        block.bytes = text;
+        const QuickRows quick(
+            {{',', '.'}, '\n', 4, {{0, velocity_slot}, {3, torque_slot}}, std::vector<double>(4, 1.0)});
+        CHECK(quick.take(block, 0, no_time) == end);
+        CHECK(block.size() == 40);
+    }
+}
+
 TEST_CASE("taking goes on behind a row that was taken otherwise, and keeps what it has", "[log]") {
     RowBlock block;
     block.bytes = "1,2,3\n4,5\n6,7,8\n9,10,11\n";
