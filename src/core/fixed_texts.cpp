@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/fixed_texts_avx2.hpp"
+#include "core/print_fixed.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -12,7 +12,7 @@ void FixedTexts::prepare(std::span<const double> values, double divisor, int dec
     values_ = values;
     divisor_ = divisor;
     decimals_ = decimals;
-    if (!avx2_ || decimals < 0 || decimals > most_decimals_avx2) {
+    if (!wide_vectors() || decimals < 0 || decimals > most_decimals_side_by_side) {
         std::fill_n(lengths_.begin(), values.size(), 0);
         return;
     }
@@ -22,7 +22,7 @@ void FixedTexts::prepare(std::span<const double> values, double divisor, int dec
                        [divisor](double value) { return value / divisor; });
         values = {quotients.data(), values.size()};
     }
-    print_fixed_avx2(values, decimals, mark_, slots_.data(), lengths_.data());
+    print_fixed(values, decimals, mark_, slots_.data(), lengths_.data());
 }
 
 char* FixedTexts::put_alone(char* into, std::size_t i) const {

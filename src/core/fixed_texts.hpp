@@ -9,7 +9,7 @@
 #include <cstring>
 #include <span>
 
-#include "core/processor.hpp"
+#include "core/vectors/dispatch.hpp"
 
 namespace ripplenotch {
 
@@ -21,7 +21,7 @@ class FixedTexts {
     /// A text of this many bytes or fewer may be printed by vectors; others are printed when they are put.
     static constexpr std::size_t slot_bytes = 16;
 
-    explicit FixedTexts(char decimal_mark = '.', bool avx2 = has_avx2()) : mark_(decimal_mark), avx2_(avx2) {}
+    explicit FixedTexts(char decimal_mark = '.') : mark_(decimal_mark) {}
 
     /// Prints values[i] / divisor with `decimals` digits behind the mark; at most `most` values. They are
     /// looked at again until the last put().
@@ -41,7 +41,6 @@ class FixedTexts {
     char* put_alone(char* into, std::size_t i) const;
 
     char mark_;
-    bool avx2_;
     int decimals_ = 0;
     double divisor_ = 1.0;
     std::span<const double> values_;

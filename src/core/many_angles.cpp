@@ -5,40 +5,44 @@
 #include <numbers>
 
 #include "core/circle_terms.hpp"
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch::portable {
 namespace {
 
-RIPPLENOTCH_INLINED void sum_series(Four& sum, const std::array<double, 9>& terms, const Four& z) {
+template <class Lanes>
+RIPPLENOTCH_INLINED void sum_series(Lanes& sum, const std::array<double, 9>& terms, const Lanes& z) {
     fill(sum, terms[8]);
 #pragma GCC unroll 8
     for (std::size_t i = 8; i > 0; --i) sum = sum * z + terms[i - 1];
 }
 
 /// Angles whose quarters are below 2^44, which no joint reaches. `quarters_on`: 3 turns a cosine into a sine.
-RIPPLENOTCH_FOR_AVX2_TOO
-void cosines(const double* angle_deg, std::size_t fours, long long quarters_on, double* cosine) {
-    constexpr double round_by_adding = 6755399441055744.0;  // its last bits are those of the integer added
-    for (std::size_t k = 0; k < fours * lane_count; k += lane_count) {
-        Four angle, even, odd;
-        load(angle, angle_deg + k);
-        const Four rounding = angle / 90.0 + round_by_adding;
-        const Four x = (angle - 90.0 * (rounding - round_by_adding)) * (std::numbers::pi / 180.0);
-        const Four z = x * x;
-        sum_series(even, cosine_terms, z);
-        sum_series(odd, sine_terms, z);
-        odd = x * odd;
-        const FourBits quadrant = reinterpret_cast<FourBits>(rounding) + quarters_on;
-        const FourBits is_odd = (quadrant & 1) != 0;
-        const FourBits chosen =
-            (reinterpret_cast<FourBits>(odd) & is_odd) | (reinterpret_cast<FourBits>(even) & ~is_odd);
-        const FourBits sign = ((quadrant + 1) & 2) << 62;
-        const Four value = reinterpret_cast<Four>(chosen ^ sign) + 0.0;  // + 0.0: no negative zero
-        store(cosine + k, value);
+struct Cosines {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(const double* angle_deg, std::size_t fours, long long quarters_on,
+                                        double* cosine) {
+        constexpr double round_by_adding =
+            6755399441055744.0;  // its last bits are those of the integer added
+        for (std::size_t k = 0; k < fours * lane_count; k += lane_count) {
+            Lanes angle, even, odd;
+            BitsOf<Lanes> quadrant;
+            load(angle, angle_deg + k);
+            const Lanes rounding = angle / 90.0 + round_by_adding;
+            const Lanes x = (angle - (rounding - round_by_adding) * 90.0) * (std::numbers::pi / 180.0);
+            const Lanes z = x * x;
+            sum_series(even, cosine_terms, z);
+            sum_series(odd, sine_terms, z);
+            odd = x * odd;
+            to_bits(quadrant, rounding);
+            quadrant += quarters_on;
+            choose<Lanes>(odd, -(quadrant & 1), even);
+            flip_signs<Lanes>(odd, ((quadrant + 1) & 2) << 62);
+            store(cosine + k, odd + 0.0);  // + 0.0: no negative zero
+        }
     }
-}
+};
 
 void cosines_of(std::span<const double> angle_deg, long long quarters_on, double (*one)(double),
                 std::span<double> cosine) {
@@ -48,7 +52,7 @@ void cosines_of(std::span<const double> angle_deg, long long quarters_on, double
         return small;
     };
     const std::size_t fours = all_small(angle_deg) ? angle_deg.size() / lane_count : 0;
-    cosines(angle_deg.data(), fours, quarters_on, cosine.data());
+    in_lanes<Cosines>(angle_deg.data(), fours, quarters_on, cosine.data());
     for (std::size_t k = fours * lane_count; k < angle_deg.size(); ++k) cosine[k] = one(angle_deg[k]);
 }
 

@@ -4,46 +4,48 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 
 namespace ripplenotch {
 namespace {
 
 /// Lanes that count down by the bits of comparisons.
+template <class Lanes>
 struct RepeatLanes {
-    FourBits moving{}, velocity{}, position{}, torque{};
-    FourBits velocity_and_torque{}, position_and_torque{}, all{};
+    BitsOf<Lanes> moving{}, velocity{}, position{}, torque{};
+    BitsOf<Lanes> velocity_and_torque{}, position_and_torque{}, all{};
 
     [[nodiscard]] RIPPLENOTCH_INLINED RepeatCounts counts() const {
-        RepeatCounts sums;
-        for (std::size_t i = 0; i < lane_count; ++i)
-            sums += {number(moving[i]),
-                     number(velocity[i]),
-                     number(position[i]),
-                     number(torque[i]),
-                     number(velocity_and_torque[i]),
-                     number(position_and_torque[i]),
-                     number(all[i])};
-        return sums;
+        return {number(moving),
+                number(velocity),
+                number(position),
+                number(torque),
+                number(velocity_and_torque),
+                number(position_and_torque),
+                number(all)};
     }
 
   private:
-    static std::size_t number(long long lane) { return static_cast<std::size_t>(-lane); }
+    RIPPLENOTCH_INLINED static std::size_t number(const BitsOf<Lanes>& count) {
+        return static_cast<std::size_t>(-sum(count));
+    }
 };
 
-template <bool WithPosition>
-RIPPLENOTCH_INLINED void count_four(RepeatLanes& lanes, const RowChannels& rows, std::size_t k,
-                                    const Four& threshold) {
-    Four before, now;
+template <bool WithPosition, class Lanes>
+RIPPLENOTCH_INLINED void count_four(RepeatLanes<Lanes>& lanes, const RowChannels& rows, std::size_t k,
+                                    const Lanes& threshold) {
+    using Bits = BitsOf<Lanes>;
+    Lanes before, now;
     load(before, rows.torque_nm + k);
     load(now, rows.torque_nm + k + 1);
-    const FourBits torque = before == now;
+    const Bits torque = before == now;
     load(before, rows.velocity_deg_s + k);
     load(now, rows.velocity_deg_s + k + 1);
-    FourBits velocity = before == now;
+    Bits velocity = before == now;
     drop_signs(before);
     drop_signs(now);
-    const FourBits moving = (now < before ? now : before) > threshold;
+    lower(before, now);
+    const Bits moving = before > threshold;
     velocity &= moving;
     lanes.moving += moving;
     lanes.torque += torque & moving;
@@ -52,7 +54,7 @@ RIPPLENOTCH_INLINED void count_four(RepeatLanes& lanes, const RowChannels& rows,
     if constexpr (WithPosition) {
         load(before, rows.position_deg + k);
         load(now, rows.position_deg + k + 1);
-        const FourBits position = (before == now) & moving;
+        const Bits position = (before == now) & moving;
         lanes.position += position;
         lanes.position_and_torque += position & torque;
         lanes.all += position & velocity & torque;
@@ -60,23 +62,18 @@ RIPPLENOTCH_INLINED void count_four(RepeatLanes& lanes, const RowChannels& rows,
 }
 
 template <bool WithPosition>
-RIPPLENOTCH_INLINED RepeatCounts count_fours(const RowChannels& rows, std::size_t pairs,
-                                             double moving_deg_s) {
-    Four threshold;
-    fill(threshold, moving_deg_s);
-    RepeatLanes lanes;
-    for (std::size_t k = 0; k < pairs; k += lane_count) count_four<WithPosition>(lanes, rows, k, threshold);
-    return lanes.counts();
-}
-
-RIPPLENOTCH_FOR_AVX2_TOO
-RepeatCounts count_with_position(const RowChannels& rows, std::size_t pairs, double moving_deg_s) {
-    return count_fours<true>(rows, pairs, moving_deg_s);
-}
-RIPPLENOTCH_FOR_AVX2_TOO
-RepeatCounts count_without_position(const RowChannels& rows, std::size_t pairs, double moving_deg_s) {
-    return count_fours<false>(rows, pairs, moving_deg_s);
-}
+struct CountFours {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static RepeatCounts run(const RowChannels& rows, std::size_t pairs,
+                                                double moving_deg_s) {
+        Lanes threshold;
+        fill(threshold, moving_deg_s);
+        RepeatLanes<Lanes> lanes;
+        for (std::size_t k = 0; k < pairs; k += lane_count)
+            count_four<WithPosition>(lanes, rows, k, threshold);
+        return lanes.counts();
+    }
+};
 
 /// A pair of rows, the first at `k`.
 RepeatCounts count_pair(const RowChannels& rows, std::size_t k, double moving_deg_s) {
@@ -94,33 +91,43 @@ RepeatCounts count_pair(const RowChannels& rows, std::size_t k, double moving_de
             velocity && position && torque};
 }
 
+struct Widen {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static SpeedExtent run(SpeedExtent range, std::span<const double> velocity_deg_s) {
+        constexpr std::size_t groups = 2, step = groups * lane_count;
+        const std::size_t n = velocity_deg_s.size(), even = n - n % step;
+        Lanes slowest[groups], fastest[groups], speed;
+        for (std::size_t g = 0; g < groups; ++g) {
+            fill(slowest[g], range.slowest_deg_s);
+            fill(fastest[g], range.fastest_deg_s);
+        }
+        for (std::size_t k = 0; k < even; k += step) {
+            for (std::size_t g = 0; g < groups; ++g) {
+                load(speed, velocity_deg_s.data() + k + g * lane_count);
+                drop_signs(speed);
+                lower(slowest[g], speed);
+                raise(fastest[g], speed);
+            }
+        }
+        double least[step], most[step];
+        for (std::size_t g = 0; g < groups; ++g) {
+            store(least + g * lane_count, slowest[g]);
+            store(most + g * lane_count, fastest[g]);
+        }
+        range.slowest_deg_s = std::min(range.slowest_deg_s, *std::min_element(least, least + step));
+        range.fastest_deg_s = std::max(range.fastest_deg_s, *std::max_element(most, most + step));
+        for (std::size_t k = even; k < n; ++k) {
+            range.slowest_deg_s = std::min(range.slowest_deg_s, std::abs(velocity_deg_s[k]));
+            range.fastest_deg_s = std::max(range.fastest_deg_s, std::abs(velocity_deg_s[k]));
+        }
+        return range;
+    }
+};
+
 }  // namespace
 
-RIPPLENOTCH_FOR_AVX2_TOO
 void widen(SpeedExtent& range, std::span<const double> velocity_deg_s) noexcept {
-    constexpr std::size_t groups = 2, step = groups * lane_count;
-    const std::size_t n = velocity_deg_s.size(), even = n - n % step;
-    Four slowest[groups], fastest[groups], speed;
-    for (std::size_t g = 0; g < groups; ++g) {
-        fill(slowest[g], range.slowest_deg_s);
-        fill(fastest[g], range.fastest_deg_s);
-    }
-    for (std::size_t k = 0; k < even; k += step) {
-        for (std::size_t g = 0; g < groups; ++g) {
-            load(speed, velocity_deg_s.data() + k + g * lane_count);
-            drop_signs(speed);
-            slowest[g] = speed < slowest[g] ? speed : slowest[g];
-            fastest[g] = fastest[g] < speed ? speed : fastest[g];
-        }
-    }
-    for (std::size_t i = 0; i < step; ++i) {
-        range.slowest_deg_s = std::min(range.slowest_deg_s, slowest[i / lane_count][i % lane_count]);
-        range.fastest_deg_s = std::max(range.fastest_deg_s, fastest[i / lane_count][i % lane_count]);
-    }
-    for (std::size_t k = even; k < n; ++k) {
-        range.slowest_deg_s = std::min(range.slowest_deg_s, std::abs(velocity_deg_s[k]));
-        range.fastest_deg_s = std::max(range.fastest_deg_s, std::abs(velocity_deg_s[k]));
-    }
+    range = in_lanes<Widen>(range, velocity_deg_s);
 }
 
 RepeatCounts& RepeatCounts::operator+=(const RepeatCounts& more) noexcept {
@@ -136,8 +143,9 @@ RepeatCounts& RepeatCounts::operator+=(const RepeatCounts& more) noexcept {
 
 RepeatCounts count_repeats(const RowChannels& rows, std::size_t pairs, double moving_deg_s) noexcept {
     const std::size_t even = pairs - pairs % lane_count;
-    RepeatCounts counts = rows.position_deg != nullptr ? count_with_position(rows, even, moving_deg_s)
-                                                       : count_without_position(rows, even, moving_deg_s);
+    RepeatCounts counts = rows.position_deg != nullptr
+                              ? in_lanes<CountFours<true>>(rows, even, moving_deg_s)
+                              : in_lanes<CountFours<false>>(rows, even, moving_deg_s);
     for (std::size_t k = even; k < pairs; ++k) counts += count_pair(rows, k, moving_deg_s);
     return counts;
 }

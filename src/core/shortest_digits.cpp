@@ -7,10 +7,6 @@
 // odd.
 #include "core/shortest_digits.hpp"
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -74,26 +70,7 @@ std::uint64_t fewest_digits(std::uint64_t c, const Scale& scale) {
     return nearest ^ ((nearest ^ nearest_ten) & take_ten);
 }
 
-#if defined(__SSE2__)
 /// Sixteen digits; returns how many of them are zeros at the end.
-int put_sixteen(char* into, std::uint64_t digits) {
-    const __m128i eights = _mm_set_epi64x(static_cast<std::int64_t>(digits % ten_to_8),
-                                          static_cast<std::int64_t>(digits / ten_to_8));
-    const __m128i high = _mm_srli_epi64(_mm_mul_epu32(eights, _mm_set1_epi64x(3518437209)), 45);
-    const __m128i low = _mm_sub_epi64(eights, _mm_mul_epu32(high, _mm_set1_epi64x(10000)));
-    const __m128i fours = _mm_or_si128(high, _mm_slli_epi64(low, 32));
-    const __m128i highs = _mm_srli_epi16(_mm_mulhi_epu16(fours, _mm_set1_epi16(10486)), 4);
-    const __m128i lows = _mm_sub_epi16(fours, _mm_mullo_epi16(highs, _mm_set1_epi16(100)));
-    const __m128i pairs = _mm_or_si128(highs, _mm_slli_epi32(lows, 16));
-    const __m128i tens = _mm_mulhi_epu16(pairs, _mm_set1_epi16(6554));
-    // tens + ((pairs - 10 * tens) << 8)
-    const __m128i ones =
-        _mm_sub_epi16(_mm_slli_epi16(pairs, 8), _mm_mullo_epi16(tens, _mm_set1_epi16(10 * 256 - 1)));
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(into), _mm_add_epi8(ones, _mm_set1_epi8('0')));
-    const int zeros = _mm_movemask_epi8(_mm_cmpeq_epi8(ones, _mm_setzero_si128()));
-    return std::countl_one(static_cast<std::uint32_t>(zeros) << 16);
-}
-#else
 int put_sixteen(char* into, std::uint64_t digits) {
     const std::uint64_t first = eight_digits(static_cast<std::uint32_t>(digits / ten_to_8));
     const std::uint64_t last = eight_digits(static_cast<std::uint32_t>(digits % ten_to_8));
@@ -101,7 +78,6 @@ int put_sixteen(char* into, std::uint64_t digits) {
     put_eight(into + 8, last + eight_zeros);
     return last != 0 ? std::countl_zero(last) / 8 : 8 + std::countl_zero(first) / 8;
 }
-#endif
 
 /// A number below 1e8.
 char* put_whole(char* into, std::uint32_t number) {

@@ -6,11 +6,10 @@
 
 namespace ripplenotch {
 
-FilterBank::FilterBank(const Candidates& candidates, bool avx2)
+FilterBank::FilterBank(const Candidates& candidates)
     : groups_((candidates.cascades.size() + lanes - 1) / lanes),
       sections_(groups_ * candidates.sections),
-      outputs_(groups_ * stride),
-      avx2_(avx2) {
+      outputs_(groups_ * stride) {
     for (std::size_t filter = 0; filter < groups_ * lanes; ++filter) {
         for (std::size_t s = 0; s < candidates.sections; ++s) {
             // Lanes without a candidate run the last one once more.
@@ -36,7 +35,7 @@ void FilterBank::run(std::span<const double> torque_nm) {
     std::array<double, capacity()> signal;
     for (std::size_t k = 0; k < torque_nm.size(); ++k) signal[k] = torque_nm[k] - origin_nm_;
     const BankRun bank{sections_, groups_, outputs_, stride, mirrored_};
-    (avx2_ ? run_bank_avx2 : run_bank)(bank, std::span(signal).first(torque_nm.size()));
+    run_bank(bank, std::span(signal).first(torque_nm.size()));
 }
 
 void FilterBank::outputs(int candidate, std::span<const double> torque_nm,

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "core/processor.hpp"
 #include "filter/kernels/bank_sections.hpp"
 #include "filter/transition.hpp"
 
@@ -16,7 +15,7 @@ namespace ripplenotch {
 /// how many candidates there are, nor on the width of the machine's vectors.
 class FilterBank {
   public:
-    explicit FilterBank(const Candidates& candidates, bool avx2 = has_avx2());
+    explicit FilterBank(const Candidates& candidates);
 
     /// Every candidate settled at a constant input.
     void start(double torque_nm);
@@ -41,7 +40,7 @@ class FilterBank {
     std::vector<BankSection> sections_;
     std::vector<BankOutput> outputs_;  ///< by group and sample
     double origin_nm_ = 0.0;
-    bool avx2_, mirrored_ = true;
+    bool mirrored_ = true;
 };
 
 }  // namespace ripplenotch

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "benchmark.hpp"
+#include "core/vectors/dispatch.hpp"
 #include "filter/filter_bank.hpp"
 #include "filter/kernels/block_cascade.hpp"
 #include "ripplenotch/core/spec.hpp"
@@ -64,21 +65,22 @@ Cascade two_notches() {
             design_notch({.center = Hertz(120.0), .q = 5.0}, rate)};
 }
 
-Benchmark::Pass block_form_without_avx2() {
+Benchmark::Pass block_form_in_narrow_vectors() {
     auto log = std::make_shared<BenchLog>(samples);
     auto out = std::make_shared<std::vector<double>>(samples);
-    auto filter = std::make_shared<BlockCascade>(two_notches(), false);
+    auto filter = std::make_shared<BlockCascade>(two_notches());
     return [log, out, filter] {
+        const NarrowVectors here;
         filter->start(log->torque_nm.front());
         filter->run(log->torque_nm, *out);
         keep(out->back());
     };
 }
 
-Benchmark::Pass bank(bool avx2) {
+Benchmark::Pass bank() {
     auto log = std::make_shared<BenchLog>(samples);
     const CandidateTable table = nine_bands();
-    auto filter = std::make_shared<FilterBank>(Candidates(table.bands()), avx2);
+    auto filter = std::make_shared<FilterBank>(Candidates(table.bands()));
     return [log, filter] {
         filter->start(log->torque_nm.front());
         for (std::size_t at = 0; at < samples; at += FilterBank::capacity()) {
@@ -86,6 +88,13 @@ Benchmark::Pass bank(bool avx2) {
                 std::span(log->torque_nm).subspan(at, std::min(FilterBank::capacity(), samples - at)));
             keep(filter->output(8, 0));
         }
+    };
+}
+
+Benchmark::Pass bank_in_narrow_vectors() {
+    return [pass = bank()] {
+        const NarrowVectors here;
+        pass();
     };
 }
 
@@ -104,10 +113,9 @@ const Benchmark reset("filter: switching bank, reset", samples,
 const Benchmark warm("filter: switching bank, all nine warm", samples, method("switching,table=nine"));
 const Benchmark crossfade("filter: switching bank, crossfade", samples,
                           method("switching,table=nine,transition=crossfade"));
-const Benchmark nine("filter: nine candidates in lanes", samples, [] { return bank(true); });
-const Benchmark nine_portable("filter: nine candidates in lanes, no AVX2", samples,
-                              [] { return bank(false); });
-const Benchmark block_portable("filter: fixed notch, no AVX2", samples, block_form_without_avx2);
+const Benchmark nine("filter: nine candidates in lanes", samples, bank);
+const Benchmark nine_portable("filter: nine candidates in lanes, no AVX2", samples, bank_in_narrow_vectors);
+const Benchmark block_portable("filter: fixed notch, no AVX2", samples, block_form_in_narrow_vectors);
 
 }  // namespace
 }  // namespace ripplenotch::bench

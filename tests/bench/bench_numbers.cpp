@@ -2,11 +2,13 @@
 // Text to numbers and numbers to text, as the readers and writers of logs do it.
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 
 #include "benchmark.hpp"
 #include "core/fixed_texts.hpp"
+#include "core/vectors/dispatch.hpp"
 #include "log/text/quick_rows.hpp"
 #include "ripplenotch/core/number.hpp"
 
@@ -51,8 +53,9 @@ RowPlan three_columns() {
 Benchmark::Pass parse_rows(Digits digits, bool vectors) {
     auto block = std::make_shared<RowBlock>();
     block->bytes = text_of(BenchLog(rows), digits);
+    std::optional<NarrowVectors> narrow;
+    if (!vectors) narrow.emplace();
     auto quick = std::make_shared<QuickRows>(three_columns());
-    if (!vectors) quick->use_scalar_way();
     return [block, quick] {
         block->drop_rows();
         if (quick->take(*block, 0, -1.0) != block->bytes.size())

@@ -14,8 +14,10 @@
 
 #include "ripplenotch/core/number.hpp"
 #include "support/catch.hpp"
+#include "support/vectors.hpp"
 
 using namespace ripplenotch;
+using namespace ripplenotch::testing;
 
 namespace {
 
@@ -72,12 +74,11 @@ std::string expected(double value, int decimals, char mark) {
     return {text, end};
 }
 
-std::vector<bool> instruction_sets() { return has_avx2() ? std::vector{false, true} : std::vector{false}; }
-
 /// Those whose text is another than printf's.
-std::size_t misprinted(const std::vector<double>& values, double divisor, int decimals, bool avx2,
+std::size_t misprinted(const std::vector<double>& values, double divisor, int decimals, bool wide,
                        char mark = '.') {
-    FixedTexts texts(mark, avx2);
+    const Width here(wide);
+    FixedTexts texts(mark);
     std::vector<char> text(number_room);
     std::size_t wrong = 0;
     texts.prepare(values, divisor, decimals);
@@ -91,14 +92,14 @@ std::size_t misprinted(const std::vector<double>& values, double divisor, int de
 }
 
 /// `batches` of each number of decimals, of all lengths.
-void check_batches(std::uint64_t seed, std::size_t batches, bool avx2) {
+void check_batches(std::uint64_t seed, std::size_t batches, bool wide) {
     for (int decimals = 0; decimals <= 17; ++decimals) {
         HardNumbers numbers(seed + static_cast<std::uint64_t>(decimals), decimals);
         std::size_t wrong = 0;
         for (std::size_t batch = 0; batch < batches; ++batch) {
             std::vector<double> values(batch < 18 ? batch : FixedTexts::most - batch % 4);
             std::generate(values.begin(), values.end(), [&] { return numbers.next(); });
-            wrong += misprinted(values, 1.0, decimals, avx2);
+            wrong += misprinted(values, 1.0, decimals, wide);
         }
         CHECK(wrong == 0);
     }
@@ -107,10 +108,10 @@ void check_batches(std::uint64_t seed, std::size_t batches, bool avx2) {
 }  // namespace
 
 TEST_CASE("numbers printed side by side are printf's, whatever their decimals and however many they are") {
-    for (const bool avx2 : instruction_sets()) check_batches(23, 50, avx2);
+    for (const bool wide : widths()) check_batches(23, 150, wide);
 }
 
-// Half a minute: ctest leaves it out, `test_core "[.kernels]"` runs it.
+// The same for half a minute: ctest leaves it out, `test_core "[.kernels]"` runs it.
 TEST_CASE("forty million numbers printed side by side are printf's", "[.kernels]") {
     for (std::uint64_t seed = 1000; seed < 10000; seed += 1000) check_batches(seed, 1000, true);
 }
@@ -125,8 +126,8 @@ TEST_CASE("ties, signs, zeros and what is no number are printed side by side as 
         for (const double unit : {1.0, 1e-3, 1e-6, 1e-7, 1e-8, 1e-9, 1e-13})
             for (const double off : {-1.5, -1.0, -0.5, -0.4999, 0.0, 0.4999, 0.5, 1.0})
                 values.push_back((digits + off) * unit);
-    for (const bool avx2 : instruction_sets())
+    for (const bool wide : widths())
         for (int decimals = 0; decimals <= 17; ++decimals)
             for (const double divisor : {1.0, 1e-3, -1.0, 0.11298482902761668})
-                CHECK(misprinted(values, divisor, decimals, avx2, decimals % 2 == 0 ? '.' : ',') == 0);
+                CHECK(misprinted(values, divisor, decimals, wide, decimals % 2 == 0 ? '.' : ',') == 0);
 }

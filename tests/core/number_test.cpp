@@ -85,7 +85,7 @@ TEST_CASE("numbers in all decimals are printf's, and shortest ones read back", "
     CHECK(misprinted(5, 200000) == 0);
 }
 
-// Half a minute: ctest leaves it out, `test_core "[.kernels]"` runs it.
+// The same for half a minute: ctest leaves it out, `test_core "[.kernels]"` runs it.
 TEST_CASE("thirty million numbers in all decimals are printf's", "[.kernels]") {
     for (std::uint64_t seed = 100; seed < 130; ++seed) CHECK(misprinted(seed, 1000000) == 0);
 }

@@ -13,8 +13,10 @@
 
 #include "ripplenotch/core/phasor.hpp"
 #include "support/catch.hpp"
+#include "support/vectors.hpp"
 
 using namespace ripplenotch;
+using namespace ripplenotch::testing;
 
 namespace {
 constexpr double radians = std::numbers::pi / 180.0;
@@ -68,14 +70,17 @@ TEST_CASE("many angles at once have the bits of each angle alone") {
             std::vector<double> angles(count), cosines(count), sines(count);
             for (double& value : angles) value = angle(random);
             for (std::size_t k = 0; k < count / 4; ++k) angles[k] = 45.0 * std::round(angles[k] / 45.0);
-            portable::cos_degrees(angles, cosines);
-            portable::sin_degrees(angles, sines);
-            for (std::size_t k = 0; k < count; ++k) {
-                CAPTURE(angles[k]);
-                CHECK(std::bit_cast<std::uint64_t>(cosines[k]) ==
-                      std::bit_cast<std::uint64_t>(portable::cos_degrees(angles[k])));
-                CHECK(std::bit_cast<std::uint64_t>(sines[k]) ==
-                      std::bit_cast<std::uint64_t>(portable::sin_degrees(angles[k])));
+            for (const bool wide : widths()) {
+                const Width here(wide);
+                portable::cos_degrees(angles, cosines);
+                portable::sin_degrees(angles, sines);
+                for (std::size_t k = 0; k < count; ++k) {
+                    CAPTURE(angles[k], wide);
+                    CHECK(std::bit_cast<std::uint64_t>(cosines[k]) ==
+                          std::bit_cast<std::uint64_t>(portable::cos_degrees(angles[k])));
+                    CHECK(std::bit_cast<std::uint64_t>(sines[k]) ==
+                          std::bit_cast<std::uint64_t>(portable::sin_degrees(angles[k])));
+                }
             }
         }
     }

@@ -11,6 +11,7 @@
 #include "filter/tables.hpp"
 #include "ripplenotch/design/low_pass.hpp"
 #include "support/catch.hpp"
+#include "support/vectors.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;
@@ -69,9 +70,10 @@ std::vector<double> torque(std::size_t count, std::mt19937& engine) {
     return values;
 }
 
-std::vector<double> in_blocks(const Cascade& sections, const std::vector<double>& in, bool avx2,
+std::vector<double> in_blocks(const Cascade& sections, const std::vector<double>& in, bool wide,
                               std::size_t piece = std::numeric_limits<std::size_t>::max()) {
-    BlockCascade filter(sections, avx2);
+    const Width here(wide);
+    BlockCascade filter(sections);
     filter.start(in.front());
     std::vector<double> out(in.size());
     for (std::size_t at = 0; at < in.size(); at += std::min(piece, in.size() - at)) {
@@ -102,12 +104,6 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-std::vector<bool> instruction_sets() {
-    if (has_avx2()) return {false, true};
-    WARN("no AVX2 here: only the portable kernel is tested");
-    return {false};
-}
-
 }  // namespace
 
 TEST_CASE("sections run together give the bits of one step after the other, for any number of them") {
@@ -132,8 +128,8 @@ TEST_CASE("a random cascade that goes in blocks stays within 1e-12 of the recurs
         if (!block_form_serves(sections)) continue;
         ++served;
         const auto in = torque(60000, engine);
-        for (const bool avx2 : instruction_sets())
-            CHECK(largest_difference(in_blocks(sections, in, avx2), by_sample(sections, in)) < 1e-12);
+        for (const bool wide : widths())
+            CHECK(largest_difference(in_blocks(sections, in, wide), by_sample(sections, in)) < 1e-12);
     }
     CHECK(served > 20);
 }
@@ -144,9 +140,9 @@ TEST_CASE("pieces and instruction sets do not show in the block form, to the las
         const Cascade sections = some_cascade(engine);
         const auto in = torque(10007, engine);
         const auto expected = in_blocks(sections, in, false);
-        for (const bool avx2 : instruction_sets()) {
+        for (const bool wide : widths()) {
             for (const std::size_t piece : {1UL, 3UL, 7UL, 8UL, 9UL, 1000UL, 4096UL, 100000UL})
-                CHECK(same_bits(in_blocks(sections, in, avx2, piece), expected));
+                CHECK(same_bits(in_blocks(sections, in, wide, piece), expected));
         }
     }
 }
@@ -161,8 +157,8 @@ TEST_CASE(
             auto in = torque(3000, engine);
             const auto before = in_blocks(sections, in, false);
             in[at] = bad;
-            for (const bool avx2 : instruction_sets()) {
-                const auto whole = in_blocks(sections, in, avx2), pieces = in_blocks(sections, in, avx2, 7);
+            for (const bool wide : widths()) {
+                const auto whole = in_blocks(sections, in, wide), pieces = in_blocks(sections, in, wide, 7);
                 CHECK(std::memcmp(whole.data(), before.data(), at * sizeof(double)) == 0);
                 CHECK(whole[at] != before[at]);
                 CHECK(same_bits(whole, pieces));

@@ -10,8 +10,10 @@
 #include "core/row_facts.hpp"
 #include "ripplenotch/log/format.hpp"
 #include "support/catch.hpp"
+#include "support/vectors.hpp"
 
 using namespace ripplenotch;
+using namespace ripplenotch::testing;
 
 namespace {
 
@@ -56,20 +58,23 @@ bool equal(const RepeatCounts& a, const RepeatCounts& b) {
 
 TEST_CASE("repeated rows are counted as a plain loop counts them, with and without positions") {
     std::mt19937 engine(1);
-    for (const bool with_position : {false, true}) {
-        for (std::size_t size = 1; size < 60; ++size) {
-            JointRows rows;
-            rows.velocity_deg_s = coarse(size, engine);
-            rows.torque_nm = coarse(size, engine);
-            if (with_position) rows.position_deg = coarse(size, engine);
-            for (const double moving_deg_s : {0.0, 0.5, 1.0, 5.0}) {
-                const RepeatCounts found = count_repeats({rows.velocity_deg_s.data(), rows.torque_nm.data(),
-                                                          with_position ? rows.position_deg.data() : nullptr},
-                                                         size - 1, moving_deg_s);
-                CHECK(equal(found, plainly(rows, 0, size, moving_deg_s)));
+    for (const bool wide : widths())
+        for (const bool with_position : {false, true}) {
+            const Width here(wide);
+            for (std::size_t size = 1; size < 60; ++size) {
+                JointRows rows;
+                rows.velocity_deg_s = coarse(size, engine);
+                rows.torque_nm = coarse(size, engine);
+                if (with_position) rows.position_deg = coarse(size, engine);
+                for (const double moving_deg_s : {0.0, 0.5, 1.0, 5.0}) {
+                    const RepeatCounts found =
+                        count_repeats({rows.velocity_deg_s.data(), rows.torque_nm.data(),
+                                       with_position ? rows.position_deg.data() : nullptr},
+                                      size - 1, moving_deg_s);
+                    CHECK(equal(found, plainly(rows, 0, size, moving_deg_s)));
+                }
             }
         }
-    }
 }
 
 TEST_CASE("the range of speeds is that of a plain loop, and what is no number widens nothing") {
@@ -79,28 +84,36 @@ TEST_CASE("the range of speeds is that of a plain loop, and what is no number wi
         std::vector<double> values(size);
         for (double& value : values) value = engine() % 7 == 0 ? not_a_number : velocity(engine);
         SpeedExtent range{30.0, 40.0}, expected = range;
+        SpeedExtent narrow = range;
         widen(range, values);
+        {
+            const NarrowVectors here;
+            widen(narrow, values);
+        }
         for (const double value : values) {
             if (std::abs(value) < expected.slowest_deg_s) expected.slowest_deg_s = std::abs(value);
             if (std::abs(value) > expected.fastest_deg_s) expected.fastest_deg_s = std::abs(value);
         }
         CHECK(range.slowest_deg_s == expected.slowest_deg_s);
         CHECK(range.fastest_deg_s == expected.fastest_deg_s);
+        CHECK(narrow.slowest_deg_s == range.slowest_deg_s);
+        CHECK(narrow.fastest_deg_s == range.fastest_deg_s);
     }
 }
 
 TEST_CASE("the first step outside a range is found wherever it is, by every instruction set") {
-    for (const bool avx2 : has_avx2() ? std::vector{false, true} : std::vector{false}) {
-        CHECK(first_step_outside({}, 0.0, 1.0, avx2) == 0);
+    for (const bool wide : widths()) {
+        const Width here(wide);
+        CHECK(first_step_outside({}, 0.0, 1.0) == 0);
         for (const std::size_t size : {1UL, 2UL, 16UL, 17UL, 18UL, 64UL, 100UL}) {
             std::vector<double> times(size);
             for (std::size_t k = 0; k < size; ++k) times[k] = 10.0 + 0.25 * static_cast<double>(k);
-            CHECK(first_step_outside(times, 0.0, 0.25, avx2) == size);
+            CHECK(first_step_outside(times, 0.0, 0.25) == size);
             for (std::size_t at = 1; at < size; ++at) {
                 for (const double step : {0.0, -0.25, 0.5, not_a_number, infinity, -infinity}) {
                     std::vector<double> changed = times;
                     for (std::size_t k = at; k < size; ++k) changed[k] += step - 0.25;
-                    CHECK(first_step_outside(changed, 0.0, 0.25, avx2) == at);
+                    CHECK(first_step_outside(changed, 0.0, 0.25) == at);
                 }
             }
         }

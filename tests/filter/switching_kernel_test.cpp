@@ -11,6 +11,7 @@
 #include "filter/kernels/in_series.hpp"
 #include "filter/tables.hpp"
 #include "support/catch.hpp"
+#include "support/vectors.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::testing;
@@ -33,8 +34,6 @@ CandidateTable some_table(std::size_t bands, std::size_t orders, std::mt19937& e
 
 bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-std::vector<bool> instruction_sets() { return has_avx2() ? std::vector{false, true} : std::vector{false}; }
-
 }  // namespace
 
 TEST_CASE(
@@ -43,8 +42,9 @@ TEST_CASE(
     for (std::size_t bands = 1; bands <= 14; ++bands) {
         const std::size_t orders = 1 + bands % 5;
         const Candidates candidates(some_table(bands, orders, engine).bands());
-        for (const bool avx2 : instruction_sets()) {
-            FilterBank bank(candidates, avx2);
+        for (const bool wide : widths()) {
+            const Width here(wide);
+            FilterBank bank(candidates);
             std::vector<std::vector<BiquadState>> alone(bands, std::vector<BiquadState>(candidates.sections));
             const double origin = between(-2.0, 2.0, engine);
             bank.start(origin);
@@ -62,7 +62,7 @@ TEST_CASE(
                     }
                 }
             }
-            INFO(bands << " bands, " << orders << " sections, avx2 " << avx2);
+            INFO(bands << " bands, " << orders << " sections, wide " << wide);
             CHECK(wrong == 0);
         }
     }
@@ -72,27 +72,28 @@ TEST_CASE("the first value outside a range is found wherever it is, by every ins
     std::mt19937 engine(2);
     const double infinity = std::numeric_limits<double>::infinity(),
                  nan = std::numeric_limits<double>::quiet_NaN();
-    for (const bool avx2 : instruction_sets()) {
+    for (const bool wide : widths()) {
+        const Width here(wide);
         for (const std::size_t size : {0UL, 1UL, 15UL, 16UL, 17UL, 64UL, 100UL}) {
             std::vector<double> values(size);
             for (double& value : values)
                 value = (engine() % 2 == 0 ? 1.0 : -1.0) * between(18.001, 36.0, engine);
-            CHECK(first_outside(values, 18.0, 36.0, avx2) == size);
+            CHECK(first_outside(values, 18.0, 36.0) == size);
             for (std::size_t at = 0; at < size; ++at) {
                 const double kept = values[at];
                 for (const double out : {18.0, -18.0, 36.0000001, -40.0, 0.0, nan, infinity, -infinity}) {
                     values[at] = out;
-                    CHECK(first_outside(values, 18.0, 36.0, avx2) == at);
+                    CHECK(first_outside(values, 18.0, 36.0) == at);
                 }
                 for (const double edge : {36.0, -36.0, 18.0000001}) {
                     values[at] = edge;
-                    CHECK(first_outside(values, 18.0, 36.0, avx2) == size);
+                    CHECK(first_outside(values, 18.0, 36.0) == size);
                 }
                 values[at] = kept;
             }
         }
-        CHECK(first_outside(std::vector<double>(40, 1e9), 180.0, infinity, avx2) == 40);
-        CHECK(first_outside(std::vector<double>(40, 0.0), -infinity, 18.0, avx2) == 40);
+        CHECK(first_outside(std::vector<double>(40, 1e9), 180.0, infinity) == 40);
+        CHECK(first_outside(std::vector<double>(40, 0.0), -infinity, 18.0) == 40);
     }
 }
 

@@ -37,6 +37,8 @@ DOORS = {
     r"CLI/": {"src/cli/options/options_implementation.hpp"},
     r"fast_float/": {"src/core/number.cpp"},
     r"nettle/": {"src/core/sha256.cpp"},
+    r"(\w+mm|x86)intrin": {"src/core/vectors/bytes_avx2.hpp"},
+    r"arm_neon": {"src/core/vectors/bytes_neon.hpp"},
     r"Eigen/Sparse": {"src/analysis/kernels/envelope_kernel.cpp", "src/analysis/track/envelope_solver.cpp"},
     r"Eigen/(?!Sparse)": {"src/core/linear_algebra.hpp"},
 }
@@ -150,6 +152,13 @@ class Rooms(unittest.TestCase):
                 found = re.search(rf"std::({open_functions})\(", line)
                 self.assertIsNone(found, f"{path.relative_to(SOURCE)}:{number} uses {found and found[0]}...); "
                                          "take it from core/portable_math.hpp")
+
+    def test_processors_are_told_apart_in_one_folder(self):
+        told_apart = r"\b_mm\d*_|\b__m(128|256|512)|\btarget(_clones)?\(\"|__builtin_(ia32|cpu|neon)|__(SSE|AVX|ARM_NEON|x86_64|aarch64)|\bvector_size\("
+        for path, _, _ in sources():
+            if "core/vectors/" not in path.as_posix():
+                found = re.search(told_apart, path.read_text())
+                self.assertIsNone(found, f"{path.relative_to(SOURCE)} has {found and found[0]}; kernels are written once, over src/core/vectors")
 
     def test_every_source_file_names_its_licence(self):
         for path, _, _ in sources():

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The inner loops over one evenly sampled piece of a log. Sums run side by side and are put together in
-// one order, so that the bits are the same whether or not the processor has AVX2.
+// one order.
 
 #include <array>
 #include <complex>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// One Fourier sum and its derivatives over an even grid, many samples at a time. The bits are the same
-// whether or not the processor has AVX2.
+// One Fourier sum and its derivatives over an even grid, many samples at a time.
 
 #include <span>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -19,10 +19,9 @@ struct Pair {
 };
 
 template <class Number>
-inline __attribute__((always_inline)) void untangle(const Number& real, const Number& imaginary,
-                                                    const Number& far_real, const Number& far_imaginary,
-                                                    const Number& cosine, const Number& sine,
-                                                    Pair<Number>& pair) {
+RIPPLENOTCH_INLINED void untangle(const Number& real, const Number& imaginary, const Number& far_real,
+                                  const Number& far_imaginary, const Number& cosine, const Number& sine,
+                                  Pair<Number>& pair) {
     const Number odd_real = imaginary + far_imaginary, odd_imaginary = far_real - real;
     pair.even_real = real + far_real;
     pair.even_imaginary = imaginary - far_imaginary;
@@ -31,7 +30,7 @@ inline __attribute__((always_inline)) void untangle(const Number& real, const Nu
 }
 
 template <class Number>
-inline __attribute__((always_inline)) void powers(const Pair<Number>& pair, Number& here, Number& mirror) {
+RIPPLENOTCH_INLINED void powers(const Pair<Number>& pair, Number& here, Number& mirror) {
     const Number real = pair.even_real + pair.odd_real, imaginary = pair.even_imaginary + pair.odd_imaginary;
     const Number far_real = pair.even_real - pair.odd_real,
                  far_imaginary = pair.even_imaginary - pair.odd_imaginary;
@@ -39,23 +38,52 @@ inline __attribute__((always_inline)) void powers(const Pair<Number>& pair, Numb
     mirror = far_real * far_real + far_imaginary * far_imaginary;
 }
 
+struct AddHalfPower {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(std::span<const std::complex<double>> sums, double scale,
+                                        std::span<double> power, const double* cosines, const double* sines) {
+        const auto* const parts = reinterpret_cast<const double*>(sums.data());
+        const std::size_t half = sums.size();
+        const double sum = parts[0] + parts[1], difference = parts[0] - parts[1], quarter = 0.25 * scale;
+        power[0] += scale * (sum * sum);
+        power[half] += scale * (difference * difference);
+        Lanes real, imaginary, far_real, far_imaginary, cosine, sine, here, mirror, there;
+        Pair<Lanes> four;
+        std::size_t k = 1;
+        for (; 2 * (k + lanes - 1) < half; k += lanes) {
+            const std::size_t far = half - k - (lanes - 1);
+            load_complex(real, imaginary, parts + 2 * k);
+            load_complex(far_real, far_imaginary, parts + 2 * far);
+            reverse(far_real);
+            reverse(far_imaginary);
+            load(cosine, cosines + k);
+            load(sine, sines + k);
+            untangle(real, imaginary, far_real, far_imaginary, cosine, sine, four);
+            powers(four, here, mirror);
+            load(there, power.data() + k);
+            store(power.data() + k, there + here * quarter);
+            reverse(mirror);
+            load(there, power.data() + far);
+            store(power.data() + far, there + mirror * quarter);
+        }
+        Pair<double> one;
+        for (double near_power, far_power; 2 * k <= half; ++k) {
+            const std::size_t far = half - k;
+            untangle(parts[2 * k], parts[2 * k + 1], parts[2 * far], parts[2 * far + 1], cosines[k], sines[k],
+                     one);
+            powers(one, near_power, far_power);
+            power[k] += near_power * quarter;
+            if (far > k) power[far] += far_power * quarter;
+        }
+    }
+};
+
 }  // namespace
 
-RIPPLENOTCH_FOR_AVX2_TOO
+// Only for lengths whose transform takes many times as long.
 void add_power(std::span<const std::complex<double>> sums, double scale, std::span<double> power) {
-    const auto* const parts = reinterpret_cast<const double*>(sums.data());
-    const std::size_t n = sums.size(), even = n - n % lanes;
-    Four low, high, there;
-    for (std::size_t k = 0; k < even; k += lanes) {
-        load(low, parts + 2 * k);
-        load(high, parts + 2 * k + lanes);
-        load(there, power.data() + k);
-        const Four real = __builtin_shufflevector(low, high, 0, 2, 4, 6);
-        const Four imaginary = __builtin_shufflevector(low, high, 1, 3, 5, 7);
-        store(power.data() + k, there + (real * real + imaginary * imaginary) * scale);
-    }
-    for (std::size_t k = even; k < n; ++k)
-        power[k] += (parts[2 * k] * parts[2 * k] + parts[2 * k + 1] * parts[2 * k + 1]) * scale;
+    for (std::size_t k = 0; k < sums.size(); ++k)
+        power[k] += (sums[k].real() * sums[k].real() + sums[k].imag() * sums[k].imag()) * scale;
 }
 
 HalfPower::HalfPower(std::size_t length) {
@@ -66,43 +94,8 @@ HalfPower::HalfPower(std::size_t length) {
     }
 }
 
-RIPPLENOTCH_FOR_AVX2_TOO
 void HalfPower::add(std::span<const std::complex<double>> sums, double scale, std::span<double> power) const {
-    const auto* const parts = reinterpret_cast<const double*>(sums.data());
-    const std::size_t half = sums.size();
-    const double sum = parts[0] + parts[1], difference = parts[0] - parts[1], quarter = 0.25 * scale;
-    power[0] += scale * (sum * sum);
-    power[half] += scale * (difference * difference);
-    Four low, high, far_low, far_high, cosine, sine, here, mirror, there;
-    Pair<Four> four;
-    std::size_t k = 1;
-    for (; 2 * (k + lanes - 1) < half; k += lanes) {
-        const std::size_t far = half - k - (lanes - 1);
-        load(low, parts + 2 * k);
-        load(high, parts + 2 * k + lanes);
-        load(far_low, parts + 2 * far);
-        load(far_high, parts + 2 * far + lanes);
-        load(cosine, cosine_.data() + k);
-        load(sine, sine_.data() + k);
-        untangle<Four>(__builtin_shufflevector(low, high, 0, 2, 4, 6),
-                       __builtin_shufflevector(low, high, 1, 3, 5, 7),
-                       __builtin_shufflevector(far_low, far_high, 6, 4, 2, 0),
-                       __builtin_shufflevector(far_low, far_high, 7, 5, 3, 1), cosine, sine, four);
-        powers(four, here, mirror);
-        load(there, power.data() + k);
-        store(power.data() + k, there + here * quarter);
-        load(there, power.data() + far);
-        store(power.data() + far, there + __builtin_shufflevector(mirror, mirror, 3, 2, 1, 0) * quarter);
-    }
-    Pair<double> one;
-    for (double near_power, far_power; 2 * k <= half; ++k) {
-        const std::size_t far = half - k;
-        untangle(parts[2 * k], parts[2 * k + 1], parts[2 * far], parts[2 * far + 1], cosine_[k], sine_[k],
-                 one);
-        powers(one, near_power, far_power);
-        power[k] += near_power * quarter;
-        if (far > k) power[far] += far_power * quarter;
-    }
+    in_lanes<AddHalfPower>(sums, scale, power, cosine_.data(), sine_.data());
 }
 
 }  // namespace ripplenotch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Squared magnitudes of Fourier sums, added up. The bits are the same whether or not the processor has AVX2.
+// Squared magnitudes of Fourier sums, added up.
 
 #include <complex>
 #include <span>

@@ -5,15 +5,46 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
+using Row = SpreadingKernel::Row;
+constexpr std::size_t terms = SpreadingKernel::terms;
+
 double kernel(double x) {
     return portable::exp(SpreadingKernel::beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0));
 }
+
+/// Even and odd powers apart, so that half as many steps wait for each other.
+struct Weigh {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(const Row* coefficients, double offset, double* row) {
+        constexpr std::size_t lanes = lane_count;
+        constexpr std::size_t groups = SpreadingKernel::padded / lanes;
+        const double z = 2.0 * offset - 1.0, square = z * z;
+        Lanes even[groups], odd[groups], term;
+#pragma GCC unroll 3
+        for (std::size_t g = 0; g < groups; ++g) {
+            load(even[g], &coefficients[terms - 2][g * lanes]);
+            load(odd[g], &coefficients[terms - 1][g * lanes]);
+        }
+#pragma GCC unroll 7
+        for (std::size_t d = terms - 2; d > 0; d -= 2) {
+#pragma GCC unroll 3
+            for (std::size_t g = 0; g < groups; ++g) {
+                load(term, &coefficients[d - 2][g * lanes]);
+                even[g] = even[g] * square + term;
+                load(term, &coefficients[d - 1][g * lanes]);
+                odd[g] = odd[g] * square + term;
+            }
+        }
+#pragma GCC unroll 3
+        for (std::size_t g = 0; g < groups; ++g) store(row + g * lanes, even[g] + odd[g] * z);
+    }
+};
 
 }  // namespace
 
@@ -44,30 +75,8 @@ SpreadingKernel::SpreadingKernel() {
     }
 }
 
-/// Even and odd powers apart, so that half as many steps wait for each other.
-RIPPLENOTCH_FOR_AVX2_TOO
 void SpreadingKernel::at(double offset, Row& row) const {
-    constexpr std::size_t lanes = lane_count;
-    constexpr std::size_t groups = padded / lanes;
-    const double z = 2.0 * offset - 1.0, square = z * z;
-    Four even[groups], odd[groups], term;
-#pragma GCC unroll 3
-    for (std::size_t g = 0; g < groups; ++g) {
-        load(even[g], &coefficients_[terms - 2][g * lanes]);
-        load(odd[g], &coefficients_[terms - 1][g * lanes]);
-    }
-#pragma GCC unroll 7
-    for (std::size_t d = terms - 2; d > 0; d -= 2) {
-#pragma GCC unroll 3
-        for (std::size_t g = 0; g < groups; ++g) {
-            load(term, &coefficients_[d - 2][g * lanes]);
-            even[g] = even[g] * square + term;
-            load(term, &coefficients_[d - 1][g * lanes]);
-            odd[g] = odd[g] * square + term;
-        }
-    }
-#pragma GCC unroll 3
-    for (std::size_t g = 0; g < groups; ++g) store(&row[g * lanes], even[g] + odd[g] * z);
+    in_lanes<Weigh>(coefficients_.data(), offset, row.data());
 }
 
 }  // namespace ripplenotch

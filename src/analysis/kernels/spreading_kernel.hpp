@@ -12,6 +12,7 @@ struct SpreadingKernel {
     static constexpr std::size_t width = 10;
     static constexpr double beta = 2.30 * static_cast<double>(width);
     static constexpr std::size_t padded = 12;  ///< the points of the kernel, filled up to whole vectors
+    static constexpr std::size_t terms = 16;   ///< of a polynomial
     using Row = std::array<double, padded>;
 
     /// Works the polynomials out; once a program.
@@ -22,7 +23,6 @@ struct SpreadingKernel {
     void at(double offset, Row& row) const;
 
   private:
-    static constexpr std::size_t terms = 16;
     std::array<Row, terms> coefficients_{};  // by power of 2 offset - 1
 };
 

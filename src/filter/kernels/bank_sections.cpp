@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -104,21 +104,19 @@ RIPPLENOTCH_INLINED void run_groups_of_bank(const BankRun& bank, std::span<const
     }
 }
 
-template <class Lanes>
-RIPPLENOTCH_INLINED void run_any(const BankRun& bank, std::span<const double> in) {
-    if (bank.mirrored) {
-        run_groups_of_bank<Lanes, true>(bank, in);
-    } else {
-        run_groups_of_bank<Lanes, false>(bank, in);
+struct RunBank {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(const BankRun& bank, std::span<const double> in) {
+        if (bank.mirrored) {
+            run_groups_of_bank<Lanes, true>(bank, in);
+        } else {
+            run_groups_of_bank<Lanes, false>(bank, in);
+        }
     }
-}
+};
 
 }  // namespace
 
-void run_bank(const BankRun& bank, std::span<const double> in) { run_any<TwoAndTwo>(bank, in); }
-
-RIPPLENOTCH_TARGET_AVX2 void run_bank_avx2(const BankRun& bank, std::span<const double> in) {
-    run_any<Four>(bank, in);
-}
+void run_bank(const BankRun& bank, std::span<const double> in) { in_lanes<RunBank>(bank, in); }
 
 }  // namespace ripplenotch

@@ -21,8 +21,8 @@ struct alignas(32) BankOutput {
 };
 
 /// `sections` of each of the groups of four filters, group after group; `outputs` of each group, `stride`
-/// apart, get what `in` gives. Each lane does what step() does, in its order, so both functions give
-/// the bits of one filter alone.
+/// apart, get what `in` gives. Each lane does what step() does, in its order, so it
+/// gives the bits of one filter alone.
 struct BankRun {
     std::span<BankSection> sections;
     std::size_t groups;
@@ -31,6 +31,5 @@ struct BankRun {
     bool mirrored;  ///< b2 is b0 in every section and lane
 };
 void run_bank(const BankRun& bank, std::span<const double> in);
-void run_bank_avx2(const BankRun& bank, std::span<const double> in);
 
 }  // namespace ripplenotch

@@ -9,7 +9,7 @@ constexpr std::size_t sections_a_pass = BlockForm::memory / 2;
 constexpr std::size_t most_at_once = 1024;  // samples that stay in the first cache between passes
 }  // namespace
 
-BlockCascade::BlockCascade(std::span<const Biquad> sections, bool avx2) : avx2_(avx2) {
+BlockCascade::BlockCascade(std::span<const Biquad> sections) {
     for (std::size_t i = 0; i < sections.size(); i += sections_a_pass) {
         passes_.push_back({BlockForm(sections.subspan(i, std::min(sections_a_pass, sections.size() - i)))});
     }
@@ -48,8 +48,7 @@ void BlockCascade::run(std::span<const double> in, std::span<double> out) {
 }
 
 bool BlockCascade::run_whole(std::span<const double> in, std::span<double> out, bool whatever) {
-    const auto kernel = avx2_ ? run_groups_avx2 : run_groups;
-    return kernel(passes_, in, origin_, out, whatever);
+    return run_groups(passes_, in, origin_, out, whatever);
 }
 
 // Each output from the inputs that it may know; those that follow count as settled, and their coefficients

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "core/processor.hpp"
 #include "filter/kernels/block_groups.hpp"
 
 namespace ripplenotch {
@@ -17,7 +16,7 @@ namespace ripplenotch {
 class BlockCascade {
   public:
     /// One section at least.
-    explicit BlockCascade(std::span<const Biquad> sections, bool avx2 = has_avx2());
+    explicit BlockCascade(std::span<const Biquad> sections);
 
     /// Settled at a constant input; sections have unity gain at 0 Hz.
     void start(double origin);
@@ -34,7 +33,6 @@ class BlockCascade {
     std::array<double, group> inputs_{};     ///< of the group that is not complete
     std::size_t known_ = 0;                  ///< how many of them
     double origin_ = 0.0;
-    bool avx2_;
 };
 
 }  // namespace ripplenotch

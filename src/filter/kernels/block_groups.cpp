@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "filter/kernels/block_groups.hpp"
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -95,40 +95,37 @@ RIPPLENOTCH_INLINED void run_pass(BlockPass& pass, const Stretch& stretch, Lanes
     store(pass.memory.data(), memory);
 }
 
-template <class Lanes>
-RIPPLENOTCH_INLINED bool run_all(std::span<BlockPass> passes, std::span<const double> in, double origin,
-                                 std::span<double> out, bool whatever) {
-    Lanes values, excess;
-    fill(excess, 0.0);
-    for (const BlockPass& pass : passes) {
-        load(values, pass.memory.data());
-        weigh(excess, values);
+struct RunGroups {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static bool run(std::span<BlockPass> passes, std::span<const double> in,
+                                        double origin, std::span<double> out, bool whatever) {
+        Lanes values, excess;
+        fill(excess, 0.0);
+        for (const BlockPass& pass : passes) {
+            load(values, pass.memory.data());
+            weigh(excess, values);
+        }
+        const BlockForm::Memory before = passes.front().memory;
+        const auto plus = [&](std::size_t pass) { return pass + 1 == passes.size() ? origin : 0.0; };
+        run_pass<true>(passes.front(), {in.data(), origin, out.data(), plus(0), in.size()}, excess);
+        double lanes[4];
+        store(lanes, excess);
+        const bool moderate = lanes[0] == 0.0 && lanes[1] == 0.0 && lanes[2] == 0.0 && lanes[3] == 0.0;
+        if (!moderate && !whatever) {
+            passes.front().memory = before;
+            return false;
+        }
+        for (std::size_t i = 1; i < passes.size(); ++i)
+            run_pass<false>(passes[i], {out.data(), 0.0, out.data(), plus(i), out.size()}, excess);
+        return true;
     }
-    const BlockForm::Memory before = passes.front().memory;
-    const auto plus = [&](std::size_t pass) { return pass + 1 == passes.size() ? origin : 0.0; };
-    run_pass<true>(passes.front(), {in.data(), origin, out.data(), plus(0), in.size()}, excess);
-    double lanes[4];
-    store(lanes, excess);
-    const bool moderate = lanes[0] == 0.0 && lanes[1] == 0.0 && lanes[2] == 0.0 && lanes[3] == 0.0;
-    if (!moderate && !whatever) {
-        passes.front().memory = before;
-        return false;
-    }
-    for (std::size_t i = 1; i < passes.size(); ++i)
-        run_pass<false>(passes[i], {out.data(), 0.0, out.data(), plus(i), out.size()}, excess);
-    return true;
-}
+};
 
 }  // namespace
 
 bool run_groups(std::span<BlockPass> passes, std::span<const double> in, double origin, std::span<double> out,
                 bool whatever) {
-    return run_all<TwoAndTwo>(passes, in, origin, out, whatever);
-}
-
-RIPPLENOTCH_TARGET_AVX2 bool run_groups_avx2(std::span<BlockPass> passes, std::span<const double> in,
-                                             double origin, std::span<double> out, bool whatever) {
-    return run_all<Four>(passes, in, origin, out, whatever);
+    return in_lanes<RunGroups>(passes, in, origin, out, whatever);
 }
 
 }  // namespace ripplenotch

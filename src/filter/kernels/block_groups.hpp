@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The inner loop of the block form, for the instruction sets that it is built for.
+// The inner loop of the block form.
 
 #include <cstddef>
 #include <span>
@@ -19,10 +19,7 @@ struct BlockPass {
 /// is one at least; sizes are equal, and the spans may not overlap. False, with the memories as before and
 /// nothing of use in `out`, where an input or a memory is so large, or no number, that an input could be
 /// heard in an output before it (zero times infinity is no zero), unless it is to run `whatever` they are.
-/// The same bits from both.
 [[nodiscard]] bool run_groups(std::span<BlockPass> passes, std::span<const double> in, double origin,
                               std::span<double> out, bool whatever = false);
-[[nodiscard]] bool run_groups_avx2(std::span<BlockPass> passes, std::span<const double> in, double origin,
-                                   std::span<double> out, bool whatever = false);
 
 }  // namespace ripplenotch

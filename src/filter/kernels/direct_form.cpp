@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "filter/kernels/direct_form.hpp"
 
-#include "core/lanes.hpp"
+#include "core/vectors/lanes.hpp"
 #include "filter/kernels/in_series.hpp"
 
 namespace ripplenotch {

@@ -42,6 +42,6 @@ struct CellCursor {
 /// Writes the number of each cell of the form [-]digits[mark digits] into `numbers`, correctly rounded. Sets
 /// odd[r] for the others and where it is not sure, and returns whether there was one. 33 bytes before the end
 /// of each cell must be readable.
-bool read_cells_avx2(const CellColumn& column, double* numbers, std::uint8_t* odd);
+bool read_cells(const CellColumn& column, double* numbers, std::uint8_t* odd);
 
 }  // namespace ripplenotch

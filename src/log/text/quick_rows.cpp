@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "core/processor.hpp"
+#include "core/vectors/dispatch.hpp"
 #include "log/row_sink.hpp"
 #include "log/text/vector_rows.hpp"
 
@@ -13,7 +13,8 @@ namespace ripplenotch {
 QuickRows::QuickRows(RowPlan plan)
     : plan_(std::move(plan)),
       parser_(plan_.rules, plan_.columns, plan_.wanted, plan_.stamp),
-      vectorised_(has_avx2() && !plan_.stamp.careful && plan_.rules.delimiter != ' ' && plan_.columns > 0) {}
+      vectorised_(wide_vectors() && !plan_.stamp.careful && plan_.rules.delimiter != ' ' &&
+                  plan_.columns > 0) {}
 
 std::size_t QuickRows::take(RowBlock& block, std::size_t begin, double time_before) const {
     return vectorised_ ? take_rows_by_vectors(block, begin, time_before, plan_, parser_)

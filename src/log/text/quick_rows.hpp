@@ -46,15 +46,13 @@ class QuickRows {
     [[nodiscard]] bool parse(std::string_view line, ParsedRow& row) const {
         return parser_.parse(line.data(), line.data() + line.size(), row);
     }
-    /// Row after row from now on, as on processors without AVX2; the numbers are the same.
-    void use_scalar_way() { vectorised_ = false; }
 
   private:
     std::size_t take_by_parser(RowBlock& block, std::size_t begin, double time_before) const;
 
     RowPlan plan_;
     RowParser parser_;
-    bool vectorised_ = false;
+    bool vectorised_;
 };
 
 }  // namespace ripplenotch

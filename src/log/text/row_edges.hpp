@@ -24,7 +24,7 @@ struct Edges {
 };
 
 /// Fills `found` from the first `size` (at most stretch_bytes) bytes of `text`.
-void find_edges_avx2(const char* text, std::size_t size, Separators separators, Edges& found);
+void find_edges(const char* text, std::size_t size, Separators separators, Edges& found);
 
 /// Adds the bytes from `at` on, one by one, behind those that the vectors have looked at.
 void find_last_edges(const char* text, std::size_t at, std::size_t size, Separators separators, Edges& found);

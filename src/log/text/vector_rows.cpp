@@ -5,15 +5,15 @@
 #include <array>
 #include <cstdint>
 
+#include "core/vectors/bytes.hpp"
 #include "log/row_sink.hpp"
 #include "log/text/cell_columns.hpp"
 #include "log/text/cell_masks.hpp"
 #include "log/text/row_edges.hpp"
-#include "log/text/x86_vectors.hpp"
 
 namespace ripplenotch {
 
-#if defined(RIPPLENOTCH_X86_VECTORS)
+#if defined(RIPPLENOTCH_BYTE_VECTORS)
 namespace {
 
 constexpr std::size_t first_bytes = 512;
@@ -32,7 +32,7 @@ class Stretch {
         std::size_t regular = 0;
         // A little at first: where every other row needs care, there is a stretch for each of them.
         for (; regular == 0 && reach_ <= stretch_bytes; reach_ *= 4) {
-            find_edges_avx2(text_, std::min(reach_, bytes.size() - begin), separators(), edges_);
+            find_edges(text_, std::min(reach_, bytes.size() - begin), separators(), edges_);
             regular = regular_rows(text_, edges_, separators(), plan_.columns);
         }
         reach_ = std::min(reach_, stretch_bytes);
@@ -88,7 +88,7 @@ class Stretch {
                                    plan_.rules.decimal_mark,
                                    lanes_hold_all && !apart};
             double* const numbers = sink_.numbers(wanted.slot) + unread;
-            if (read_cells_avx2(cells, numbers, odd_.data() + unread)) any_odd_ = true;
+            if (read_cells(cells, numbers, odd_.data() + unread)) any_odd_ = true;
         }
     }
 
