@@ -58,7 +58,7 @@ Benchmark::Pass parse_rows(Digits digits, bool vectors) {
     auto quick = std::make_shared<QuickRows>(three_columns());
     return [block, quick] {
         block->drop_rows();
-        if (quick->take(*block, 0, -1.0) != block->bytes.size())
+        if (quick->read(*block, 0, -1.0) != block->bytes.size())
             throw std::logic_error("not all rows were taken");
         keep(block->joints.front().torque_nm.back());
     };

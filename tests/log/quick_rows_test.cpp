@@ -68,7 +68,7 @@ Taken taken(const std::string& text, bool wide) {
     const QuickRows quick = three_columns();
     Taken result;
     result.block.bytes = text;
-    result.end = quick.take(result.block, 0, no_time);
+    result.end = quick.read(result.block, 0, no_time);
     return result;
 }
 
@@ -158,7 +158,7 @@ TEST_CASE("rows are taken at once up to the first that is not certainly right, w
                 for (int i = 0; i < before; ++i) block.bytes += good;
                 block.bytes += bad + good;
                 const QuickRows quick = three_columns();
-                CHECK(quick.take(block, 0, no_time) == static_cast<std::size_t>(before) * good.size());
+                CHECK(quick.read(block, 0, no_time) == static_cast<std::size_t>(before) * good.size());
                 CHECK(block.size() == static_cast<std::size_t>(before));
             }
         }
@@ -176,7 +176,7 @@ TEST_CASE("a delimiter within quotes is none, in columns that nobody reads as we
         block.bytes = text;
         const QuickRows quick(
             {{',', '.'}, '\n', 4, {{0, velocity_slot}, {3, torque_slot}}, std::vector<double>(4, 1.0)});
-        CHECK(quick.take(block, 0, no_time) == end);
+        CHECK(quick.read(block, 0, no_time) == end);
         CHECK(block.size() == 40);
     }
 }
@@ -185,8 +185,8 @@ TEST_CASE("taking goes on behind a row that was taken otherwise, and keeps what 
     RowBlock block;
     block.bytes = "1,2,3\n4,5\n6,7,8\n9,10,11\n";
     const QuickRows quick = three_columns();
-    CHECK(quick.take(block, 0, no_time) == 6);
-    CHECK(quick.take(block, 10, no_time) == block.bytes.size());
+    CHECK(quick.read(block, 0, no_time) == 6);
+    CHECK(quick.read(block, 10, no_time) == block.bytes.size());
     CHECK(block.joints[0].torque_nm == std::vector<double>{2, 7, 10});
     CHECK(block.joints[0].torque_begin == std::vector<std::uint32_t>{2, 12, 18});
 }
@@ -198,8 +198,8 @@ TEST_CASE("time that runs backward ends what is taken at once", "[log]") {
             {{',', '.'}, '\n', 2, {{0, time_slot}, {1, torque_slot}}, std::vector<double>(4, 1.0)});
         RowBlock block;
         block.bytes = "1,5\n2,5\n2,6\n1.999,7\n3,8\n";
-        CHECK(quick.take(block, 0, no_time) == 12);
-        CHECK(quick.take(block, 12, 2.0) == 12);
+        CHECK(quick.read(block, 0, no_time) == 12);
+        CHECK(quick.read(block, 12, 2.0) == 12);
         CHECK(block.time_s == std::vector<double>{1, 2, 2});
     }
 }
@@ -209,7 +209,7 @@ TEST_CASE("decimal commas, semicolons, lone carriage returns and wide rows are t
     RowBlock block;
     block.bytes = "1,5;-2,25;3\r4;5,125;6\r";
     const QuickRows quick = three_columns(';', ',', '\r');
-    CHECK(quick.take(block, 0, no_time) == block.bytes.size());
+    CHECK(quick.read(block, 0, no_time) == block.bytes.size());
     CHECK(block.joints[0].torque_nm == std::vector<double>{-2.25, 5.125});
     // 400 columns of 30 characters: a row longer than the stretch that is searched at once is left alone.
     const RowPlan plan{{',', '.'}, '\n', 400, {{399, torque_slot}}, std::vector<double>(4, 1.0)};
@@ -218,9 +218,9 @@ TEST_CASE("decimal commas, semicolons, lone carriage returns and wide rows are t
         for (int column = 0; column < 399; ++column) rows.bytes += std::string(29, 'x') + ",";
         rows.bytes += "7.5\n";
     }
-    const std::size_t taken = QuickRows(plan).take(rows, 0, no_time);
+    const std::size_t taken = QuickRows(plan).read(rows, 0, no_time);
     CHECK((taken == 0 || taken == rows.bytes.size()));
     const NarrowVectors here;
-    CHECK(QuickRows(plan).take(rows, taken, no_time) == rows.bytes.size());
+    CHECK(QuickRows(plan).read(rows, taken, no_time) == rows.bytes.size());
     CHECK(rows.joints[0].torque_nm == std::vector<double>{7.5, 7.5, 7.5});
 }

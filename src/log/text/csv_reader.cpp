@@ -146,7 +146,7 @@ bool CsvReader::fetch(RowBlock& block) {
     return !block.bytes.empty();  // a line that is too long is accept()'s, which has its number
 }
 
-void CsvReader::parse(RowBlock& block) const { block.parsed_bytes = quick_->take(block, 0, not_a_number); }
+void CsvReader::parse(RowBlock& block) const { block.parsed_bytes = quick_->read(block, 0, not_a_number); }
 
 void CsvReader::accept(RowBlock& block) {
     block.first_row = rows_;
@@ -154,7 +154,7 @@ void CsvReader::accept(RowBlock& block) {
     note_quick_rows(block, 0);
     std::size_t begin = block.parsed_bytes;
     try {
-        while (begin < block.bytes.size()) begin = take_on(block, begin);
+        while (begin < block.bytes.size()) begin = accept_from(block, begin);
     } catch (const Error&) {
         block.failure = std::current_exception();
         block.bytes.resize(begin);
@@ -162,7 +162,7 @@ void CsvReader::accept(RowBlock& block) {
 }
 
 // The line at `begin`, and what can be taken at once behind it; returns where the next line begins.
-std::size_t CsvReader::take_on(RowBlock& block, std::size_t begin) {
+std::size_t CsvReader::accept_from(RowBlock& block, std::size_t begin) {
     const std::size_t found = block.bytes.find(dialect_.line_end, begin);
     last_line_complete_ = found != std::string::npos;
     const std::size_t end = last_line_complete_ ? found : block.bytes.size();
@@ -171,7 +171,7 @@ std::size_t CsvReader::take_on(RowBlock& block, std::size_t begin) {
             "{}:{}: read a line of more than 1 MiB, expected rows of {} cells; check that this is a text log",
             source_->name(), line_in_file(), dialect_.columns);
     }
-    const bool row = take_line(block, begin, end);
+    const bool row = accept_line(block, begin, end);
     bytes_without_row_ = row ? 0 : bytes_without_row_ + end - begin;
     ++line_;
     const std::size_t next = std::min(end + 1, block.bytes.size());
@@ -183,7 +183,7 @@ std::size_t CsvReader::take_on(RowBlock& block, std::size_t begin) {
     // A row that needed care is seldom alone.
     if (!plain_row_ || end_mark_seen_ || next == block.bytes.size()) return next;
     const std::size_t before = block.size();
-    const std::size_t taken = quick_->take(block, next, before_.values[time_slot]);
+    const std::size_t taken = quick_->read(block, next, before_.values[time_slot]);
     note_quick_rows(block, before);
     return taken;
 }
@@ -217,7 +217,7 @@ void CsvReader::note_quick_rows(RowBlock& block, std::size_t before) {
 }
 
 // False for a comment, a blank line and the end mark.
-bool CsvReader::take_line(RowBlock& block, std::size_t begin, std::size_t end) {
+bool CsvReader::accept_line(RowBlock& block, std::size_t begin, std::size_t end) {
     const char* const base = block.bytes.data();
     if (end > begin && base[end - 1] == '\r') --end;
     const std::string_view line(base + begin, end - begin);

@@ -34,8 +34,8 @@ class CsvReader : public LogReader {
     void plan_columns();
     void note_quick_rows(RowBlock& block, std::size_t before);
     [[nodiscard]] bool continues(const RowBlock& block) const;
-    std::size_t take_on(RowBlock& block, std::size_t begin);
-    bool take_line(RowBlock& block, std::size_t begin, std::size_t end);
+    std::size_t accept_from(RowBlock& block, std::size_t begin);
+    bool accept_line(RowBlock& block, std::size_t begin, std::size_t end);
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
     double read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted, RowBlock& block);
     void append_row(RowBlock& block, ParsedRow& row);

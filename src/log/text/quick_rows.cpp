@@ -16,12 +16,12 @@ QuickRows::QuickRows(RowPlan plan)
       vectorised_(wide_vectors() && !plan_.stamp.careful && plan_.rules.delimiter != ' ' &&
                   plan_.columns > 0) {}
 
-std::size_t QuickRows::take(RowBlock& block, std::size_t begin, double time_before) const {
-    return vectorised_ ? take_rows_by_vectors(block, begin, time_before, plan_, parser_)
-                       : take_by_parser(block, begin, time_before);
+std::size_t QuickRows::read(RowBlock& block, std::size_t begin, double time_before) const {
+    return vectorised_ ? read_rows_by_vectors(block, begin, time_before, plan_, parser_)
+                       : read_by_parser(block, begin, time_before);
 }
 
-std::size_t QuickRows::take_by_parser(RowBlock& block, std::size_t begin, double time_before) const {
+std::size_t QuickRows::read_by_parser(RowBlock& block, std::size_t begin, double time_before) const {
     const char* const text = block.bytes.data();
     const std::size_t size = block.bytes.size();
     constexpr std::size_t rows_at_once = 128;

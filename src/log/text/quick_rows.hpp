@@ -40,7 +40,7 @@ class QuickRows {
     /// Appends the rows of block.bytes from offset `begin` to the block, as long as each is certainly well
     /// formed and its time not before the one above it (`time_before`, in the file's unit). Returns where it
     /// stopped: the beginning of a line, or the end. The numbers are those of RowParser, bit for bit.
-    std::size_t take(RowBlock& block, std::size_t begin, double time_before) const;
+    std::size_t read(RowBlock& block, std::size_t begin, double time_before) const;
 
     /// One row, not appended.
     [[nodiscard]] bool parse(std::string_view line, ParsedRow& row) const {
@@ -48,7 +48,7 @@ class QuickRows {
     }
 
   private:
-    std::size_t take_by_parser(RowBlock& block, std::size_t begin, double time_before) const;
+    std::size_t read_by_parser(RowBlock& block, std::size_t begin, double time_before) const;
 
     RowPlan plan_;
     RowParser parser_;

@@ -51,7 +51,7 @@ GuessedRules rules_of(std::string_view bytes, const std::vector<TextLine>& conte
         source.name(), source.number_in_file(content[aside].number), content[aside].of(bytes).substr(0, 40));
 }
 
-void take_sample(std::string_view bytes, std::span<const TextLine> rows, TextDialect& dialect) {
+void look_at_sample(std::string_view bytes, std::span<const TextLine> rows, TextDialect& dialect) {
     dialect.sample.assign(dialect.columns, {});
     dialect.clock_texts.assign(dialect.columns, false);
     dialect.first_counts.assign(dialect.columns, 0);
@@ -123,7 +123,7 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& sou
     if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());
     dialect.data_offset = lines.content[row].begin;
     dialect.data_line = lines.content[row].number;
-    take_sample(bytes, std::span(lines.content).subspan(row), dialect);
+    look_at_sample(bytes, std::span(lines.content).subspan(row), dialect);
     return dialect;
 }
 

@@ -123,7 +123,7 @@ bool is_half_names(std::string_view line, std::string_view below, const CellRule
 }
 
 // Returns how many lines the names and their units take.
-std::size_t take_names(std::string_view bytes, const TextLines& lines, const std::string& source,
+std::size_t read_names(std::string_view bytes, const TextLines& lines, const std::string& source,
                        TextDialect& dialect) {
     const TextLine& first = lines.content.front();
     CellSplit split;
@@ -182,7 +182,7 @@ std::size_t read_header(std::string_view bytes, const TextLines& lines, const st
             source, first.number, first.of(bytes).substr(0, 60));
     }
     if (wanted && (kind == FirstLine::names || options.header.value_or(false)))
-        return take_names(bytes, lines, source, dialect);
+        return read_names(bytes, lines, source, dialect);
     if (!options.header.has_value()) try_comment_header(bytes, lines.comments, dialect);
     return 0;
 }

@@ -26,7 +26,7 @@ class Stretch {
         : sink_(sink), plan_(plan), parser_(parser), parsed_(plan.joints()) {}
 
     /// Takes the rows of bytes[begin, ...) and returns where it stopped; `begin` itself when it took none.
-    std::size_t take(std::string_view bytes, std::size_t begin, double& time_before) {
+    std::size_t read(std::string_view bytes, std::size_t begin, double& time_before) {
         begin_ = begin;
         text_ = bytes.data() + begin;
         std::size_t regular = 0;
@@ -145,14 +145,14 @@ class Stretch {
 
 }  // namespace
 
-std::size_t take_rows_by_vectors(RowBlock& block, std::size_t begin, double time_before, const RowPlan& plan,
+std::size_t read_rows_by_vectors(RowBlock& block, std::size_t begin, double time_before, const RowPlan& plan,
                                  const RowParser& parser) {
     const std::string_view bytes = block.bytes;
     RowSink sink(block, begin, plan);
     Stretch stretch(sink, plan, parser);
     while (begin < bytes.size()) {
         const std::size_t from = begin;
-        begin = stretch.take(bytes, begin, time_before);
+        begin = stretch.read(bytes, begin, time_before);
         if (begin == from) break;  // an irregular row, or one longer than the stretch
     }
     return begin;
@@ -160,7 +160,7 @@ std::size_t take_rows_by_vectors(RowBlock& block, std::size_t begin, double time
 
 #else
 
-std::size_t take_rows_by_vectors(RowBlock&, std::size_t begin, double, const RowPlan&, const RowParser&) {
+std::size_t read_rows_by_vectors(RowBlock&, std::size_t begin, double, const RowPlan&, const RowParser&) {
     return begin;
 }
 

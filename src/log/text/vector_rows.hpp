@@ -13,7 +13,7 @@ namespace ripplenotch {
 /// As QuickRows::take, where there are wide vectors and for rows whose delimiter is one character. `parser`
 /// reads rows with cells that the vectors cannot: longer than 32 characters, with an exponent, padded with
 /// blanks.
-std::size_t take_rows_by_vectors(RowBlock& block, std::size_t begin, double time_before, const RowPlan& plan,
+std::size_t read_rows_by_vectors(RowBlock& block, std::size_t begin, double time_before, const RowPlan& plan,
                                  const RowParser& parser);
 
 }  // namespace ripplenotch
