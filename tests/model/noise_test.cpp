@@ -65,7 +65,7 @@ TEST_CASE("noise is white, and its channels and neighbouring seeds are unrelated
     }
 }
 
-TEST_CASE("uniform numbers stay in [0, 1) and fill it") {
+TEST_CASE("uniform numbers are 0 or above, stay below 1 and fill it") {
     Noise noise(11, NoiseChannel::torque);
     std::vector<int> tenths(10, 0);
     for (int i = 0; i < 100'000; ++i) {

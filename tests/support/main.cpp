@@ -23,7 +23,8 @@ void skipped(const std::string& reason) {
 }  // namespace ripplenotch::test
 
 int main(int count, char** words) {
-    constexpr int exit_skipped = 77;
-    const int failed = Catch::Session().run(count, words);
-    return failed == 0 && anything_skipped ? exit_skipped : failed;
+    // Catch2 of version 3 tells ctest that 4 is skipped; version 2 counts failures, which may be four.
+    constexpr int exit_failed = 1, exit_skipped = 4;
+    if (Catch::Session().run(count, words) != 0) return exit_failed;
+    return anything_skipped ? exit_skipped : 0;
 }

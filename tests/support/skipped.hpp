@@ -6,7 +6,7 @@
 namespace ripplenotch::test {
 
 /// Says that a part of the test in hand cannot run here, and why. Where nothing failed, the program then ends
-/// with exit code 77, which ctest shows as skipped.
+/// with exit code 4, which ctest shows as skipped.
 void skipped(const std::string& reason);
 
 }  // namespace ripplenotch::test
