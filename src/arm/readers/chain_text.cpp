@@ -105,14 +105,28 @@ class DhTable {
 
 }  // namespace
 
+namespace {
+
+// Turn about the joint's axis by the offset and go along it; a link's frame lies there in both conventions,
+// and then the next joint's is behind a and alpha.
+ChainJoint dh_joint(const DhRow& row, const space::Frame& before) {
+    const Vector3 along = space::outward(before.rotation, {0.0, 0.0, row.d_m});
+    return {row.name, JointKind::revolute, space::operator+(before.origin_m, along),
+            space::times(before.rotation, space::about({0, 0, 1}, row.theta_deg))};
+}
+
+space::Frame across(const DhRow& row) {
+    return {{row.a_m, 0.0, 0.0}, space::about({1, 0, 0}, row.alpha_deg)};
+}
+
+}  // namespace
+
 Chain chain_of_dh(const std::string& source, std::string_view text) {
     Chain chain{.source = source, .joints = {}};
-    space::Frame end;  // of the link before, seen from its joint
+    space::Frame before;
     for (const DhRow& row : DhTable(source, text).rows) {
-        chain.joints.push_back({row.name, JointKind::revolute, end.origin_m,
-                                space::times(end.rotation, space::about({0, 0, 1}, row.theta_deg))});
-        // The offset has been turned by; what is left is seen in the link's own frame.
-        end = {{row.a_m, 0.0, row.d_m}, space::about({1, 0, 0}, row.alpha_deg)};
+        chain.joints.push_back(dh_joint(row, before));
+        before = across(row);
     }
     settle_chain(chain);
     return chain;
@@ -120,14 +134,7 @@ Chain chain_of_dh(const std::string& source, std::string_view text) {
 
 Chain chain_of_mdh(const std::string& source, std::string_view text) {
     Chain chain{.source = source, .joints = {}};
-    for (const DhRow& row : DhTable(source, text).rows) {
-        const Rotation tilted = space::about({1, 0, 0}, row.alpha_deg);
-        const Vector3 shifted = space::outward(tilted, {0.0, 0.0, row.d_m});
-        chain.joints.push_back({row.name,
-                                JointKind::revolute,
-                                {row.a_m + shifted[0], shifted[1], shifted[2]},
-                                space::times(tilted, space::about({0, 0, 1}, row.theta_deg))});
-    }
+    for (const DhRow& row : DhTable(source, text).rows) chain.joints.push_back(dh_joint(row, across(row)));
     settle_chain(chain);
     return chain;
 }
