@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "arm_support.hpp"
+#include "arm/arm_support.hpp"
 #include "cli/arm/given_arm.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
