@@ -69,7 +69,8 @@ struct ArmFit {
 /// is not finite, or fewer than 100 rows count.
 [[nodiscard]] ArmFit fit_arm(const Chain& chain, const ArmLog& log, const ArmFitOptions& options = {});
 
-/// The torque of one joint that was fitted, along this log or another one: arm, rotor and what is beside it.
+/// The torque of one joint that was fitted, along this log or another one: arm and rotor,
+/// smoothed over the same window, and what is beside it.
 [[nodiscard]] std::vector<double> fitted_torque(const Chain& chain, const ArmFit& fit, const ArmLog& log,
                                                 std::size_t joint);
 

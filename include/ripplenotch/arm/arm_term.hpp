@@ -19,9 +19,10 @@ enum class ArmKnowledge {
 };
 
 /// Columns for the rows of `log`, those of links before the joint left out, and the rotor's last where it can
-/// be told from them. Deviations are for a fit in which each row of the log is a measurement with deviation
-/// `row_noise_nm`: the knowledge weighs there what it weighs in the fit of the arm. Left out: what the arm
-/// left of this joint's torque, spread over the rows that the fit took for one.
+/// be told from them; all smoothed over ArmFit::smoothing. Deviations are for a fit in which each row of the
+/// log is a measurement with deviation `row_noise_nm`: the knowledge weighs there what it weighs in the fit
+/// of the arm. Left out: what the arm left of this joint's torque, spread over the rows that the fit took for
+/// one.
 [[nodiscard]] GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std::size_t joint,
                                  ArmKnowledge knowledge = ArmKnowledge::other_joints,
                                  std::optional<double> row_noise_nm = {});

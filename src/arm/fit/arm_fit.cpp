@@ -6,6 +6,7 @@
 
 #include "arm/fit/checked_log.hpp"
 #include "arm/fit/ridge.hpp"
+#include "arm/fit/smooth_along.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
@@ -195,13 +196,18 @@ std::vector<double> fitted_torque(const Chain& chain, const ArmFit& fit, const A
     if (own == nullptr) raise<UsageError>("arm: the torque of joint {} was not fitted", joint + 1);
     const auto motions = arm_motions(log, fit.smoothing), friction = arm_motions(log, default_smoothing);
     ArmRows rows(chain, motions, friction, joint);
-    std::vector<double> values = fit.values, row(rows.values()), torque_nm(rows.size());
+    const std::size_t bodies = fit.values.size() + 1;
+    std::vector<double> values = fit.values, row(rows.values()), torque_nm(rows.size()),
+                        beside_nm(rows.size());
     values.push_back(own->rotor_inertia_kgm2);
     values.insert(values.end(), own->beside_nm.begin(), own->beside_nm.end());
     for (std::size_t k = 0; k < rows.size(); ++k) {
         rows.at(k, row);
-        for (std::size_t v = 0; v < row.size(); ++v) torque_nm[k] += values[v] * row[v];
+        for (std::size_t v = 0; v < bodies; ++v) torque_nm[k] += values[v] * row[v];
+        for (std::size_t v = bodies; v < row.size(); ++v) beside_nm[k] += values[v] * row[v];
     }
+    torque_nm = smooth_along(log.joints[joint].time_s, torque_nm, fit.smoothing);
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] += beside_nm[k];
     return torque_nm;
 }
 

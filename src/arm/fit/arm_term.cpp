@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "arm/fit/smooth_along.hpp"
 #include "core/linear_algebra.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -72,6 +73,8 @@ GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std
         term.mean.push_back(0.0);
         term.deviation.push_back(most_rotor_kgm2 / std::sqrt(fit.pull));
     }
+    for (std::vector<double>& column : term.torque_nm)
+        column = smooth_along(log.joints[joint].time_s, column, fit.smoothing);
     const double own_noise = own->smoothed_error_nm * std::sqrt(fit.weighed_rows);
     if (row_noise_nm && own_noise > 0.0)
         for (double& deviation : term.deviation) deviation *= *row_noise_nm / own_noise;
