@@ -194,7 +194,9 @@ std::vector<double> fitted_torque(const Chain& chain, const ArmFit& fit, const A
                                   std::size_t joint) {
     const ArmJointFit* const own = fit.find(joint);
     if (own == nullptr) raise<UsageError>("arm: the torque of joint {} was not fitted", joint + 1);
-    const auto motions = arm_motions(log, fit.smoothing), friction = arm_motions(log, default_smoothing);
+    const auto motions = arm_motions(log, fit.smoothing);
+    std::vector<Motion> friction(log.joints.size());
+    friction[joint] = motion_along(log.joints[joint], default_smoothing);
     ArmRows rows(chain, motions, friction, joint);
     const std::size_t bodies = fit.values.size() + 1;
     std::vector<double> values = fit.values, row(rows.values()), torque_nm(rows.size()),
