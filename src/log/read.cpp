@@ -46,26 +46,18 @@ std::unique_ptr<ByteSource> source_of(const std::string& path,
     return std::make_unique<ByteSource>(path);
 }
 
-}  // namespace
-
-Log read_log(LogReader& reader, const ReadOptions& options) {
-    Log log;
-    Opening opening = read_opening(reader);
-    Account account(reader.layout(), opening);
-    RowBlock block;
-    while (next_block(opening, reader, block)) {
-        for (const RunPart& part : account.add(block)) {
-            if (part.usable) append(log.trace, view_of(block, 0, part.first, part.count), part.begins_run);
-        }
-        log.held_bad_values += block.held_bad_values;
-    }
-    if (options.needs_torque) account.clock().require();
-    log.layout = reader.layout();
-    log.trace.source = log.layout.source;
-    log.trace.joint = log.layout.chosen.joint;
+// What is known when all rows are there.
+void finish(Log& log, const Account& account, const LogReader& reader, std::size_t joint) {
+    const Layout& layout = reader.layout();
+    const JointColumns chosen = layout.all_chosen()[joint];
+    log.layout = layout;
+    log.trace.source = layout.source;
+    log.trace.joint = chosen.joint;
     const auto period = wrap_period(log.trace.position_deg);
     if (period) Unwrapper(*period).apply(log.trace.position_deg);
-    log.recording = account.recording(log.layout, 0);
+    log.recording = account.recording(layout, joint);
+    log.layout.chosen = chosen;
+    log.layout.others.clear();
     log.trace.sample_rate = log.recording.clock.mean_rate;
     if (!log.trace.position_deg.empty()) {
         const auto [low, high] =
@@ -74,7 +66,36 @@ Log read_log(LogReader& reader, const ReadOptions& options) {
     }
     if (period) log.layout.warnings.push_back({"wrapped position", wrap_in_words(*period), true});
     settle_angle(log);
-    return log;
+}
+
+std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) {
+    Opening opening = read_opening(reader);
+    Account account(reader.layout(), opening);
+    std::vector<Log> logs(reader.layout().all_chosen().size());
+    RowBlock block;
+    while (next_block(opening, reader, block)) {
+        for (const RunPart& part : account.add(block)) {
+            for (std::size_t j = 0; j < logs.size() && part.usable; ++j)
+                append(logs[j].trace, view_of(block, j, part.first, part.count), part.begins_run);
+        }
+        for (Log& log : logs) log.held_bad_values += block.held_bad_values;
+    }
+    if (options.needs_torque) account.clock().require();
+    for (std::size_t j = 0; j < logs.size(); ++j) finish(logs[j], account, reader, j);
+    return logs;
+}
+
+}  // namespace
+
+Log read_log(LogReader& reader, const ReadOptions& options) {
+    return std::move(read_all_joints(reader, options).front());
+}
+
+std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions& options) {
+    ReadOptions every = options;
+    every.joint.reset();
+    every.every_joint = true;
+    return read_all_joints(*open_log(path, every), every);
 }
 
 Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {

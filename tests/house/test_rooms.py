@@ -17,6 +17,7 @@ SEES = {
     "analysis": {"core"},
     "design": {"core"},
     "model": {"core"},
+    "arm": {"core", "model"},
     "survey": {"core", "log", "analysis"},
     "filter": {"core", "log", "analysis", "design"},
     "evaluate": {"core", "filter", "analysis", "design"},
@@ -27,7 +28,7 @@ SEES = {
     "document": {"core", "figure", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose"},
     "page": {"core", "diagnose", "figure", "chart", "document"},
     "cli": {"core", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "figure", "chart",
-            "document", "page"},
+            "document", "page", "arm"},
 }
 
 # Third-party header -> the files that may include it.
@@ -39,6 +40,7 @@ DOORS = {
     r"nettle/": {"src/core/sha256.cpp"},
     r"(\w+mm|x86)intrin": {"src/core/vectors/bytes_avx2.hpp"},
     r"arm_neon": {"src/core/vectors/bytes_neon.hpp"},
+    r"pugixml": {"src/arm/readers/xml_tree.cpp"},
     r"Eigen/Sparse": {"src/analysis/kernels/envelope_kernel.cpp", "src/analysis/track/envelope_solver.cpp"},
     r"Eigen/(?!Sparse)": {"src/core/linear_algebra.hpp"},
 }

@@ -55,6 +55,7 @@ struct ReadOptions {
     std::optional<std::string> format;         ///< name in the format registry: "csv", "npy"
     std::optional<std::string> joint;          ///< one joint's name
     bool every_joint = false;                  ///< read all joints that have a velocity and a torque, at once
+    bool torque_of_each = true;                ///< with every_joint: false reads joints without a torque, too
     std::vector<std::string> columns;          ///< "time,velocity,torque" by place, or "torque=tau_J" by name
     std::map<std::string, std::string> units;  ///< role or column name -> unit
     std::optional<Hertz> sample_rate;          ///< for logs without time; overrides the log's own time

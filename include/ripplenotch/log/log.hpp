@@ -46,6 +46,11 @@ struct Log {
 [[nodiscard]] Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 [[nodiscard]] Log read_log(LogReader& reader, const ReadOptions& options);
 
+/// The same for all joints that have a velocity or position and a torque (options.torque_of_each), in one
+/// pass: their rows are the same. The torque of a joint without one is not a number. What is told of the
+/// layout is told of all of them. Throws what open_log and read_log throw.
+[[nodiscard]] std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions& options);
+
 /// One Log per joint of the file (only those with a velocity or position and a torque).
 [[nodiscard]] std::vector<Log> read_joints(const std::string& path, const ReadOptions& options);
 

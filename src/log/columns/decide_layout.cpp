@@ -41,7 +41,8 @@ class Decision {
         if (layout_.chosen.time) give_role(*layout_.chosen.time, Role::time, "");
         if (layout_.time_fraction) give_role(*layout_.time_fraction, Role::time, "");
         layout_detail::settle_clock(facts_, layout_.chosen.time && stated_[*layout_.chosen.time], layout_);
-        groups_ = layout_detail::group_joints(known(), options_.joint.has_value());
+        groups_ = layout_detail::group_joints(known(), options_.joint.has_value(),
+                                              !options_.every_joint || options_.torque_of_each);
         for (const JointGroup& group : groups_) layout_.joints.push_back(group.name);
         choose_joint();
         layout_detail::infer_motion(facts_, options_,
@@ -141,7 +142,8 @@ class Decision {
         std::vector<const JointGroup*> groups;
         for (const JointGroup& group : groups_) {
             const JointColumns columns = columns_of(group);
-            if ((!columns.velocity && !may_derive(columns)) || !columns.torque) continue;
+            if (!columns.velocity && !may_derive(columns)) continue;
+            if (!columns.torque && options_.torque_of_each) continue;
             groups.push_back(&group);
             (groups.size() == 1 ? layout_.chosen : layout_.others.emplace_back()) = columns;
         }
@@ -179,6 +181,7 @@ class Decision {
         for (const auto& [column, role] : {std::pair{layout_.chosen.torque, Role::torque},
                                            std::pair{layout_.chosen.velocity, Role::velocity}}) {
             if (column || (role == Role::velocity && may_derive(layout_.chosen))) continue;
+            if (role == Role::torque && options_.every_joint && !options_.torque_of_each) continue;
             raise<DataError>(
                 "{}: read {}, expected a {} column; say which it is, with --columns {}=NAME{}", source_,
                 names, role_name(role), role_name(role),

@@ -57,11 +57,11 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
 
 }  // namespace
 
-std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked) {
+std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked, bool needs_torque) {
     std::vector<JointGroup> groups = collect_groups(known, false);
-    const auto complete = [&known](const JointGroup& group) {
+    const auto complete = [&](const JointGroup& group) {
         const auto has = [&](Role role) { return group.has(role) || known.forced.column_of(role); };
-        return has(Role::torque) && (has(Role::velocity) || has(Role::position));
+        return (has(Role::torque) || !needs_torque) && (has(Role::velocity) || has(Role::position));
     };
     if (groups.empty() && (known.forced.column_of(Role::torque) || known.forced.column_of(Role::velocity))) {
         const std::string joint = joint_of_forced(known);

@@ -31,9 +31,11 @@ struct KnownColumns {
     const std::vector<ColumnName>& names;  ///< what each column's name says
 };
 
-/// The joints of a file, in its order; those with a torque and a motion alone where there are any. Columns
-/// that are named after different things are one joint's unless a joint was asked for by its name.
-[[nodiscard]] std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked);
+/// The joints of a file, in its order; those with a torque and a motion alone where there are any, or with a
+/// motion where that is enough. Columns that are named after different things are one joint's unless a joint
+/// was asked for by its name.
+[[nodiscard]] std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked,
+                                                   bool needs_torque = true);
 
 /// The one column for a role, empty when there is none. Throws DataError where several are equally good.
 [[nodiscard]] std::optional<std::size_t> choose_column(const KnownColumns& known, const JointGroup& group,

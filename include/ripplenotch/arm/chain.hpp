@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// How the joints of an arm follow one another, from its base to its tip. No masses: those are told by a log
+// (arm_fit.hpp).
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace ripplenotch {
+
+using Vector3 = std::array<double, 3>;
+/// Row after row; turns a vector of the inner frame into the outer one.
+using Rotation = std::array<double, 9>;
+
+/// Turns about x, then y, then z of the outer frame, as URDF's roll, pitch and yaw.
+[[nodiscard]] Rotation rotation_of_rpy(const Vector3& rpy_deg);
+/// The same back, with the pitch in [-90, 90] deg.
+[[nodiscard]] Vector3 rpy_of_rotation(const Rotation& rotation);
+
+enum class JointKind { revolute, prismatic };
+
+/// One moving joint. Its link's frame lies at `origin_m`, turned by `rotation`, in the frame of the link
+/// before, and moves along or about `axis`, a unit vector in its own frame.
+struct ChainJoint {
+    std::string name;
+    JointKind kind = JointKind::revolute;
+    Vector3 origin_m{};
+    Rotation rotation{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    Vector3 axis{0, 0, 1};
+    std::optional<std::pair<double, double>> limits = {};  ///< in deg; of a prismatic joint in m
+};
+
+struct Chain {
+    std::string source;  ///< for messages: a file, "axes zyyzyz"
+    std::vector<ChainJoint> joints;
+    Vector3 gravity_m_s2{0, 0, -9.81};  ///< in the frame of the base
+    bool lengths_are_guessed = false;   ///< only the directions of the axes are known
+
+    [[nodiscard]] std::size_t size() const { return joints.size(); }
+    [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
+};
+
+inline constexpr std::size_t most_chain_joints = 20;
+/// Lengths beyond are no arm's: a file in millimetres is read as metres.
+inline constexpr double longest_link_m = 100.0;
+
+/// Makes the axes unit vectors. Throws DataError, naming the source and the joint: no joints or too many, an
+/// axis without a direction, a number that is not finite or out of range, a repeated name.
+void settle_chain(Chain& chain);
+
+/// The chain with one joint kept still at `position` (deg; of a prismatic joint m), and so no joint any more.
+/// Throws UsageError where there is no such joint, or no other.
+[[nodiscard]] Chain hold_joint(const Chain& chain, std::string_view name, double position);
+
+/// "the joints of robot.urdf are a, b, c": all that move, for messages.
+[[nodiscard]] std::string joint_list(const Chain& chain);
+
+}  // namespace ripplenotch

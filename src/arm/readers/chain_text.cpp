@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// Tables of Denavit and Hartenberg, words of axes, and the bytes of any description.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "arm/chain/space.hpp"
+#include "ripplenotch/arm/chain_files.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{16} << 20;
+constexpr std::array<std::string_view, 5> known = {"a_m", "alpha_deg", "d_m", "theta_deg", "joint"};
+constexpr std::size_t numeric = 4;
+
+struct DhRow {
+    double a_m, alpha_deg, d_m, theta_deg;
+    std::string name;
+};
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view white = " \t\r\"";
+    const std::size_t first = text.find_first_not_of(white);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(white) - first + 1);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> cells;
+    while (true) {
+        const std::size_t comma = line.find(',');
+        cells.push_back(trimmed(line.substr(0, comma)));
+        if (comma == std::string_view::npos || cells.size() > known.size()) return cells;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+class DhTable {
+  public:
+    DhTable(const std::string& source, std::string_view text) : source_(source) {
+        for (std::size_t number = 1; !text.empty(); ++number) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            const std::string_view line = trimmed(text.substr(0, end));
+            text.remove_prefix(std::min(end + 1, text.size()));
+            if (line.empty() || line.front() == '#') continue;
+            places_.empty() ? read_header(number, cells_of(line)) : read_row(number, cells_of(line));
+            if (rows.size() > most_chain_joints)
+                raise<DataError>("{}:{}: more than {} joints", source_, number, most_chain_joints);
+        }
+        if (places_.empty()) raise<DataError>("{}: empty, expected the header {}", source_, header());
+    }
+
+    std::vector<DhRow> rows;
+
+  private:
+    static std::string header() { return "a_m,alpha_deg,d_m,theta_deg"; }
+
+    void read_header(std::size_t number, const std::vector<std::string_view>& cells) {
+        places_.assign(known.size(), cells.size());
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            const auto found = std::find(known.begin(), known.end(), cells[c]);
+            if (found == known.end()) {
+                raise<DataError>(
+                    "{}:{}: read the column '{}', expected the header {} (and joint, if you like)", source_,
+                    number, cells[c].substr(0, 40), header());
+            }
+            places_[static_cast<std::size_t>(found - known.begin())] = c;
+        }
+        for (std::size_t k = 0; k < numeric; ++k) {
+            if (places_[k] == cells.size())
+                raise<DataError>("{}:{}: the header has no {}, expected {}", source_, number, known[k],
+                                 header());
+        }
+        columns_ = cells.size();
+    }
+
+    void read_row(std::size_t number, const std::vector<std::string_view>& cells) {
+        if (cells.size() != columns_)
+            raise<DataError>("{}:{}: {} cells, expected {}", source_, number, cells.size(), columns_);
+        std::array<double, numeric> values{};
+        for (std::size_t k = 0; k < numeric; ++k) {
+            const auto value = parse_number(cells[places_[k]]);
+            if (!value || !std::isfinite(*value)) {
+                raise<DataError>("{}:{}: {} is '{}', expected a finite number", source_, number, known[k],
+                                 cells[places_[k]].substr(0, 40));
+            }
+            values[k] = *value;
+        }
+        const std::size_t name = places_[numeric];
+        rows.push_back(
+            {values[0], values[1], values[2], values[3],
+             name < cells.size() ? std::string(cells[name]) : fmt::format("j{}", rows.size() + 1)});
+    }
+
+    const std::string& source_;
+    std::vector<std::size_t> places_;
+    std::size_t columns_ = 0;
+};
+
+}  // namespace
+
+namespace {
+
+// Turn about the joint's axis by the offset and go along it; a link's frame lies there in both conventions,
+// and then the next joint's is behind a and alpha.
+ChainJoint dh_joint(const DhRow& row, const space::Frame& before) {
+    const Vector3 along = space::outward(before.rotation, {0.0, 0.0, row.d_m});
+    return {row.name, JointKind::revolute, space::operator+(before.origin_m, along),
+            space::times(before.rotation, space::about({0, 0, 1}, row.theta_deg))};
+}
+
+space::Frame across(const DhRow& row) {
+    return {{row.a_m, 0.0, 0.0}, space::about({1, 0, 0}, row.alpha_deg)};
+}
+
+}  // namespace
+
+Chain chain_of_dh(const std::string& source, std::string_view text) {
+    Chain chain{.source = source, .joints = {}};
+    space::Frame before;
+    for (const DhRow& row : DhTable(source, text).rows) {
+        chain.joints.push_back(dh_joint(row, before));
+        before = across(row);
+    }
+    settle_chain(chain);
+    return chain;
+}
+
+Chain chain_of_mdh(const std::string& source, std::string_view text) {
+    Chain chain{.source = source, .joints = {}};
+    for (const DhRow& row : DhTable(source, text).rows) chain.joints.push_back(dh_joint(row, across(row)));
+    settle_chain(chain);
+    return chain;
+}
+
+Chain chain_of_axes(std::string_view word, double length_m) {
+    constexpr std::string_view letters = "xyzXYZ";
+    Chain chain{.source = fmt::format("axes {}", word.substr(0, 2 * most_chain_joints)), .joints = {}};
+    chain.lengths_are_guessed = true;
+    if (word.empty() || word.size() > most_chain_joints) {
+        raise<UsageError>("arm: axes, word: {} letters, expected one a joint, at most {}", word.size(),
+                          most_chain_joints);
+    }
+    for (const char letter : word) {
+        const std::size_t place = letters.find(letter);
+        if (place == std::string_view::npos) {
+            raise<UsageError>(
+                "arm: axes, word: '{}' in {} is none of x, y, z (the axis points that way when all positions "
+                "are 0), X, Y, Z (the other way)",
+                letter, word);
+        }
+        ChainJoint joint{fmt::format("j{}", chain.size() + 1)};
+        joint.origin_m = {0.0, 0.0, chain.joints.empty() ? 0.0 : length_m};
+        joint.axis = {};
+        joint.axis[place % 3] = place < 3 ? 1.0 : -1.0;
+        chain.joints.push_back(joint);
+    }
+    settle_chain(chain);
+    return chain;
+}
+
+std::string read_chain_file(const std::string& path) {
+    ByteSource file(path);
+    std::string text;
+    std::vector<char> piece(1 << 16);
+    while (const std::size_t count = file.read(piece.data(), piece.size())) {
+        text.append(piece.data(), count);
+        if (text.size() > most_bytes)
+            raise<DataError>("{}: larger than {} MB; this is no robot's description", path, most_bytes >> 20);
+    }
+    return text;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "cli/arm/given_arm.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+namespace ripplenotch {
+namespace {
+
+double deviation(std::span<const double> values) {
+    double mean = 0.0, squares = 0.0;
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+GivenArm::GivenArm(ArmOption option, const std::string& path, const ReadOptions& options)
+    : option_(std::move(option)),
+      reading_(read_arm(path, options, option_.chain, option_.stated)),
+      travel_(arm_travel(option_.chain, reading_.view(), reading_.names)) {}
+
+ArmReading GivenArm::read_other(const std::string& path, const ReadOptions& options) const {
+    ArmReading other = read_arm(path, options, option_.chain, option_.stated);
+    (void)arm_travel(option_.chain, other.view(), other.names);
+    return other;
+}
+
+const ArmFit& GivenArm::fit(std::size_t joint, const std::vector<bool>& use) {
+    const bool alone = chain().lengths_are_guessed;
+    const auto made = fits_.find(alone ? joint : 0);
+    if (made != fits_.end()) return made->second;
+    ArmFitOptions options;
+    options.use = use;
+    if (alone) options.joints = {joint};
+    return fits_.emplace(alone ? joint : 0, fit_arm(chain(), reading_.view(), options)).first->second;
+}
+
+GivenTerm GivenArm::term(std::size_t joint, const ArmReading& log) {
+    return arm_term(chain(), fit(joint), log.view(), joint);
+}
+
+ArmAccount GivenArm::account(std::size_t joint) {
+    const ArmFit& found = fit(joint);
+    ArmAccount account;
+    account.source = chain().source;
+    account.rule = reading_.match.rule;
+    account.option = reading_.match.option;
+    account.joints = travel_;
+    account.values_there = found.values_there;
+    account.values_told = found.values_told;
+    account.all_joints_at_once = found.joints.size() > 1;
+    account.lengths_are_guessed = chain().lengths_are_guessed;
+    account.pull = found.pull;
+    account.smoothing = found.smoothing;
+    account.gap_before_nm = deviation(reading_.logs[joint].trace.torque_nm);
+    if (const ArmJointFit* const own = found.find(joint)) account.gap_nm = own->error_nm;
+    account.warnings = reading_.match.warnings;
+    for (std::string& warning : arm_warnings(found, travel_)) account.warnings.push_back(std::move(warning));
+    account.notes = reading_.match.notes;
+    return account;
+}
+
+std::string arm_sentence(const ArmAccount& account) {
+    return fmt::format(
+        "arm: {} joints of {} matched {} (-v shows them); {} of {} combinations of its masses told by this "
+        "log, "
+        "{}, motion smoothed over {:g} s{}",
+        account.joints.size(), account.source, account.rule, account.values_told, account.values_there,
+        account.all_joints_at_once ? "all joints fitted at once" : "this joint fitted alone",
+        account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "");
+}
+
+}  // namespace ripplenotch

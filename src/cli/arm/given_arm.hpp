@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// An arm and a log of its joints: the term that a diagnosis of one of them is given, and what is told of it.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cli/arm/arm_option.hpp"
+#include "cli/readings/arm_reading.hpp"
+#include "ripplenotch/arm/arm_term.hpp"
+#include "ripplenotch/arm/arm_travel.hpp"
+
+namespace ripplenotch {
+
+/// For the story and its JSON.
+struct ArmAccount {
+    std::string source;  ///< "ur10.urdf", "axes zyyzyz"
+    std::string rule;    ///< how joints were matched: "by name"
+    std::string option;  ///< that would force it
+    std::vector<JointTravel> joints;
+    std::size_t values_there = 0, values_told = 0;
+    bool all_joints_at_once = false;  ///< or this joint alone
+    bool lengths_are_guessed = false;
+    double pull = 0.0;
+    Seconds smoothing;
+    double gap_before_nm = 0.0;  ///< rms of the torque about its mean
+    double gap_nm = 0.0;         ///< rms of what arm and friction beside it leave, on fifths left out
+    std::vector<std::string> warnings, notes;
+};
+
+class GivenArm {
+  public:
+    /// Reads the log. Throws what read_arm and arm_travel throw.
+    GivenArm(ArmOption option, const std::string& path, const ReadOptions& options);
+
+    [[nodiscard]] const Chain& chain() const { return option_.chain; }
+    [[nodiscard]] const ArmReading& reading() const { return reading_; }
+    /// Another log of the same arm, matched alike.
+    [[nodiscard]] ArmReading read_other(const std::string& path, const ReadOptions& options) const;
+    /// The place in the chain of a joint of the log.
+    [[nodiscard]] std::size_t find(const std::string& joint) const { return reading_.find(chain(), joint); }
+
+    /// One fit for all joints; where lengths are guessed, rows of two joints do not agree, and each has a fit
+    /// of its own. Made when it is first asked for. `use`: rows that count, by the first call; empty: all.
+    const ArmFit& fit(std::size_t joint, const std::vector<bool>& use = {});
+    /// Columns for the rows of the log that the arm was fitted to, or for those of another one.
+    [[nodiscard]] GivenTerm term(std::size_t joint, const ArmReading& log);
+    [[nodiscard]] ArmAccount account(std::size_t joint);
+
+  private:
+    ArmOption option_;
+    ArmReading reading_;
+    std::vector<JointTravel> travel_;
+    std::map<std::size_t, ArmFit> fits_;  ///< by joint; all joints at once: under 0
+};
+
+/// "arm: 6 joints of ur10.urdf matched by number (-v shows them); 36 of 36 combinations ... 0.1 s"
+[[nodiscard]] std::string arm_sentence(const ArmAccount& account);
+
+}  // namespace ripplenotch

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+// Chains as people have them: the same arm in every dialect is the same arm, and what is no arm is refused.
+#include "ripplenotch/arm/chain_files.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include "arm_support.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::test;
+using Catch::Contains;
+using Catch::Matchers::WithinAbs;
+
+namespace {
+
+// Three joints with every parameter in use: Craig's table, and the same with the frames put elsewhere.
+const std::string three_mdh =
+    "# of the "
+    "maker\njoint,a_m,alpha_deg,d_m,theta_deg\n\nbase,0,0,0.3,10\nupper,0.1,-90,0.05,20\nlower,0.4,30,-0.1,-"
+    "40\n";
+const std::string three_urdf = R"(<?xml version="1.0"?>
+<robot name="three">
+  <link name="world"/><link name="a"/><link name="b"/><link name="c"/><link name="flange"/><link name="camera"/>
+  <joint name="base" type="continuous">
+    <parent link="world"/><child link="a"/>
+    <origin xyz="0 0 0.3" rpy="0 0 0.17453292519943295"/><axis xyz="0 0 1"/>
+  </joint>
+  <joint name="stand" type="fixed">
+    <parent link="a"/><child link="bracket"/><origin xyz="0.1 0 0" rpy="-1.5707963267948966 0 0"/>
+  </joint>
+  <joint name="upper" type="revolute">
+    <parent link="bracket"/><child link="b"/>
+    <origin xyz="0 0 0.05" rpy="0 0 0.3490658503988659"/><axis xyz="0 0 2"/>
+    <limit lower="-1.5707963267948966" upper="3.141592653589793" effort="1" velocity="1"/>
+  </joint>
+  <joint name="tilt" type="fixed">
+    <parent link="b"/><child link="rib"/>
+    <origin xyz="0.4 0.05 -0.08660254037844387" rpy="0.5235987755982988 0 0"/>
+  </joint>
+  <joint name="lower" type="revolute">
+    <parent link="rib"/><child link="c"/>
+    <origin rpy="0 0 -0.6981317007977318"/><axis xyz="0 0 1"/>
+  </joint>
+  <joint name="end" type="fixed"><parent link="c"/><child link="flange"/></joint>
+  <joint name="view" type="fixed"><parent link="flange"/><child link="camera"/></joint>
+</robot>)";
+const std::string three_mjcf = R"(<mujoco model="three">
+  <compiler angle="degree"/>
+  <option gravity="0 0 -9.81"/>
+  <default><joint axis="0 0 1" damping="1"/><default class="upside"><joint axis="0 0 -1"/></default></default>
+  <worldbody><light pos="0 0 3"/>
+    <body name="a" pos="0 0 0.3" euler="0 0 10"><joint name="base"/>
+      <geom type="box" size="1 1 1"/>
+      <body name="b" pos="0.1 0.05 0" euler="-90 0 20"><joint name="upper" range="-90 180"/>
+        <body name="c" pos="0.4 0.05 -0.08660254037844387" quat="0.9659258262890683 0.25881904510252074 0 0"
+              childclass="upside">
+          <joint name="lower" ref="40" class="upside" axis="0 0 1"/>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>)";
+
+// The same torque for the same masses wherever the arm goes. Frames may be turned about a joint's axis from
+// dialect to dialect, so links whose values such a turn leaves alone: bodies of revolution about z.
+void require_same_arm(const Chain& one, const Chain& other) {
+    REQUIRE(one.size() == other.size());
+    std::vector<double> links;
+    for (std::size_t j = 0; j < one.size(); ++j)
+        for (const double value : {2.0, 0.0, 0.0, 0.3, 0.4, 0.0, 0.0, 0.4, 0.0, 0.1}) links.push_back(value);
+    const auto motions = fourier_motions(one.size(), 2.0, 50.0, 8);
+    for (std::size_t joint = 0; joint < one.size(); ++joint) {
+        const auto a = arm_torque(one, links, motions, joint), b = arm_torque(other, links, motions, joint);
+        for (std::size_t k = 0; k < a.size(); ++k) REQUIRE_THAT(a[k], WithinAbs(b[k], 1e-9));
+    }
+}
+
+std::string urdf_joint(const std::string& name, const std::string& type, const std::string& parent,
+                       const std::string& child, const std::string& more = "") {
+    return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+           "\"/><child link=\"" + child + "\"/>" + more + "</joint>\n";
+}
+
+Chain urdf(const std::string& joints, const std::optional<std::string>& tip = std::nullopt) {
+    return chain_of_urdf("robot.urdf", "<robot name=\"r\">\n" + joints + "</robot>", tip);
+}
+
+Chain mjcf(const std::string& inside, const std::optional<std::string>& tip = std::nullopt) {
+    return chain_of_mjcf("robot.xml", "<mujoco>" + inside + "</mujoco>", tip);
+}
+
+}  // namespace
+
+TEST_CASE("one arm in Craig's table, URDF and MJCF is one arm", "[arm]") {
+    const Chain table = chain_of_mdh("three.csv", three_mdh);
+    CHECK(table.joints[1].name == "upper");
+    const Chain robot = chain_of_urdf("three.urdf", three_urdf, std::nullopt);
+    require_same_arm(table, robot);
+    REQUIRE(robot.joints[1].limits);
+    CHECK_THAT(robot.joints[1].limits->first, WithinAbs(-90.0, 1e-12));
+    CHECK_FALSE(robot.joints[0].limits);
+    // What the table turns by -40 deg, MuJoCo writes as a joint that stands at 40 deg in the file.
+    require_same_arm(table, chain_of_mjcf("three.xml", three_mjcf, std::nullopt));
+}
+
+TEST_CASE("a joint of an MJCF may sit anywhere in its body", "[arm]") {
+    const std::string elbow = "<joint axis=\"0 1 0\"/></body></body></worldbody>";
+    const Chain beside = mjcf(
+        "<worldbody><body pos=\"0.5 0 0\"><joint name=\"a\" pos=\"-0.2 0 0\"/>"
+        "<body pos=\"0.3 0 0.1\">" +
+        elbow);
+    const Chain within = mjcf(
+        "<worldbody><body pos=\"0.3 0 0\"><joint name=\"a\"/>"
+        "<body pos=\"0.5 0 0.1\">" +
+        elbow);
+    CHECK(beside.joints[0].origin_m == within.joints[0].origin_m);
+    for (std::size_t i = 0; i < 3; ++i)
+        CHECK_THAT(beside.joints[1].origin_m[i], WithinAbs(within.joints[1].origin_m[i], 1e-15));
+}
+
+TEST_CASE("one arm in the standard table and in Craig's is one arm", "[arm]") {
+    // The standard table of a row later: a and alpha of Craig's next row; the last ones are the tool's.
+    const Chain standard = chain_of_dh(
+        "dh.csv", "theta_deg,d_m,a_m,alpha_deg\n10,0.3,0.1,-90\n20,0.05,0.4,30\n-40,-0.1,0.7,80\n");
+    require_same_arm(chain_of_mdh("three.csv", three_mdh), standard);
+}
+
+TEST_CASE("a word of axes says directions, and lengths that are guessed", "[arm]") {
+    const Chain chain = chain_of_axes("zyX", 0.25);
+    CHECK(chain.lengths_are_guessed);
+    CHECK(chain.joints[0].origin_m == Vector3{0, 0, 0});
+    CHECK(chain.joints[2].origin_m == Vector3{0, 0, 0.25});
+    CHECK(chain.joints[1].axis == Vector3{0, 1, 0});
+    CHECK(chain.joints[2].axis == Vector3{-1, 0, 0});
+    CHECK_THROWS_WITH(chain_of_axes("zyw"), Contains("'w' in zyw is none of x, y, z"));
+    CHECK_THROWS_AS(chain_of_axes(""), UsageError);
+    CHECK_THROWS_AS(chain_of_axes(std::string(1000000, 'z')), UsageError);
+}
+
+TEST_CASE("angles of roll, pitch and yaw go there and back", "[arm]") {
+    for (const Vector3 rpy :
+         {Vector3{10, 20, 30}, Vector3{-170, 80, 100}, Vector3{0, 90, 40}, Vector3{0, -90, -40}}) {
+        const Rotation turn = rotation_of_rpy(rpy), again = rotation_of_rpy(rpy_of_rotation(turn));
+        for (std::size_t e = 0; e < 9; ++e) CHECK_THAT(again[e], WithinAbs(turn[e], 1e-14));
+    }
+    // Yaw last: x goes to y.
+    CHECK_THAT(rotation_of_rpy({0, 0, 90})[3], WithinAbs(1.0, 1e-15));
+}
+
+TEST_CASE("what a URDF cannot mean is said with its place", "[arm][broken]") {
+    const std::string turns = urdf_joint("a", "revolute", "base", "one", "<axis xyz=\"0 0 1\"/>");
+    CHECK_THROWS_WITH(urdf(""), Contains("robot.urdf: no joint moves"));
+    CHECK_THROWS_WITH(
+        chain_of_urdf("robot.urdf.xacro", "<robot>\n<xacro:property name=\"x\"/></robot>", {}),
+        Contains("robot.urdf.xacro holds macros (xacro:property, line 2); expand it first: xacro "
+                 "robot.urdf.xacro > robot.urdf"));
+    CHECK_THROWS_WITH(
+        urdf(turns + urdf_joint("b", "revolute", "one", "left") +
+             urdf_joint("c", "prismatic", "one", "right")),
+        Contains("more than one end (left, right); say at which link with tip=left, or tip=one, "
+                 "before they part"));
+    CHECK(
+        urdf(turns + urdf_joint("b", "revolute", "one", "left") + urdf_joint("c", "revolute", "one", "right"),
+             "right")
+            .joints[1]
+            .name == "c");
+    CHECK_THROWS_WITH(urdf(turns, "onne"), Contains("has no link 'onne'; did you mean one?"));
+    CHECK_THROWS_WITH(urdf(turns + urdf_joint("b", "floating", "one", "two")),
+                      Contains("robot.urdf:3: joint 'b' is floating"));
+    CHECK_THROWS_WITH(urdf(turns + urdf_joint("b", "planar", "one", "two")), Contains("'b' is planar"));
+    CHECK_THROWS_WITH(urdf(turns + urdf_joint("b", "revolute", "one", "two", "<mimic joint=\"a\"/>")),
+                      Contains("'b' follows another one (mimic a)") && Contains("tip=one"));
+    CHECK_THROWS_WITH(urdf(urdf_joint("a", "revolute", "x", "y") + urdf_joint("b", "revolute", "y", "x")),
+                      Contains("goes round in a circle"));
+    CHECK_THROWS_WITH(urdf(turns + urdf_joint("b", "revolute", "two", "one")),
+                      Contains("hangs on two joints, 'a' and 'b'"));
+    CHECK_THROWS_WITH(urdf(turns + urdf_joint("b", "hinge", "one", "two")), Contains("of type 'hinge'"));
+    CHECK_THROWS_WITH(urdf(urdf_joint("a", "revolute", "base", "one", "<axis xyz=\"0 0 0\"/>")),
+                      Contains("has no direction"));
+    CHECK_THROWS_WITH(urdf(urdf_joint("a", "revolute", "base", "one", "<axis xyz=\"0 0 nan\"/>")),
+                      Contains("finite"));
+    CHECK_THROWS_WITH(urdf(urdf_joint("a", "revolute", "base", "one", "<origin xyz=\"0 333 0\"/>")),
+                      Contains("lengths are in metres"));
+    CHECK_THROWS_WITH(urdf(urdf_joint("a", "revolute", "base", "one", "<origin rpy=\"0 0\"/>")),
+                      Contains("origin rpy=\"0 0\", expected 3 finite numbers"));
+    CHECK_THROWS_WITH(urdf(turns + urdf_joint("a", "revolute", "one", "two")),
+                      Contains("two joints are named 'a'"));
+    CHECK_THROWS_WITH(chain_of_urdf("r.urdf", "<robot>\n <joint", {}),
+                      Contains("r.urdf:2:") && Contains("no XML"));
+    CHECK_THROWS_WITH(chain_of_urdf("r.urdf", "", {}), Contains("no XML"));
+    CHECK_THROWS_WITH(chain_of_urdf("r.urdf", "<mujoco/>", {}), Contains("that is --arm mjcf"));
+    CHECK_THROWS_WITH(urdf("<joint name=\"a\"/>"), Contains("joint without type"));
+}
+
+TEST_CASE("a stranger's description takes neither the stack nor the memory", "[arm][broken]") {
+    std::string deep, chain;
+    for (int k = 0; k < 100000; ++k) deep += "<body>";
+    CHECK_THROWS_WITH(chain_of_urdf("r.urdf", "<robot>" + deep, {}), Contains("no XML"));
+    for (int k = 0; k < 100000; ++k) deep += "</body>";
+    CHECK_THROWS_WITH(chain_of_mjcf("r.xml", "<mujoco>" + deep + "</mujoco>", {}),
+                      Contains("100 elements within"));
+    for (int k = 0; k < 30; ++k)
+        chain += urdf_joint("j" + std::to_string(k), "revolute", std::to_string(k), std::to_string(k + 1));
+    CHECK_THROWS_WITH(urdf(chain), Contains("30 moving joints"));
+    std::string fixed;
+    for (int k = 0; k < 30000; ++k)
+        fixed += urdf_joint("j", "fixed", std::to_string(k), std::to_string(k + 1));
+    CHECK(urdf(fixed + urdf_joint("a", "revolute", "30000", "end")).size() == 1);
+    std::string wide;
+    for (int k = 0; k < 200001; ++k) wide += "<a/>";
+    CHECK_THROWS_WITH(urdf(wide), Contains("more than 200000 elements"));
+    CHECK_THROWS_WITH(urdf("<!DOCTYPE r [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;\">]>&b;"),
+                      Contains("no XML") || Contains("no joint"));
+    std::string table = "a_m,alpha_deg,d_m,theta_deg\n";
+    for (int k = 0; k < 30; ++k) table += "0,0,0,0\n";
+    CHECK_THROWS_WITH(chain_of_dh("dh.csv", table), Contains("more than 20 joints"));
+    const auto path = std::filesystem::temp_directory_path() / "ripplenotch_large_description";
+    std::ofstream(path) << std::string((16 << 20) + 1, ' ');
+    CHECK_THROWS_WITH(read_chain_file(path.string()), Contains("larger than 16 MB"));
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("every beginning of a description is read or refused", "[arm][broken]") {
+    for (std::size_t size = 0; size < three_urdf.size(); ++size)
+        CHECK_THROWS_AS(chain_of_urdf("r", three_urdf.substr(0, size), {}), Error);
+    for (std::size_t size = 0; size < three_mjcf.size(); ++size)
+        CHECK_THROWS_AS(chain_of_mjcf("r", three_mjcf.substr(0, size), {}), Error);
+}
+
+TEST_CASE("what an MJCF cannot mean is said with its place", "[arm][broken]") {
+    CHECK_THROWS_WITH(mjcf("<worldbody/>"), Contains("no body"));
+    CHECK_THROWS_WITH(mjcf("<worldbody><body name=\"a\"><freejoint/></body></worldbody>"),
+                      Contains("is free"));
+    CHECK_THROWS_WITH(mjcf("<worldbody><body name=\"a\"><joint type=\"ball\"/></body></worldbody>"),
+                      Contains("is ball"));
+    CHECK_THROWS_WITH(mjcf("<include file=\"x.xml\"/>"), Contains("'include' is not understood"));
+    CHECK_THROWS_WITH(mjcf("<compiler eulerseq=\"xyw\"/><worldbody/>"), Contains("eulerseq is 'xyw'"));
+    CHECK_THROWS_WITH(mjcf("<worldbody><body quat=\"0 0 0 0\"><joint/></body></worldbody>"),
+                      Contains("has no direction"));
+    CHECK_THROWS_WITH(mjcf("<worldbody><body><joint range=\"1\"/></body></worldbody>"),
+                      Contains("expected 2 finite numbers"));
+    CHECK_THROWS_WITH(mjcf("<worldbody><body name=\"a\"><joint/><body name=\"l\"><joint "
+                           "name=\"x\"/></body><body name=\"r\"><joint name=\"y\"/>"
+                           "</body></body></worldbody>"),
+                      Contains("more than one end (l, r); say at which body"));
+    CHECK_THROWS_WITH(chain_of_mjcf("r.xml", "<robot/>", {}), Contains("that is --arm urdf"));
+}
+
+TEST_CASE("orientations of an MJCF in five ways are one", "[arm]") {
+    const auto turn = [](const std::string& how, const std::string& compiler = "") {
+        return mjcf(compiler + "<worldbody><body " + how + "><joint/></body></worldbody>")
+            .joints.front()
+            .rotation;
+    };
+    const Rotation wanted = turn("euler=\"0 0 90\"");
+    CHECK_THAT(wanted[3], WithinAbs(1.0, 1e-15));
+    for (const Rotation& same :
+         {turn("quat=\"2 0 0 2\""), turn("axisangle=\"0 0 3 90\""), turn("xyaxes=\"0 2 0 -1 1 0\""),
+          turn("euler=\"0 0 1.5707963267948966\"", "<compiler angle=\"radian\"/>"),
+          turn("euler=\"90 0 0\"", "<compiler eulerseq=\"zyx\"/>")})
+        for (std::size_t e = 0; e < 9; ++e) CHECK_THAT(same[e], WithinAbs(wanted[e], 1e-12));
+    // Axes that move and axes that stay: the same three turns the other way round.
+    const Rotation moving = turn("euler=\"10 20 30\""),
+                   staying = turn("euler=\"30 20 10\"", "<compiler eulerseq=\"ZYX\"/>");
+    for (std::size_t e = 0; e < 9; ++e) CHECK_THAT(staying[e], WithinAbs(moving[e], 1e-12));
+    const Rotation leaning = turn("zaxis=\"1 0 0\"");
+    CHECK_THAT(leaning[2], WithinAbs(1.0, 1e-12));
+    CHECK_THAT(leaning[4], WithinAbs(1.0, 1e-12));
+}
+
+TEST_CASE("a table of Denavit and Hartenberg is read to the letter", "[arm][broken]") {
+    CHECK_THROWS_WITH(chain_of_dh("dh.csv", ""), Contains("expected the header a_m,alpha_deg,d_m,theta_deg"));
+    CHECK_THROWS_WITH(chain_of_dh("dh.csv", "a,alpha,d,theta\n"), Contains("dh.csv:1: read the column 'a'"));
+    CHECK_THROWS_WITH(chain_of_dh("dh.csv", "a_m,alpha_deg,d_m\n"), Contains("has no theta_deg"));
+    CHECK_THROWS_WITH(chain_of_dh("dh.csv", "a_m,alpha_deg,d_m,theta_deg\n1,2,3\n"),
+                      Contains("dh.csv:2: 3 cells, expected 4"));
+    CHECK_THROWS_WITH(chain_of_dh("dh.csv", "a_m,alpha_deg,d_m,theta_deg\n1,2,inf,3\n"),
+                      Contains("dh.csv:2: d_m is 'inf'"));
+    CHECK_THROWS_WITH(chain_of_dh("dh.csv", "a_m,alpha_deg,d_m,theta_deg\n"), Contains("no joint moves"));
+}

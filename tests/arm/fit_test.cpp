@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// An arm whose masses are known, logged with friction and noise, and fitted again.
+#include "ripplenotch/arm/arm_fit.hpp"
+
+#include <cstring>
+#include <limits>
+
+#include "arm/fit/smooth_along.hpp"
+#include "arm_support.hpp"
+#include "ripplenotch/arm/arm_term.hpp"
+#include "ripplenotch/arm/arm_travel.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::test;
+using Catch::Contains;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+constexpr double noise_nm = 0.5, coulomb_nm = 4.0, viscous_nm = 3.0;
+
+const std::string six_dh =
+    "a_m,alpha_deg,d_m,theta_deg\n0,90,0.13,0\n-0.6,0,0,0\n-0.55,0,0,0\n0,90,0.16,0\n0,-90,0.11,0\n0,0,0.09,"
+    "0\n";
+
+// A log of the arm in `chain` at 200 Hz.
+struct Recorded {
+    std::vector<Trace> traces;
+
+    Recorded(const Chain& chain, const std::vector<double>& links, const std::vector<Motion>& motions,
+             unsigned seed) {
+        std::mt19937_64 random(seed);
+        // Twelve uniform numbers have the variance of one normal number.
+        const auto normal = [&] {
+            double sum = -6.0;
+            for (int k = 0; k < 12; ++k) sum += 0x1p-53 * static_cast<double>(random() >> 11);
+            return sum;
+        };
+        for (std::size_t j = 0; j < chain.size(); ++j) {
+            const Motion& motion = motions[j];
+            Trace trace{"log.csv",          chain.joints[j].name,  motion.sample_rate,
+                        motion.time_s,      motion.velocity_deg_s, arm_torque(chain, links, motions, j),
+                        motion.position_deg};
+            for (std::size_t k = 0; k < trace.size(); ++k) {
+                const double v = radians * motion.velocity_deg_s[k];
+                trace.torque_nm[k] +=
+                    coulomb_nm * std::tanh(v / (1.5 * radians)) + viscous_nm * v + noise_nm * normal();
+                trace.velocity_deg_s[k] += 0.02 * normal();
+            }
+            traces.push_back(std::move(trace));
+        }
+    }
+
+    [[nodiscard]] ArmLog view() const {
+        ArmLog log;
+        for (const Trace& trace : traces) log.joints.push_back(trace.view());
+        log.has_torque.assign(traces.size(), true);
+        return log;
+    }
+};
+
+struct Six {
+    Chain chain = chain_of_dh("six.csv", six_dh);
+    std::vector<double> links = random_links(6, 3);
+    Recorded log{chain, links, fourier_motions(6, 40.0, 200.0, 4, 60.0), 5};
+};
+
+// A fit with a window and a pull that need not be looked for.
+ArmFitOptions quick() {
+    ArmFitOptions options;
+    options.smoothing = Seconds(0.12);
+    options.pull = 0.1;
+    return options;
+}
+
+double left(const std::vector<double>& predicted, const TraceView& log, std::size_t first) {
+    double sum = 0.0;
+    for (std::size_t k = first; k < log.size(); ++k)
+        sum += (predicted[k] - log.torque_nm[k]) * (predicted[k] - log.torque_nm[k]);
+    return std::sqrt(sum / static_cast<double>(log.size() - first));
+}
+
+std::vector<double> sum_of(const GivenTerm& term) {
+    std::vector<double> torque_nm(term.torque_nm.front().size());
+    for (std::size_t c = 0; c < term.torque_nm.size(); ++c)
+        for (std::size_t k = 0; k < torque_nm.size(); ++k)
+            torque_nm[k] += term.mean[c] * term.torque_nm[c][k];
+    return torque_nm;
+}
+
+}  // namespace
+
+TEST_CASE("an arm fitted to a part of a log leaves noise alone on the rest", "[arm]") {
+    const Six six;
+    const ArmLog log = six.log.view();
+    const std::size_t rows = log.joints.front().size(), first = rows * 6 / 10;
+    ArmFitOptions options;
+    options.use.assign(rows, false);
+    std::fill_n(options.use.begin(), first, true);
+    const ArmFit fit = fit_arm(six.chain, log, options);
+    CHECK(fit.values_there == 36);
+    CHECK(fit.values_told == 36);
+    for (std::size_t j = 0; j < 6; ++j) {
+        INFO("joint " << j + 1);
+        CHECK(left(fitted_torque(six.chain, fit, log, j), log.joints[j], first) < 1.1 * noise_nm);
+        // What the fit says of itself on rows left out is what they show.
+        CHECK_THAT(fit.find(j)->error_nm, WithinRel(noise_nm, 0.15));
+        CHECK_THAT(fit.find(j)->beside_nm[static_cast<std::size_t>(BesideArm::coulomb)],
+                   WithinAbs(coulomb_nm, 0.8));
+    }
+    CHECK(arm_warnings(fit, arm_travel(six.chain, log, {"1", "2", "3", "4", "5", "6"})).empty());
+}
+
+TEST_CASE("the same log gives the same arm to the byte", "[arm]") {
+    const Six six;
+    const ArmFit one = fit_arm(six.chain, six.log.view(), quick()),
+                 two = fit_arm(six.chain, six.log.view(), quick());
+    const auto same = [](const std::vector<double>& a, const std::vector<double>& b) {
+        return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+    };
+    CHECK(same(one.values, two.values));
+    for (std::size_t j = 0; j < 6; ++j) {
+        CHECK(same(one.joints[j].mean, two.joints[j].mean));
+        CHECK(same(one.joints[j].precision, two.joints[j].precision));
+    }
+}
+
+TEST_CASE("a motion that other joints have shown is known to one that has not made it", "[arm]") {
+    // Half of the log is enough for all joints together; for the second alone it is a motion never seen.
+    const Six six;
+    const ArmLog log = six.log.view();
+    ArmFitOptions options;
+    const std::size_t rows = log.joints.front().size(), first = rows / 8;
+    options.use.assign(rows, false);
+    std::fill_n(options.use.begin(), first, true);
+    const ArmFit all = fit_arm(six.chain, log, options);
+    options.joints = {1};
+    const ArmFit alone = fit_arm(six.chain, log, options);
+    CHECK(alone.joints.size() == 1);
+    CHECK(alone.values_there < all.values_there);
+    CHECK(left(fitted_torque(six.chain, all, log, 1), log.joints[1], first) <
+          0.9 * left(fitted_torque(six.chain, alone, log, 1), log.joints[1], first));
+}
+
+TEST_CASE("what other joints say of an arm is a mean and a deviation of 1 in columns of its own", "[arm]") {
+    const Six six;
+    const ArmLog log = six.log.view();
+    const ArmFit fit = fit_arm(six.chain, log, quick());
+    for (const std::size_t joint : {0U, 2U}) {
+        const GivenTerm term = arm_term(six.chain, fit, log, joint);
+        REQUIRE(term.torque_nm.size() == term.mean.size());
+        REQUIRE(term.torque_nm.size() == term.deviation.size());
+        CHECK(term.deviation.front() == 1.0);
+        const auto by_mean =
+            arm_torque(six.chain, fit.find(joint)->mean, arm_motions(log, fit.smoothing), joint);
+        const auto by_columns = sum_of(term);
+        // Smoothed over 0.12 s, which the motion's 0.5 Hz hardly feels.
+        for (std::size_t k = 50; k + 50 < by_mean.size(); k += 100)
+            CHECK_THAT(by_columns[k], WithinAbs(by_mean[k], 0.3));
+        // The other five joints tell the third one's torque without it, friction and what only it shows
+        // apart.
+        if (joint == 2) CHECK(left(by_columns, log.joints[2], 0) < coulomb_nm + viscous_nm + 2.0);
+    }
+    // Knowledge weighs in a fit of noisier rows what it weighs here.
+    const GivenTerm noisy = arm_term(six.chain, fit, log, 2, ArmKnowledge::other_joints,
+                                     3.0 * fit.find(2)->smoothed_error_nm * std::sqrt(fit.weighed_rows));
+    CHECK_THAT(noisy.deviation.front(), WithinRel(3.0, 1e-12));
+}
+
+TEST_CASE("an arm that only the pull knows has ten columns a link from its joint on", "[arm]") {
+    const Six six;
+    const ArmLog log = six.log.view();
+    const ArmFit fit = fit_arm(six.chain, log, quick());
+    const GivenTerm term = arm_term(six.chain, fit, log, 3, ArmKnowledge::pull);
+    const auto columns = arm_columns(six.chain, arm_motions(log, fit.smoothing), 3);
+    CHECK(term.name == "arm");
+    REQUIRE(term.torque_nm.size() == 31);
+    for (std::size_t k = 50; k < 7000; k += 50)
+        CHECK_THAT(term.torque_nm[1][k], WithinAbs(columns[31][k], 0.15));
+    CHECK(term.mean == std::vector<double>(term.mean.size(), 0.0));
+    CHECK_THAT(term.deviation[1], WithinRel(0.5 / std::sqrt(fit.pull), 1e-12));
+}
+
+TEST_CASE("smoothing leaves parabolas as they are and takes most of a noise away", "[arm]") {
+    std::vector<double> time_s, parabola, noise;
+    std::mt19937_64 random(1);
+    double jitter = 0.0;
+    for (int k = 0; k < 2000; ++k) {
+        jitter = 0x1p-53 * static_cast<double>(random() >> 11);
+        const double t = 0.01 * (k + 0.5 * jitter);
+        time_s.push_back(t);
+        parabola.push_back(1.0 + 2.0 * t - 3.0 * t * t);
+        noise.push_back(0x1p-52 * static_cast<double>(random() >> 11) - 1.0);
+    }
+    const auto same = smooth_along(time_s, parabola, Seconds(0.2)),
+               less = smooth_along(time_s, noise, Seconds(0.2));
+    double before = 0.0, after = 0.0;
+    for (std::size_t k = 0; k < same.size(); ++k) {
+        REQUIRE_THAT(same[k], WithinAbs(parabola[k], 1e-9));
+        before += noise[k] * noise[k];
+        after += less[k] * less[k];
+    }
+    // Twenty values a window: their variance is divided by some seven.
+    CHECK(after < before / 5.0);
+    CHECK(smooth_along(time_s, noise, Seconds(0.0)) == noise);
+}
+
+TEST_CASE("joints that hardly move are told, and the fit stays whole", "[arm]") {
+    Chain chain = chain_of_dh("six.csv", six_dh);
+    auto motions = fourier_motions(6, 20.0, 200.0, 4, 60.0);
+    for (std::size_t j = 1; j < 6; ++j) {
+        motions[j].position_deg.assign(motions[j].size(), 10.0);
+        motions[j].velocity_deg_s.assign(motions[j].size(), 0.0);
+        motions[j].acceleration_deg_s2.assign(motions[j].size(), 0.0);
+    }
+    const Recorded recorded(chain, random_links(6, 3), motions, 5);
+    const ArmLog log = recorded.view();
+    const ArmFit fit = fit_arm(chain, log, quick());
+    CHECK(fit.values_told < 20);
+    CHECK(left(fitted_torque(chain, fit, log, 0), log.joints[0], 0) < 1.1 * noise_nm);
+    const auto warnings = arm_warnings(fit, arm_travel(chain, log, {"a", "b", "c", "d", "e", "f"}));
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings.front(), Contains("of 36 values can be told from this log") &&
+                                     Contains("'b', 'c', 'd', 'e', 'f' hardly move"));
+}
+
+TEST_CASE("a position in another unit exceeds the chain's limits", "[arm]") {
+    Six six;
+    for (ChainJoint& joint : six.chain.joints) joint.limits.emplace(-180.0, 180.0);
+    const std::vector<std::string> names = {"1", "2", "3", "4", "5", "6"};
+    CHECK(arm_travel(six.chain, six.log.view(), names).size() == 6);
+    for (double& position : six.log.traces[1].position_deg) position *= 180.0 / std::numbers::pi;
+    CHECK_THROWS_WITH(arm_travel(six.chain, six.log.view(), names),
+                      Contains("position of '2' reaches") && Contains("--unit position=deg"));
+}
+
+TEST_CASE("a log that no arm can be fitted to is refused", "[arm][broken]") {
+    Six six;
+    ArmLog log = six.log.view();
+    log.has_torque.assign(6, false);
+    CHECK_THROWS_WITH(fit_arm(six.chain, log), Contains("no joint of six.csv has a torque"));
+    log.has_torque.assign(6, true);
+    log.joints[3].position_deg = {};
+    CHECK_THROWS_WITH(fit_arm(six.chain, log), Contains("'j4' has 8000 rows without position"));
+    log.joints.pop_back();
+    CHECK_THROWS_WITH(fit_arm(six.chain, log), Contains("5 joints of a log for 6"));
+    ArmFitOptions few = quick();
+    few.use.assign(8000, false);
+    few.use[5] = true;
+    CHECK_THROWS_WITH(fit_arm(six.chain, six.log.view(), few), Contains("1 rows count"));
+    six.log.traces[2].torque_nm[7] = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH(fit_arm(six.chain, six.log.view()), Contains("not finite in row 8"));
+    ArmFitOptions others = quick();
+    others.joints = {0, 1};  // the torque that is none is not looked at
+    CHECK(fit_arm(six.chain, six.log.view(), others).joints.size() == 2);
+    for (Trace& trace : six.log.traces) {
+        trace.torque_nm[7] = 0.0;
+        trace.velocity_deg_s.assign(8000, 0.0);
+        trace.position_deg.assign(8000, 1.0);
+    }
+    CHECK_THROWS_WITH(fit_arm(six.chain, six.log.view()), Contains("no joint moves"));
+}
