@@ -58,14 +58,24 @@ void weigh_folds(const Sums& sums, const Names& names, std::size_t place, Beside
     finding.evenness = mean != 0.0 ? std::sqrt(std::max(spread, 0.0)) / std::abs(mean) : 10.0;
 }
 
+// True when the name is worth its price beside another as well: then the other is not in its place.
+bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, double price) {
+    Names both = rivals;
+    both.push_back(own);
+    const OutsideGain gain = outside_gain(sums.residual_outside(rivals), sums.residual_outside(both),
+                                          sums.lens().ground().blocks(), sums.lens().sigma());
+    return is_worth(gain, price, sums.lens().rules().beside);
+}
+
 // The best other name in its place, refined; one that is bent stands in for something else.
-std::optional<Named> best_rival(Sums& sums, const Names& rest, const Shape& own) {
+std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price) {
     std::vector<Named> rivals;
-    for (std::size_t shape = 0; shape < sums.listed(); ++shape) {
-        const Shape& other = sums.shapes()[shape];
-        if (same_name(other, own) || is_among(sums, rest, other) || !sums.is_told(shape)) continue;
+    const Shape shape = sums.shapes()[own];
+    for (std::size_t i = 0; i < sums.listed(); ++i) {
+        const Shape& other = sums.shapes()[i];
+        if (same_name(other, shape) || is_among(sums, rest, other) || !sums.is_told(i)) continue;
         Named rival{rest};
-        rival.names.push_back(shape);
+        rival.names.push_back(i);
         rival.left = sums.left_outside(rival.names);
         rivals.push_back(std::move(rival));
     }
@@ -75,6 +85,7 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, const Shape& own)
     for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
         Named rival = refined(sums, rivals[i]);
         if (sums.lens().bounds().is_bent(sums.shapes()[rival.names.back()])) continue;
+        if (stands_beside(sums, rival.names, own, price)) continue;
         if (!best || rival.left < best->left) best = std::move(rival);
     }
     return best;
@@ -112,7 +123,8 @@ void look_alone(const Sums& sums, const Names& names, std::size_t place, BesideF
     const Index first = columns_at(sums, names, place).first;
     weigh_folds(sums, names, place, finding);
     if (is_against_motion(effect) && sums.sizes(names)[first] <= 0.0)
-        doubt(finding, "it would drive the joint: its size is below 0");
+        doubt(finding,
+              "its size is below 0: it would drive the joint, or something given holds too much of it");
     else if (sums.lens().bounds().is_bent(finding.shape))
         doubt(finding, "its shape ends at a bound: it stands in for something else");
     else if (hearing.asked("beside.same_sign", finding.same_sign, finding.same_sign < rules.beside.same_sign))
@@ -127,7 +139,7 @@ void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const std
                     BesideFinding& finding) {
     Names rest = names;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
-    const auto rival = best_rival(sums, rest, finding.shape);
+    const auto rival = best_rival(sums, rest, names[place], finding.price);
     if (!rival) return;
     const BesideRules& rules = sums.lens().rules().beside;
     const OutsideGain ahead = outside_gain(sums.residual_outside(rival->names), left,
