@@ -28,7 +28,7 @@ Finding finding_of(const Lens& lens, BesideFinding found) {
     outside.t = found.gain.t;
     outside.blocks = lens.ground().blocks().size();
     outside.blocks_positive = found.gain.positive();
-    outside.evenness = found.evenness;
+    outside.evenness = found.same.uneven;
     if (found.rival) {
         outside.rival = found.rival->term.effect->name;
         outside.rival_margin = found.rival_margin;
@@ -85,7 +85,7 @@ BesideOutcome find_beside(const GivenCase& log, const GivenCase* validation, con
                           std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work) {
     const Lens lens(log.looked_at, model, log.given, effects, rules, work);
     Sums sums(lens);
-    NamedBeside named = named_beside(sums, catalogue().size());
+    NamedBeside named = named_beside(sums, {catalogue().size(), log.given.empty()});
     std::vector<OtherLeft> other(named.findings.size());
     if (validation != nullptr) other = withdraw_on_other(sums, model, *validation, named.findings);
     const Believed believed = believed_of(sums, named.findings);

@@ -16,48 +16,6 @@ using Eigen::VectorXd;
 
 constexpr int most_withdrawals = 6;
 
-// Columns of one name among those of all.
-struct Columns {
-    Index first = 0, count = 0;
-};
-
-Columns columns_at(const Sums& sums, const Names& names, std::size_t place) {
-    Columns columns;
-    for (std::size_t i = 0; i <= place; ++i) {
-        columns.first += columns.count;
-        columns.count = static_cast<Index>(sums.weighed(names[i]).size());
-    }
-    return columns;
-}
-
-// The size that each fold by itself gives the name, as a multiple of the whole fit's, the rest held.
-void weigh_folds(const Sums& sums, const Names& names, std::size_t place, BesideFinding& finding) {
-    const Columns own = columns_at(sums, names, place);
-    const VectorXd all = sums.sizes(names), size = all.segment(own.first, own.count);
-    VectorXd rest = all;
-    rest.segment(own.first, own.count).setZero();
-    const double variance = sums.lens().sigma() * sums.lens().sigma();
-    std::vector<double> part, weight;
-    double total = 0.0;
-    for (std::size_t fold = 0; fold < sums.folds(); ++fold) {
-        const auto products = sums.products(names, fold);
-        const VectorXd open = sums.targets(names, fold) - products * rest;
-        const double square = size.dot(products.block(own.first, own.first, own.count, own.count) * size);
-        if (!(square > 0.0)) continue;
-        part.push_back(size.dot(open.segment(own.first, own.count)) / square);
-        weight.push_back(square);
-        total += square;
-    }
-    double mean = 0.0, spread = 0.0;
-    for (std::size_t i = 0; i < part.size(); ++i) mean += weight[i] / total * part[i];
-    for (std::size_t i = 0; i < part.size(); ++i) {
-        const double chance = variance / weight[i] * (1.0 - 1.0 / static_cast<double>(part.size()));
-        spread += weight[i] / total * ((part[i] - mean) * (part[i] - mean) - chance);
-        if (part[i] * mean > 0.0) finding.same_sign += weight[i] / total;
-    }
-    finding.evenness = mean != 0.0 ? std::sqrt(std::max(spread, 0.0)) / std::abs(mean) : 10.0;
-}
-
 // True when the name is worth its price beside another as well: then the other is not in its place.
 bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, double price) {
     Names both = rivals;
@@ -92,7 +50,7 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
 }
 
 double swing_nm(const Sums& sums, const Names& names, std::size_t place) {
-    const Columns own = columns_at(sums, names, place);
+    const OwnColumns own = columns_at(sums, names, place);
     const VectorXd all = sums.sizes(names);
     const auto columns = sums.lens().torque_nm(sums.shapes()[names[place]]);
     const auto& use = sums.lens().looked_at().use;
@@ -114,25 +72,31 @@ void doubt(BesideFinding& finding, std::string reason) {
     finding.reason = std::move(reason);
 }
 
-void look_alone(const Sums& sums, const Names& names, std::size_t place, BesideFinding& finding) {
+void look_alone(const Sums& sums, const Names& names, std::size_t place, bool even_by_speed,
+                BesideFinding& finding) {
     const DiagnosisRules& rules = sums.lens().rules();
     Hearing hearing(rules, finding.decisions);
     hearing.asked_price(finding.gain.gain, finding.price, false);
     hearing.asked("beside.least_t", finding.gain.t, false);
     const Effect& effect = *finding.shape.term.effect;
     const Index first = columns_at(sums, names, place).first;
-    weigh_folds(sums, names, place, finding);
+    finding.same = sameness_of(sums, names, place);
     if (is_against_motion(effect) && sums.sizes(names)[first] <= 0.0)
         doubt(finding,
               "its size is below 0: it would drive the joint, or something given holds too much of it");
     else if (sums.lens().bounds().is_bent(finding.shape))
         doubt(finding, "its shape ends at a bound: it stands in for something else");
-    else if (hearing.asked("beside.same_sign", finding.same_sign, finding.same_sign < rules.beside.same_sign))
+    else if (hearing.asked("beside.same_sign", finding.same.same_sign,
+                           finding.same.same_sign < rules.beside.same_sign))
         doubt(finding, "its size has not the same sign all over the log");
-    else if (hearing.asked("beside.most_uneven", finding.evenness,
-                           finding.evenness > rules.beside.most_uneven))
+    else if (hearing.asked("beside.most_uneven", finding.same.uneven,
+                           finding.same.uneven > rules.beside.most_uneven))
         doubt(finding, fmt::format("its size is not the same all over the log ({:.0f} % off)",
-                                   100.0 * std::min(finding.evenness, 9.99)));
+                                   100.0 * std::min(finding.same.uneven, 9.99)));
+    else if (even_by_speed && hearing.asked("evenness.most_uneven", finding.same.uneven_by_speed,
+                                            finding.same.uneven_by_speed > rules.evenness.most_uneven))
+        doubt(finding, fmt::format("its size is not the same slow and fast, forth and back ({:.0f} % off)",
+                                   100.0 * std::min(finding.same.uneven_by_speed, 9.99)));
 }
 
 void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const std::vector<double>& left,
@@ -177,7 +141,7 @@ void look_at_sizes(const Sums& sums, std::vector<BesideFinding>& findings) {
 
 }  // namespace
 
-std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, std::size_t effects) {
+std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Judgement& by) {
     const std::vector<double> left = sums.residual_outside(now.names);
     std::vector<BesideFinding> findings;
     for (std::size_t place = 0; place < now.names.size(); ++place) {
@@ -187,9 +151,9 @@ std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, std::size
         rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
         finding.gain = outside_gain(sums.residual_outside(rest), left, sums.lens().ground().blocks(),
                                     sums.lens().sigma());
-        finding.price = price_of(sums, now.names[place], effects);
+        finding.price = price_of(sums, now.names[place], by.effects);
         finding.size_nm = swing_nm(sums, now.names, place);
-        look_alone(sums, now.names, place, finding);
+        look_alone(sums, now.names, place, by.even_by_speed, finding);
         findings.push_back(std::move(finding));
     }
     look_at_sizes(sums, findings);
@@ -198,18 +162,53 @@ std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, std::size
     return findings;
 }
 
-NamedBeside named_beside(Sums& sums, std::size_t effects) {
-    Named now = search_beside(sums, {}, {}, effects);
+namespace {
+
+// Squares of the whitened log that names explain in the whole fit.
+double explained(const Sums& sums, const Names& names) {
+    if (names.empty()) return 0.0;
+    VectorXd targets = sums.targets(names, 0);
+    for (std::size_t fold = 1; fold < sums.folds(); ++fold) targets += sums.targets(names, fold);
+    const VectorXd sizes = sums.sizes(names);
+    return 2.0 * sizes.dot(targets) - sizes.dot(sums.products(names) * sizes);
+}
+
+// Of what everything that may be named would explain.
+double explained_part(const Sums& sums, const Names& names) {
+    Names all;
+    for (std::size_t shape = 0; shape < sums.listed(); ++shape) {
+        if (sums.is_told(shape)) all.push_back(shape);
+    }
+    return explained(sums, names) / std::max(explained(sums, all), 1e-300);
+}
+
+// Where much that could be explained is not, the names stand in for what was not tried.
+void look_at_rest(const Sums& sums, const Named& now, std::vector<BesideFinding>& findings) {
+    const DiagnosisRules& rules = sums.lens().rules();
+    const double part = explained_part(sums, now.names);
+    for (BesideFinding& finding : findings) {
+        if (Hearing(rules, finding.decisions)
+                .asked("beside.least_part", part, part < rules.beside.least_part))
+            doubt(finding,
+                  "more could be explained by names that do not hold: it may stand in for something else");
+    }
+}
+
+}  // namespace
+
+NamedBeside named_beside(Sums& sums, const Judgement& by) {
+    Named now = search_beside(sums, {}, {}, by.effects);
     std::vector<BesideFinding> withdrawn;
     Barred barred;
     for (int turn = 0;; ++turn) {
-        std::vector<BesideFinding> findings = judged_beside(sums, now, effects);
+        std::vector<BesideFinding> findings = judged_beside(sums, now, by);
         std::optional<std::size_t> weakest;
         for (std::size_t i = 0; i < findings.size(); ++i) {
             if (findings[i].status != FindingStatus::tentative) continue;
             if (!weakest || findings[i].gain.gain < findings[*weakest].gain.gain) weakest = i;
         }
         if (!weakest || turn == most_withdrawals) {
+            if (by.even_by_speed) look_at_rest(sums, now, findings);
             findings.insert(findings.end(), withdrawn.begin(), withdrawn.end());
             return {std::move(now), std::move(findings)};
         }
@@ -219,7 +218,7 @@ NamedBeside named_beside(Sums& sums, std::size_t effects) {
         now.left = sums.left_outside(now.names);
         now = refined(sums, std::move(now));
         sums.forget_but(now.names);
-        now = search_beside(sums, std::move(now), barred, effects);
+        now = search_beside(sums, std::move(now), barred, by.effects);
     }
 }
 

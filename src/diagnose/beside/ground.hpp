@@ -38,6 +38,8 @@ class Ground {
     /// A bridged column whitened, a value per row: folds one after the other, in each its blocks in order.
     [[nodiscard]] std::vector<double> whitened(std::span<const double> bridged_column) const;
     [[nodiscard]] std::size_t rows() const { return row_.size(); }
+    /// Sample of the case that stands for a row.
+    [[nodiscard]] std::size_t sample_of(std::size_t row) const { return sample_[row_[row]]; }
     [[nodiscard]] const std::vector<Stretch>& folds() const { return folds_; }
     /// In order of time; places in rows().
     [[nodiscard]] const std::vector<Stretch>& blocks() const { return blocks_; }

@@ -48,6 +48,11 @@ Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenT
     bridged_open_ = ground_.bridged(open_nm_);
     bridged_always_ = bridged(always_.torque_nm);
     shapes_ = shapes_of(effects, bounds_, model.stated.gear_ratio.value(), ground_.rate_hz());
+    // What the model has is always on.
+    std::erase_if(shapes_, [&](const Shape& shape) {
+        return std::any_of(model.stated.terms.begin(), model.stated.terms.end(),
+                           [&](const Term& term) { return same_name({term}, shape); });
+    });
     const std::vector<double> left = left_by_all();
     plain_.emplace(bridged_always_, always_.deviation, rms(left));
     ground_.color(long_color(left, ground_.memory(), rules.beside.color_floor));
