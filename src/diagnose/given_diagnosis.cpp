@@ -7,6 +7,7 @@
 
 #include "diagnose/beside/always_on.hpp"
 #include "diagnose/beside/dot.hpp"
+#include "diagnose/beside/sizes.hpp"
 #include "diagnose/beside/told.hpp"
 #include "diagnose/doubt.hpp"
 #include "diagnose/examined.hpp"
@@ -18,8 +19,6 @@
 
 namespace ripplenotch {
 namespace {
-
-constexpr double normal_95 = 1.959963984540054;
 
 void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_view log) {
     for (const GivenTerm& term : given) {
@@ -60,7 +59,7 @@ void tell_given(Diagnosis& diagnosis, const Model& model, std::span<const GivenT
     for (std::size_t i = 0; i < names.size(); ++i) {
         GivenValue value{names[i], outcome.given_values[i], std::nullopt};
         if (i < outcome.given_errors.size()) {
-            const double half = normal_95 * outcome.given_errors[i];
+            const double half = normal_95_errors * outcome.given_errors[i];
             value.ci95 = Interval{value.value - half, value.value + half};
         }
         diagnosis.given.push_back(std::move(value));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <limits>
 
+#include "document/beside_fields.hpp"
 #include "document/fields.hpp"
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"

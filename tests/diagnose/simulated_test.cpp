@@ -3,12 +3,12 @@
 // friction and ripple that the simulation does not know.
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "support/catch.hpp"
 
 namespace ripplenotch {
 namespace {

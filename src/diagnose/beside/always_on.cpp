@@ -2,16 +2,15 @@
 #include "diagnose/beside/always_on.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "diagnose/beside/dot.hpp"
+#include "diagnose/beside/ridge.hpp"
 #include "model/fit_coordinates.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double any_size = std::numeric_limits<double>::infinity();
 constexpr std::string_view arm = "arm";
 
 bool has_effect(const Model& model, std::string_view name) {

@@ -14,8 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int most_withdrawals = 6;
-
 // True when the name is worth its price beside another as well: then the other is not in its place.
 bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, double price) {
     Names both = rivals;
@@ -200,14 +198,14 @@ NamedBeside named_beside(Sums& sums, const Judgement& by) {
     Named now = search_beside(sums, {}, {}, by.effects);
     std::vector<BesideFinding> withdrawn;
     Barred barred;
-    for (int turn = 0;; ++turn) {
+    for (std::size_t turn = 0;; ++turn) {
         std::vector<BesideFinding> findings = judged_beside(sums, now, by);
         std::optional<std::size_t> weakest;
         for (std::size_t i = 0; i < findings.size(); ++i) {
             if (findings[i].status != FindingStatus::tentative) continue;
             if (!weakest || findings[i].gain.gain < findings[*weakest].gain.gain) weakest = i;
         }
-        if (!weakest || turn == most_withdrawals) {
+        if (!weakest || turn == sums.lens().rules().beside.most_withdrawals) {
             if (by.even_by_speed) look_at_rest(sums, now, findings);
             findings.insert(findings.end(), withdrawn.begin(), withdrawn.end());
             return {std::move(now), std::move(findings)};

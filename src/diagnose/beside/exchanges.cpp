@@ -8,7 +8,6 @@ namespace ripplenotch {
 namespace {
 
 constexpr double factors[] = {1.5, 1.2, 1.08};
-constexpr int most_moves = 6;
 
 double squared(const Sums& sums) { return sums.lens().sigma() * sums.lens().sigma(); }
 
@@ -85,6 +84,7 @@ bool is_barred(const Barred& barred, const Shape& shape) {
 }
 
 Named refined(Sums& sums, Named now) {
+    constexpr int most_moves = 6;
     for (std::size_t name = 0; name < now.names.size(); ++name) {
         for (const std::size_t scale : scales_of(*sums.shapes()[now.names[name]].term.effect)) {
             for (const double factor : factors) {

@@ -14,7 +14,7 @@ namespace ripplenotch {
 using BesideRules = DiagnosisRules::BesideRules;
 
 /// A range of places.
-struct Stretch {
+struct RowRange {
     std::size_t first = 0, count = 0;
 };
 
@@ -40,9 +40,9 @@ class Ground {
     [[nodiscard]] std::size_t rows() const { return row_.size(); }
     /// Sample of the case that stands for a row.
     [[nodiscard]] std::size_t sample_of(std::size_t row) const { return sample_[row_[row]]; }
-    [[nodiscard]] const std::vector<Stretch>& folds() const { return folds_; }
+    [[nodiscard]] const std::vector<RowRange>& folds() const { return folds_; }
     /// In order of time; places in rows().
-    [[nodiscard]] const std::vector<Stretch>& blocks() const { return blocks_; }
+    [[nodiscard]] const std::vector<RowRange>& blocks() const { return blocks_; }
 
   private:
     struct Bridge {
@@ -61,7 +61,7 @@ class Ground {
     std::vector<Bridge> bridges_;
     std::vector<double> color_;
     std::vector<std::size_t> row_;  ///< thinned places
-    std::vector<Stretch> folds_, blocks_;
+    std::vector<RowRange> folds_, blocks_;
 };
 
 }  // namespace ripplenotch

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "diagnose/beside/color.hpp"
 #include "diagnose/beside/dot.hpp"
@@ -11,12 +10,6 @@
 
 namespace ripplenotch {
 namespace {
-
-constexpr double any_size = std::numeric_limits<double>::infinity();
-// What is left of a first fit, as a part of the torque: it only weighs what values are drawn to.
-constexpr double first_noise = 0.01;
-// Of the friction beside which a load is estimated.
-constexpr double step_deg_s = 0.5;
 
 std::vector<double> swelled(const std::vector<double>& column, const Motion& motion, double fastest_deg_s,
                             bool by_direction, bool by_speed) {
@@ -74,12 +67,13 @@ void Lens::carry(std::span<const GivenTerm> given, const Candidate& model) {
         add_scaled(-columns.mean[i], columns.torque_nm[i].data(), open_nm.data(), open_nm.size());
     Columns beside = bridged(columns.torque_nm);
     std::vector<double> step, deviation = columns.deviation;
-    for (const double v : case_.motion.velocity_deg_s) step.push_back(portable::tanh(v / step_deg_s));
+    for (const double v : case_.motion.velocity_deg_s)
+        step.push_back(portable::tanh(v / rules_.beside.load_step_deg_s));
     beside.push_back(ground_.bridged(step));
     beside.push_back(ground_.bridged(case_.motion.velocity_deg_s));
     deviation.insert(deviation.end(), 2, any_size);
     std::vector<double> values =
-        Ridge(beside, deviation, first_noise * rms(open_nm)).solve(ground_.bridged(open_nm));
+        Ridge(beside, deviation, rules_.beside.first_noise * rms(open_nm)).solve(ground_.bridged(open_nm));
     for (std::size_t i = 0; i < columns.mean.size(); ++i) values[i] += columns.mean[i];
     // The last of the stated ones is the offset, which nothing carries.
     case_.motion.carried_nm = brought_nm(columns, values, 0, columns.stated - 1);
@@ -102,7 +96,8 @@ std::vector<double> Lens::left_by_all() const {
     };
     for (const auto& column : all) some.push_back(thinned(column));
     const std::vector<double> target = thinned(bridged_open_);
-    const std::vector<double> values = Ridge(some, deviation, first_noise * rms(target)).solve(target);
+    const std::vector<double> values =
+        Ridge(some, deviation, rules_.beside.first_noise * rms(target)).solve(target);
     std::vector<double> left = bridged_open_;
     for (std::size_t i = 0; i < all.size(); ++i)
         add_scaled(-values[i], all[i].data(), left.data(), left.size());

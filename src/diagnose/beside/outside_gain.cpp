@@ -5,13 +5,6 @@
 #include <cmath>
 
 namespace ripplenotch {
-namespace {
-
-// A gain whose blocks pull against each other is not taken for surer than by half.
-constexpr double least_variance = 0.25;
-
-}  // namespace
-
 std::size_t OutsideGain::positive() const {
     return static_cast<std::size_t>(
         std::count_if(by_block.begin(), by_block.end(), [](double g) { return g > 0.0; }));
@@ -26,9 +19,11 @@ double OutsideGain::without_best(std::size_t blocks) const {
 }
 
 OutsideGain outside_gain(std::span<const double> without, std::span<const double> with,
-                         std::span<const Stretch> blocks, double sigma) {
+                         std::span<const RowRange> blocks, double sigma) {
+    // A gain whose blocks pull against each other is not taken for surer than by half.
+    constexpr double least_variance = 0.25;
     OutsideGain told;
-    for (const Stretch& block : blocks) {
+    for (const RowRange& block : blocks) {
         double sum = 0.0;
         for (std::size_t k = block.first; k < block.first + block.count; ++k)
             sum += without[k] * without[k] - with[k] * with[k];

@@ -22,7 +22,7 @@ struct OutsideGain {
 
 /// Both residuals have a value per row, folds one after the other. `blocks` in order of time.
 [[nodiscard]] OutsideGain outside_gain(std::span<const double> without, std::span<const double> with,
-                                       std::span<const Stretch> blocks, double sigma);
+                                       std::span<const RowRange> blocks, double sigma);
 
 /// Worth its price all over the log.
 [[nodiscard]] bool is_worth(const OutsideGain& gain, double price, const BesideRules& rules);

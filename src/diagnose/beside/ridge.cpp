@@ -6,15 +6,10 @@
 #include "diagnose/beside/dot.hpp"
 
 namespace ripplenotch {
-namespace {
-
-// Columns that are as good as one another share what they explain in place of dividing by nothing.
-constexpr double least_of_its_own = 1e-9;
-
-}  // namespace
-
 Ridge::Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise)
     : columns_(columns) {
+    // Columns that are as good as one another share what they explain in place of dividing by nothing.
+    constexpr double least_of_its_own = 1e-9;
     const std::size_t m = columns.size();
     triangle_.assign(m * m, 0.0);
     for (const auto& column : columns) {

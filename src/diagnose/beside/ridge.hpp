@@ -2,10 +2,14 @@
 #pragma once
 // Least squares in which each value is drawn towards 0 as by a measurement of its own.
 
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace ripplenotch {
+
+/// Deviation of a value of which nothing is known.
+inline constexpr double any_size = std::numeric_limits<double>::infinity();
 
 class Ridge {
   public:

@@ -9,11 +9,6 @@
 namespace ripplenotch {
 namespace {
 
-// Faster lines are folded back by the thinned rows.
-constexpr double resolved = 0.45;
-// So near to a bound, as a factor, a scale is at it.
-constexpr double near_lower = 1.2, near_upper = 1.1;
-
 const Parameter* linear_of(const Effect& effect) {
     for (const Parameter& parameter : effect.parameters) {
         if (parameter.linear) return &parameter;
@@ -35,7 +30,7 @@ bool is_resolved(const Shape& shape, const ScaleBounds& bounds, double ratio, do
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
         if (effect.parameters[p].left_out != LeftOut::refused) continue;
         const double cycles = *shape.term.values[p] * (effect.ripple_order ? ratio : 1.0);
-        if (cycles * bounds.fastest_deg_s / 360.0 >= resolved * rate_hz) return false;
+        if (cycles * bounds.fastest_deg_s / 360.0 >= bounds.rules.resolved * rate_hz) return false;
     }
     return true;
 }
@@ -118,7 +113,7 @@ bool ScaleBounds::is_bent(const Shape& shape) const {
         const Parameter& scale = shape.term.effect->parameters[p];
         if (is_step(scale) || scale.unit == "s") continue;
         const double value = *shape.term.values[p];
-        if (value < near_lower * low(scale) || value > high(scale) / near_upper) return true;
+        if (value < rules.near_low * low(scale) || value > high(scale) / rules.near_high) return true;
     }
     return false;
 }

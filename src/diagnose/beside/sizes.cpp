@@ -14,10 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double normal_95 = 1.959963984540054;
-// A scale is moved by this factor to see how the torque changes with it.
-constexpr double nudge = 1.02;
-
 // Columns of the linearised model: of each shape its sizes, then the logarithms of its scales.
 struct Slopes {
     std::vector<std::vector<double>> columns;
@@ -26,6 +22,8 @@ struct Slopes {
 };
 
 Slopes slopes_of(const Sums& sums, const Names& names, const VectorXd& sizes) {
+    // A scale is moved by this factor to see how the torque changes with it.
+    constexpr double nudge = 1.02;
     const Lens& lens = sums.lens();
     Slopes slopes;
     slopes.left = lens.target();
@@ -72,7 +70,7 @@ MatrixXd covariance_of(const Slopes& slopes, const Lens& lens) {
             products(r, c) = products(c, r) =
                 dot(at(r).data(), at(c).data(), at(r).size()) / (scale[r] * scale[c]) + (r == c ? 1e-9 : 0.0);
     }
-    for (const Stretch& block : lens.ground().blocks()) {
+    for (const RowRange& block : lens.ground().blocks()) {
         VectorXd score(m);
         for (Index r = 0; r < m; ++r)
             score[r] =
@@ -92,8 +90,8 @@ MatrixXd covariance_of(const Slopes& slopes, const Lens& lens) {
 
 FittedValue told(std::size_t term, std::size_t parameter, double value, double error, double plain) {
     FittedValue fitted{term, parameter, value, error, Interval{}, false};
-    fitted.ci95 =
-        Interval{std::min(value - normal_95 * error, plain), std::max(value + normal_95 * error, plain)};
+    fitted.ci95 = Interval{std::min(value - normal_95_errors * error, plain),
+                           std::max(value + normal_95_errors * error, plain)};
     return fitted;
 }
 
@@ -132,8 +130,8 @@ void tell_scales(BesideValues& told_values, std::size_t place, const Sized& size
         FittedValue fitted{place, p, value, value * error, Interval{}, false};
         // Beyond a factor of e^3 nothing is told.
         if (error < 3.0) {
-            fitted.ci95 =
-                Interval{value * portable::exp(-normal_95 * error), value * portable::exp(normal_95 * error)};
+            fitted.ci95 = Interval{value * portable::exp(-normal_95_errors * error),
+                                   value * portable::exp(normal_95_errors * error)};
         } else {
             fitted.standard_error.reset();
             fitted.ci95.reset();

@@ -9,6 +9,9 @@
 
 namespace ripplenotch {
 
+/// Half of a 95 % interval, in standard errors.
+inline constexpr double normal_95_errors = 1.959963984540054;
+
 struct BesideValues {
     Term term;
     std::vector<FittedValue>

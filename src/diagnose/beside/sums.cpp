@@ -13,14 +13,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Sizes are drawn to 0 as little as numbers allow.
-constexpr double usual_size = 1e4, least_of_its_own = 1e-9;
-
 }  // namespace
 
 Sums::Sums(const Lens& lens) : lens_(lens) {
     const auto& target = lens.target();
-    for (const Stretch& fold : lens.ground().folds())
+    for (const RowRange& fold : lens.ground().folds())
         target_squares_.push_back(dot(target.data() + fold.first, target.data() + fold.first, fold.count));
     for (const Shape& shape : lens.shapes()) add(shape);
 }
@@ -31,7 +28,7 @@ void Sums::add(const Shape& shape) {
     own_part_.push_back(weighed.part);
     columns_.push_back(std::move(weighed.columns));
     std::vector<VectorXd> targets;
-    for (const Stretch& fold : lens_.ground().folds()) {
+    for (const RowRange& fold : lens_.ground().folds()) {
         VectorXd sums(static_cast<Index>(columns_.back().size()));
         for (Index c = 0; c < sums.size(); ++c)
             sums[c] = dot(columns_.back()[static_cast<std::size_t>(c)].data() + fold.first,
@@ -79,7 +76,7 @@ bool Sums::is_told(std::size_t shape) const {
 const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
     const auto [entry, is_new] = pairs_.try_emplace({a, b});
     if (!is_new) return entry->second;
-    for (const Stretch& fold : lens_.ground().folds()) {
+    for (const RowRange& fold : lens_.ground().folds()) {
         MatrixXd sums(static_cast<Index>(columns_[a].size()), static_cast<Index>(columns_[b].size()));
         for (Index r = 0; r < sums.rows(); ++r) {
             for (Index c = 0; c < sums.cols(); ++c)
@@ -134,6 +131,8 @@ VectorXd Sums::targets(const Names& names, std::size_t fold) const {
 }
 
 VectorXd Sums::solved(const MatrixXd& products, const VectorXd& targets) const {
+    // Sizes are drawn to 0 as little as numbers allow.
+    constexpr double usual_size = 1e4, least_of_its_own = 1e-9;
     VectorXd scale = products.diagonal();
     for (Index i = 0; i < scale.size(); ++i) scale[i] = std::sqrt(scale[i] + 1e-30);
     MatrixXd scaled = products;
@@ -181,7 +180,7 @@ std::vector<double> Sums::residual_outside(const Names& names) const {
     for (std::size_t fold = 1; fold < folds(); ++fold) all_targets += targets(names, fold);
     for (std::size_t fold = 0; fold < folds(); ++fold) {
         const VectorXd x = solved(all - products(names, fold), all_targets - targets(names, fold));
-        const Stretch& rows = lens_.ground().folds()[fold];
+        const RowRange& rows = lens_.ground().folds()[fold];
         Index value = 0;
         for (const std::size_t name : names) {
             for (const auto& column : columns_[name])
