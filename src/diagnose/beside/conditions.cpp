@@ -41,7 +41,10 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
     for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
         Named rival = refined(sums, rivals[i]);
         if (sums.lens().bounds().is_bent(sums.shapes()[rival.names.back()])) continue;
-        if (stands_beside(sums, rival.names, own, price)) continue;
+        // What a given term leaves is a function of the posture, which any wave over the position takes up.
+        const bool of_posture = kind_of(*shape.term.effect) == Kind::position &&
+                                kind_of(*sums.shapes()[rival.names.back()].term.effect) == Kind::position;
+        if (!of_posture && stands_beside(sums, rival.names, own, price)) continue;
         if (!best || rival.left < best->left) best = std::move(rival);
     }
     return best;

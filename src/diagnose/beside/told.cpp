@@ -19,6 +19,19 @@ bool is_left_above(const Diagnosis& diagnosis, const ModelBench& bench, const Ca
     return left_nm > bench.rules().beside.least_left * bench.noise().rms_nm;
 }
 
+// The search before has bent a number of it to a bound that is held at its usual value here: it stands in for
+// something else, and so may what was judged beside it.
+bool has_bent_shape(const Diagnosis& diagnosis, const Finding& finding) {
+    const std::vector<std::size_t> refined = scales_of(*finding.term.effect);
+    return std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), [&](const Finding& round) {
+        if (!is_doubtful(round) || !same_name({round.term}, {finding.term})) return false;
+        return std::any_of(round.values.begin(), round.values.end(), [&](const FittedValue& value) {
+            return value.at_bound &&
+                   std::find(refined.begin(), refined.end(), value.parameter) == refined.end();
+        });
+    });
+}
+
 }  // namespace
 
 Candidate take_up(Diagnosis& diagnosis, BesideOutcome outcome, const Candidate& model,
@@ -51,6 +64,9 @@ Candidate with_findings_beside(Diagnosis& diagnosis, const ModelBench& bench, co
     // The search before has told its own doubts.
     std::erase_if(outcome.findings, is_doubtful);
     if (outcome.findings.empty()) return last;
+    for (const Finding& finding : outcome.findings) {
+        if (has_bent_shape(diagnosis, finding)) return last;
+    }
     for (const Finding& finding : outcome.findings) {
         std::erase_if(diagnosis.rounds, [&](const Finding& round) {
             return is_doubtful(round) && same_name({round.term}, {finding.term});
