@@ -141,7 +141,10 @@ Recorded read(const Request& request, const ModelWithGiven& model, Provenance& p
     const GivenLog log{request.path, recorded.log};
     std::optional<GivenLog> other;
     if (recorded.other) other.emplace(GivenLog{*request.validate, *recorded.other});
+    const std::size_t said = recorded.log.recording.warnings.size();
     recorded.given = read_given(request.given, model.simulated, reading, log, other ? &*other : nullptr);
+    const auto& warnings = recorded.log.recording.warnings;
+    say_warnings(request.common, {warnings.begin() + static_cast<std::ptrdiff_t>(said), warnings.end()});
     return recorded;
 }
 
