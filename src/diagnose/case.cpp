@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
@@ -13,8 +14,9 @@
 namespace ripplenotch {
 namespace {
 
-std::vector<double> picked(const std::vector<double>& values, const std::vector<std::size_t>& rows) {
-    std::vector<double> some;
+template <class Value>
+std::vector<Value> picked(const std::vector<Value>& values, const std::vector<std::size_t>& rows) {
+    std::vector<Value> some;
     some.reserve(rows.size());
     for (const std::size_t row : rows) some.push_back(values[row]);
     return some;
@@ -31,7 +33,9 @@ Case rows_of(const Case& whole, const std::vector<std::size_t>& rows, Hertz samp
     Case some;
     some.motion = {sample_rate, picked(motion.time_s, rows), picked(motion.position_deg, rows),
                    picked(motion.velocity_deg_s, rows), picked(motion.acceleration_deg_s2, rows)};
+    if (!motion.carried_nm.empty()) some.motion.carried_nm = picked(motion.carried_nm, rows);
     some.torque_nm = picked(whole.torque_nm, rows);
+    some.row = picked(whole.row, rows);
     some.rough_deg_s2 = picked(whole.rough_deg_s2, rows);
     some.blunted_deg_s2 = picked(whole.blunted_deg_s2, rows);
     some.walk_deg = whole.walk_deg;
@@ -108,6 +112,8 @@ Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& r
     for (const double torque : log.torque_nm) whole.use.push_back(std::isfinite(torque) ? 1 : 0);
     for (double& torque : whole.torque_nm) torque = std::isfinite(torque) ? torque : 0.0;
     whole.from = {0};
+    whole.row.resize(log.size());
+    std::iota(whole.row.begin(), whole.row.end(), std::size_t{0});
     whole.moving_deg_s = slowest_moving(whole.motion, rules);
     whole.edge = edges_of(whole.motion, rules.edge_s);
     leave_out_kinks(whole, smoothing, rules);

@@ -27,6 +27,7 @@ struct Case {
     double step_nm = 0.0;  ///< of a log that holds whole steps coarser than its noise
     double moving_deg_s = 0.0;      ///< slower samples count as resting where direction or speed decides
     std::vector<std::size_t> from;  ///< samples at which a stretch begins; the first is 0
+    std::vector<std::size_t> row;   ///< of the log that each sample is
 
     [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
     [[nodiscard]] std::size_t used() const;

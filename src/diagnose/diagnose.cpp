@@ -6,43 +6,21 @@
 #include <memory>
 #include <optional>
 
+#include "diagnose/beside/told.hpp"
+#include "diagnose/examined.hpp"
 #include "diagnose/faults.hpp"
+#include "diagnose/given_diagnosis.hpp"
 #include "diagnose/judge.hpp"
 #include "diagnose/leftover.hpp"
 #include "diagnose/reproduction.hpp"
 #include "diagnose/search.hpp"
 #include "diagnose/summary.hpp"
-#include "diagnose/undecidable.hpp"
 #include "diagnose/values.hpp"
-#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
 namespace {
-
-bool is_among(std::span<const std::string> names, std::string_view name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-// Converter effects are found in the log itself (find_faults), not by a fit. `of_position`: whether effects
-// that need the joint's position take part.
-std::vector<const Effect*> screened(const Model& model, std::span<const std::string> without,
-                                    bool of_position) {
-    std::vector<const Effect*> effects;
-    for (const Effect* effect : catalogue()) {
-        const bool left_out = is_among(without, effect->name);
-        // Without ripple in the model there is nothing that these could change.
-        const bool ripple = std::any_of(model.terms.begin(), model.terms.end(), [](const Term& term) {
-            return term.effect->ripple_order.has_value();
-        });
-        if (left_out || effect->side == Side::converter || (effect->side == Side::ripple && !ripple) ||
-            (!of_position && needs_position(*effect)))
-            continue;
-        effects.push_back(effect);
-    }
-    return effects;
-}
 
 struct Searched {
     std::unique_ptr<ModelBench> bench;  ///< on which the last model was found
@@ -117,44 +95,13 @@ double confined_part(const Case& c, const std::vector<Leftover>& left) {
     return total_s / (c.motion.time_s.back() - c.motion.time_s.front());
 }
 
-// Faults whose effect is not to be tried have no name: what they spoiled is unexplained.
-std::vector<Leftover> nameless(std::vector<Fault>& faults, std::span<const std::string> without) {
-    std::vector<Leftover> left;
-    for (const Fault& fault : faults) {
-        if (is_among(without, fault.term.effect->name))
-            left.push_back({LeftoverKind::time, {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
-    }
-    std::erase_if(faults, [&](const Fault& fault) { return is_among(without, fault.term.effect->name); });
-    return left;
-}
-
-// What stands in spoiled samples, known when there is a model of the others.
-void measure_at_samples(std::vector<Leftover>& nameless, const Case& c, const Model& stated) {
-    std::vector<double> left = predict_nm(stated, c.motion);
-    double all = 0.0;
-    for (std::size_t k = 0; k < left.size(); ++k) {
-        left[k] = c.torque_nm[k] - left[k];
-        all += left[k] * left[k];
-    }
-    for (Leftover& leftover : nameless) {
-        double sum = 0.0, count = 0.0;
-        for (const Span& span : leftover.where.time_s) {
-            const auto first = std::lower_bound(c.motion.time_s.begin(), c.motion.time_s.end(), span.from);
-            for (auto at = first; at != c.motion.time_s.end() && *at <= span.to; ++at, count += 1.0)
-                sum += portable::pow(left[static_cast<std::size_t>(at - c.motion.time_s.begin())], 2);
-        }
-        leftover.rms_nm = std::sqrt(sum / std::max(count, 1.0));
-        leftover.part = sum / std::max(all, 1e-300);
-    }
-}
-
 // Without position an effect of the position may fit along the integral of the speed and be something else.
 std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& model,
-                                     std::span<const Effect* const> examined,
+                                     std::span<const Effect* const> tried,
                                      std::span<const std::string> without) {
     std::vector<const Effect*> others;
-    for (const Effect* effect : screened(model.stated, without, true)) {
-        if (std::find(examined.begin(), examined.end(), effect) == examined.end()) others.push_back(effect);
+    for (const Effect* effect : examined(model.stated, without, true)) {
+        if (std::find(tried.begin(), tried.end(), effect) == tried.end()) others.push_back(effect);
     }
     std::vector<Undecidable> told;
     for (const Effect* effect : others)
@@ -233,7 +180,12 @@ void tell_model(Diagnosis& diagnosis, const Candidate& last, std::size_t own) {
     for (Finding& finding : diagnosis.rounds) {
         if (is_doubtful(finding)) continue;
         finding.term = last.stated.terms[place];
-        finding.values.clear();
+        // Values beside a leftover are their own.
+        for (FittedValue& value : finding.values) value.term = place;
+        if (finding.out_of_fold)
+            diagnosis.values.insert(diagnosis.values.end(), finding.values.begin(), finding.values.end());
+        else
+            finding.values.clear();
         for (const FittedValue& value : last.values) {
             if (value.term == place) finding.values.push_back(value);
         }
@@ -252,7 +204,8 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     const DiagnosisRules& rules = options.rules;
     check(rules);
     for (const std::string& name : options.without) (void)find_effect(name);
-    const auto effects = screened(model, options.without, log.has_position());
+    if (!options.given.empty()) return diagnose_given(model, log, validation, options);
+    const auto effects = examined(model, options.without, log.has_position());
     const std::size_t own = model.terms.size();
     Case whole = whole_case(log, options.smoothing, rules.recording);
     std::optional<Case> other;
@@ -270,6 +223,7 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     Case part = excerpt(whole, rules.recording);
     const Searched found = search_rest(part, model, effects, diagnosis, aside, work, rules);
     Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr);
+    last = with_findings_beside(diagnosis, *found.bench, last, other ? &*other : nullptr, effects);
     if (!log.has_position())
         diagnosis.undecidable = undecidable(*found.bench, last, effects, options.without);
     measure_at_samples(spoiled, whole, last.stated);
@@ -284,7 +238,9 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     tell_model(diagnosis, last, own);
     name_findings(diagnosis, rules);
     diagnosis.samples_used = all.used();
-    measure_gap(diagnosis, whole, other ? &*other : nullptr, rules);
+    const GapCase log_gap{whole, whole};
+    const std::optional<GapCase> other_gap = other ? std::optional<GapCase>({*other, *other}) : std::nullopt;
+    measure_gap(diagnosis, log_gap, other_gap ? &*other_gap : nullptr, rules);
     diagnosis.verdict = verdict_of(diagnosis);
     return diagnosis;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "document/beside_fields.hpp"
 #include "document/diagnosis_fields.hpp"
 #include "document/gear_fields.hpp"
 #include "document/model_fields.hpp"
@@ -79,6 +80,8 @@ Json round_json(const Finding& finding) {
         {"gain", six(finding.evidence.gain)},         {"price", six(finding.evidence.price)},
         {"share_nm", six(finding.evidence.share_nm)}, {"share_of_noise", six(finding.evidence.share_sigma)},
         {"own_nm", six(finding.evidence.own_nm)},     {"gain_elsewhere", six(finding.evidence.elsewhere)}};
+    put_out_of_fold(json["evidence"], finding);
+    if (finding.size_uncertain) json["size_uncertain"] = true;
     json["alternatives"] = Json::array();
     for (const RivalFinding& rival : finding.alternatives)
         json["alternatives"].push_back({{"effect", rival.effect}, {"margin", six(rival.margin)}});
@@ -182,6 +185,7 @@ std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
                                        {"reason", entry.reason},
                                        {"would_explain_nm", six(entry.would_explain_nm)}});
     json["gap"] = gap_json(diagnosis.gap);
+    put_beside(json, diagnosis);
     json["own_terms"] = baseline_json(diagnosis);
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;

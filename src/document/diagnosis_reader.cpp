@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <limits>
 
+#include "document/beside_fields.hpp"
 #include "document/fields.hpp"
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -71,17 +72,17 @@ Term fitted_term_of(Fields& fields, std::size_t place, std::vector<FittedValue>&
     return term;
 }
 
-Evidence evidence_at(Fields& fields) {
+void read_evidence(Fields& fields, Finding& finding) {
     Fields entry = fields.object("evidence");
-    Evidence evidence{.gain = number_or_unknown(entry, "gain"),
-                      .price = number_or_unknown(entry, "price"),
-                      .share_nm = number_or_unknown(entry, "share_nm"),
-                      .share_sigma = number_or_unknown(entry, "share_of_noise"),
-                      .own_nm = number_or_unknown(entry, "own_nm"),
-                      .raw_gain = unknown,
-                      .elsewhere = number_or_unknown(entry, "gain_elsewhere")};
+    finding.evidence = {.gain = number_or_unknown(entry, "gain"),
+                        .price = number_or_unknown(entry, "price"),
+                        .share_nm = number_or_unknown(entry, "share_nm"),
+                        .share_sigma = number_or_unknown(entry, "share_of_noise"),
+                        .own_nm = number_or_unknown(entry, "own_nm"),
+                        .raw_gain = unknown,
+                        .elsewhere = number_or_unknown(entry, "gain_elsewhere")};
+    read_out_of_fold(entry, finding);
     entry.finish();
-    return evidence;
 }
 
 Finding finding_at(Fields& fields, std::size_t place) {
@@ -90,7 +91,8 @@ Finding finding_at(Fields& fields, std::size_t place) {
     finding.status = enumerator_of(fields, "status", FindingStatus::not_reproduced, status_name);
     if (fields.has("reason")) finding.reason = fields.text("reason");
     finding.where = place_of(fields, "where");
-    finding.evidence = evidence_at(fields);
+    read_evidence(fields, finding);
+    finding.size_uncertain = fields.has("size_uncertain") && fields.flag("size_uncertain");
     fields.each("alternatives", [&](Fields& rival) {
         finding.alternatives.push_back({effect_of(rival).name, number_or_unknown(rival, "margin")});
     });
@@ -193,6 +195,7 @@ Diagnosis read_diagnosis(std::string_view text, const std::string& source) {
     diagnosis.named = fields.texts("named");
     findings_of(fields, diagnosis);
     diagnosis.gap = gap_of(fields);
+    read_beside(fields, diagnosis);
     diagnosis.samples = fields.whole("samples");
     diagnosis.samples_used = fields.whole("samples_used");
     diagnosis.has_position = fields.flag("position_in_log");

@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/model_json.hpp"
 
+#include <array>
+#include <string_view>
+#include <utility>
+
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
+
+template <class Simulated>
+auto nuisance_fields(Simulated& term) {
+    return std::array{std::pair(std::string_view("offset_nm"), &term.offset_nm),
+                      std::pair(std::string_view("inertia_kgm2"), &term.inertia_kgm2),
+                      std::pair(std::string_view("gravity_cosine_nm"), &term.gravity_cosine_nm),
+                      std::pair(std::string_view("gravity_sine_nm"), &term.gravity_sine_nm)};
+}
 
 Json term_json(const Term& term) {
     Json json;
@@ -36,6 +48,33 @@ Term term_of(Fields& fields) {
     return term;
 }
 
+Json simulated_json(const SimulatedTerm& term) {
+    Json json{{"column", term.column}};
+    json["scale"] = term.scale ? Json(*term.scale) : Json(nullptr);
+    json["delay_s"] = term.fit_delay ? Json(nullptr) : Json(term.delay_s);
+    Json nuisance = Json::object();
+    for (const auto& [name, value] : nuisance_fields(term)) {
+        if (*value != 0.0) nuisance[std::string(name)] = *value;
+    }
+    if (!nuisance.empty()) json["nuisance"] = nuisance;
+    return json;
+}
+
+SimulatedTerm simulated_of(Fields& fields) {
+    SimulatedTerm term;
+    term.column = fields.text("column");
+    term.scale = fields.number_if_any("scale");
+    term.delay_s = fields.number_if_any("delay_s").value_or(0.0);
+    if (fields.has("nuisance")) {
+        Fields nuisance = fields.object("nuisance");
+        for (const auto& [name, value] : nuisance_fields(term))
+            *value = nuisance.number_if_any(name).value_or(0.0);
+        nuisance.finish();
+    }
+    fields.finish();
+    return term;
+}
+
 }  // namespace
 
 void put_model(Json& json, const Model& model) {
@@ -44,8 +83,10 @@ void put_model(Json& json, const Model& model) {
     for (const Term& term : model.terms) json["effects"].push_back(term_json(term));
 }
 
-std::string write_model(const Model& model, const Provenance& provenance) {
+std::string write_model(const Model& model, const Provenance& provenance,
+                        const std::optional<SimulatedTerm>& simulated) {
     Json json = document_head("model", provenance);
+    if (simulated) json["simulated"] = simulated_json(*simulated);
     put_model(json, model);
     return to_text(json);
 }
@@ -71,13 +112,29 @@ Model model_of(Fields& fields) {
     return model;
 }
 
-Model read_model(std::string_view text, const std::string& source) {
+ModelWithGiven read_model_with_given(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "model");
     Fields fields(json, source, "");
     fields.ignore_head();
-    Model model = model_of(fields);
+    ModelWithGiven found;
+    found.model = model_of(fields);
+    if (fields.has("simulated")) {
+        Fields simulated = fields.object("simulated");
+        found.simulated = simulated_of(simulated);
+        // Left out it is 0; null is to be fitted.
+        const Json& stated = json["simulated"];
+        found.simulated->fit_delay = stated.contains("delay_s") && stated["delay_s"].is_null();
+    }
     fields.finish();
-    return model;
+    return found;
+}
+
+Model read_model(std::string_view text, const std::string& source) {
+    ModelWithGiven found = read_model_with_given(text, source);
+    if (found.simulated)
+        raise<DataError>("{}: simulated is part of the model; this command has no log to read '{}' from",
+                         source, found.simulated->column);
+    return std::move(found.model);
 }
 
 }  // namespace ripplenotch

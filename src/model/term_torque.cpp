@@ -27,6 +27,7 @@ void refuse_missing_values(const Model& model) {
 std::vector<double> load_nm(const Model& model, const Situation& situation) {
     std::vector<double> load;
     if (!has(model, [](const Effect& effect) { return effect.uses_load; })) return load;
+    load = situation.motion.carried_nm;
     load.resize(situation.motion.size());
     each(model, Side::joint, [&](const Effect& effect, const std::vector<double>& values) {
         if (effect.bears_load) effect.apply(situation, values, load);

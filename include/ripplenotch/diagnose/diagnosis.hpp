@@ -12,6 +12,7 @@
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/model/fit.hpp"
+#include "ripplenotch/model/given_term.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 #include "ripplenotch/model/model.hpp"
 
@@ -90,6 +91,17 @@ struct RefusedCandidate {
     std::vector<Decision> decisions;
 };
 
+/// Why a finding is believed beside a leftover that nothing explains: in blocks of the log that its size was
+/// not fitted to, made white by the leftover's own colour.
+struct OutOfFold {
+    double gain = 0.0;  ///< fall of the sum of squares there, in units of what is left of the white noise
+    double t = 0.0;     ///< the same in units of its own deviation from block to block
+    std::size_t blocks = 0, blocks_positive = 0;
+    double evenness = 0.0;      ///< spread of the size from fold to fold beyond its own noise, of the size
+    std::string_view rival;     ///< the best in its place; empty when there is none
+    double rival_margin = 0.0;  ///< gain by which the finding is ahead of it
+};
+
 /// One effect that was added, in the order of adoption.
 struct Finding {
     Term term;  ///< with its values
@@ -101,8 +113,10 @@ struct Finding {
     double gap_before_nm = 0.0, gap_after_nm = 0.0;
     /// rms residual of the validation log, without it and with it beside what is believed.
     std::optional<double> validation_before_nm, validation_after_nm;
-    std::string reason;               ///< of a status other than confirmed, in words
-    std::vector<Decision> decisions;  ///< in the order in which the rules were asked
+    std::string reason;                         ///< of a status other than confirmed, in words
+    std::vector<Decision> decisions;            ///< in the order in which the rules were asked
+    std::optional<OutOfFold> out_of_fold = {};  ///< of a finding beside a leftover
+    bool size_uncertain = false;                ///< the leftover may be part of its size
 };
 
 /// Effects between which this log does not decide.
@@ -138,6 +152,19 @@ struct Fault {
     std::string words;
 };
 
+/// Part of the residual in a band of frequencies.
+struct BandLeft {
+    double from_hz = 0.0, to_hz = 0.0;  ///< 0: up to half the sample rate
+    double rms_nm = 0.0;
+};
+
+/// A value of a given term, or of what mends it.
+struct GivenValue {
+    std::string name;  ///< of the term; "inertia_kgm2", "gravity_cosine_nm", "gravity_sine_nm", "offset_nm"
+    double value = 0.0;
+    std::optional<Interval> ci95;
+};
+
 struct DiagnosisGap {
     double before_nm = 0.0, after_nm = 0.0;  ///< rms of measured less predicted torque, samples in order
     double noise_floor_nm = 0.0;
@@ -159,6 +186,8 @@ struct Diagnosis {
     std::vector<Leftover> unexplained;
     std::vector<Undecidable> undecidable;
     DiagnosisGap gap;
+    std::vector<GivenValue> given;       ///< values of the given terms, in their order, then what mends them
+    std::vector<BandLeft> leftover;      ///< of the improved model, where something is left beside findings
     std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
     /// Evaluations of a model along the samples searched, and whether the search was ended for their number.
@@ -172,6 +201,9 @@ struct Diagnosis {
 struct DiagnosisOptions {
     Seconds smoothing = default_smoothing;
     std::span<const std::string> without = {};  ///< names of effects that are not tried
+    /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
+    /// the validation log, where there is one.
+    std::span<const GivenTerm> given = {}, validation_given = {};
     DiagnosisRules rules = {};
 };
 

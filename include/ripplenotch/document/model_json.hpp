@@ -2,20 +2,31 @@
 #pragma once
 // model.json: a model of a joint as people and commands write it; docs/formats/model.md describes it.
 
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "ripplenotch/document/provenance.hpp"
+#include "ripplenotch/document/simulated_term.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
 
 /// Text of model.json. Values that the model does not state are left out.
-[[nodiscard]] std::string write_model(const Model& model, const Provenance& provenance);
+[[nodiscard]] std::string write_model(const Model& model, const Provenance& provenance,
+                                      const std::optional<SimulatedTerm>& simulated = std::nullopt);
 
 /// Reads model.json; `source` is its name in messages. A parameter left out is to be fitted. Throws
 /// DataError: not JSON, another schema, an unknown effect, parameter or field, a value out of its bounds, no
 /// gear ratio.
 [[nodiscard]] Model read_model(std::string_view text, const std::string& source);
+
+/// A model with what is given beside its effects.
+struct ModelWithGiven {
+    Model model;
+    std::optional<SimulatedTerm> simulated;
+};
+/// The same for commands that know what to do with a `simulated`; read_model refuses it.
+[[nodiscard]] ModelWithGiven read_model_with_given(std::string_view text, const std::string& source);
 
 }  // namespace ripplenotch

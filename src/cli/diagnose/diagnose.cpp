@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
+#include "cli/diagnose/given_terms.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/plot_request.hpp"
@@ -27,6 +28,8 @@ struct Request {
     PlotRequest plot;
     LogOptions log;
     std::string path, model;
+    GearOptions gear;  ///< a ratio alone, in place of a model
+    GivenOptions given;
     std::optional<std::string> validate;
     std::vector<std::string> without, rules;
     bool list_rules = false, explain = false;
@@ -50,10 +53,20 @@ DiagnosisRules rules_of(const Request& request) {
     return rules;
 }
 
+std::string source_of(const Request& request) {
+    return request.model == "-" ? "standard input" : request.model;
+}
+
 void check(const Request& request) {
     if (request.path.empty()) raise<UsageError>("LOG is missing: the measured log; - is standard input");
-    if (request.model.empty())
+    if (request.model.empty() && !request.given.any())
         raise<UsageError>("--model is missing: the model.json whose gap to the log is to be explained");
+    if (request.model.empty() && !request.gear.ratio)
+        raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
+    if (!request.model.empty() && request.gear.ratio)
+        raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there",
+                          request.model);
+    check_gear(request.gear);
     if (request.path == "-" && request.model == "-")
         raise<UsageError>("--model - and LOG -: standard input holds one of them");
     if (request.validate && *request.validate == "-") raise<UsageError>("--validate -: give a file");
@@ -65,8 +78,9 @@ void check(const Request& request) {
         raise<UsageError>("--plot - and --json would both go to standard output; name a file with --plot");
 }
 
-Log read(const Request& request, const Model& model, const std::string& path, Provenance& provenance) {
-    Log log = read_log(path, read_options(request.log, gear_of(model, "")));
+Log read(const Request& request, const ReadOptions& reading, const std::string& path,
+         Provenance& provenance) {
+    Log log = read_log(path, reading);
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.recordings.push_back({log.recording});
@@ -74,6 +88,33 @@ Log read(const Request& request, const Model& model, const std::string& path, Pr
     provenance.inputs.push_back(input_record(path));
     provenance.inputs.back().rows = log.recording.rows();
     return log;
+}
+
+ModelWithGiven model_of(const Request& request, Provenance& provenance) {
+    if (request.model.empty()) return {{GearRatio(*request.gear.ratio), {}}, std::nullopt};
+    const ModelWithGiven model = read_model_with_given(read_all(request.model), source_of(request));
+    if (request.model != "-") provenance.inputs.push_back(input_record(request.model));
+    return model;
+}
+
+/// The simulation with the values that were fitted, as part of the improved model.
+std::optional<SimulatedTerm> fitted(std::optional<SimulatedTerm> simulated, const Diagnosis& diagnosis) {
+    if (!simulated) return simulated;
+    const auto value = [&](std::string_view name, std::size_t number) {
+        for (const GivenValue& given : diagnosis.given) {
+            if (given.name == name && number-- == 0) return to_digits(given.value);
+        }
+        return 0.0;
+    };
+    simulated->scale = value("simulated", 0);
+    if (simulated->fit_delay && *simulated->scale != 0.0)
+        simulated->delay_s += to_digits(value("simulated", 1) / *simulated->scale);
+    simulated->fit_delay = false;
+    simulated->offset_nm = value("offset_nm", 0);
+    simulated->inertia_kgm2 = value("inertia_kgm2", 0);
+    simulated->gravity_cosine_nm = value("gravity_cosine_nm", 0);
+    simulated->gravity_sine_nm = value("gravity_sine_nm", 0);
+    return simulated;
 }
 
 /// What was fitted has no more digits in the model than in the story and its JSON.
@@ -86,14 +127,36 @@ Model with_fitted_digits(Model model) {
     return model;
 }
 
-Diagnosis diagnosed(const Request& request, const Model& model, const Log& log, Provenance& provenance) {
+/// What is diagnosed: the log, and what is given of it.
+struct Recorded {
+    Log log;
     std::optional<Log> other;
-    if (request.validate) other = read(request, model, *request.validate, provenance);
+    GivenTerms given;
+};
+
+Recorded read(const Request& request, const ModelWithGiven& model, Provenance& provenance) {
+    const ReadOptions reading = read_options(request.log, gear_of(model.model, ""));
+    Recorded recorded{read(request, reading, request.path, provenance), std::nullopt, {}};
+    if (request.validate) recorded.other = read(request, reading, *request.validate, provenance);
+    const GivenLog log{request.path, recorded.log};
+    std::optional<GivenLog> other;
+    if (recorded.other) other.emplace(GivenLog{*request.validate, *recorded.other});
+    const std::size_t said = recorded.log.recording.warnings.size();
+    recorded.given = read_given(request.given, model.simulated, reading, log, other ? &*other : nullptr);
+    const auto& warnings = recorded.log.recording.warnings;
+    say_warnings(request.common, {warnings.begin() + static_cast<std::ptrdiff_t>(said), warnings.end()});
+    return recorded;
+}
+
+Diagnosis diagnosed(const Request& request, const Model& model, const Recorded& recorded) {
     Progress::current().begin("looking for what is missing", "", 0);
     try {
-        return diagnose_readings(
-            model, log, other ? &*other : nullptr,
-            {.smoothing = request.smoothing, .without = request.without, .rules = rules_of(request)});
+        return diagnose_readings(model, recorded.log, recorded.other ? &*recorded.other : nullptr,
+                                 {.smoothing = request.smoothing,
+                                  .without = request.without,
+                                  .given = recorded.given.log,
+                                  .validation_given = recorded.given.validation,
+                                  .rules = rules_of(request)});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
     }
@@ -107,16 +170,18 @@ ExitCode run(const Request& request, const std::string& command_line) {
     }
     check(request);
     Provenance provenance{{}, command_line};
-    const std::string source = request.model == "-" ? "standard input" : request.model;
-    const Model model = read_model(read_all(request.model), source);
-    if (request.model != "-") provenance.inputs.push_back(input_record(request.model));
-    const GearAccount gear = gear_of(model, source);
+    const ModelWithGiven model = model_of(request, provenance);
+    const GearAccount gear =
+        gear_of(model.model, request.model.empty() ? "--gear-ratio" : source_of(request));
     say(request.common, gear_in_words(gear));
     const bool keep = request.common.output != "-";
-    const Log log = read(request, model, request.path, provenance);
-    const Diagnosis diagnosis = diagnosed(request, model, log, provenance);
+    const Recorded recorded = read(request, model, provenance);
+    const Log& log = recorded.log;
+    const Diagnosis diagnosis = diagnosed(request, model.model, recorded);
     if (keep) {
-        write_all(request.common.output, write_model(with_fitted_digits(diagnosis.model), provenance),
+        write_all(request.common.output,
+                  write_model(with_fitted_digits(diagnosis.model), provenance,
+                              fitted(recorded.given.simulated, diagnosis)),
                   request.common.overwrite());
         say(request.common, fmt::format("the improved model is in {}", request.common.output));
     }
@@ -135,6 +200,9 @@ std::function<ExitCode()> attach(Options& options) {
     const auto request = std::make_shared<Request>();
     options.argument("LOG", request->path, false, "the measured log; - is standard input");
     options.text("--model", request->model, "FILE", "model.json of the joint; values left out are fitted");
+    attach_given(options, request->given);
+    attach_gear(options, request->gear,
+                {.ratio = "motor turns per joint turn, in place of --model", .orders = "", .joint_file = ""});
     options.text("--validate", request->validate, "OTHER",
                  "another log, on which the improved model is checked");
     options.texts("--without", request->without, "NAME",

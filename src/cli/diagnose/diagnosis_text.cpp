@@ -55,10 +55,64 @@ std::string value_text(const Term& term, const FittedValue& value) {
     return text;
 }
 
+// What a finding beside a leftover rests on.
+std::string beside_text(const Finding& finding) {
+    if (!finding.out_of_fold) return {};
+    const OutOfFold& outside = *finding.out_of_fold;
+    std::string text =
+        fmt::format("  out of fold in {} of {} blocks; gain {}, price {}", outside.blocks_positive,
+                    outside.blocks, short_number(outside.gain), short_number(finding.evidence.price));
+    if (!outside.rival.empty())
+        text += fmt::format("; next best {}, {} behind", outside.rival, short_number(outside.rival_margin));
+    return text + "\n";
+}
+
+// A scale that is not 1 is a finding of its own, and no name.
+std::string scale_text(const GivenValue& scale) {
+    constexpr double least = 0.95, most = 1.05;
+    std::string text = fmt::format("simulated: {}", short_number(scale.value));
+    if (scale.ci95)
+        text += fmt::format(" [{}, {}]", short_number(scale.ci95->low), short_number(scale.ci95->high));
+    text += " of the simulation's torque is measured";
+    const bool off = (scale.value < least && (!scale.ci95 || scale.ci95->high < least)) ||
+                     (scale.value > most && (!scale.ci95 || scale.ci95->low > most));
+    return text + (off ? ": torque constant, gear ratio or unit\n" : "\n");
+}
+
+// What is given, with the values that were fitted to it.
+std::string given_text(const Diagnosis& diagnosis) {
+    std::string text;
+    std::string mended;
+    const GivenValue* scale = nullptr;
+    for (const GivenValue& value : diagnosis.given) {
+        if (value.name == "arm") continue;
+        if (value.name != "simulated") {
+            mended +=
+                fmt::format("{}{} = {}", mended.empty() ? "" : ", ", value.name, short_number(value.value));
+        } else if (scale == nullptr) {
+            scale = &value;
+            text += scale_text(value);
+        } else {
+            text += fmt::format("simulated: {} ms later than the log\n",
+                                short_number(1e3 * value.value / scale->value));
+        }
+    }
+    if (!mended.empty()) text += fmt::format("  mended beside it, by nobody's name: {}\n", mended);
+    return text;
+}
+
+std::string bands_text(const std::vector<BandLeft>& bands) {
+    if (bands.empty()) return {};
+    return fmt::format("left by frequency: {} Nm rms below 1 Hz, {} from 1 to 10 Hz, {} above\n",
+                       short_number(bands[0].rms_nm), short_number(bands[1].rms_nm),
+                       short_number(bands[2].rms_nm));
+}
+
 std::string round_text(const Finding& finding, std::size_t number) {
     const Term& term = finding.term;
-    std::string text =
-        fmt::format("round {}: {}, {}\n", number, term.effect->name, status_name(finding.status));
+    std::string text = fmt::format(
+        "round {}: {}, {}{}\n", number, term.effect->name, status_name(finding.status),
+        finding.out_of_fold && finding.status == FindingStatus::confirmed ? " beside a leftover" : "");
     if (!finding.reason.empty()) text += fmt::format("  {}\n", finding.reason);
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         if (term.effect->parameters[p].left_out == LeftOut::refused)
@@ -66,6 +120,7 @@ std::string round_text(const Finding& finding, std::size_t number) {
                 fmt::format("  {} = {}\n", term.effect->parameters[p].name, short_number(*term.values[p]));
     }
     for (const FittedValue& value : finding.values) text += fmt::format("  {}\n", value_text(term, value));
+    text += beside_text(finding);
     text += fmt::format("  acts {}\n", where_text(finding.where));
     text +=
         fmt::format("  gap {} -> {} Nm; alone it explains {} Nm rms\n", short_number(finding.gap_before_nm),
@@ -75,6 +130,7 @@ std::string round_text(const Finding& finding, std::size_t number) {
                             short_number(*finding.validation_before_nm),
                             short_number(*finding.validation_after_nm));
     }
+    if (finding.out_of_fold) return text;
     for (const RivalFinding& rival : finding.alternatives)
         text += fmt::format("  instead of it, {} would leave {} more (a tie below 12)\n", rival.effect,
                             short_number(rival.margin));
@@ -181,6 +237,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
         text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));
+    text += given_text(diagnosis);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
     text += findings_text(diagnosis, explain);
@@ -194,6 +251,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
                                 short_number(entry.would_explain_nm));
         text += "\n";
     }
+    text += bands_text(diagnosis.leftover);
     text += gap_text(gap);
     if (diagnosis.search_ended)
         text += fmt::format(

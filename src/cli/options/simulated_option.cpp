@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#include "cli/options/simulated_option.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/core/spec.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// Of a scale that is fitted; hardly ever is a simulation in other units by more.
+constexpr double usual_scale = 10.0;
+// Of a value that is stated.
+constexpr double stated = 1e-9;
+// Of a delay that is fitted: within 40 ms.
+constexpr double usual_delay_s = 0.02, largest_delay_s = 0.04;
+
+constexpr std::array<std::string_view, 1> aligns = {"start"};
+constexpr Key column_keys[] = {
+    {.name = "name", .kind = KeyKind::text, .required = true, .help = "of the column"},
+    {.name = "scale", .kind = KeyKind::number, .help = "factor; left out: fitted"},
+    {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, or 'fit'"},
+};
+constexpr Key log_keys[] = {
+    {.name = "file", .kind = KeyKind::text, .required = true, .help = "the simulation's log"},
+    {.name = "column", .kind = KeyKind::text, .required = true, .help = "of its torque"},
+    {.name = "validate", .kind = KeyKind::text, .help = "its log for the validation log"},
+    {.name = "align", .kind = KeyKind::choice, .choices = aligns, .help = "start: both logs begin together"},
+    {.name = "scale", .kind = KeyKind::number, .help = "factor; left out: fitted"},
+    {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, or 'fit'"},
+};
+
+// The cubic through the four samples about a time.
+double cubic_at(const std::vector<double>& time_s, const std::vector<double>& value, double at_s) {
+    const std::size_t n = time_s.size();
+    if (at_s <= time_s.front()) return value.front();
+    if (at_s >= time_s.back()) return value.back();
+    const auto next =
+        static_cast<std::size_t>(std::upper_bound(time_s.begin(), time_s.end(), at_s) - time_s.begin());
+    const std::size_t first =
+        std::min(next - std::min<std::size_t>(next, 2), n - std::min<std::size_t>(n, 4));
+    const std::size_t end = std::min(first + 4, n);
+    double sum = 0.0;
+    for (std::size_t i = first; i < end; ++i) {
+        double weight = 1.0;
+        for (std::size_t j = first; j < end; ++j) {
+            if (i != j) weight *= (at_s - time_s[j]) / (time_s[i] - time_s[j]);
+        }
+        sum += weight * value[i];
+    }
+    return sum;
+}
+
+// The same columns but for the torque, which is this one.
+ReadOptions with_torque(ReadOptions reading, const std::string& column) {
+    const bool by_place =
+        std::any_of(reading.columns.begin(), reading.columns.end(),
+                    [](const std::string& entry) { return entry.find('=') == std::string::npos; });
+    if (by_place)
+        raise<UsageError>(
+            "--simulated: with --columns by place its column cannot be named; name the columns, as in "
+            "--columns velocity=dq,torque=tau");
+    std::erase_if(reading.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
+    reading.columns.push_back("torque=" + column);
+    reading.units.erase("torque");
+    return reading;
+}
+
+void refuse_useless(const std::vector<double>& torque_nm, const Log* measured, const std::string& column,
+                    const std::string& source) {
+    const auto [low, high] = std::minmax_element(torque_nm.begin(), torque_nm.end());
+    if (*low == *high)
+        raise<DataError>("simulated: '{}' of {} is {:g} Nm throughout; nothing can be compared with it",
+                         column, source, *low);
+    if (measured != nullptr && torque_nm == measured->trace.torque_nm)
+        raise<DataError>("simulated: '{}' is the measured torque of {}", column, source);
+}
+
+// Rows that the simulation does not span are as if they were not there.
+void keep_within(Log& log, double from_s, double to_s, const std::string& path) {
+    Trace& trace = log.trace;
+    const auto first =
+        std::lower_bound(trace.time_s.begin(), trace.time_s.end(), from_s) - trace.time_s.begin();
+    const auto end = std::upper_bound(trace.time_s.begin(), trace.time_s.end(), to_s) - trace.time_s.begin();
+    if (first >= end)
+        raise<DataError>(
+            "simulated: {} spans {:g} to {:g} s and the log {:g} to {:g} s; align=start lets both begin "
+            "together",
+            path, from_s, to_s, trace.time_s.front(), trace.time_s.back());
+    const std::size_t outside = trace.size() - static_cast<std::size_t>(end - first);
+    if (outside == 0) return;
+    for (auto* column : {&trace.time_s, &trace.velocity_deg_s, &trace.torque_nm, &trace.position_deg}) {
+        if (column->empty()) continue;
+        *column = std::vector<double>(column->begin() + first, column->begin() + end);
+    }
+    std::vector<std::size_t> starts;
+    for (const std::size_t row : trace.run_starts) {
+        if (row > static_cast<std::size_t>(first) && row < static_cast<std::size_t>(end))
+            starts.push_back(row - static_cast<std::size_t>(first));
+    }
+    trace.run_starts = starts;
+    log.recording.warnings.push_back(
+        fmt::format("{} rows of the log are outside what {} spans and do not count", outside, path));
+}
+
+GivenTerm term_of(std::vector<double> at_log, std::vector<double> slope, const SimulatedTerm& stated_term) {
+    GivenTerm term{"simulated", {}, {}, {}};
+    term.torque_nm.push_back(std::move(at_log));
+    term.mean.push_back(stated_term.scale.value_or(1.0));
+    term.deviation.push_back(stated_term.scale ? stated : usual_scale);
+    if (!slope.empty()) {
+        term.torque_nm.push_back(std::move(slope));
+        term.mean.push_back(0.0);
+        term.deviation.push_back(usual_delay_s);
+    }
+    return term;
+}
+
+}  // namespace
+
+SimulatedOption::SimulatedOption(std::string_view text) {
+    const Spec spec = parse_spec(text);
+    if (spec.name != "column" && spec.name != "log")
+        raise<UsageError>("--simulated: '{}' is neither column,name=NAME nor log,file=FILE,column=NAME",
+                          text);
+    const bool own = spec.name == "log";
+    const Settings settings("--simulated " + spec.name, spec,
+                            own ? std::span<const Key>(log_keys) : std::span<const Key>(column_keys));
+    term_.column = settings.text(own ? "column" : "name");
+    if (own) file_ = settings.text("file");
+    if (own && settings.has("validate")) validation_file_ = settings.text("validate");
+    align_start_ = own && settings.has("align");
+    if (settings.has("scale")) term_.scale = settings.number("scale");
+    const std::string delay = settings.text("delay");
+    term_.fit_delay = delay == "fit";
+    if (!term_.fit_delay) term_.delay_s = parse_quantity(delay, Dimension::time, "--simulated: delay");
+}
+
+GivenTerm SimulatedOption::read(const ReadOptions& reading, const std::string& path, Log& log) const {
+    if (!file_ && path == "-")
+        raise<UsageError>(
+            "--simulated column,...: standard input cannot be read twice; give the log as a file");
+    return from(reading, file_.value_or(path), log);
+}
+
+GivenTerm SimulatedOption::read_validation(const ReadOptions& reading, const std::string& path,
+                                           Log& log) const {
+    if (file_ && !validation_file_)
+        raise<UsageError>(
+            "--simulated log,...: with --validate the simulation of that log is needed too: validate=FILE");
+    return from(reading, file_ ? *validation_file_ : path, log);
+}
+
+GivenTerm SimulatedOption::from(ReadOptions reading, const std::string& path, Log& log) const {
+    if (file_) {
+        // Its own layout: of what is said about the log only the unit of this column holds.
+        ReadOptions own;
+        own.columns = {"torque=" + term_.column};
+        if (const auto unit = reading.units.find(term_.column); unit != reading.units.end())
+            own.units.insert(*unit);
+        own.gear_ratio = reading.gear_ratio;
+        own.takes_motor_units = true;
+        reading = own;
+    } else {
+        reading = with_torque(std::move(reading), term_.column);
+    }
+    const Log simulated = read_log(path, reading);
+    refuse_useless(simulated.trace.torque_nm, file_ ? nullptr : &log, term_.column, path);
+    std::vector<double> time_s = simulated.trace.time_s;
+    if (align_start_) {
+        const double ahead_s = log.trace.time_s.front() - time_s.front();
+        for (double& time : time_s) time += ahead_s;
+    }
+    if (!file_ && simulated.trace.size() != log.trace.size())
+        raise<DataError>("simulated: '{}' of {} has {} rows that can be read, the log {}", term_.column, path,
+                         simulated.trace.size(), log.trace.size());
+    if (file_) keep_within(log, time_s.front() - term_.delay_s, time_s.back() - term_.delay_s, path);
+    const auto at = [&](double later_s) {
+        std::vector<double> values;
+        for (const double t : log.trace.time_s)
+            values.push_back(cubic_at(time_s, simulated.trace.torque_nm, t + term_.delay_s + later_s));
+        return values;
+    };
+    std::vector<double> here = term_.delay_s == 0.0 && !file_ ? simulated.trace.torque_nm : at(0.0), slope;
+    if (term_.fit_delay) {
+        const double step_s = 1.0 / log.trace.sample_rate.value();
+        slope = at(step_s);
+        const auto before = at(-step_s);
+        for (std::size_t k = 0; k < slope.size(); ++k) slope[k] = (slope[k] - before[k]) / (2.0 * step_s);
+    }
+    return term_of(std::move(here), std::move(slope), term_);
+}
+
+}  // namespace ripplenotch

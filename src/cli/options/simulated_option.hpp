@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// --simulated: the torque of the user's own simulation, in a column of the log or in a log of its own.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "ripplenotch/document/simulated_term.hpp"
+#include "ripplenotch/log/log.hpp"
+#include "ripplenotch/model/given_term.hpp"
+
+namespace ripplenotch {
+
+class SimulatedOption {
+  public:
+    /// "column,name=tau_model[,scale=1][,delay=2ms]" or "log,file=sim.csv,column=torque[,validate=sim2.csv]
+    /// [,align=start]...". Throws UsageError.
+    explicit SimulatedOption(std::string_view text);
+
+    /// As a model.json states it: a column of the log.
+    explicit SimulatedOption(SimulatedTerm term) : term_(std::move(term)) {}
+
+    /// The term for the rows of the log at `path`: its scale, and where the delay is fitted the slope in
+    /// time. Rows that a simulation in a file of its own does not span are taken out of the log. Throws
+    /// UsageError, DataError, FileError.
+    [[nodiscard]] GivenTerm read(const ReadOptions& reading, const std::string& path, Log& log) const;
+    /// The same for the validation log, for which a simulation in a file of its own has another file.
+    [[nodiscard]] GivenTerm read_validation(const ReadOptions& reading, const std::string& path,
+                                            Log& log) const;
+    [[nodiscard]] const SimulatedTerm& term() const { return term_; }
+
+  private:
+    [[nodiscard]] GivenTerm from(ReadOptions reading, const std::string& path, Log& log) const;
+    SimulatedTerm term_;
+    std::optional<std::string> file_, validation_file_;
+    bool align_start_ = false;
+};
+
+}  // namespace ripplenotch

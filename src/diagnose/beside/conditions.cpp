@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/beside/conditions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/hearing.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// True when the name is worth its price beside another as well: then the other is not in its place.
+bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, double price) {
+    Names both = rivals;
+    both.push_back(own);
+    const OutsideGain gain = outside_gain(sums.residual_outside(rivals), sums.residual_outside(both),
+                                          sums.lens().ground().blocks(), sums.lens().sigma());
+    return is_worth(gain, price, sums.lens().rules().beside);
+}
+
+// The best other name in its place, refined; one that is bent stands in for something else.
+std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price) {
+    std::vector<Named> rivals;
+    const Shape shape = sums.shapes()[own];
+    for (std::size_t i = 0; i < sums.listed(); ++i) {
+        const Shape& other = sums.shapes()[i];
+        if (same_name(other, shape) || is_among(sums, rest, other) || !sums.is_told(i)) continue;
+        Named rival{rest};
+        rival.names.push_back(i);
+        rival.left = sums.left_outside(rival.names);
+        rivals.push_back(std::move(rival));
+    }
+    std::stable_sort(rivals.begin(), rivals.end(),
+                     [](const Named& a, const Named& b) { return a.left < b.left; });
+    std::optional<Named> best;
+    for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
+        Named rival = refined(sums, rivals[i]);
+        if (sums.lens().bounds().is_bent(sums.shapes()[rival.names.back()])) continue;
+        // What a given term leaves is a function of the posture, which any wave over the position takes up.
+        const bool of_posture = kind_of(*shape.term.effect) == Kind::position &&
+                                kind_of(*sums.shapes()[rival.names.back()].term.effect) == Kind::position;
+        if (!of_posture && stands_beside(sums, rival.names, own, price)) continue;
+        if (!best || rival.left < best->left) best = std::move(rival);
+    }
+    return best;
+}
+
+double swing_nm(const Sums& sums, const Names& names, std::size_t place) {
+    const OwnColumns own = columns_at(sums, names, place);
+    const VectorXd all = sums.sizes(names);
+    const auto columns = sums.lens().torque_nm(sums.shapes()[names[place]]);
+    const auto& use = sums.lens().looked_at().use;
+    double sum = 0.0, square = 0.0, count = 0.0;
+    for (std::size_t k = 0; k < use.size(); ++k) {
+        if (use[k] == 0) continue;
+        double torque = 0.0;
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            torque += all[own.first + static_cast<Index>(c)] * columns[c][k];
+        sum += torque;
+        square += torque * torque;
+        count += 1.0;
+    }
+    return std::sqrt(std::max(square / count - sum / count * (sum / count), 0.0));
+}
+
+void doubt(BesideFinding& finding, std::string reason) {
+    finding.status = FindingStatus::tentative;
+    finding.reason = std::move(reason);
+}
+
+void look_alone(const Sums& sums, const Names& names, std::size_t place, bool even_by_speed,
+                BesideFinding& finding) {
+    const DiagnosisRules& rules = sums.lens().rules();
+    Hearing hearing(rules, finding.decisions);
+    hearing.asked_price(finding.gain.gain, finding.price, false);
+    hearing.asked("beside.least_t", finding.gain.t, false);
+    const Effect& effect = *finding.shape.term.effect;
+    const Index first = columns_at(sums, names, place).first;
+    finding.same = sameness_of(sums, names, place);
+    if (is_against_motion(effect) && sums.sizes(names)[first] <= 0.0)
+        doubt(finding,
+              "its size is below 0: it would drive the joint, or something given holds too much of it");
+    else if (sums.lens().bounds().is_bent(finding.shape))
+        doubt(finding, "its shape ends at a bound: it stands in for something else");
+    else if (hearing.asked("beside.same_sign", finding.same.same_sign,
+                           finding.same.same_sign < rules.beside.same_sign))
+        doubt(finding, "its size has not the same sign all over the log");
+    else if (hearing.asked("beside.most_uneven", finding.same.uneven,
+                           finding.same.uneven > rules.beside.most_uneven))
+        doubt(finding, fmt::format("its size is not the same all over the log ({:.0f} % off)",
+                                   100.0 * std::min(finding.same.uneven, 9.99)));
+    else if (even_by_speed && hearing.asked("evenness.most_uneven", finding.same.uneven_by_speed,
+                                            finding.same.uneven_by_speed > rules.evenness.most_uneven))
+        doubt(finding, fmt::format("its size is not the same slow and fast, forth and back ({:.0f} % off)",
+                                   100.0 * std::min(finding.same.uneven_by_speed, 9.99)));
+}
+
+void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const std::vector<double>& left,
+                    BesideFinding& finding) {
+    Names rest = names;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
+    const auto rival = best_rival(sums, rest, names[place], finding.price);
+    if (!rival) return;
+    const BesideRules& rules = sums.lens().rules().beside;
+    const OutsideGain ahead = outside_gain(sums.residual_outside(rival->names), left,
+                                           sums.lens().ground().blocks(), sums.lens().sigma());
+    finding.rival = sums.shapes()[rival->names.back()];
+    finding.rival_margin = ahead.gain;
+    finding.rival_t = ahead.t;
+    Hearing hearing(sums.lens().rules(), finding.decisions);
+    const bool tie = hearing.asked("beside.tie_margin", ahead.gain, ahead.gain < rules.tie_margin) ||
+                     hearing.asked("beside.tie_t", ahead.t, ahead.t < rules.tie_t);
+    if (tie && finding.status == FindingStatus::confirmed) finding.status = FindingStatus::ambiguous;
+}
+
+// A small one of a kind mends the form of the largest.
+void look_at_sizes(const Sums& sums, std::vector<BesideFinding>& findings) {
+    const DiagnosisRules& rules = sums.lens().rules();
+    std::vector<FindingStatus> now;
+    for (const BesideFinding& finding : findings) now.push_back(finding.status);
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+        const Kind kind = kind_of(*findings[i].shape.term.effect);
+        double largest = 0.0;
+        for (std::size_t other = 0; other < findings.size(); ++other) {
+            if (other != i && kind_of(*findings[other].shape.term.effect) == kind && kind != Kind::order)
+                largest = std::max(largest, findings[other].size_nm);
+        }
+        if (now[i] != FindingStatus::confirmed || largest == 0.0) continue;
+        if (!Hearing(rules, findings[i].decisions)
+                 .asked("beside.shape_part", findings[i].size_nm / largest,
+                        findings[i].size_nm < rules.beside.shape_part * largest))
+            continue;
+        findings[i].status = FindingStatus::shape_correction;
+        findings[i].reason = "it mends the form of a larger finding of its kind";
+    }
+}
+
+}  // namespace
+
+std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Judgement& by) {
+    const std::vector<double> left = sums.residual_outside(now.names);
+    std::vector<BesideFinding> findings;
+    for (std::size_t place = 0; place < now.names.size(); ++place) {
+        BesideFinding finding;
+        finding.shape = sums.shapes()[now.names[place]];
+        Names rest = now.names;
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
+        finding.gain = outside_gain(sums.residual_outside(rest), left, sums.lens().ground().blocks(),
+                                    sums.lens().sigma());
+        finding.price = price_of(sums, now.names[place], by.effects);
+        finding.size_nm = swing_nm(sums, now.names, place);
+        look_alone(sums, now.names, place, by.even_by_speed, finding);
+        findings.push_back(std::move(finding));
+    }
+    look_at_sizes(sums, findings);
+    for (std::size_t place = 0; place < now.names.size(); ++place)
+        look_at_rivals(sums, now.names, place, left, findings[place]);
+    return findings;
+}
+
+namespace {
+
+// Squares of the whitened log that names explain in the whole fit.
+double explained(const Sums& sums, const Names& names) {
+    if (names.empty()) return 0.0;
+    VectorXd targets = sums.targets(names, 0);
+    for (std::size_t fold = 1; fold < sums.folds(); ++fold) targets += sums.targets(names, fold);
+    const VectorXd sizes = sums.sizes(names);
+    return 2.0 * sizes.dot(targets) - sizes.dot(sums.products(names) * sizes);
+}
+
+// Of what everything that may be named would explain.
+double explained_part(const Sums& sums, const Names& names) {
+    Names all;
+    for (std::size_t shape = 0; shape < sums.listed(); ++shape) {
+        if (sums.is_told(shape)) all.push_back(shape);
+    }
+    return explained(sums, names) / std::max(explained(sums, all), 1e-300);
+}
+
+// Where much that could be explained is not, the names stand in for what was not tried.
+void look_at_rest(const Sums& sums, const Named& now, std::vector<BesideFinding>& findings) {
+    const DiagnosisRules& rules = sums.lens().rules();
+    const double part = explained_part(sums, now.names);
+    for (BesideFinding& finding : findings) {
+        if (Hearing(rules, finding.decisions)
+                .asked("beside.least_part", part, part < rules.beside.least_part))
+            doubt(finding,
+                  "more could be explained by names that do not hold: it may stand in for something else");
+    }
+}
+
+}  // namespace
+
+NamedBeside named_beside(Sums& sums, const Judgement& by) {
+    Named now = search_beside(sums, {}, {}, by.effects);
+    std::vector<BesideFinding> withdrawn;
+    Barred barred;
+    for (std::size_t turn = 0;; ++turn) {
+        std::vector<BesideFinding> findings = judged_beside(sums, now, by);
+        std::optional<std::size_t> weakest;
+        for (std::size_t i = 0; i < findings.size(); ++i) {
+            if (findings[i].status != FindingStatus::tentative) continue;
+            if (!weakest || findings[i].gain.gain < findings[*weakest].gain.gain) weakest = i;
+        }
+        if (!weakest || turn == sums.lens().rules().beside.most_withdrawals) {
+            if (by.even_by_speed) look_at_rest(sums, now, findings);
+            findings.insert(findings.end(), withdrawn.begin(), withdrawn.end());
+            return {std::move(now), std::move(findings)};
+        }
+        barred.push_back(findings[*weakest].shape);
+        withdrawn.push_back(std::move(findings[*weakest]));
+        now.names.erase(now.names.begin() + static_cast<std::ptrdiff_t>(*weakest));
+        now.left = sums.left_outside(now.names);
+        now = refined(sums, std::move(now));
+        sums.forget_but(now.names);
+        now = search_beside(sums, std::move(now), barred, by.effects);
+    }
+}
+
+}  // namespace ripplenotch

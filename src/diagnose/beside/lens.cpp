@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/beside/lens.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/beside/color.hpp"
+#include "diagnose/beside/dot.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::vector<double> swelled(const std::vector<double>& column, const Motion& motion, double fastest_deg_s,
+                            bool by_direction, bool by_speed) {
+    std::vector<double> swelling = column;
+    for (std::size_t k = 0; k < column.size(); ++k) {
+        const double v = motion.velocity_deg_s[k];
+        if (by_direction) swelling[k] *= v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
+        if (by_speed) swelling[k] *= std::abs(v) / fastest_deg_s;
+    }
+    return swelling;
+}
+
+}  // namespace
+
+Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenTerm> given,
+           std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work)
+    : case_(looked_at),
+      rules_(rules),
+      work_(work),
+      ground_(looked_at, rules.beside),
+      bounds_(scale_bounds(looked_at, rules.beside)) {
+    if (!given.empty()) carry(given, model);
+    prediction_.emplace(model.stated, case_.motion);
+    always_ = always_on(case_, model, given, rules);
+    open_nm_ = case_.torque_nm;
+    add_scaled(-1.0, prediction_->torque_nm().data(), open_nm_.data(), open_nm_.size());
+    for (std::size_t i = 0; i < always_.mean.size(); ++i)
+        add_scaled(-always_.mean[i], always_.torque_nm[i].data(), open_nm_.data(), open_nm_.size());
+    bridged_open_ = ground_.bridged(open_nm_);
+    bridged_always_ = bridged(always_.torque_nm);
+    shapes_ = shapes_of(effects, bounds_, model.stated.gear_ratio.value(), ground_.rate_hz());
+    // What the model has is always on.
+    std::erase_if(shapes_, [&](const Shape& shape) {
+        return std::any_of(model.stated.terms.begin(), model.stated.terms.end(),
+                           [&](const Term& term) { return same_name({term}, shape); });
+    });
+    const std::vector<double> left = left_by_all();
+    plain_.emplace(bridged_always_, always_.deviation, rms(left));
+    ground_.color(long_color(left, ground_.memory(), rules.beside.color_floor));
+    sigma_ = std::max(rms(ground_.whitened(left)), 1e-12);
+    for (const auto& column : bridged_always_) white_always_.push_back(ground_.whitened(column));
+    white_.emplace(white_always_, always_.deviation, sigma_);
+    target_ = white_->left(ground_.whitened(bridged_open_));
+    bridged_open_.shrink_to_fit();
+}
+
+// The load that the given terms bring: from a fit beside Coulomb's and viscous friction, to which they would
+// bend otherwise.
+void Lens::carry(std::span<const GivenTerm> given, const Candidate& model) {
+    const AlwaysOn columns = always_on(case_, model, given, rules_);
+    std::vector<double> open_nm = case_.torque_nm;
+    const std::vector<double> own_nm = predict_nm(model.stated, case_.motion);
+    add_scaled(-1.0, own_nm.data(), open_nm.data(), open_nm.size());
+    for (std::size_t i = 0; i < columns.mean.size(); ++i)
+        add_scaled(-columns.mean[i], columns.torque_nm[i].data(), open_nm.data(), open_nm.size());
+    Columns beside = bridged(columns.torque_nm);
+    std::vector<double> step, deviation = columns.deviation;
+    for (const double v : case_.motion.velocity_deg_s)
+        step.push_back(portable::tanh(v / rules_.beside.load_step_deg_s));
+    beside.push_back(ground_.bridged(step));
+    beside.push_back(ground_.bridged(case_.motion.velocity_deg_s));
+    deviation.insert(deviation.end(), 2, any_size);
+    std::vector<double> values =
+        Ridge(beside, deviation, rules_.beside.first_noise * rms(open_nm)).solve(ground_.bridged(open_nm));
+    for (std::size_t i = 0; i < columns.mean.size(); ++i) values[i] += columns.mean[i];
+    // The last of the stated ones is the offset, which nothing carries.
+    case_.motion.carried_nm = brought_nm(columns, values, 0, columns.stated - 1);
+}
+
+std::vector<double> Lens::left_by_all() const {
+    Columns all = bridged_always_;
+    std::vector<double> deviation = always_.deviation;
+    for (const Shape& shape : shapes_) {
+        for (auto& column : bridged(torque_nm(shape))) all.push_back(std::move(column));
+    }
+    deviation.resize(all.size(), any_size);
+    // The values need fewer rows than their residual.
+    const std::size_t step = std::max<std::size_t>(1, ground_.thinned() / rules_.screening.sketch_samples);
+    Columns some;
+    const auto thinned = [step](const std::vector<double>& column) {
+        std::vector<double> thin;
+        for (std::size_t k = 0; k < column.size(); k += step) thin.push_back(column[k]);
+        return thin;
+    };
+    for (const auto& column : all) some.push_back(thinned(column));
+    const std::vector<double> target = thinned(bridged_open_);
+    const std::vector<double> values =
+        Ridge(some, deviation, rules_.beside.first_noise * rms(target)).solve(target);
+    std::vector<double> left = bridged_open_;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        add_scaled(-values[i], all[i].data(), left.data(), left.size());
+    return left;
+}
+
+Lens::Columns Lens::bridged(const Columns& columns) const {
+    Columns thin;
+    for (const auto& column : columns) thin.push_back(ground_.bridged(column));
+    return thin;
+}
+
+std::vector<std::vector<double>> Lens::torque_nm(const Shape& shape) const {
+    const std::size_t before = prediction_->applied();
+    Columns columns{prediction_->added(shape.term)};
+    if (const auto& polar = shape.term.effect->polar) {
+        Term across = shape.term;
+        across.values[polar->phase] = *across.values[polar->phase] + 90.0;
+        columns.push_back(prediction_->added(across));
+    }
+    work_.add(prediction_->applied() - before, case_.size());
+    if (!shape.swelling) return columns;
+    const Columns plain = columns;
+    for (const auto& [by_direction, by_speed] : {std::pair(true, false), {true, true}, {false, true}}) {
+        for (const auto& column : plain)
+            columns.push_back(swelled(column, case_.motion, bounds_.fastest_deg_s, by_direction, by_speed));
+    }
+    return columns;
+}
+
+std::vector<double> Lens::weighed(std::span<const double> torque_nm) const {
+    return white_->left(ground_.whitened(ground_.bridged(torque_nm)));
+}
+
+Lens::Weighed Lens::weighed(const Shape& shape) const {
+    Weighed weighed;
+    for (const auto& column : torque_nm(shape)) {
+        const std::vector<double> white = ground_.whitened(ground_.bridged(column));
+        weighed.columns.push_back(white_->left(white));
+        const double all = rms(white);
+        if (all > 0.0) weighed.part = std::max(weighed.part, rms(weighed.columns.back()) / all);
+    }
+    return weighed;
+}
+
+std::vector<double> Lens::plain_values(std::span<const double> explained_nm) const {
+    std::vector<double> left = open_nm_;
+    add_scaled(-1.0, explained_nm.data(), left.data(), left.size());
+    std::vector<double> values = plain_->solve(ground_.bridged(left));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += always_.mean[i];
+    return values;
+}
+
+std::vector<double> Lens::plain_sizes(std::span<const Shape> shapes) const {
+    // What the always-on columns leave of the shapes and of the torque.
+    Columns outside;
+    for (const Shape& shape : shapes) {
+        for (const auto& column : bridged(torque_nm(shape))) outside.push_back(plain_->left(column));
+    }
+    const std::vector<double> free(outside.size(), any_size);
+    return Ridge(outside, free, 0.0).solve(plain_->left(ground_.bridged(open_nm_)));
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A log that nothing was fitted to, beside which each finding has to leave no more than without it.
+
+#include <vector>
+
+#include "diagnose/beside/beside.hpp"
+#include "diagnose/beside/conditions.hpp"
+#include "diagnose/beside/sizes.hpp"
+
+namespace ripplenotch {
+
+/// What is believed, with its values; `place` among the findings.
+struct Believed {
+    std::vector<std::size_t> place;
+    std::vector<BesideValues> values;
+};
+
+/// Findings that are believed as they stand now.
+[[nodiscard]] Believed believed_of(Sums& sums, const std::vector<BesideFinding>& findings);
+
+/// rms that is left of the other log with and without each finding, in the order of the findings; 0 for those
+/// that are in doubt.
+struct OtherLeft {
+    double without_nm = 0.0, with_nm = 0.0;
+};
+
+/// Withdraws, one after the other, what leaves more of the other log than is left without it.
+std::vector<OtherLeft> withdraw_on_other(Sums& sums, const Candidate& model, const GivenCase& other,
+                                         std::vector<BesideFinding>& findings);
+
+}  // namespace ripplenotch

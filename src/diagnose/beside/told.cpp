@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/beside/told.hpp"
+
+#include <algorithm>
+
+#include "diagnose/beside/shapes.hpp"
+#include "diagnose/doubt.hpp"
+#include "diagnose/leftover.hpp"
+#include "diagnose/summary.hpp"
+
+namespace ripplenotch {
+namespace {
+
+bool is_left_above(const Diagnosis& diagnosis, const ModelBench& bench, const Candidate& last) {
+    if (diagnosis.unexplained.empty() &&
+        std::none_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), is_doubtful))
+        return false;
+    const double left_nm = rms_of(bench.raw_residual(last.stated), bench.looked_at().use);
+    return left_nm > bench.rules().beside.least_left * bench.noise().rms_nm;
+}
+
+// The search before has bent a number of it to a bound that is held at its usual value here: it stands in for
+// something else, and so may what was judged beside it.
+bool has_bent_shape(const Diagnosis& diagnosis, const Finding& finding) {
+    const std::vector<std::size_t> refined = scales_of(*finding.term.effect);
+    return std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), [&](const Finding& round) {
+        if (!is_doubtful(round) || !same_name({round.term}, {finding.term})) return false;
+        return std::any_of(round.values.begin(), round.values.end(), [&](const FittedValue& value) {
+            return value.at_bound &&
+                   std::find(refined.begin(), refined.end(), value.parameter) == refined.end();
+        });
+    });
+}
+
+}  // namespace
+
+Candidate take_up(Diagnosis& diagnosis, BesideOutcome outcome, const Candidate& model,
+                  const ModelBench& bench) {
+    Candidate now = model;
+    double before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
+    for (Finding& finding : outcome.findings) {
+        finding.gap_before_nm = finding.gap_after_nm = before;
+        finding.evidence.share_sigma = finding.evidence.share_nm / bench.noise().rms_nm;
+        if (!is_doubtful(finding)) {
+            now.open.terms.push_back(finding.term);
+            now.stated.terms.push_back(finding.term);
+            now.prices.push_back(finding.evidence.price);
+            finding.gap_after_nm = before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
+        }
+        finding.evidence.raw_gain = static_cast<double>(bench.looked_at().used()) *
+                                    (finding.gap_before_nm * finding.gap_before_nm - before * before);
+        diagnosis.rounds.push_back(std::move(finding));
+    }
+    return now;
+}
+
+Candidate with_findings_beside(Diagnosis& diagnosis, const ModelBench& bench, const Candidate& last,
+                               const Case* other, std::span<const Effect* const> effects) {
+    if (!is_left_above(diagnosis, bench, last)) return last;
+    std::optional<GivenCase> validation;
+    if (other != nullptr) validation.emplace(GivenCase{*other});
+    BesideOutcome outcome = find_beside({bench.looked_at()}, validation ? &*validation : nullptr, last,
+                                        effects, bench.rules(), bench.work());
+    // The search before has told its own doubts.
+    std::erase_if(outcome.findings, is_doubtful);
+    if (outcome.findings.empty()) return last;
+    for (const Finding& finding : outcome.findings) {
+        if (has_bent_shape(diagnosis, finding)) return last;
+    }
+    for (const Finding& finding : outcome.findings) {
+        std::erase_if(diagnosis.rounds, [&](const Finding& round) {
+            return is_doubtful(round) && same_name({round.term}, {finding.term});
+        });
+    }
+    const Candidate now = take_up(diagnosis, std::move(outcome), last, bench);
+    diagnosis.unexplained = leftovers(bench, now.stated);
+    diagnosis.leftover = left_by_band(bench.looked_at(), now.stated);
+    return now;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/examined.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnose/undecidable.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+
+bool is_among(std::span<const std::string> names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<const Effect*> examined(const Model& model, std::span<const std::string> without,
+                                    bool of_position) {
+    std::vector<const Effect*> effects;
+    for (const Effect* effect : catalogue()) {
+        const bool left_out = is_among(without, effect->name);
+        // Without ripple in the model there is nothing that these could change.
+        const bool ripple = std::any_of(model.terms.begin(), model.terms.end(), [](const Term& term) {
+            return term.effect->ripple_order.has_value();
+        });
+        if (left_out || effect->side == Side::converter || (effect->side == Side::ripple && !ripple) ||
+            (!of_position && needs_position(*effect)))
+            continue;
+        effects.push_back(effect);
+    }
+    return effects;
+}
+
+std::vector<Leftover> nameless(std::vector<Fault>& faults, std::span<const std::string> without) {
+    std::vector<Leftover> left;
+    for (const Fault& fault : faults) {
+        if (is_among(without, fault.term.effect->name))
+            left.push_back({LeftoverKind::time, {fault.time_s, {}, {}, {}, {}, {}}, 0.0, 0.0});
+    }
+    std::erase_if(faults, [&](const Fault& fault) { return is_among(without, fault.term.effect->name); });
+    return left;
+}
+
+void measure_at_samples(std::vector<Leftover>& nameless, const Case& c, const Model& stated) {
+    std::vector<double> left = predict_nm(stated, c.motion);
+    double all = 0.0;
+    for (std::size_t k = 0; k < left.size(); ++k) {
+        left[k] = c.torque_nm[k] - left[k];
+        all += left[k] * left[k];
+    }
+    for (Leftover& leftover : nameless) {
+        double sum = 0.0, count = 0.0;
+        for (const Span& span : leftover.where.time_s) {
+            const auto first = std::lower_bound(c.motion.time_s.begin(), c.motion.time_s.end(), span.from);
+            for (auto at = first; at != c.motion.time_s.end() && *at <= span.to; ++at, count += 1.0)
+                sum += portable::pow(left[static_cast<std::size_t>(at - c.motion.time_s.begin())], 2);
+        }
+        leftover.rms_nm = std::sqrt(sum / std::max(count, 1.0));
+        leftover.part = sum / std::max(all, 1e-300);
+    }
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which effects of the catalogue a diagnosis tries, and what becomes of faults that it must not name.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "diagnose/case.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+
+namespace ripplenotch {
+
+[[nodiscard]] bool is_among(std::span<const std::string> names, std::string_view name);
+
+/// Effects that a fit can find beside this model; those of the converter are found in the log itself
+/// (find_faults). `of_position`: whether effects that need the joint's position take part.
+[[nodiscard]] std::vector<const Effect*> examined(const Model& model, std::span<const std::string> without,
+                                                  bool of_position);
+
+/// Faults whose effect is not to be tried have no name: what they spoiled is unexplained. They are taken out
+/// of `faults`.
+[[nodiscard]] std::vector<Leftover> nameless(std::vector<Fault>& faults,
+                                             std::span<const std::string> without);
+
+/// What stands in spoiled samples, known when there is a model of the others.
+void measure_at_samples(std::vector<Leftover>& nameless, const Case& c, const Model& stated);
+
+}  // namespace ripplenotch

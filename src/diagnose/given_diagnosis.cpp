@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/given_diagnosis.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "diagnose/beside/always_on.hpp"
+#include "diagnose/beside/dot.hpp"
+#include "diagnose/beside/sizes.hpp"
+#include "diagnose/beside/told.hpp"
+#include "diagnose/doubt.hpp"
+#include "diagnose/examined.hpp"
+#include "diagnose/faults.hpp"
+#include "diagnose/leftover.hpp"
+#include "diagnose/search.hpp"
+#include "diagnose/summary.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_view log) {
+    for (const GivenTerm& term : given) {
+        for (const auto& column : term.torque_nm) {
+            if (column.size() != rows)
+                raise<UsageError>("{}: {} values for the {} rows of {}", term.name, column.size(), rows, log);
+        }
+    }
+}
+
+// A log with what is given of it: as it stands, and with the values that were fitted.
+struct GivenLog {
+    Case c;
+    std::span<const GivenTerm> given;
+
+    [[nodiscard]] GivenCase view() const { return {c, given}; }
+
+    /// Its torque less what is given. What the gear carries of it goes into the motion.
+    [[nodiscard]] Case less(const Model& model, const std::vector<double>& values,
+                            const DiagnosisRules& rules) const {
+        const AlwaysOn columns = given_columns(c, model, given, rules);
+        Case rest = c;
+        const auto brought = brought_nm(columns, values, 0, columns.stated);
+        add_scaled(-1.0, brought.data(), rest.torque_nm.data(), rest.torque_nm.size());
+        // The last is the offset, which nothing carries.
+        rest.motion.carried_nm = brought_nm(columns, values, 0, columns.stated - 1);
+        return rest;
+    }
+};
+
+std::vector<double> as_given(const Model& model, const GivenLog& log, const DiagnosisRules& rules) {
+    return given_columns(log.c, model, log.given, rules).mean;
+}
+
+void tell_given(Diagnosis& diagnosis, const Model& model, std::span<const GivenTerm> given,
+                const BesideOutcome& outcome) {
+    const std::vector<std::string> names = given_names(model, given);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        GivenValue value{names[i], outcome.given_values[i], std::nullopt};
+        if (i < outcome.given_errors.size()) {
+            const double half = normal_95_errors * outcome.given_errors[i];
+            value.ci95 = Interval{value.value - half, value.value + half};
+        }
+        diagnosis.given.push_back(std::move(value));
+    }
+}
+
+// Values of findings beside a leftover are their own; the places are those in the improved model.
+void tell_places(Diagnosis& diagnosis, std::size_t own) {
+    std::size_t place = own;
+    for (Finding& finding : diagnosis.rounds) {
+        if (is_doubtful(finding)) continue;
+        for (FittedValue& value : finding.values) value.term = place;
+        diagnosis.values.insert(diagnosis.values.end(), finding.values.begin(), finding.values.end());
+        ++place;
+    }
+}
+
+class GivenDiagnosis {
+  public:
+    GivenDiagnosis(const Model& model, const TraceView& log, const TraceView* validation,
+                   const DiagnosisOptions& options)
+        : model_(model),
+          options_(options),
+          rules_(options.rules),
+          work_(rules_.search.most_evaluations),
+          effects_(examined(model, options.without, log.has_position())),
+          whole_{whole_case(log, options.smoothing, rules_.recording), options.given} {
+        if (validation == nullptr) return;
+        other_.emplace(
+            GivenLog{whole_case(*validation, options.smoothing, rules_.recording), options.validation_given});
+        (void)find_faults(other_->c, rules_.faults);
+    }
+
+    [[nodiscard]] Diagnosis run(bool has_position) {
+        told_.false_alarm = rules_.screening.false_alarm;
+        told_.has_position = has_position;
+        told_.samples = whole_.c.size();
+        told_.faults = find_faults(whole_.c, rules_.faults);
+        std::vector<Leftover> spoiled = nameless(told_.faults, options_.without);
+        const GivenLog part{excerpt(whole_.c, rules_.recording), whole_.given};
+        const Candidate first =
+            fitted_own(part.less(model_, as_given(model_, part, rules_), rules_), model_, model_);
+        told_.baseline = first.stated;
+        std::optional<GivenCase> validation;
+        if (other_) validation.emplace(other_->view());
+        const BesideOutcome outcome =
+            find_beside(part.view(), validation ? &*validation : nullptr, first, effects_, rules_, work_);
+        tell_given(told_, model_, whole_.given, outcome);
+        const Candidate last =
+            looked_at_rest(part.less(model_, outcome.given_values, rules_), first, outcome);
+        measure_at_samples(spoiled, whole_.less(model_, outcome.given_values, rules_), last.stated);
+        told_.unexplained.insert(told_.unexplained.begin(), spoiled.begin(), spoiled.end());
+        finish(last, outcome.given_values);
+        return std::move(told_);
+    }
+
+  private:
+    [[nodiscard]] Candidate fitted_own(const Case& c, const Model& open, const Model& guess) {
+        const ModelBench rough(c, {1.0, 1.0, {}}, work_, rules_);
+        return rough.fitted(open, guess, std::vector<double>(open.terms.size(), 0.0), 30);
+    }
+
+    // What is left of the log beside what was found.
+    [[nodiscard]] Candidate looked_at_rest(const Case& rest, const Candidate& first,
+                                           const BesideOutcome& outcome) {
+        Candidate named = first;
+        for (const Term& term : outcome.believed) {
+            named.open.terms.push_back(term);
+            named.stated.terms.push_back(term);
+        }
+        named = fitted_own(rest, named.open, named.stated);
+        const NoiseFloor noise = noise_floor(rest, named.stated, named.open, rules_);
+        ModelBench bench(rest, noise, work_, rules_);
+        bench.settle_on(named.stated);
+        Candidate own = first;
+        own.stated.terms.assign(
+            named.stated.terms.begin(),
+            named.stated.terms.begin() + static_cast<std::ptrdiff_t>(model_.terms.size()));
+        const Candidate last = take_up(told_, outcome, own, bench);
+        told_.unexplained = leftovers(bench, last.stated);
+        told_.disagreement = told_.unexplained;
+        told_.gap.noise_floor_nm = bench.floor_nm(last.stated);
+        told_.noise_color = noise.color;
+        told_.leftover = left_by_band(rest, last.stated);
+        const Candidate with_errors = bench.settled(last);
+        told_.values = with_errors.values;
+        return with_errors;
+    }
+
+    void finish(const Candidate& last, const std::vector<double>& values) {
+        told_.model = last.stated;
+        tell_places(told_, model_.terms.size());
+        name_findings(told_, rules_);
+        for (const Fault& fault : told_.faults) {
+            told_.model.terms.push_back(fault.term);
+            told_.named.emplace_back(fault.term.effect->name);
+        }
+        told_.samples_used = whole_.c.used();
+        const Case before = whole_.less(model_, as_given(model_, whole_, rules_), rules_);
+        const Case after = whole_.less(model_, values, rules_);
+        const GapCase log{before, after};
+        if (other_) {
+            const Case other_before = other_->less(model_, as_given(model_, *other_, rules_), rules_);
+            const Case other_after = other_->less(model_, values, rules_);
+            const GapCase other{other_before, other_after};
+            measure_gap(told_, log, &other, rules_);
+        } else {
+            measure_gap(told_, log, nullptr, rules_);
+        }
+        told_.verdict = verdict_of(told_);
+        told_.evaluations = work_.spent() * Work::unit_samples / static_cast<double>(whole_.c.size());
+    }
+
+    const Model& model_;
+    const DiagnosisOptions& options_;
+    const DiagnosisRules& rules_;
+    Work work_;
+    std::vector<const Effect*> effects_;
+    GivenLog whole_;
+    std::optional<GivenLog> other_;
+    Diagnosis told_;
+};
+
+}  // namespace
+
+Diagnosis diagnose_given(const Model& model, const TraceView& log, const TraceView* validation,
+                         const DiagnosisOptions& options) {
+    check_rows(options.given, log.size(), "the log");
+    if (validation != nullptr) {
+        if (options.validation_given.size() != options.given.size())
+            raise<UsageError>("{} terms are given for the log and {} for the validation log",
+                              options.given.size(), options.validation_given.size());
+        check_rows(options.validation_given, validation->size(), "the validation log");
+    }
+    return GivenDiagnosis(model, log, validation, options).run(log.has_position());
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// Names beside a leftover, step by step, and on logs whose leftover nothing in the catalogue explains.
+
+#include "diagnose/beside/beside.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "bench_fixture.hpp"
+#include "diagnose/beside/color.hpp"
+#include "diagnose/beside/ground.hpp"
+#include "diagnose/beside/outside_gain.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "support/catch.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using fixture::standard;
+
+// The tour once more, without rests of its own length, so that there are enough blocks.
+const Motion& long_tour() {
+    static const Motion motion = [] {
+        std::vector<std::string> specs;
+        for (int lap = 0; lap < 3; ++lap) {
+            for (const char* spec : {"poly6,to=150deg,duration=2.2s", "poly6,to=-60deg,duration=3s",
+                                     "poly6,to=100deg,duration=1.6s", "poly6,to=60deg,duration=1.7s",
+                                     "poly6,to=90deg,duration=0.9s", "poly6,to=-20deg,duration=1.2s"})
+                specs.emplace_back(spec);
+        }
+        return make_motion(specs, Hertz(500.0));
+    }();
+    return motion;
+}
+
+// Slow waves that go with nothing of the joint's own: what an arm's other joints do to this one.
+std::vector<double> slow_leftover(const Motion& motion, std::uint64_t seed, double rms_nm) {
+    std::mt19937_64 draw(seed);
+    const auto part = [&] { return static_cast<double>(draw() >> 11U) / 9007199254740992.0; };
+    std::vector<double> left(motion.size(), 0.0);
+    for (int wave = 0; wave < 12; ++wave) {
+        const double hz = 0.05 + 0.9 * part(), phase = part();
+        for (std::size_t k = 0; k < left.size(); ++k)
+            left[k] += portable::cos_degrees(360.0 * (hz * motion.time_s[k] + phase));
+    }
+    const double now = rms(left);
+    for (double& value : left) value *= rms_nm / now;
+    return left;
+}
+
+Trace log_beside(const Model& truth, std::uint64_t seed, double leftover_nm) {
+    Trace log = fixture::logged(truth, long_tour(), seed);
+    const auto left = slow_leftover(long_tour(), seed, leftover_nm);
+    for (std::size_t k = 0; k < left.size(); ++k) log.torque_nm[k] += left[k];
+    return log;
+}
+
+Model truth_of(std::initializer_list<const char*> terms) {
+    Model model{GearRatio(100.0), {}};
+    for (const char* term : terms) model.terms.push_back(parse_term(term));
+    return model;
+}
+
+BesideOutcome found_in(const Trace& log) {
+    const Case c = whole_case(log.view(), default_smoothing, standard.recording);
+    const Model none{GearRatio(100.0), {}};
+    Work work(1e9);
+    std::vector<const Effect*> effects(catalogue().begin(), catalogue().end());
+    return find_beside({c}, nullptr, {none, none, {}, {}, 0.0, true}, effects, standard, work);
+}
+
+std::vector<std::string> confirmed(const BesideOutcome& outcome) {
+    std::vector<std::string> names;
+    for (const Finding& finding : outcome.findings) {
+        if (finding.status == FindingStatus::confirmed) names.emplace_back(finding.term.effect->name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string told(const BesideOutcome& outcome) {
+    std::string text;
+    for (const Finding& finding : outcome.findings)
+        text += std::string(finding.term.effect->name) + " " + std::string(status_name(finding.status)) +
+                " " + finding.reason + "\n";
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("the colour of an autoregression of two lags is found, and nothing beyond it") {
+    std::vector<double> white(60'000, 0.0), e(white.size(), 0.0);
+    add_white_noise(white, 1.0, 3, NoiseChannel::torque);
+    for (std::size_t k = 2; k < e.size(); ++k) e[k] = 1.2 * e[k - 1] - 0.5 * e[k - 2] + white[k];
+    const auto color = long_color(e, 6, 0.0);
+    REQUIRE(color.size() == 6);
+    CHECK(color[0] == Approx(1.2).margin(0.02));
+    CHECK(color[1] == Approx(-0.5).margin(0.02));
+    for (std::size_t lag = 2; lag < 6; ++lag) CHECK(color[lag] == Approx(0.0).margin(0.02));
+    // A hundredth of white noise besides shortens the memory.
+    CHECK(std::abs(long_color(e, 6, 0.01)[0]) < color[0]);
+    CHECK(long_color(std::vector<double>(500, 2.0), 6, 0.0).empty());
+}
+
+TEST_CASE(
+    "a gain out of fold is the sum of its blocks, and its deviation counts how each is like the one before") {
+    // Blocks of two rows whose squares fall by 4, 1, 1, 2.
+    const std::vector<double> without = {2, 0, 1, 0, 1, 0, 1, 1}, with(8, 0.0);
+    const std::vector<RowRange> blocks = {{0, 2}, {2, 2}, {4, 2}, {6, 2}};
+    const OutsideGain gain = outside_gain(without, with, blocks, 0.5);
+    CHECK(gain.by_block == std::vector<double>{16, 4, 4, 8});
+    CHECK(gain.gain == 32);
+    CHECK(gain.positive() == 4);
+    CHECK(gain.without_best(2) == 8);
+    // Mean 8: squares 64 + 16 + 16 + 0, products of neighbours -32 + 16 + 0.
+    CHECK(gain.t == Approx(32.0 / std::sqrt(96.0 - 16.0)));
+    CHECK(is_worth(gain, 8.0, standard.beside));
+    CHECK_FALSE(is_worth(gain, 8.1, standard.beside));
+}
+
+TEST_CASE(
+    "rows that do not count are bridged in every column alike, so that what holds between columns still "
+    "does") {
+    Case c = whole_case(fixture::logged(truth_of({"inertia,inertia_kgm2=0.4"}), long_tour(), 7).view(),
+                        default_smoothing, standard.recording);
+    for (std::size_t k = 1000; k < 1300; ++k) c.use[k] = 0;
+    Ground ground(c, standard.beside);
+    std::vector<double> twice = c.torque_nm;
+    for (double& value : twice) value = 2.0 * value + 3.0;
+    const auto bridged = ground.bridged(c.torque_nm), other = ground.bridged(twice);
+    for (std::size_t k = 0; k < bridged.size(); ++k) CHECK(other[k] == Approx(2.0 * bridged[k] + 3.0));
+    ground.color({0.5});
+    std::size_t rows = 0;
+    for (const RowRange& fold : ground.folds()) rows += fold.count;
+    CHECK(rows == ground.rows());
+    CHECK(ground.rows() < c.used());
+    for (std::size_t row = 0; row < ground.rows(); ++row) CHECK(c.use[ground.sample_of(row)] != 0);
+}
+
+TEST_CASE("nothing but a leftover names nothing, whatever the leftover") {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const BesideOutcome outcome = found_in(log_beside(truth_of({}), seed, 0.8));
+        INFO("seed " << seed << "\n" << told(outcome));
+        CHECK(outcome.believed.empty());
+    }
+}
+
+TEST_CASE("friction is named beside a leftover of its own size, and its interval holds the truth") {
+    const BesideOutcome outcome =
+        found_in(log_beside(truth_of({"coulomb-friction,torque_nm=0.9,width_deg_s=1"}), 5, 0.9));
+    INFO(told(outcome));
+    REQUIRE(confirmed(outcome) == std::vector<std::string>{"coulomb-friction"});
+    const Finding& finding = outcome.findings[0];
+    REQUIRE(finding.out_of_fold);
+    CHECK(finding.size_uncertain);
+    CHECK(finding.out_of_fold->blocks_positive > finding.out_of_fold->blocks / 2);
+    REQUIRE(finding.values[0].ci95);
+    CHECK(finding.values[0].ci95->low < 0.9);
+    CHECK(finding.values[0].ci95->high > 0.9);
+}
+
+TEST_CASE("two frictions beside a leftover are found as the two that they are") {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        const BesideOutcome outcome =
+            found_in(log_beside(truth_of({"coulomb-friction,torque_nm=0.9,width_deg_s=1",
+                                          "viscous-friction,coefficient_nm_per_deg_s=0.012",
+                                          "ripple,order=2,amplitude_nm=0.3,phase_deg=40"}),
+                                seed, 1.2));
+        INFO("seed " << seed << "\n" << told(outcome));
+        std::vector<std::string> believed;
+        for (const Term& term : outcome.believed) believed.emplace_back(term.effect->name);
+        std::sort(believed.begin(), believed.end());
+        CHECK(believed == std::vector<std::string>{"coulomb-friction", "ripple", "viscous-friction"});
+        // What grows with the speed and what grows with its square is a tie now and then.
+        CHECK(confirmed(outcome).size() >= 2);
+    }
+}
+
+}  // namespace ripplenotch
