@@ -147,6 +147,23 @@ Json decision_json(std::string_view effect, const Json& round, std::string_view 
     return {{"effect", effect}, {"round", round}, {"outcome", outcome}, {"rules", rules}};
 }
 
+Json arm_json(const ArmAccount& arm) {
+    Json json{{"source", arm.source}, {"matched", arm.rule}, {"option", arm.option}};
+    json["joints"] = Json::array();
+    for (const JointTravel& joint : arm.joints)
+        json["joints"].push_back(
+            {{"name", joint.name}, {"log", joint.log}, {"travel_deg", six(joint.travel_deg)}});
+    json["values_there"] = arm.values_there;
+    json["values_told"] = arm.values_told;
+    json["all_joints_at_once"] = arm.all_joints_at_once;
+    json["lengths_are_guessed"] = arm.lengths_are_guessed;
+    json["lambda"] = arm.pull;
+    json["smoothing_s"] = arm.smoothing.value();
+    json["gap_before_nm"] = six(arm.gap_before_nm);
+    json["gap_nm"] = six(arm.gap_nm);
+    return json;
+}
+
 // Which rules were asked about each finding and each candidate of the last step.
 Json decisions_json(const Diagnosis& diagnosis) {
     Json list = Json::array();
@@ -162,8 +179,8 @@ Json decisions_json(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
-                            const Provenance& provenance) {
+std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
+                            const ArmAccount* arm) {
     Json json = document_head("diagnosis", provenance);
     json["verdict"] = verdict_name(diagnosis.verdict);
     if (!diagnosis.doubt.empty()) json["doubt"] = diagnosis.doubt;
@@ -186,6 +203,7 @@ std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
                                        {"would_explain_nm", six(entry.would_explain_nm)}});
     json["gap"] = gap_json(diagnosis.gap);
     put_beside(json, diagnosis);
+    if (arm != nullptr) json["arm"] = arm_json(*arm);
     json["own_terms"] = baseline_json(diagnosis);
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;

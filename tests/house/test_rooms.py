@@ -25,7 +25,7 @@ SEES = {
     "diagnose": {"core", "model", "analysis"},
     "figure": {"core"},
     "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
-    "document": {"core", "figure", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose"},
+    "document": {"core", "figure", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "arm"},
     "page": {"core", "diagnose", "figure", "chart", "document"},
     "cli": {"core", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "figure", "chart",
             "document", "page", "arm"},

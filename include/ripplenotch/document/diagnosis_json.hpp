@@ -5,15 +5,16 @@
 #include <string>
 #include <string_view>
 
+#include "ripplenotch/arm/arm_account.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/document/provenance.hpp"
 
 namespace ripplenotch {
 
-/// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given.
+/// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one.
 [[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
-                                          const Provenance& provenance);
+                                          const Provenance& provenance, const ArmAccount* arm = nullptr);
 
 /// Reads it back; `source` is its name in messages. What the document does not hold is not known then: values
 /// of Diagnosis::baseline and of refused candidates are empty, Evidence::raw_gain is nan, FittedValue has no

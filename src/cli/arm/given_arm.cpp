@@ -64,14 +64,16 @@ ArmAccount GivenArm::account(std::size_t joint) {
     return account;
 }
 
-std::string arm_sentence(const ArmAccount& account) {
+std::string arm_text(const ArmAccount& account) {
     return fmt::format(
         "arm: {} joints of {} matched {} (-v shows them); {} of {} combinations of its masses told by this "
-        "log, "
-        "{}, motion smoothed over {:g} s{}",
+        "log, {}, motion smoothed over {:g} s{}\n  {:.3g} -> {:.3g} Nm rms with friction beside it, on "
+        "fifths "
+        "of the log left out\n",
         account.joints.size(), account.source, account.rule, account.values_told, account.values_there,
         account.all_joints_at_once ? "all joints fitted at once" : "this joint fitted alone",
-        account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "");
+        account.smoothing.value(), account.lengths_are_guessed ? ", lengths of its links guessed" : "",
+        account.gap_before_nm, account.gap_nm);
 }
 
 }  // namespace ripplenotch

@@ -8,26 +8,10 @@
 
 #include "cli/arm/arm_option.hpp"
 #include "cli/readings/arm_reading.hpp"
+#include "ripplenotch/arm/arm_account.hpp"
 #include "ripplenotch/arm/arm_term.hpp"
-#include "ripplenotch/arm/arm_travel.hpp"
 
 namespace ripplenotch {
-
-/// For the story and its JSON.
-struct ArmAccount {
-    std::string source;  ///< "ur10.urdf", "axes zyyzyz"
-    std::string rule;    ///< how joints were matched: "by name"
-    std::string option;  ///< that would force it
-    std::vector<JointTravel> joints;
-    std::size_t values_there = 0, values_told = 0;
-    bool all_joints_at_once = false;  ///< or this joint alone
-    bool lengths_are_guessed = false;
-    double pull = 0.0;
-    Seconds smoothing;
-    double gap_before_nm = 0.0;  ///< rms of the torque about its mean
-    double gap_nm = 0.0;         ///< rms of what arm and friction beside it leave, on fifths left out
-    std::vector<std::string> warnings, notes;
-};
 
 class GivenArm {
   public:
@@ -55,7 +39,8 @@ class GivenArm {
     std::map<std::size_t, ArmFit> fits_;  ///< by joint; all joints at once: under 0
 };
 
-/// "arm: 6 joints of ur10.urdf matched by number (-v shows them); 36 of 36 combinations ... 0.1 s"
-[[nodiscard]] std::string arm_sentence(const ArmAccount& account);
+/// "arm: 6 joints of ur10.urdf matched by number (-v shows them); 36 of 36 combinations ... 0.1 s", and what
+/// it leaves.
+[[nodiscard]] std::string arm_text(const ArmAccount& account);
 
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "cli/arm/given_arm.hpp"
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
 #include "cli/diagnose/given_terms.hpp"
@@ -67,6 +68,8 @@ void check(const Request& request) {
         raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there",
                           request.model);
     check_gear(request.gear);
+    if (request.given.arm && request.common.output != "-")
+        raise<UsageError>("-o {}: model.json holds no arm; leave -o out", request.common.output);
     if (request.path == "-" && request.model == "-")
         raise<UsageError>("--model - and LOG -: standard input holds one of them");
     if (request.validate && *request.validate == "-") raise<UsageError>("--validate -: give a file");
@@ -148,6 +151,15 @@ Recorded read(const Request& request, const ModelWithGiven& model, Provenance& p
     return recorded;
 }
 
+void say_arm(const CommonOptions& common, const ArmAccount& arm) {
+    for (const JointTravel& joint : arm.joints)
+        say(common, fmt::format("arm: {} is {} of the log, and goes {:.3g} deg", joint.name,
+                                joint.log.empty() ? "the joint" : joint.log, joint.travel_deg));
+    say(common, fmt::format("arm: as if with {}", arm.option));
+    for (const std::string& note : arm.notes) say(common, note);
+    say_warnings(common, arm.warnings);
+}
+
 Diagnosis diagnosed(const Request& request, const Model& model, const Recorded& recorded) {
     Progress::current().begin("looking for what is missing", "", 0);
     try {
@@ -177,6 +189,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
     const bool keep = request.common.output != "-";
     const Recorded recorded = read(request, model, provenance);
     const Log& log = recorded.log;
+    if (recorded.given.arm) say_arm(request.common, *recorded.given.arm);
     const Diagnosis diagnosis = diagnosed(request, model.model, recorded);
     if (keep) {
         write_all(request.common.output,
@@ -186,8 +199,10 @@ ExitCode run(const Request& request, const std::string& command_line) {
         say(request.common, fmt::format("the improved model is in {}", request.common.output));
     }
     write_all("-",
-              request.common.json ? write_diagnosis(diagnosis, gear, provenance)
-                                  : diagnosis_story(diagnosis, request.explain),
+              request.common.json ? write_diagnosis(diagnosis, gear, provenance,
+                                                    recorded.given.arm ? &*recorded.given.arm : nullptr)
+                                  : (recorded.given.arm ? arm_text(*recorded.given.arm) : "") +
+                                        diagnosis_story(diagnosis, request.explain),
               ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, provenance,
               [&] { return diagnosis_figure(request.path, diagnosis, log.trace.view(), request.smoothing); });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/options/options.hpp"
+#include "ripplenotch/arm/arm_account.hpp"
 #include "ripplenotch/document/simulated_term.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/given_term.hpp"
@@ -17,8 +18,9 @@ namespace ripplenotch {
 /// Options that state a given term.
 struct GivenOptions {
     std::optional<std::string> simulated;  ///< "column,name=tau_model,scale=1"
+    std::optional<std::string> arm;        ///< "urdf,file=robot.urdf"
 
-    [[nodiscard]] bool any() const { return simulated.has_value(); }
+    [[nodiscard]] bool any() const { return simulated || arm; }
 };
 void attach_given(Options& options, GivenOptions& given);
 
@@ -26,6 +28,7 @@ void attach_given(Options& options, GivenOptions& given);
 struct GivenTerms {
     std::vector<GivenTerm> log, validation;
     std::optional<SimulatedTerm> simulated;  ///< as stated, for the improved model
+    std::optional<ArmAccount> arm;
 };
 
 /// A log as a diagnosis reads it.

@@ -108,7 +108,8 @@ void keep_within(Log& log, double from_s, double to_s, const std::string& path) 
     }
     trace.run_starts = starts;
     log.recording.warnings.push_back(
-        fmt::format("{} rows of the log are outside what {} spans and do not count", outside, path));
+        {"rows outside the simulation",
+         fmt::format("{} rows of the log are outside what {} spans and do not count", outside, path), true});
 }
 
 GivenTerm term_of(std::vector<double> at_log, std::vector<double> slope, const SimulatedTerm& stated_term) {
