@@ -27,9 +27,12 @@ bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, doubl
 std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price) {
     std::vector<Named> rivals;
     const Shape shape = sums.shapes()[own];
+    // What a given term leaves is a function of the posture, which any wave over the position takes up.
+    const bool of_posture = kind_of(*shape.term.effect) == Kind::position;
     for (std::size_t i = 0; i < sums.listed(); ++i) {
         const Shape& other = sums.shapes()[i];
         if (same_name(other, shape) || is_among(sums, rest, other) || !sums.is_told(i)) continue;
+        if (of_posture && kind_of(*other.term.effect) != Kind::position) continue;
         Named rival{rest};
         rival.names.push_back(i);
         rival.left = sums.left_outside(rival.names);
@@ -41,9 +44,6 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
     for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
         Named rival = refined(sums, rivals[i]);
         if (sums.lens().bounds().is_bent(sums.shapes()[rival.names.back()])) continue;
-        // What a given term leaves is a function of the posture, which any wave over the position takes up.
-        const bool of_posture = kind_of(*shape.term.effect) == Kind::position &&
-                                kind_of(*sums.shapes()[rival.names.back()].term.effect) == Kind::position;
         if (!of_posture && stands_beside(sums, rival.names, own, price)) continue;
         if (!best || rival.left < best->left) best = std::move(rival);
     }
