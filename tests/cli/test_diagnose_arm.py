@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""diagnose --arm: the rigid bodies of a whole arm from the torques of its joints, and names beside what they leave."""
+
+import json
+import math
+import os
+import pathlib
+import random
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", ""))
+# Two links that hang in a plane: lengths, masses at their ends (m, kg).
+LENGTH, MASS, G = (0.5, 0.4), (4.0, 2.5), 9.81
+DH = "a_m,alpha_deg,d_m,theta_deg\n0.5,0,0,0\n0.4,0,0,0\n"
+DOWN = "gravity=0:-9.81:0"
+UR10_DH = ("theta_deg,d_m,a_m,alpha_deg\n0,0.1273,0,90\n0,0,-0.612,0\n0,0,-0.5723,0\n0,0.163941,0,90\n"
+           "0,0.1157,0,-90\n0,0.0922,0,0\n")
+
+
+def motion(t, phase):
+    """Angle, speed and acceleration in radians: two sines, so that speed and posture are not one another."""
+    q = 0.9 * math.sin(1.1 * t + phase) + 0.5 * math.sin(2.3 * t)
+    v = 0.99 * math.cos(1.1 * t + phase) + 1.15 * math.cos(2.3 * t)
+    return q, v, -1.089 * math.sin(1.1 * t + phase) - 2.645 * math.sin(2.3 * t)
+
+
+def torques(a, b):
+    """Of two point masses in a plane, as every textbook has them."""
+    (q1, v1, a1), (q2, v2, a2) = a, b
+    (l1, l2), (m1, m2) = LENGTH, MASS
+    inertia, coupling = m2 * l2 * l2, m2 * l1 * l2
+    one = ((m1 + m2) * l1 * l1 + inertia + 2 * coupling * math.cos(q2)) * a1 + (inertia + coupling * math.cos(q2)) * a2
+    one += -coupling * math.sin(q2) * (2 * v1 * v2 + v2 * v2)
+    one += (m1 + m2) * G * l1 * math.cos(q1) + m2 * G * l2 * math.cos(q1 + q2)
+    two = (inertia + coupling * math.cos(q2)) * a1 + inertia * a2 + coupling * math.sin(q2) * v1 * v1
+    return one, two + m2 * G * l2 * math.cos(q1 + q2)
+
+
+def write_log(path, seed, coulomb_nm=0.0, seconds=30.0, rate=250.0):
+    noise = random.Random(seed)
+    with open(path, "w") as log:
+        log.write("time_s," + ",".join(f"j{j}_{kind}" for j in (1, 2) for kind in
+                                       ("position_deg", "velocity_deg_s", "torque_nm")) + "\n")
+        for k in range(int(seconds * rate)):
+            t = k / rate
+            joints = motion(t, 0.3 * seed), motion(0.83 * t + seed, 1.0)
+            joints = joints[0], (joints[1][0], 0.83 * joints[1][1], 0.83 ** 2 * joints[1][2])
+            cells = [f"{t:.4f}"]
+            for (q, v, _), torque in zip(joints, torques(*joints)):
+                torque += coulomb_nm * math.tanh(math.degrees(v) / 0.5) + noise.gauss(0.0, 0.05)
+                cells += [f"{math.degrees(q):.6f}", f"{math.degrees(v) + noise.gauss(0.0, 0.02):.5f}", f"{torque:.5f}"]
+            log.write(",".join(cells) + "\n")
+
+
+class Arm(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "dh.csv").write_text(DH)
+
+    def tool(self, *words):
+        return subprocess.run([TOOL, *map(str, words)], cwd=self.folder, capture_output=True, text=True, timeout=300)
+
+    def diagnosed(self, *words):
+        done = self.tool("diagnose", *words, "--gear-ratio", "100", "--json", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def test_friction_of_a_joint_is_named_beside_the_arm_and_the_gap_closes_on_another_log(self):
+        write_log(self.folder / "log.csv", 1, coulomb_nm=1.2)
+        write_log(self.folder / "other.csv", 2, coulomb_nm=1.2)
+        arm = f"dh,file=dh.csv,{DOWN}"
+        for joint in ("j1", "j2"):
+            with self.subTest(joint=joint):
+                found = self.diagnosed("log.csv", "--joint", joint, "--arm", arm, "--validate", "other.csv")
+                self.assertEqual(found["named"], ["coulomb-friction"])
+                size = found["rounds"][0]["parameters"]["torque_nm"]["value"]
+                self.assertAlmostEqual(size, 1.2, delta=0.06)
+                # Nobody is left to blame: noise of 0.05 Nm, and a little of the width of the friction's step.
+                self.assertLess(found["gap"]["validation_after_nm"], 0.08)
+                self.assertGreater(found["gap"]["validation_before_nm"], 0.8)
+                self.assertEqual((found["arm"]["values_told"], found["arm"]["all_joints_at_once"]),
+                                 (found["arm"]["values_there"], True))
+                self.assertEqual([one["log"] for one in found["arm"]["joints"]], ["j1", "j2"])
+
+    def test_an_arm_without_friction_has_no_name(self):
+        write_log(self.folder / "log.csv", 3)
+        found = self.diagnosed("log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}")
+        self.assertEqual(found["named"], [])
+        self.assertLess(found["gap"]["after_nm"], 0.06)
+
+    def test_the_directions_of_the_axes_do_nearly_as_well(self):
+        write_log(self.folder / "log.csv", 4, coulomb_nm=1.2)
+        found = self.diagnosed("log.csv", "--joint", "j2", "--arm", f"axes,word=zz,{DOWN}")
+        self.assertIn("coulomb-friction", found["named"])
+        self.assertTrue(found["arm"]["lengths_are_guessed"])
+
+    def test_the_story_tells_the_arm_and_verbose_the_pairs(self):
+        write_log(self.folder / "log.csv", 5, coulomb_nm=1.2, seconds=12.0)
+        done = self.tool("diagnose", "log.csv", "--joint", "j1", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-v")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"^arm: 2 joints of dh.csv matched by \w+ \(-v shows them\); ")
+        self.assertIn("with friction beside it, on fifths of the log left out", done.stdout)
+        self.assertIn("of the log, and goes", done.stderr)
+        self.assertIn("as if with joints=", done.stderr)
+
+    def test_what_cannot_be_is_refused_with_the_remedy(self):
+        write_log(self.folder / "log.csv", 6, seconds=4.0)
+        arm = f"dh,file=dh.csv,{DOWN}"
+        whole = ["diagnose", "log.csv", "--joint", "j1", "--gear-ratio", "100"]
+        for words, code, message in (
+                ([*whole, "--arm", arm, "-o", "improved.json"], 2, "model.json holds no arm"),
+                ([*whole, "--arm", "dh"], 2, "file"),
+                ([*whole, "--arm", "dh,file=none.csv"], 4, "none.csv"),
+                ([*whole, "--arm", "axes,word=zq"], 2, "zq"),
+                ([*whole, "--arm", "axes,word=zzz"], 2, "joint"),
+                (["diagnose", "log.csv", "--joint", "j1", "--arm", arm], 2, "--gear-ratio"),
+                (["diagnose", "-", "--joint", "j1", "--gear-ratio", "100", "--arm", arm], 2, "file")):
+            with self.subTest(words=words):
+                text = (self.folder / "log.csv").read_text()
+                done = subprocess.run([TOOL, *words], cwd=self.folder, input=text, capture_output=True, text=True, timeout=60)
+                self.assertEqual(done.returncode, code, done.stderr)
+                self.assertIn(message, done.stderr)
+                self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertFalse((self.folder / "improved.json").exists())
+
+    @unittest.skipUnless((LOGS / "ur10_unisa_exciting_all.csv").is_file(), "the real log is not here")
+    def test_a_real_shoulder_has_names_and_its_gap_closes_on_rows_that_nothing_was_fitted_to(self):
+        lines = (LOGS / "ur10_unisa_exciting_all.csv").read_text().splitlines(keepends=True)
+        cut = 1 + 3 * (len(lines) - 1) // 5
+        (self.folder / "first.csv").write_text("".join(lines[:cut]))
+        (self.folder / "last.csv").write_text(lines[0] + "".join(lines[cut:]))
+        (self.folder / "ur10.csv").write_text(UR10_DH)
+        # Bounds: what was left of the raw torque, and twice what was measured when this was written.
+        for joint, names, after_nm in (("shoulder_pan_joint", {"coulomb-friction"}, 2.4),
+                                       ("shoulder_lift_joint", {"load-friction", "viscous-friction"}, 2.5),
+                                       ("wrist_2_joint", {"coulomb-friction", "viscous-friction"}, 0.7)):
+            with self.subTest(joint=joint):
+                done = self.tool("diagnose", "first.csv", "--joint", joint, "--arm", "dh,file=ur10.csv", "--gear-ratio", "101",
+                                 "--validate", "last.csv", "--json", "-q")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                found = json.loads(done.stdout)
+                self.assertLessEqual(names, set(found["named"]))
+                self.assertLess(found["gap"]["validation_after_nm"], after_nm)
+
+
+if __name__ == "__main__":
+    unittest.main()
