@@ -61,12 +61,14 @@ std::string listed(std::string_view endings) {
 
 }  // namespace
 
-void check_output_name(std::string_view path, std::string_view what, std::string_view endings) {
+void check_output_name(std::string_view path, std::string_view what, std::string_view endings,
+                       std::string_view option) {
     const std::string ending = ending_of(path);
     const auto kind =
         std::find_if(kinds.begin(), kinds.end(), [&](const Kind& one) { return one.ending == ending; });
     if (kind == kinds.end() || fits(ending, endings)) return;
-    raise<UsageError>("-o {}: {} is not written as {}; name it {}", path, what, kind->name, listed(endings));
+    raise<UsageError>("{} {}: {} is not written as {}; name it {}", option, path, what, kind->name,
+                      listed(endings));
 }
 
 }  // namespace ripplenotch

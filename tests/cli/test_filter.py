@@ -253,10 +253,10 @@ class Errors(Case):
         self.assertIn("missing.csv", self.refused(4, "filter", "missing.csv", "--method", LOWPASS))
         self.assertIn("no.json", self.refused(4, "filter", log, "--table", "no.json"))
         self.write("taken.csv", "mine")
+        self.write("taken.json", "mine")
         self.assertIn("--force", self.refused(4, "filter", log, "--method", LOWPASS, "-o", "taken.csv"))
-        self.assertIn("--force", self.refused(4, "filter", log, "--method", LOWPASS, "-o", "o.csv", "--metrics", "taken.csv"))
-        self.assertEqual((self.folder / "taken.csv").read_text(), "mine")
-        self.assertEqual([p.name for p in self.folder.iterdir()], ["taken.csv"])
+        self.assertIn("--force", self.refused(4, "filter", log, "--method", LOWPASS, "-o", "o.csv", "--metrics", "taken.json"))
+        self.assertEqual({p.name: p.read_text() for p in self.folder.iterdir()}, {"taken.csv": "mine", "taken.json": "mine"})
 
 
 class Several(Case):

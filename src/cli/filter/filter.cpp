@@ -115,7 +115,7 @@ void check(const FilterRequest& request) {
     }
     if (request.every_joint()) check_joints(request);
     if (request.metrics && !metrics_in_folder(request))
-        check_output_name(*request.metrics, "metrics", ".json .txt");
+        check_output_name(*request.metrics, "a record of metrics", ".json .txt", "--metrics");
     if (!(request.gap_steps > 1.0))
         raise<UsageError>("--gap: {} median steps is not above 1", shortest(request.gap_steps));
     const bool log_on_stdout = request.common.output == "-" && !request.out_directory && !request.in_place &&

@@ -68,7 +68,10 @@ void Ground::color(std::vector<double> coefficients) {
 }
 
 void Ground::cut(const std::vector<std::size_t>& counting) {
-    const double length = std::max(rules_.block_s * rate_hz_, 5.0 * static_cast<double>(memory_));
+    // However slow the clock says that it is, a block has rows enough for a size.
+    constexpr double fewest_rows = 20.0;
+    const double length =
+        std::max({rules_.block_s * rate_hz_, 5.0 * static_cast<double>(memory_), fewest_rows});
     const std::size_t n = counting.size();
     const std::size_t number =
         std::max(2 * rules_.folds, static_cast<std::size_t>(static_cast<double>(n) / length));
