@@ -58,8 +58,11 @@ Figure gap_figure(const std::string& title, const Diagnosis& diagnosis) {
 
 Figure diagnosis_figure(const std::string& source, const Diagnosis& diagnosis, const TraceView& log,
                         Seconds smoothing) {
-    const std::vector<double> before = residual_of(diagnosis.baseline, log, smoothing);
-    const std::vector<double> after = residual_of(diagnosis.model, log, smoothing);
+    const bool given = !diagnosis.residual_after_nm.empty();
+    const std::vector<double> before =
+        given ? diagnosis.residual_before_nm : residual_of(diagnosis.baseline, log, smoothing);
+    const std::vector<double> after =
+        given ? diagnosis.residual_after_nm : residual_of(diagnosis.model, log, smoothing);
     Figure figure = residual_figure(
         fmt::format("Model and log: {}", source), diagnosis_sentence(diagnosis) + ".",
         {log.time_s, log.velocity_deg_s, log.position_deg, before, after}, diagnosis.gap.noise_floor_nm);

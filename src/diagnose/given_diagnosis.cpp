@@ -66,6 +66,13 @@ void tell_given(Diagnosis& diagnosis, const Model& model, std::span<const GivenT
     }
 }
 
+std::vector<double> left_of(const Case& c, const Model& model) {
+    std::vector<double> left_nm = c.torque_nm;
+    const auto predicted = predict_nm(model, c.motion);
+    add_scaled(-1.0, predicted.data(), left_nm.data(), left_nm.size());
+    return left_nm;
+}
+
 // Values of findings beside a leftover are their own; the places are those in the improved model.
 void tell_places(Diagnosis& diagnosis, std::size_t own) {
     std::size_t place = own;
@@ -160,6 +167,8 @@ class GivenDiagnosis {
         told_.samples_used = whole_.c.used();
         const Case before = whole_.less(model_, as_given(model_, whole_, rules_), rules_);
         const Case after = whole_.less(model_, values, rules_);
+        told_.residual_before_nm = left_of(before, told_.baseline);
+        told_.residual_after_nm = left_of(after, told_.model);
         const GapCase log{before, after};
         if (other_) {
             const Case other_before = other_->less(model_, as_given(model_, *other_, rules_), rules_);

@@ -87,6 +87,16 @@ class Arm(unittest.TestCase):
                                  (found["arm"]["values_there"], True))
                 self.assertEqual([one["log"] for one in found["arm"]["joints"]], ["j1", "j2"])
 
+    def test_the_picture_shows_what_is_left_beside_the_arm(self):
+        write_log(self.folder / "log.csv", 1, coulomb_nm=1.2)
+        found = self.diagnosed("log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}", "--plot", "left.json")
+        curves = {curve["name"]: curve["y"] for panel in json.loads((self.folder / "left.json").read_text())["panels"]
+                  for curve in panel["curves"]}
+        # Of 10 Nm the arm leaves friction, and friction leaves noise.
+        self.assertLess(max(map(abs, curves["before"])), 3.0)
+        self.assertLess(max(map(abs, curves["after"])), 8 * found["gap"]["after_nm"])
+        self.assertLess(max(map(abs, curves["after"])), 0.6 * max(map(abs, curves["before"])))
+
     def test_an_arm_without_friction_has_no_name(self):
         write_log(self.folder / "log.csv", 3)
         found = self.diagnosed("log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}")

@@ -186,7 +186,10 @@ struct Diagnosis {
     std::vector<Leftover> unexplained;
     std::vector<Undecidable> undecidable;
     DiagnosisGap gap;
-    std::vector<GivenValue> given;       ///< values of the given terms, in their order, then what mends them
+    std::vector<GivenValue> given;  ///< values of the given terms, in their order, then what mends them
+    /// Beside given terms: measured less predicted torque of the model as given and of the improved one, an
+    /// entry per row of the log. Empty without given terms: a model's own prediction tells it then.
+    std::vector<double> residual_before_nm, residual_after_nm;
     std::vector<BandLeft> leftover;      ///< of the improved model, where something is left beside findings
     std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;

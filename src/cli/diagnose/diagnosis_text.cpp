@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "ripplenotch/core/number.hpp"
@@ -63,7 +64,9 @@ std::string beside_text(const Finding& finding) {
         fmt::format("  out of fold in {} of {} blocks; gain {}, price {}", outside.blocks_positive,
                     outside.blocks, short_number(outside.gain), short_number(finding.evidence.price));
     if (!outside.rival.empty())
-        text += fmt::format("; next best {}, {} behind", outside.rival, short_number(outside.rival_margin));
+        text +=
+            fmt::format("; next best {}, {} {}", outside.rival, short_number(std::abs(outside.rival_margin)),
+                        outside.rival_margin < 0.0 ? "ahead" : "behind");
     return text + "\n";
 }
 
