@@ -2,6 +2,7 @@
 #include "diagnose/beside/told.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "diagnose/beside/shapes.hpp"
 #include "diagnose/doubt.hpp"
@@ -32,10 +33,31 @@ bool has_bent_shape(const Diagnosis& diagnosis, const Finding& finding) {
     });
 }
 
+// Sizes of all names were fitted at once, so that one may open the gap that another closes: each round takes
+// the name that leaves least. Doubtful ones stay last.
+void put_in_order(std::vector<Finding>& findings, Candidate now, const ModelBench& bench) {
+    const auto end = std::find_if(findings.begin(), findings.end(), is_doubtful);
+    for (auto first = findings.begin(); first != end; ++first) {
+        auto best = first;
+        double least_nm = std::numeric_limits<double>::infinity();
+        for (auto next = first; next != end; ++next) {
+            Model with = now.stated;
+            with.terms.push_back(next->term);
+            const double left_nm = rms_of(bench.raw_residual(with), bench.looked_at().use);
+            if (left_nm >= least_nm) continue;
+            least_nm = left_nm;
+            best = next;
+        }
+        std::rotate(first, best, best + 1);
+        now.stated.terms.push_back(first->term);
+    }
+}
+
 }  // namespace
 
 Candidate take_up(Diagnosis& diagnosis, BesideOutcome outcome, const Candidate& model,
                   const ModelBench& bench) {
+    put_in_order(outcome.findings, model, bench);
     Candidate now = model;
     double before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
     for (Finding& finding : outcome.findings) {
