@@ -112,13 +112,12 @@ TEST_CASE("the unit of the torque, the order of the model and the half of the lo
     };
     const std::vector<std::string> both = {"coulomb-friction", "ripple-modulation"};
     CHECK(named(opened(joint()), log.view()) == both);
-    Model reversed = opened(joint());
-    std::reverse(reversed.terms.begin(), reversed.terms.end());
-    CHECK(named(reversed, log.view()) == both);
     CHECK(named(opened(joint()), log.view().part(0, log.size() / 2)) == both);
     CHECK(named(opened(joint()), log.view().part(log.size() / 2, log.size() / 2)) == both);
+    Model reversed = opened(joint());
+    std::reverse(reversed.terms.begin(), reversed.terms.end());
     for (double& torque : log.torque_nm) torque *= 1000.0;
-    CHECK(named(opened(joint()), log.view()) == both);
+    CHECK(named(reversed, log.view()) == both);
 }
 
 TEST_CASE("each name closes part of the gap, and taken out again it opens its share") {
