@@ -145,7 +145,7 @@ class GivenDiagnosis {
         own.stated.terms.assign(
             named.stated.terms.begin(),
             named.stated.terms.begin() + static_cast<std::ptrdiff_t>(model_.terms.size()));
-        const Candidate last = take_up(told_, outcome, own, bench);
+        const Candidate last = adopt(told_, outcome, own, bench);
         told_.unexplained = leftovers(bench, last.stated);
         told_.disagreement = told_.unexplained;
         told_.gap.noise_floor_nm = bench.floor_nm(last.stated);

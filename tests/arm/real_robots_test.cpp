@@ -93,7 +93,7 @@ TEST_CASE("real: a Panda's arm", "[.real]") {
     require_below(left(chain, robot, nullptr, false), {0.35, 0.42, 0.30, 0.43, 0.12, 0.13, 0.055});
 }
 
-TEST_CASE("real: a UR10's arm", "[.real]") {
+TEST_CASE("real: a UR10's arm") {
     const std::string name = "ur10_unisa_exciting_all.csv";
     if (absent(name)) return;
     const Robot robot(name);
@@ -101,7 +101,7 @@ TEST_CASE("real: a UR10's arm", "[.real]") {
     require_below(left(chain, robot, nullptr, false), {1.5, 3.4, 1.9, 0.5, 0.35, 1.5});
 }
 
-TEST_CASE("real: a KUKA's arm", "[.real]") {
+TEST_CASE("real: a KUKA's arm") {
     const std::string name = "kuka_kr300_trajA_all.csv";
     if (absent(name)) return;
     const Robot robot(name), other("kuka_kr300_trajB_all.csv");

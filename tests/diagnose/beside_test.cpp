@@ -18,21 +18,7 @@ namespace ripplenotch {
 namespace {
 
 using fixture::standard;
-
-// The tour once more, without rests of its own length, so that there are enough blocks.
-const Motion& long_tour() {
-    static const Motion motion = [] {
-        std::vector<std::string> specs;
-        for (int lap = 0; lap < 3; ++lap) {
-            for (const char* spec : {"poly6,to=150deg,duration=2.2s", "poly6,to=-60deg,duration=3s",
-                                     "poly6,to=100deg,duration=1.6s", "poly6,to=60deg,duration=1.7s",
-                                     "poly6,to=90deg,duration=0.9s", "poly6,to=-20deg,duration=1.2s"})
-                specs.emplace_back(spec);
-        }
-        return make_motion(specs, Hertz(500.0));
-    }();
-    return motion;
-}
+using fixture::strokes;
 
 // Slow waves that go with nothing of the joint's own: what an arm's other joints do to this one.
 std::vector<double> slow_leftover(const Motion& motion, std::uint64_t seed, double rms_nm) {
@@ -50,8 +36,8 @@ std::vector<double> slow_leftover(const Motion& motion, std::uint64_t seed, doub
 }
 
 Trace log_beside(const Model& truth, std::uint64_t seed, double leftover_nm) {
-    Trace log = fixture::logged(truth, long_tour(), seed);
-    const auto left = slow_leftover(long_tour(), seed, leftover_nm);
+    Trace log = fixture::logged(truth, strokes(), seed);
+    const auto left = slow_leftover(strokes(), seed, leftover_nm);
     for (std::size_t k = 0; k < left.size(); ++k) log.torque_nm[k] += left[k];
     return log;
 }
@@ -122,7 +108,7 @@ TEST_CASE(
 TEST_CASE(
     "rows that do not count are bridged in every column alike, so that what holds between columns still "
     "does") {
-    Case c = whole_case(fixture::logged(truth_of({"inertia,inertia_kgm2=0.4"}), long_tour(), 7).view(),
+    Case c = whole_case(fixture::logged(truth_of({"inertia,inertia_kgm2=0.4"}), strokes(), 7).view(),
                         default_smoothing, standard.recording);
     for (std::size_t k = 1000; k < 1300; ++k) c.use[k] = 0;
     Ground ground(c, standard.beside);

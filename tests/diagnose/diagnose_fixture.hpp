@@ -38,6 +38,21 @@ inline const Motion& tour() {
     return motion;
 }
 
+/// Forth and back at several speeds without a rest, three laps: enough blocks of a second.
+inline const Motion& strokes() {
+    static const Motion motion = [] {
+        std::vector<std::string> specs;
+        for (int lap = 0; lap < 3; ++lap) {
+            for (const char* spec : {"poly6,to=150deg,duration=2.2s", "poly6,to=-60deg,duration=3s",
+                                     "poly6,to=100deg,duration=1.6s", "poly6,to=60deg,duration=1.7s",
+                                     "poly6,to=90deg,duration=0.9s", "poly6,to=-20deg,duration=1.2s"})
+                specs.emplace_back(spec);
+        }
+        return make_motion(specs, Hertz(500.0));
+    }();
+    return motion;
+}
+
 /// Inertia and two orders of ripple.
 inline Model joint() {
     Model model{GearRatio(100.0), {}};

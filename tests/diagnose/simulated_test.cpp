@@ -13,20 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-// Forth and back at several speeds, without a rest.
-const Motion& strokes() {
-    static const Motion motion = [] {
-        std::vector<std::string> specs;
-        for (int lap = 0; lap < 3; ++lap) {
-            for (const char* spec : {"poly6,to=120deg,duration=2.2s", "poly6,to=-60deg,duration=3s",
-                                     "poly6,to=100deg,duration=1.6s", "poly6,to=60deg,duration=1.7s",
-                                     "poly6,to=90deg,duration=0.9s", "poly6,to=-20deg,duration=1.2s"})
-                specs.emplace_back(spec);
-        }
-        return make_motion(specs, Hertz(500.0));
-    }();
-    return motion;
-}
+using fixture::strokes;
 
 // The weight of a link that another joint turns, and what it takes to move it: no effect of this joint's own.
 std::vector<double> arm_nm(double payload) {

@@ -48,7 +48,7 @@ class Matcher {
         : chain_(chain), log_(log), log_name_(log_name), found_(chain.size()) {}
 
     JointMatch run(const StatedJoints& stated) {
-        for (const auto& [joint, partner] : stated) take_stated(joint, partner);
+        for (const auto& [joint, partner] : stated) match_stated(joint, partner);
         std::string rule = "as stated";
         if (left().empty())
             ;
@@ -77,7 +77,7 @@ class Matcher {
         return std::find(found_.begin(), found_.end(), std::optional(partner)) != found_.end();
     }
 
-    void take_stated(const std::string& joint, const std::string& partner) {
+    void match_stated(const std::string& joint, const std::string& partner) {
         const auto place = chain_.find(joint);
         if (!place)
             raise<UsageError>("arm: joints={}:{}: '{}' is no joint of {}; {}", joint, partner, joint,

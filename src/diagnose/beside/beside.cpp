@@ -37,7 +37,7 @@ Finding finding_of(const Lens& lens, BesideFinding found) {
     return finding;
 }
 
-void take_values(Finding& finding, const BesideValues& values) {
+void set_values(Finding& finding, const BesideValues& values) {
     finding.term = values.term;
     finding.values = values.values;
 }
@@ -94,8 +94,8 @@ BesideOutcome find_beside(const GivenCase& log, const GivenCase* validation, con
         Finding finding = finding_of(lens, named.findings[i]);
         const auto place = std::find(believed.place.begin(), believed.place.end(), i);
         const bool stays = place != believed.place.end();
-        take_values(finding, stays ? believed.values[static_cast<std::size_t>(place - believed.place.begin())]
-                                   : values_beside(sums, {named.findings[i].shape})[0]);
+        set_values(finding, stays ? believed.values[static_cast<std::size_t>(place - believed.place.begin())]
+                                  : values_beside(sums, {named.findings[i].shape})[0]);
         measure(finding, lens, model.stated);
         if (other[i].without_nm > 0.0) {
             finding.validation_before_nm = other[i].without_nm;

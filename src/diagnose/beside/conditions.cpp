@@ -140,31 +140,6 @@ void look_at_sizes(const Sums& sums, std::vector<BesideFinding>& findings) {
     }
 }
 
-}  // namespace
-
-std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Judgement& by) {
-    const std::vector<double> left = sums.residual_outside(now.names);
-    std::vector<BesideFinding> findings;
-    for (std::size_t place = 0; place < now.names.size(); ++place) {
-        BesideFinding finding;
-        finding.shape = sums.shapes()[now.names[place]];
-        Names rest = now.names;
-        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
-        finding.gain = outside_gain(sums.residual_outside(rest), left, sums.lens().ground().blocks(),
-                                    sums.lens().sigma());
-        finding.price = price_of(sums, now.names[place], by.effects);
-        finding.size_nm = swing_nm(sums, now.names, place);
-        look_alone(sums, now.names, place, by.even_by_speed, finding);
-        findings.push_back(std::move(finding));
-    }
-    look_at_sizes(sums, findings);
-    for (std::size_t place = 0; place < now.names.size(); ++place)
-        look_at_rivals(sums, now.names, place, left, findings[place]);
-    return findings;
-}
-
-namespace {
-
 // Squares of the whitened log that names explain in the whole fit.
 double explained(const Sums& sums, const Names& names) {
     if (names.empty()) return 0.0;
@@ -196,6 +171,27 @@ void look_at_rest(const Sums& sums, const Named& now, std::vector<BesideFinding>
 }
 
 }  // namespace
+
+std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Judgement& by) {
+    const std::vector<double> left = sums.residual_outside(now.names);
+    std::vector<BesideFinding> findings;
+    for (std::size_t place = 0; place < now.names.size(); ++place) {
+        BesideFinding finding;
+        finding.shape = sums.shapes()[now.names[place]];
+        Names rest = now.names;
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
+        finding.gain = outside_gain(sums.residual_outside(rest), left, sums.lens().ground().blocks(),
+                                    sums.lens().sigma());
+        finding.price = price_of(sums, now.names[place], by.effects);
+        finding.size_nm = swing_nm(sums, now.names, place);
+        look_alone(sums, now.names, place, by.even_by_speed, finding);
+        findings.push_back(std::move(finding));
+    }
+    look_at_sizes(sums, findings);
+    for (std::size_t place = 0; place < now.names.size(); ++place)
+        look_at_rivals(sums, now.names, place, left, findings[place]);
+    return findings;
+}
 
 NamedBeside named_beside(Sums& sums, const Judgement& by) {
     Named now = search_beside(sums, {}, {}, by.effects);

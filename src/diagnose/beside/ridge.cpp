@@ -6,43 +6,39 @@
 #include "diagnose/beside/dot.hpp"
 
 namespace ripplenotch {
+
+using Eigen::Index;
+
 Ridge::Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise)
-    : columns_(columns) {
+    : columns_(columns), scale_(static_cast<Index>(columns.size())) {
     // Columns that are as good as one another share what they explain in place of dividing by nothing.
     constexpr double least_of_its_own = 1e-9;
-    const std::size_t m = columns.size();
-    triangle_.assign(m * m, 0.0);
-    for (const auto& column : columns) {
-        const double square = dot(column.data(), column.data(), column.size());
-        scale_.push_back(square > 0.0 ? std::sqrt(square) : 1.0);
+    const auto m = scale_.size();
+    const auto product = [&](Index r, Index c) {
+        const auto &one = columns[static_cast<std::size_t>(r)], &other = columns[static_cast<std::size_t>(c)];
+        return dot(one.data(), other.data(), one.size());
+    };
+    for (Index r = 0; r < m; ++r) {
+        const double square = product(r, r);
+        scale_[r] = square > 0.0 ? std::sqrt(square) : 1.0;
     }
-    const auto at = [&](std::size_t r, std::size_t c) -> double& { return triangle_[r * m + c]; };
-    for (std::size_t r = 0; r < m; ++r) {
-        const double drawn = noise / (deviation[r] * scale_[r]);
-        for (std::size_t c = 0; c <= r; ++c) {
-            double sum =
-                dot(columns[r].data(), columns[c].data(), columns[r].size()) / (scale_[r] * scale_[c]);
-            if (c == r) sum += drawn * drawn + least_of_its_own;
-            for (std::size_t i = 0; i < c; ++i) sum -= at(r, i) * at(c, i);
-            at(r, c) = c == r ? std::sqrt(std::max(sum, least_of_its_own)) : sum / at(c, c);
-        }
+    Eigen::MatrixXd products(m, m);
+    for (Index r = 0; r < m; ++r) {
+        const double drawn = noise / (deviation[static_cast<std::size_t>(r)] * scale_[r]);
+        for (Index c = 0; c <= r; ++c) products(r, c) = product(r, c) / (scale_[r] * scale_[c]);
+        products(r, r) += drawn * drawn + least_of_its_own;
     }
+    factored_.compute(products);
 }
 
 std::vector<double> Ridge::solve(std::span<const double> target) const {
-    const std::size_t m = columns_.size();
-    std::vector<double> values;
-    for (std::size_t r = 0; r < m; ++r) {
-        double sum = dot(columns_[r].data(), target.data(), target.size()) / scale_[r];
-        for (std::size_t i = 0; i < r; ++i) sum -= triangle_[r * m + i] * values[i];
-        values.push_back(sum / triangle_[r * m + r]);
-    }
-    for (std::size_t r = m; r-- > 0;) {
-        for (std::size_t i = r + 1; i < m; ++i) values[r] -= triangle_[i * m + r] * values[i];
-        values[r] /= triangle_[r * m + r];
-    }
-    for (std::size_t r = 0; r < m; ++r) values[r] /= scale_[r];
-    return values;
+    Eigen::VectorXd values(scale_.size());
+    for (Index r = 0; r < values.size(); ++r)
+        values[r] =
+            dot(columns_[static_cast<std::size_t>(r)].data(), target.data(), target.size()) / scale_[r];
+    factored_.solveInPlace(values);
+    values = values.cwiseQuotient(scale_);
+    return {values.begin(), values.end()};
 }
 
 std::vector<double> Ridge::left(std::span<const double> target, const std::vector<double>& values) const {

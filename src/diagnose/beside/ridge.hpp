@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/linear_algebra.hpp"
+
 namespace ripplenotch {
 
 /// Deviation of a value of which nothing is known.
@@ -25,8 +27,8 @@ class Ridge {
 
   private:
     const std::vector<std::vector<double>>& columns_;
-    std::vector<double> scale_;
-    std::vector<double> triangle_;  ///< of Cholesky's factor, row by row
+    Eigen::VectorXd scale_;
+    Eigen::LLT<Eigen::MatrixXd> factored_;
 };
 
 }  // namespace ripplenotch

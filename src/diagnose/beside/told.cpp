@@ -55,8 +55,8 @@ void put_in_order(std::vector<Finding>& findings, Candidate now, const ModelBenc
 
 }  // namespace
 
-Candidate take_up(Diagnosis& diagnosis, BesideOutcome outcome, const Candidate& model,
-                  const ModelBench& bench) {
+Candidate adopt(Diagnosis& diagnosis, BesideOutcome outcome, const Candidate& model,
+                const ModelBench& bench) {
     put_in_order(outcome.findings, model, bench);
     Candidate now = model;
     double before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
@@ -94,7 +94,7 @@ Candidate with_findings_beside(Diagnosis& diagnosis, const ModelBench& bench, co
             return is_doubtful(round) && same_name({round.term}, {finding.term});
         });
     }
-    const Candidate now = take_up(diagnosis, std::move(outcome), last, bench);
+    const Candidate now = adopt(diagnosis, std::move(outcome), last, bench);
     diagnosis.unexplained = leftovers(bench, now.stated);
     diagnosis.leftover = left_by_band(bench.looked_at(), now.stated);
     return now;

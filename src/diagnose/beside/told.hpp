@@ -8,8 +8,8 @@ namespace ripplenotch {
 
 /// Appends the outcome's findings to the rounds, with the gap before and after each, and gives the model with
 /// those that are believed at its end. `model`: what was always on.
-[[nodiscard]] Candidate take_up(Diagnosis& diagnosis, BesideOutcome outcome, const Candidate& model,
-                                const ModelBench& bench);
+[[nodiscard]] Candidate adopt(Diagnosis& diagnosis, BesideOutcome outcome, const Candidate& model,
+                              const ModelBench& bench);
 
 /// Where today's search has left something unexplained above the floor: what is there beside it. A tentative
 /// finding of the same name gives way. `other`: the validation log, if there is one.
