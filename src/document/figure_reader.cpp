@@ -19,6 +19,7 @@ Enum word_of(Fields& fields, std::string_view name, const std::array<const char*
                      words.front());
 }
 
+constexpr double lowest_panel = 0.1, highest_panel = 10.0;  // against the others
 constexpr std::array scales = {"linear", "logarithmic", "whole"};
 constexpr std::array styles = {"line", "dashed", "steps", "points", "stems"};
 constexpr std::array runs = {"at-x", "at-y", "ray"};
@@ -38,7 +39,7 @@ std::vector<double> numbers_of(Fields& fields, std::string_view name) {
     std::vector<double> values;
     for (const Json& entry : array) {
         if (!entry.is_number() && !entry.is_null())
-            raise<DataError>("{}: holds {}, expected numbers and null", fields.where(name), entry.dump());
+            raise<DataError>("{}: holds {}, expected numbers and null", fields.where(name), in_words(entry));
         values.push_back(entry.is_null() ? std::numeric_limits<double>::quiet_NaN() : entry.get<double>());
     }
     return values;
@@ -64,6 +65,9 @@ class Reader {
         panel.y = axis(fields.at("y"), path + ".y");
         panel.legend = flag(fields, "legend");
         panel.height = fields.number("height");
+        if (!(panel.height >= lowest_panel && panel.height <= highest_panel))
+            raise<DataError>("{} is {}, expected {} to {}", fields.where("height"), panel.height,
+                             lowest_panel, highest_panel);
         if (const Json* map = fields.find("map")) panel.map = heat_map(*map, path + ".map");
         each(fields, "shades", path, [&](Fields& f) {
             const auto [x_from, x_to] = edges_of(f, "x");
@@ -119,8 +123,7 @@ class Reader {
 
     template <class Read>
     void each(Fields& fields, std::string_view name, const std::string& path, const Read& read) const {
-        const Json& array = fields.at(name);
-        if (!array.is_array()) raise<DataError>("{}: not a list", fields.where(name));
+        const Json& array = fields.list(name, most_curves);
         for (std::size_t i = 0; i < array.size(); ++i) {
             Fields entry(array[i], source_, fmt::format("{}.{}[{}]", path, name, i));
             read(entry);
@@ -139,8 +142,7 @@ Figure figure_from_json(std::string_view text, const std::string& source) {
     fields.ignore_head();
     Figure figure{fields.text("name"), fields.text("title"), fields.text("sentence"), {}};
     figure.columns = static_cast<int>(std::clamp(fields.number("columns"), 1.0, 4.0));
-    const Json& panels = fields.at("panels");
-    if (!panels.is_array()) raise<DataError>("{}: not a list", fields.where("panels"));
+    const Json& panels = fields.list("panels", most_panels);
     const Reader reader(source);
     for (std::size_t i = 0; i < panels.size(); ++i)
         figure.panels.push_back(reader.panel(panels[i], fmt::format("panels[{}]", i)));

@@ -8,7 +8,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_rows = 200;
+constexpr std::size_t most_rows = 200, most_columns = 100;
 
 // Short enough to be columns of a table.
 bool is_short_list(const Json& json) {
@@ -55,12 +55,15 @@ bool is_table(const Json& json) {
 PageTable table_of(const std::string& name, const Json& rows) {
     PageTable table{spoken(name).name, {}, {}};
     std::vector<std::vector<std::pair<std::string, std::string>>> all;
+    bool left_out = false;
     for (const Json& row : rows) {
         if (all.size() == most_rows) break;
         cells_of(row, "", "", all.emplace_back());
         for (const auto& [column, value] : all.back()) {
-            if (std::find(table.header.begin(), table.header.end(), column) == table.header.end())
-                table.header.push_back(column);
+            const bool known =
+                std::find(table.header.begin(), table.header.end(), column) != table.header.end();
+            left_out |= !known && table.header.size() == most_columns;
+            if (!known && table.header.size() < most_columns) table.header.push_back(column);
         }
     }
     for (const auto& cells : all) {
@@ -68,7 +71,7 @@ PageTable table_of(const std::string& name, const Json& rows) {
         for (const auto& [column, value] : cells) {
             const auto at =
                 std::find(table.header.begin(), table.header.end(), column) - table.header.begin();
-            row[static_cast<std::size_t>(at)] = value;
+            if (at < static_cast<std::ptrdiff_t>(row.size())) row[static_cast<std::size_t>(at)] = value;
         }
         table.rows.push_back(std::move(row));
     }
@@ -80,6 +83,7 @@ PageTable table_of(const std::string& name, const Json& rows) {
         table.header.erase(table.header.begin() + static_cast<std::ptrdiff_t>(c));
         for (auto& row : table.rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(c));
     }
+    if (left_out) table.title += fmt::format(" (the first {} columns)", most_columns);
     if (rows.size() > most_rows) table.title += fmt::format(" (the first {} of {})", most_rows, rows.size());
     return table;
 }
