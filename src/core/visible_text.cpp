@@ -113,14 +113,15 @@ std::size_t text_width(std::string_view visible) {
 }
 
 std::string cut_to(std::string_view visible, std::size_t width) {
-    if (text_width(visible) <= width) return std::string(visible);
+    if (bytes_of(visible, width) == visible.size()) return std::string(visible);
     return std::string(visible.substr(0, bytes_of(visible, width > 0 ? width - 1 : 0))) + "…";
 }
 
 std::vector<std::string> wrapped(std::string_view visible, std::size_t width) {
     std::vector<std::string> lines;
-    while (text_width(visible) > width) {
-        const std::size_t most = bytes_of(visible, width + 1);
+    while (true) {
+        const std::size_t most = bytes_of(visible, width + 1);  // looking no further keeps long texts linear
+        if (most == visible.size() && text_width(visible) <= width) break;
         const std::size_t blank = visible.substr(0, most).rfind(' ');
         const bool at_blank = blank != std::string_view::npos && blank > 0;
         const std::size_t end = at_blank ? blank : bytes_of(visible, std::max<std::size_t>(width, 1));

@@ -32,6 +32,13 @@ Ink ink_of(Fields& fields) {
                      ink_rgb(Ink::blue));
 }
 
+std::string words(Fields& fields, std::string_view name) {
+    std::string text = fields.text(name);
+    if (text.size() > most_words)
+        raise<DataError>("{} has {} bytes, expected at most {}", fields.where(name), text.size(), most_words);
+    return text;
+}
+
 // null is a nan: a break, an empty cell.
 std::vector<double> numbers_of(Fields& fields, std::string_view name) {
     const Json& array = fields.at(name);
@@ -60,7 +67,7 @@ class Reader {
     Panel panel(const Json& json, const std::string& path) const {
         Fields fields(json, source_, path);
         Panel panel;
-        panel.title = fields.text("title");
+        panel.title = words(fields, "title");
         panel.x = axis(fields.at("x"), path + ".x");
         panel.y = axis(fields.at("y"), path + ".y");
         panel.legend = flag(fields, "legend");
@@ -69,22 +76,25 @@ class Reader {
             raise<DataError>("{} is {}, expected {} to {}", fields.where("height"), panel.height,
                              lowest_panel, highest_panel);
         if (const Json* map = fields.find("map")) panel.map = heat_map(*map, path + ".map");
-        each(fields, "shades", path, [&](Fields& f) {
-            const auto [x_from, x_to] = edges_of(f, "x");
-            const auto [y_from, y_to] = edges_of(f, "y");
-            panel.shades.push_back({f.text("name"), ink_of(f), x_from, x_to, y_from, y_to});
-        });
+        each(
+            fields, "shades", path,
+            [&](Fields& f) {
+                const auto [x_from, x_to] = edges_of(f, "x");
+                const auto [y_from, y_to] = edges_of(f, "y");
+                panel.shades.push_back({words(f, "name"), ink_of(f), x_from, x_to, y_from, y_to});
+            },
+            most_shades);
         each(fields, "ribbons", path, [&](Fields& f) {
-            panel.ribbons.push_back(
-                {f.text("name"), ink_of(f), numbers_of(f, "x"), numbers_of(f, "low"), numbers_of(f, "high")});
+            panel.ribbons.push_back({words(f, "name"), ink_of(f), numbers_of(f, "x"), numbers_of(f, "low"),
+                                     numbers_of(f, "high")});
         });
         each(fields, "curves", path, [&](Fields& f) {
-            panel.curves.push_back({f.text("name"), ink_of(f), word_of<CurveStyle>(f, "style", styles),
+            panel.curves.push_back({words(f, "name"), ink_of(f), word_of<CurveStyle>(f, "style", styles),
                                     numbers_of(f, "x"), numbers_of(f, "y")});
         });
         each(fields, "lines", path, [&](Fields& f) {
-            panel.lines.push_back({f.text("name"), word_of<NamedLine::Run>(f, "run", runs), f.number("value"),
-                                   ink_of(f), flag(f, "dashed")});
+            panel.lines.push_back({words(f, "name"), word_of<NamedLine::Run>(f, "run", runs),
+                                   f.number("value"), ink_of(f), flag(f, "dashed")});
         });
         fields.finish();
         return panel;
@@ -99,8 +109,9 @@ class Reader {
 
     PlotAxis axis(const Json& json, const std::string& path) const {
         Fields fields(json, source_, path);
-        PlotAxis axis{fields.text("label"), fields.text("unit"), word_of<PlotScale>(fields, "scale", scales),
-                      fields.number("from"), fields.number("to")};
+        PlotAxis axis{words(fields, "label"), words(fields, "unit"),
+                      word_of<PlotScale>(fields, "scale", scales), fields.number("from"),
+                      fields.number("to")};
         fields.finish();
         if (!(*axis.from < *axis.to) || (axis.scale == PlotScale::logarithmic && !(*axis.from > 0.0)))
             raise<DataError>("{}: {}: cannot span {} to {}", source_, path, *axis.from, *axis.to);
@@ -109,8 +120,8 @@ class Reader {
 
     HeatMap heat_map(const Json& json, const std::string& path) const {
         Fields fields(json, source_, path);
-        HeatMap map{fields.text("label"),
-                    fields.text("unit"),
+        HeatMap map{words(fields, "label"),
+                    words(fields, "unit"),
                     word_of<PlotScale>(fields, "scale", scales),
                     fields.number("lowest"),
                     fields.number("highest"),
@@ -122,8 +133,9 @@ class Reader {
     }
 
     template <class Read>
-    void each(Fields& fields, std::string_view name, const std::string& path, const Read& read) const {
-        const Json& array = fields.list(name, most_curves);
+    void each(Fields& fields, std::string_view name, const std::string& path, const Read& read,
+              std::size_t most = most_curves) const {
+        const Json& array = fields.list(name, most);
         for (std::size_t i = 0; i < array.size(); ++i) {
             Fields entry(array[i], source_, fmt::format("{}.{}[{}]", path, name, i));
             read(entry);
@@ -140,7 +152,7 @@ Figure figure_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "figure");
     Fields fields(json, source, "");
     fields.ignore_head();
-    Figure figure{fields.text("name"), fields.text("title"), fields.text("sentence"), {}};
+    Figure figure{words(fields, "name"), words(fields, "title"), words(fields, "sentence"), {}};
     figure.columns = static_cast<int>(std::clamp(fields.number("columns"), 1.0, 4.0));
     const Json& panels = fields.list("panels", most_panels);
     const Reader reader(source);

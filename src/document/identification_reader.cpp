@@ -143,7 +143,8 @@ Identification identification_from_json(std::string_view text, const std::string
     Fields ratio = fields.object("gear_ratio");
     found.gear_ratio = ratio_from_json(ratio);
     ratio.finish();
-    fields.each("lines", [&](Fields& entry) { found.lines.push_back(line_from_json(entry)); });
+    fields.each(
+        "lines", [&](Fields& entry) { found.lines.push_back(line_from_json(entry)); }, most_lines);
     besides_from_json(fields, found);
     found.notes = fields.texts("notes");
     fields.finish();

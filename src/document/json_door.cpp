@@ -152,7 +152,8 @@ std::string opening_of(std::string_view text, std::size_t at) {
     const std::string_view before = text.substr(0, at == 0 ? 0 : at - 1);
     const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
     const std::string_view line = text.substr(line_start, text.find('\n', line_start) - line_start);
-    return fmt::format("'{}{}', which is not JSON", line.substr(0, most), line.size() > most ? "..." : "");
+    return fmt::format("'{}{}', which is not JSON", visible_text(line.substr(0, most)),
+                       line.size() > most ? "..." : "");
 }
 
 }  // namespace
@@ -172,8 +173,10 @@ Json read_json(std::string_view text, const std::string& source, std::string_vie
     if (!builder.refused.empty())
         raise<DataError>("{}: read {}, which no command writes; make the file again", place, builder.refused);
     if (!builder.number.empty()) {
+        // A number is known to have ended one character behind it.
         raise<DataError>("{}: read {}, expected a number from -{} to {}; correct it or make the file again",
-                         place, builder.number, largest_json_number, largest_json_number);
+                         place_of(text, at - std::min(at, builder.number.size()), source), builder.number,
+                         largest_json_number, largest_json_number);
     }
     raise<DataError>("{}: read {}, expected {}", place, opening_of(text, at), wanted);
 }

@@ -2,6 +2,7 @@
 #include "page/json_table.hpp"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "page/json_words.hpp"
 
@@ -55,23 +56,21 @@ bool is_table(const Json& json) {
 PageTable table_of(const std::string& name, const Json& rows) {
     PageTable table{spoken(name).name, {}, {}};
     std::vector<std::vector<std::pair<std::string, std::string>>> all;
+    std::unordered_map<std::string, std::size_t> places;  // of columns in the header
     bool left_out = false;
     for (const Json& row : rows) {
         if (all.size() == most_rows) break;
         cells_of(row, "", "", all.emplace_back());
         for (const auto& [column, value] : all.back()) {
-            const bool known =
-                std::find(table.header.begin(), table.header.end(), column) != table.header.end();
-            left_out |= !known && table.header.size() == most_columns;
-            if (!known && table.header.size() < most_columns) table.header.push_back(column);
+            if (places.size() < most_columns && places.emplace(column, places.size()).second)
+                table.header.push_back(column);
+            left_out |= places.size() == most_columns && !places.contains(column);
         }
     }
     for (const auto& cells : all) {
         std::vector<std::string> row(table.header.size(), "-");
         for (const auto& [column, value] : cells) {
-            const auto at =
-                std::find(table.header.begin(), table.header.end(), column) - table.header.begin();
-            if (at < static_cast<std::ptrdiff_t>(row.size())) row[static_cast<std::size_t>(at)] = value;
+            if (const auto at = places.find(column); at != places.end()) row[at->second] = value;
         }
         table.rows.push_back(std::move(row));
     }
