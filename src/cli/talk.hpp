@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What the tool says: the only place where words go to standard error, and texts for people to a file or to
-// standard output. Nothing said can act on a terminal, and nothing that becomes of standard error changes what
-// a command does.
+// standard output. Nothing said can act on a terminal, and nothing that becomes of standard error changes
+// what a command does.
 
 #include <string>
 #include <string_view>
