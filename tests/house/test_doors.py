@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""docs/security.md states the limits that the code has."""
+"""docs/security.md states the limits that the code has, and JSON, words and standard streams have one door each."""
 
 import os
 import pathlib
@@ -48,6 +48,23 @@ class Limits(unittest.TestCase):
     def test_every_limit_of_documents_is_on_the_page(self):
         names = set(re.findall(r"^constexpr \S+ (\w+) =", (SOURCE / "src/document/limits.hpp").read_text(), re.M))
         self.assertEqual(names, {name for path, name in LIMITS.values() if path == "src/document/limits.hpp"})
+
+
+# What only these files may say.
+DOORS = {
+    r"\b(Json|json)::(sax_)?parse\b": {"src/document/json_door.cpp"},
+    r"(?<!\")\bstderr\b(?!\")|std::(cerr|clog|cout)\b|STDERR_FILENO": {"src/cli/talk.cpp", "src/cli/progress_bar.cpp", "src/figure/gnuplot_process.cpp"},
+    r"\bwrite_all\(\"-\"": set(),
+}
+
+
+class OneDoor(unittest.TestCase):
+    def test_what_comes_in_and_what_is_said_goes_through_one_door(self):
+        for pattern, allowed in DOORS.items():
+            for path in sorted((SOURCE / "src").rglob("*.?pp")):
+                name = str(path.relative_to(SOURCE))
+                if name not in allowed:
+                    self.assertIsNone(re.search(pattern, re.sub(r"//.*", "", path.read_text())), f"{name}: {pattern}")
 
 
 if __name__ == "__main__":
