@@ -19,5 +19,7 @@ if(RIPPLENOTCH_SANITIZE)
         -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(ripplenotch_options INTERFACE -fsanitize=address,undefined)
     # Instrumented code makes g++ 12 see uninitialised members inside std::regex; the dev preset keeps the warning.
-    target_compile_options(ripplenotch_options INTERFACE -Wno-maybe-uninitialized)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+        target_compile_options(ripplenotch_options INTERFACE -Wno-maybe-uninitialized)
+    endif()
 endif()
