@@ -19,6 +19,7 @@
 #include "core/unfinished_files.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -87,7 +88,7 @@ std::string put_in_free_place(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard input" : path) {
+ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard input" : visible_text(path)) {
     if (path == "-") {
         descriptor_ = STDIN_FILENO;
         if (::isatty(STDIN_FILENO) == 1) {

@@ -29,7 +29,7 @@ Enum enumerator_of(Fields& fields, std::string_view name, Enum last, std::string
 
 Span span_of(const Json& json, const std::string& where) {
     if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number())
-        raise<DataError>("{} holds {}, expected two numbers", where, json.dump());
+        raise<DataError>("{} holds {}, expected two numbers", where, in_words(json));
     return {json[0].get<double>(), json[1].get<double>()};
 }
 
