@@ -7,11 +7,14 @@ cases, and within a study every effect has had its first log before any has its 
 
 import dataclasses
 
-from . import cases
+from . import cases, recordings
 
 # How many of each kind: 5 of each single effect, 40 pairs, 200 logs with nothing hidden, ...
 SEEDS = {"single": 5, "rarer": 2, "pair": 40, "triple": 30, "null": 200, "null ar0.5": 20, "null t4": 20, "outside": 15,
-         "outside+single": 5, "formula": 2, "noise": 1, "poor": 1, "variant": 1, "without": 1}
+         "outside+single": 5, "formula": 2, "noise": 1, "poor": 1, "variant": 1, "without": 1, "recorded": 1}
+
+
+WAYS = tuple(recordings.WAYS)  # of recording the same log
 
 
 def study(name, seeds, first):
@@ -29,14 +32,21 @@ def planned(names, seeds=None, first=0):
     return [case for _, case in sorted(found, key=lambda pair: pair[0])]
 
 
+def as_recorded(case, way):
+    """The same case as another recorder writes it; a header alone is the case's own."""
+    return dataclasses.replace(case, header=way) if way in cases.HEADERS else dataclasses.replace(case, recorded=way)
+
+
 def by_name(name):
     """The case of that name."""
     number = name.rpartition("-")[2]
     for known in SEEDS if number.isdigit() else ():
-        for case in cases.studies(known, 1, int(number)):
-            for header in ("", *cases.HEADERS):
-                if dataclasses.replace(case, header=header).name == name:
-                    return dataclasses.replace(case, header=header)
+        first = int(number)
+        several = cases.studies(known, 1, first // cases.RECORDED["pair"]) if known == "recorded" else []
+        for case in cases.studies(known, 1, first) + several:
+            for way in ("", *recordings.WAYS):
+                if as_recorded(case, way).name == name:
+                    return as_recorded(case, way)
     raise SystemExit(f"prove-diagnose: there is no case '{name}'")
 
 

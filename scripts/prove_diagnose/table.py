@@ -100,6 +100,19 @@ def without(rows):
                            for label, group in groups(rows, lambda r: r["label"])])
 
 
+def recorded(rows):
+    head = ["the same logs", "logs", "exactly right", "in the set", "logs with a false name", "gap closed", "interval holds",
+            "time"]
+    lines = []
+    for way, group in groups(rows, lambda r: r["recorded"] or "as they are"):
+        of = [p for row in group for p in row["parameters"]]
+        lines.append([way, str(len(group)), share(group, lambda r: r["exact"]), share(group, lambda r: r["in_set"]),
+                      share(group, lambda r: r["false"]), median_percent(r["gap"]["closed"] for r in group),
+                      share(of, lambda p: None if p["beyond"] is None else p["beyond"] <= 1.0),
+                      median([r["seconds"] for r in group], "{:.1f} s")])
+    return markdown(head, lines)
+
+
 def yardsticks(rows):
     """For each study the tool and the yardsticks on the same logs."""
     head = ["study", "logs", "method", "exactly right", "false name in", "false names a log", "gap closed"]
@@ -118,7 +131,7 @@ def yardsticks(rows):
 
 FORMS = {"single": by_label, "rarer": by_label, "pair": several, "triple": several, "null": null, "outside": outside,
          "outside+single": outside, "formula": by_label, "noise": noise, "poor": poor,
-         "variant": variant, "without": without}
+         "variant": variant, "without": without, "recorded": recorded}
 
 
 def failure(row):
