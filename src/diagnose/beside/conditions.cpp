@@ -23,6 +23,14 @@ bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, doubl
     return is_worth(gain, price, sums.lens().rules().beside);
 }
 
+// True for a friction of a size below 0. One that is a part of another's curve (quadratic beside viscous
+// friction) may be; what stands for another name by itself may not.
+bool drives(const Sums& sums, const Names& names, std::size_t place) {
+    const Kind kind = kind_of(*sums.shapes()[names[place]].term.effect);
+    return (kind == Kind::friction || kind == Kind::speed) &&
+           sums.sizes(names)[columns_at(sums, names, place).first] <= 0.0;
+}
+
 // The best other name in its place, refined; one that is bent stands in for something else.
 std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price) {
     std::vector<Named> rivals;
@@ -44,6 +52,7 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
     for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
         Named rival = refined(sums, rivals[i]);
         if (sums.lens().bounds().is_bent(sums.shapes()[rival.names.back()])) continue;
+        if (drives(sums, rival.names, rival.names.size() - 1)) continue;
         if (!of_posture && stands_beside(sums, rival.names, own, price)) continue;
         if (!best || rival.left < best->left) best = std::move(rival);
     }
@@ -115,7 +124,10 @@ void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const std
     Hearing hearing(sums.lens().rules(), finding.decisions);
     const bool tie = hearing.asked("beside.tie_margin", ahead.gain, ahead.gain < rules.tie_margin) ||
                      hearing.asked("beside.tie_t", ahead.t, ahead.t < rules.tie_t);
-    if (tie && finding.status == FindingStatus::confirmed) finding.status = FindingStatus::ambiguous;
+    if (!tie || finding.status != FindingStatus::confirmed) return;
+    finding.status = FindingStatus::ambiguous;
+    if (drives(sums, names, place))
+        doubt(finding, "its size is below 0, and another name does as well: it would drive the joint");
 }
 
 // A small one of a kind mends the form of the largest.
