@@ -120,6 +120,8 @@ HEAD = ["what is asked", "asked", "measured", "95 % of chance", "met"]
 
 def lines(rows, told):
     found = [bar.line(rows) for bar in bars(rows, told)]
-    if any(row["study"] == "recorded" for row in rows):
-        found += [bar.line(rows) for bar in recorded_bars()]
     return [*found[:6], gap_line(rows), *found[6:]]
+
+
+def recorded_lines(rows):
+    return [bar.line(rows) for bar in recorded_bars()]
