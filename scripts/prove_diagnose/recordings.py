@@ -37,6 +37,9 @@ WAYS = {
     "libfranka": lambda log, rng: log,
 }
 
+# Effects that a way of recording brings into the log. Steps as small as the noise may be named, and need not be.
+BROUGHT = {"0.1 Nm steps": ("quantization",)}
+
 
 def recorded(log, case, purpose):
     """The log of the case as its way of recording writes it."""

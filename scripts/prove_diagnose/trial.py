@@ -96,7 +96,8 @@ def diagnosed(program, case, folder, options, logs, acceptable):
     without = ["--without", case.without] if case.without else []
     found, seconds = tool.diagnose(program, folder, [*options, *without])
     row = {"verdict": found["verdict"], "seconds": seconds, "samples": len(logs["train"].time_s),
-           **score.names(case, acceptable, hidden, found), "parameters": score.parameters(hidden, found, case.seconds),
+           **score.names(case, acceptable, hidden, found, recordings.BROUGHT.get(case.recorded, ())),
+           "parameters": score.parameters(hidden, found, case.seconds),
            "unexplained": len(found["unexplained"]), **laws(program, case, found, folder), "found": found}
     if case.recorded == "without position":  # where it began is its own
         row["parameters"] = [p for p in row["parameters"] if p["relative"] is not None]
