@@ -182,6 +182,40 @@ void look_at_rest(const Sums& sums, const Named& now, std::vector<BesideFinding>
     }
 }
 
+// The name that another is clearly ahead of; none, where the best is in each place.
+std::optional<std::size_t> outdone(const std::vector<BesideFinding>& findings, const BesideRules& rules) {
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+        if (findings[i].status == FindingStatus::ambiguous && findings[i].rival &&
+            findings[i].rival_margin < -rules.tie_margin && findings[i].rival_t < -rules.tie_t)
+            return i;
+    }
+    return std::nullopt;
+}
+
+bool any_tentative(const std::vector<BesideFinding>& findings) {
+    return std::any_of(findings.begin(), findings.end(), [](const BesideFinding& finding) {
+        return finding.status == FindingStatus::tentative;
+    });
+}
+
+// A name that was withdrawn in one shape may, in another, be the better one in the place of a name that
+// stayed.
+void give_way(Sums& sums, Named& now, std::vector<BesideFinding>& findings, const Judgement& by) {
+    constexpr int most_ways = 3;
+    for (int way = 0; way < most_ways; ++way) {
+        const auto place = outdone(findings, sums.lens().rules().beside);
+        if (!place) return;
+        Named other = now;
+        other.names[*place] = sums.place_of(*findings[*place].rival);
+        other.left = sums.left_outside(other.names);
+        other = refined(sums, std::move(other));
+        std::vector<BesideFinding> judged = judged_beside(sums, other, by);
+        if (any_tentative(judged) || outdone(judged, sums.lens().rules().beside) == place) return;
+        now = std::move(other);
+        findings = std::move(judged);
+    }
+}
+
 }  // namespace
 
 std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Judgement& by) {
@@ -217,6 +251,12 @@ NamedBeside named_beside(Sums& sums, const Judgement& by) {
             if (!weakest || findings[i].gain.gain < findings[*weakest].gain.gain) weakest = i;
         }
         if (!weakest || turn == sums.lens().rules().beside.most_withdrawals) {
+            if (!weakest) give_way(sums, now, findings, by);
+            std::erase_if(withdrawn, [&](const BesideFinding& one) {
+                return std::any_of(findings.begin(), findings.end(), [&](const BesideFinding& finding) {
+                    return same_name(finding.shape, one.shape);
+                });
+            });
             if (by.even_by_speed) look_at_rest(sums, now, findings);
             findings.insert(findings.end(), withdrawn.begin(), withdrawn.end());
             return {std::move(now), std::move(findings)};
