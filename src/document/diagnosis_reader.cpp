@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <limits>
 
+#include "document/angle_fields.hpp"
 #include "document/beside_fields.hpp"
 #include "document/fields.hpp"
 #include "document/model_fields.hpp"
@@ -199,6 +200,7 @@ Diagnosis read_diagnosis(std::string_view text, const std::string& source) {
     diagnosis.samples = fields.whole("samples");
     diagnosis.samples_used = fields.whole("samples_used");
     diagnosis.has_position = fields.flag("position_in_log");
+    read_angle(fields, diagnosis);
     Fields search = fields.object("search");
     diagnosis.evaluations = search.number("evaluations");
     diagnosis.search_ended = search.flag("ended");
