@@ -160,12 +160,13 @@ Made piecewise_result(const Request& request, const std::string& command_line) {
 }
 
 Made whole_result(const Request& request, const std::string& command_line) {
-    Provenance provenance{{input_record(request.path)}, command_line};
+    Provenance provenance{{}, command_line};
     const MapLines lines = request.map.map ? map_lines(request.map, provenance) : MapLines{};
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
     const Log log = read_log(request.path, read_options(request.log, lines.gear));
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
+    provenance.inputs.insert(provenance.inputs.begin(), input_record(request.path));
     provenance.recordings.push_back({log.recording});
     if (request.map.map) return {map_result(request, lines, log.trace, provenance), provenance};
     const TraceView trace = log.trace.view();
