@@ -48,6 +48,7 @@ class PieceTaker {
         append(trace_.time_s, part.time_s);
         append(trace_.velocity_deg_s, part.velocity_deg_s);
         append(trace_.torque_nm, part.torque_nm);
+        if (part.has_position()) trace_.position_deg.reserve(in_piece_ * most_pieces);
         append(trace_.position_deg, part.position_deg);
     }
 

@@ -73,8 +73,8 @@ void check_jobs(const FilterRequest& request, const std::vector<FilterJob>& jobs
         if (own_names && job.log == "-")
             raise<UsageError>("--out-dir and --in-place: standard input has no name; use -o FILE");
         if (!request.in_place) claims.reads(job.log, "LOG");
-        claims.writes(job.output, job.log);
-        if (job.metrics) claims.writes(*job.metrics, "--metrics of " + job.log);
+        claims.writes(job.output, own_names ? "the filtered " + job.log + ":" : "-o");
+        if (job.metrics) claims.writes(*job.metrics, "--metrics");
     }
     claims.check("; filter logs of one name into different folders");
 }
