@@ -41,6 +41,10 @@ struct Log {
     std::optional<std::pair<double, double>> position_range_deg;
 };
 
+/// About how many rows a file has, by its size and the size of its first rows; empty for pipes, and for a
+/// part of a log. Throws what open_log throws.
+[[nodiscard]] std::optional<double> estimated_rows(const std::string& path, const ReadOptions& options);
+
 /// Rows that commands hold which look at pieces of a log anyway.
 inline constexpr std::size_t most_rows_held = std::size_t{1} << 19;
 
