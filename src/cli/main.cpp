@@ -6,19 +6,19 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <new>
 #include <optional>
+#include <sstream>
 
 #include "cli/command.hpp"
 #include "cli/options/options_implementation.hpp"
 #include "cli/out_of_memory.hpp"
 #include "cli/progress_bar.hpp"
-#include "cli/standard_streams.hpp"
+#include "cli/talk.hpp"
 #include "core/unfinished_files.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/spec.hpp"
@@ -30,11 +30,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 ExitCode complain(ExitCode code, std::string_view command, std::string_view message) {
-    if (command.empty()) {
-        fmt::print(stderr, "{}: {}\n", tool_name, message);
-    } else {
-        fmt::print(stderr, "{} {}: {}\n", tool_name, command, message);
-    }
+    talk(fmt::format("{}{}{}: {}", tool_name, command.empty() ? "" : " ", command, message));
     return code;
 }
 
@@ -137,7 +133,7 @@ ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
     declare(app, words, named_first, running, declared);
 
     if (words.empty()) {
-        fmt::print(stderr, "{}", app.help());
+        talk_lines(app.help());
         return ExitCode::usage;
     }
     for (const auto& implementation : declared.implementations) implementation->spell_out(words);
@@ -171,7 +167,9 @@ ExitCode run(const Words& words) {
         try {
             return parse_and_work(app, words, running);
         } catch (const CLI::Success& request) {  // --help or --version
-            app.exit(request);
+            std::ostringstream asked;
+            app.exit(request, asked, asked);
+            write_text("-", asked.str(), ByteSink::Overwrite::no);
             return ExitCode::done;
         }
     } catch (const CLI::ParseError& error) {
@@ -193,7 +191,7 @@ ExitCode run(const Words& words) {
 int main(int argc, char** argv) {
     // "| head" must end us quietly even where the parent process has SIGPIPE ignored.
     std::signal(SIGPIPE, SIG_DFL);
-    ripplenotch::fill_closed_streams();
+    ripplenotch::hold_closed_streams();
     ripplenotch::remove_unfinished_files_on_signals();
     try {
         return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));

@@ -10,13 +10,14 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::size_t first_room = std::size_t{1} << 14;  // for a whole file: most are tables and models
 
-std::string shown_name(const std::string& path) { return path == "-" ? "standard input" : path; }
+std::string shown_name(const std::string& path) { return path == "-" ? "standard input" : visible_text(path); }
 
 }  // namespace
 

@@ -21,7 +21,7 @@ SIGNALS = [getattr(signal, f"SIG{name}") for name in CAUGHT]
 
 
 class Kills(unittest.TestCase):
-    ROWS = 60_000
+    ROWS = 30_000
 
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -33,7 +33,7 @@ class Kills(unittest.TestCase):
     def test_a_kill_that_nobody_can_catch_leaves_nothing(self):
         killer = self.killer(TOOL)
         for name in killer.shop.commands():
-            for _ in range(4):
+            for _ in range(3):
                 self.assertEqual(killer.kill(name, signal.SIGKILL), [])
 
     def test_signals_that_can_be_caught_leave_nothing(self):

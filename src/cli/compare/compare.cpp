@@ -14,6 +14,7 @@
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/name_list.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -235,7 +236,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
     add_costs(comparison, request.costs, field);
     const std::string text =
         request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison);
-    write_all(request.common.output, text, request.common.overwrite());
+    write_text(request.common.output, text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, [&] {
         std::vector<Contender> shown = field.contenders;
         if (comparison.match && comparison.match->low_pass)

@@ -13,6 +13,7 @@
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
+#include "cli/talk.hpp"
 #include "cli/text_table.hpp"
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -180,7 +181,7 @@ Diagnosis diagnosed(const Request& request, const Model& model, const Recorded& 
 ExitCode run(const Request& request, const std::string& command_line) {
     const DiagnosisRules rules = rules_of(request);  // refused before anything is read
     if (request.list_rules) {
-        write_all("-", rules_text(rules), ByteSink::Overwrite::no);
+        write_text("-", rules_text(rules), ByteSink::Overwrite::no);
         return ExitCode::done;
     }
     check(request);
@@ -195,18 +196,18 @@ ExitCode run(const Request& request, const std::string& command_line) {
     if (recorded.given.arm) say_arm(request.common, *recorded.given.arm);
     const Diagnosis diagnosis = diagnosed(request, model.model, recorded);
     if (keep) {
-        write_all(request.common.output,
-                  write_model(with_fitted_digits(diagnosis.model), provenance,
-                              fitted(recorded.given.simulated, diagnosis)),
-                  request.common.overwrite());
+        write_text(request.common.output,
+                   write_model(with_fitted_digits(diagnosis.model), provenance,
+                               fitted(recorded.given.simulated, diagnosis)),
+                   request.common.overwrite());
         say(request.common, fmt::format("the improved model is in {}", request.common.output));
     }
-    write_all("-",
-              request.common.json ? write_diagnosis(diagnosis, gear, provenance,
-                                                    recorded.given.arm ? &*recorded.given.arm : nullptr)
-                                  : (recorded.given.arm ? arm_text(*recorded.given.arm) : "") +
-                                        diagnosis_story(diagnosis, request.explain),
-              ByteSink::Overwrite::no);
+    write_text("-",
+               request.common.json ? write_diagnosis(diagnosis, gear, provenance,
+                                                     recorded.given.arm ? &*recorded.given.arm : nullptr)
+                                   : (recorded.given.arm ? arm_text(*recorded.given.arm) : "") +
+                                         diagnosis_story(diagnosis, request.explain),
+               ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, provenance,
               [&] { return diagnosis_figure(request.path, diagnosis, log.trace.view(), request.smoothing); });
     const bool conclusive =

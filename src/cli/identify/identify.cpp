@@ -14,6 +14,7 @@
 #include "cli/identify/identify_text.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/chart/identification_figure.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -162,17 +163,17 @@ ExitCode run(Request& request, const std::string& command_line) {
     if (request.common.json || json_file) {
         if (names_joint(request.common.output)) {
             for (const Identification& one : found)
-                write_all(with_joint(request.common.output, one.joint), identification_text(one, provenance),
-                          request.common.overwrite());
+                write_text(with_joint(request.common.output, one.joint), identification_text(one, provenance),
+                           request.common.overwrite());
         } else {
             const std::string json = found.size() == 1 ? identification_text(found.front(), provenance)
                                                        : identifications_text(found, provenance);
-            write_all(request.common.output, json, request.common.overwrite());
+            write_text(request.common.output, json, request.common.overwrite());
         }
         // The file is for the next command; people still want to read what came out.
-        if (json_file && !request.common.json) write_all("-", text, ByteSink::Overwrite::yes);
+        if (json_file && !request.common.json) write_text("-", text, ByteSink::Overwrite::yes);
     } else {
-        write_all(request.common.output, text, request.common.overwrite());
+        write_text(request.common.output, text, request.common.overwrite());
     }
     draw_plot(request.plot, request.common, provenance,
               [&] { return identification_figure(logs_in_words(request.logs), found.front()); });

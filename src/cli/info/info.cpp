@@ -5,6 +5,7 @@
 
 #include "cli/command.hpp"
 #include "cli/info/info_text.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/document/info_json.hpp"
 
@@ -35,7 +36,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
     } else {
         for (const LogInfo& log : logs) text += (text.empty() ? "" : "\n") + info_to_text(log);
     }
-    write_all(request.common.output, text, request.common.overwrite());
+    write_text(request.common.output, text, request.common.overwrite());
     return ExitCode::done;
 }
 

@@ -7,15 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 
 #include "cli/options/file_claims.hpp"
 #include "cli/options/number_list.hpp"
 #include "cli/options/options_implementation.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
-#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/version.hpp"
 
 namespace ripplenotch {
@@ -266,8 +265,7 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
 
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings) {
     if (common.quiet) return;
-    Progress::current().step_aside();
-    for (const std::string& warning : warnings) fmt::print(stderr, "{}: warning: {}\n", tool_name, warning);
+    for (const std::string& warning : warnings) talk(fmt::format("{}: warning: {}", tool_name, warning));
 }
 
 void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings) {
@@ -275,8 +273,7 @@ void say_warnings(const CommonOptions& common, std::span<const LogWarning> warni
 }
 
 void say(const CommonOptions& common, std::string_view sentence) {
-    Progress::current().step_aside();
-    if (common.verbose && !common.quiet) fmt::print(stderr, "{}: {}\n", tool_name, sentence);
+    if (common.verbose && !common.quiet) talk(fmt::format("{}: {}", tool_name, sentence));
 }
 
 void say_layout(const CommonOptions& common, const Layout& layout) {

@@ -13,6 +13,7 @@
 #include "cli/spectrum/spectrum_text.hpp"
 #include "cli/spectrum/speed_map_request.hpp"
 #include "cli/spectrum/streamed_spectrum.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/memory.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -213,7 +214,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     const auto [result, provenance] =
         request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
     if (request.peaks || !request.plot.instead_of(request.common.output))
-        write_all(request.common.output, result.text, request.common.overwrite());
+        write_text(request.common.output, result.text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, result.figure);
     return ExitCode::done;
 }
