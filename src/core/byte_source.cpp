@@ -17,7 +17,9 @@ namespace {
 
 constexpr std::size_t first_room = std::size_t{1} << 14;  // for a whole file: most are tables and models
 
-std::string shown_name(const std::string& path) { return path == "-" ? "standard input" : visible_text(path); }
+std::string shown_name(const std::string& path) {
+    return path == "-" ? "standard input" : visible_text(path);
+}
 
 }  // namespace
 

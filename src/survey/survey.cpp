@@ -70,11 +70,12 @@ Surveyed surveyed(Log log) {
 }
 
 // A log that is too long to be held goes by twice, and its motion is judged by the means of many rows.
-Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOptions& options) {
+Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOptions& options,
+                     std::size_t most_rows) {
     LogPasses passes(spool, options);
     Surveyed found;
     passes.first([](const TraceView&) {});
-    PassingRows rows(passes.facts(), most_rows_held);
+    PassingRows rows(passes.facts(), most_rows);
     passes.second([&](const TraceView& part) { rows.add(part); });
     found.log.layout = passes.layout();
     found.log.recording = passes.recording();
@@ -90,12 +91,14 @@ Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOption
     return found;
 }
 
-Surveyed survey_joint(const std::shared_ptr<const Spool>& spool, const ReadOptions& options) {
-    if (auto whole = read_log_if_short(*spool, options, most_rows_held)) return surveyed(std::move(*whole));
-    return survey_long(spool, options);
+Surveyed survey_joint(const std::shared_ptr<const Spool>& spool, const ReadOptions& options,
+                      std::size_t most_rows) {
+    if (auto whole = read_log_if_short(*spool, options, most_rows)) return surveyed(std::move(*whole));
+    return survey_long(spool, options, most_rows);
 }
 
-std::vector<Surveyed> survey_joints(const std::string& path, const ReadOptions& options) {
+std::vector<Surveyed> survey_joints(const std::string& path, const ReadOptions& options,
+                                    std::size_t most_rows) {
     const auto spool = std::make_shared<const Spool>(path);
     std::vector<std::string> joints = {options.joint.value_or("")};
     if (!options.joint || *options.joint == "all") joints = joint_names(*spool, options);
@@ -104,7 +107,7 @@ std::vector<Surveyed> survey_joints(const std::string& path, const ReadOptions& 
     ReadOptions one = options;
     for (const std::string& joint : joints) {
         one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
-        all.push_back(survey_joint(spool, one));
+        all.push_back(survey_joint(spool, one, most_rows));
         JointInfo& info = all.back().info;
         const Log& log = all.back().log;
         info.joint = log.layout.chosen.joint;
@@ -214,9 +217,9 @@ void state_uses(LogInfo& info) {
 
 }  // namespace
 
-LogInfo survey_log(const std::string& path, ReadOptions options) {
+LogInfo survey_log(const std::string& path, ReadOptions options, std::size_t most_rows) {
     options.needs_torque = false;
-    const std::vector<Surveyed> joints = survey_joints(path, options);
+    const std::vector<Surveyed> joints = survey_joints(path, options, most_rows);
     LogInfo info;
     const Log& first = joints.front().log;
     info.source = first.layout.source;
