@@ -14,11 +14,8 @@
 #include <cstring>
 #include <new>
 
+#include "core/sanitized.hpp"
 #include "ripplenotch/core/version.hpp"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define RIPPLENOTCH_SANITIZED 1
-#endif
 
 namespace ripplenotch {
 namespace {

@@ -6,9 +6,7 @@
 #include <atomic>
 #include <csignal>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define RIPPLENOTCH_SANITIZED 1
-#endif
+#include "core/sanitized.hpp"
 
 namespace ripplenotch {
 
