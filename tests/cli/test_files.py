@@ -48,7 +48,7 @@ class Hashes(InFolder):
     def test_every_command_that_names_a_hash_names_the_right_one(self):
         raw = self.hash_of("log.csv")
         for words in (("identify", "log.csv"), ("info", "log.csv"), ("spectrum", "log.csv"), ("track", "log.csv", *GEAR),
-                      ("spectrum", "log.csv", "--segment", "1s"), ("compare", "log.csv", *GEAR)):
+                      ("spectrum", "log.csv", "--segment", "1s"), ("compare", "log.csv", *GEAR, *LOWPASS)):
             with self.subTest(words[0]):
                 done = self.run_tool(*words, "--json")
                 self.assertEqual(json.loads(done.stdout)["inputs"][0]["sha256"], raw, done.stderr)
@@ -56,7 +56,7 @@ class Hashes(InFolder):
     def test_of_a_named_pipe_the_hash_is_that_of_what_it_said(self):
         os.mkfifo(self.folder / "pipe")
         raw = (self.folder / "log.csv").read_bytes()
-        writer = threading.Thread(target=lambda: (self.folder / "pipe").write_bytes(raw))
+        writer = threading.Thread(target=lambda: (self.folder / "pipe").write_bytes(raw), daemon=True)
         writer.start()
         done = self.run_tool("identify", "pipe", "--json")
         writer.join()
@@ -129,7 +129,7 @@ class Collisions(InFolder):
                       ("filter", "log.csv", *LOWPASS, "--in-place", "--metrics", "log.csv"),
                       ("spectrum", "log.csv", "-o", "log.csv"),
                       ("track", "log.csv", *GEAR, "-o", "log.csv"),
-                      ("export", "table.json", "--to", "python", "-o", "table.json"),
+                      ("export", "table.json", "--to", "scipy", "-o", "table.json"),
                       ("compare", "log.csv", *GEAR, "--json", "-o", "table.json", "--method", "switching,table=table.json"),
                       ("report", "table.json", "-o", "table.json")):
             self.refuse(*words)
