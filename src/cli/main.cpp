@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -15,9 +16,11 @@
 
 #include "cli/command.hpp"
 #include "cli/options/options_implementation.hpp"
+#include "cli/out_of_memory.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/talk.hpp"
 #include "core/unfinished_files.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/version.hpp"
 
@@ -107,8 +110,16 @@ void declare(CLI::App& app, const Words& words, bool named_first, std::string& r
             declared.work = work;
             running = command->name;
             for (const auto& check : parsed.after_parse) check();
+            parsed.check_files();
         });
     }
+}
+
+// A word that is not understood would leave vectors on in silence.
+void check_environment() {
+    const char* const vectors = std::getenv("RIPPLENOTCH_VECTORS");
+    if (vectors != nullptr && *vectors != '\0' && std::string_view(vectors) != "none")
+        raise<UsageError>("RIPPLENOTCH_VECTORS={}: it is none, or not set at all", vectors);
 }
 
 // Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.
@@ -142,6 +153,8 @@ ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
             ExitCode::usage, running,
             fmt::format("{} is given more than once; see {} {} --help", *twice, tool_name, running));
     }
+    check_environment();
+    hash_inputs(true);
     const ProgressBar bar(words);  // gone before a complaint is printed
     return declared.work();
 }
@@ -165,7 +178,8 @@ ExitCode run(const Words& words) {
     } catch (const Error& error) {
         return complain(error.code(), running, error.what());
     } catch (const std::bad_alloc&) {
-        return complain(ExitCode::internal, running, "out of memory");
+        say_out_of_memory(running);
+        return ExitCode::memory;
     } catch (const std::exception& error) {
         return complain(ExitCode::internal, running, fmt::format("internal fault: {}", error.what()));
     }
@@ -179,5 +193,10 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_DFL);
     ripplenotch::hold_closed_streams();
     ripplenotch::remove_unfinished_files_on_signals();
-    return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));
+    try {
+        return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));
+    } catch (const std::bad_alloc&) {  // not even for the words of the command line, or for a message
+        ripplenotch::say_out_of_memory("");
+        return static_cast<int>(ripplenotch::ExitCode::memory);
+    }
 }

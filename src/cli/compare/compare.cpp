@@ -171,7 +171,7 @@ void add_match_on_log(Comparison& comparison, const Request& request, const Comp
 std::vector<double> true_torque(const Request& request, const ReadOptions& read, std::size_t rows,
                                 Provenance& provenance) {
     if (request.truth.empty()) return {};
-    Log truth = read_log(request.truth, read);
+    Log truth = read_log_in_part(request.truth, read);
     provenance.inputs.push_back(input_record(request.truth));
     provenance.inputs.back().rows = truth.trace.size();
     if (truth.trace.size() != rows) {
@@ -185,7 +185,7 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
     if (request.log_options.joint == "all")
         raise<UsageError>("--joint all: compare looks at one joint; name it");
     const ReadOptions read = read_options(request.log_options, field.gear);
-    const Log log = read_log(request.log, read);
+    const Log log = read_log_in_part(request.log, read);
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.push_back(input_record(request.log));

@@ -82,9 +82,11 @@ void check(const Request& request) {
         raise<UsageError>("--plot - and --json would both go to standard output; name a file with --plot");
 }
 
-Log read(const Request& request, const ReadOptions& reading, const std::string& path,
+Log read(const Request& request, bool given_in_model, const ReadOptions& reading, const std::string& path,
          Provenance& provenance) {
-    Log log = read_log(path, reading);
+    // What is given beside the log stands row by row against all of it.
+    const bool whole = request.given.any() || given_in_model;
+    Log log = whole ? read_log(path, reading) : read_log_in_part(path, reading);
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.recordings.push_back({log.recording});
@@ -140,8 +142,9 @@ struct Recorded {
 
 Recorded read(const Request& request, const ModelWithGiven& model, Provenance& provenance) {
     const ReadOptions reading = read_options(request.log, gear_of(model.model, ""));
-    Recorded recorded{read(request, reading, request.path, provenance), std::nullopt, {}};
-    if (request.validate) recorded.other = read(request, reading, *request.validate, provenance);
+    const bool given = model.simulated.has_value();
+    Recorded recorded{read(request, given, reading, request.path, provenance), std::nullopt, {}};
+    if (request.validate) recorded.other = read(request, given, reading, *request.validate, provenance);
     const GivenLog log{request.path, recorded.log};
     std::optional<GivenLog> other;
     if (recorded.other) other.emplace(GivenLog{*request.validate, *recorded.other});

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "cli/readings/readings.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/identification_figure.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/identification_json.hpp"
@@ -24,6 +26,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::array<std::string_view, 3> evidence_names = {"automatic", "steady", "order"};
+
+constexpr std::size_t fewest_rows_held = most_rows_held / 4;  // of each of many long logs
 
 struct Request {
     CommonOptions common;
@@ -49,15 +53,16 @@ std::vector<Joint> read_all_joints(const Request& request, Provenance& provenanc
     read.gear_ratio = request.gear.ratio;
     read.takes_motor_units = true;
     const bool each = read.joint && *read.joint == "all";
+    const std::size_t most_rows = std::max(fewest_rows_held, most_rows_held / request.logs.size());
     for (const std::string& path : request.logs) {
         std::vector<Log> logs;
         if (each) {
-            logs = read_joints(path, read);
+            logs = read_joints_in_part(path, read, most_rows);
         } else {
-            logs.push_back(read_log(path, read));
+            logs.push_back(read_log_in_part(path, read, most_rows));
         }
         provenance.inputs.push_back(
-            {path, path == "-" ? "" : sha256_of_file(path), logs.front().recording.rows()});
+            {path, path == "-" ? "" : sha256_as_read(path), logs.front().recording.rows()});
         for (Log& log : logs) {
             say_layout(request.common, log.layout);
             say_warnings(request.common, log.recording.warnings);

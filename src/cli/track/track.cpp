@@ -197,7 +197,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     read_gear(request, provenance);
-    const Log log = read_log(request.path, read_options(request.log, request.gear));
+    const Log log = read_log_in_part(request.path, read_options(request.log, request.gear));
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.push_back(input_record(request.path));
