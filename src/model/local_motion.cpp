@@ -50,6 +50,44 @@ double dot(const Row& a, const Row& b) {
     return sum;
 }
 
+// What least squares need of a window: sums of the powers of its times, alone, with the velocities, and with
+// the positions.
+struct PowerSums {
+    std::array<double, 9> time{};
+    std::array<double, 5> velocity{}, position{};
+};
+
+PowerSums power_sums(const TraceView& log, std::size_t k, SampleWindow window, double reach_s, bool both) {
+    PowerSums sums;
+    const double now_s = log.time_s[k], here_deg = both ? log.position_deg[k] : 0.0;
+    for (std::size_t j = window.first; j < window.end; ++j) {
+        const double u = (log.time_s[j] - now_s) / reach_s, velocity = log.velocity_deg_s[j];
+        const double position = both ? log.position_deg[j] - here_deg : 0.0;
+        double power = 1.0;
+        for (std::size_t p = 0; p < 5; ++p, power *= u) {
+            sums.time[p] += power;
+            sums.velocity[p] += power * velocity;
+            sums.position[p] += power * position;
+        }
+        for (std::size_t p = 5; p < 9; ++p, power *= u) sums.time[p] += power;
+    }
+    return sums;
+}
+
+// The same matrix as add() of every row makes, from sums of powers.
+std::array<Row, unknowns> moments_of(const PowerSums& sums, double by_velocity, double by_position) {
+    std::array<Row, unknowns> moments{};
+    for (std::size_t i = 0; i < cubic; ++i) {
+        const auto above_i = static_cast<double>(i + 1);
+        for (std::size_t j = 0; j < cubic; ++j)
+            moments[i][j] = by_velocity * sums.time[i + j] +
+                            by_position * sums.time[i + j + 2] / (above_i * static_cast<double>(j + 1));
+        moments[i][cubic] = moments[cubic][i] = by_position * sums.time[i + 1] / above_i;
+    }
+    moments[cubic][cubic] = by_position * sums.time[0];
+    return moments;
+}
+
 // Times that are a sample apart within a millionth.
 bool is_uniform(const TraceView& log) {
     const double step_s = (log.time_s.back() - log.time_s.front()) / static_cast<double>(log.size() - 1);
@@ -66,8 +104,7 @@ LocalFit::LocalFit(const TraceView& log, MotionNoise noise)
 
 void LocalFit::weigh(std::size_t k, SampleWindow window) {
     const bool as_before = before_ == k - window.first && after_ == window.end - k;
-    if (as_before && (uniform_ || weighed_ == k)) return;
-    weighed_ = k;
+    if (as_before) return;
     before_ = k - window.first;
     after_ = window.end - k;
     const double now_s = log_.time_s[k];
@@ -97,7 +134,33 @@ void LocalFit::weigh(std::size_t k, SampleWindow window) {
     }
 }
 
+void LocalFit::sum_up(std::size_t k, SampleWindow window) {
+    if (summed_ == k && summed_end_ == window.end) return;
+    summed_ = k;
+    summed_end_ = window.end;
+    const double now_s = log_.time_s[k];
+    const double reach_s = std::max(log_.time_s[window.end - 1] - now_s, now_s - log_.time_s[window.first]);
+    const bool both = noise_.position_deg > 0.0;
+    const double by_velocity = 1.0 / (noise_.velocity_deg_s * noise_.velocity_deg_s);
+    const double by_position = both ? reach_s * reach_s / (noise_.position_deg * noise_.position_deg) : 0.0;
+    const PowerSums sums = power_sums(log_, k, window, reach_s, both);
+    const auto moments = moments_of(sums, by_velocity, by_position);
+    const std::size_t n = both ? unknowns : cubic;
+    const Row value = column_of_inverse(moments, n, 0), slope = column_of_inverse(moments, n, 1);
+    variance_ = value[0];
+    Row side{};
+    for (std::size_t i = 0; i < cubic; ++i)
+        side[i] = by_velocity * sums.velocity[i] +
+                  by_position / reach_s * sums.position[i + 1] / static_cast<double>(i + 1);
+    side[cubic] = by_position / reach_s * sums.position[0];
+    found_ = {dot(value, side), dot(slope, side) / reach_s};
+}
+
 LocalMotion LocalFit::at(std::size_t k, SampleWindow window) {
+    if (!uniform_) {
+        sum_up(k, window);
+        return found_;
+    }
     weigh(k, window);
     LocalMotion found{0.0, 0.0};
     const double* const velocity = log_.velocity_deg_s.data() + window.first;
@@ -116,7 +179,10 @@ LocalMotion LocalFit::at(std::size_t k, SampleWindow window) {
 }
 
 double LocalFit::velocity_error(std::size_t k, SampleWindow window) {
-    weigh(k, window);
+    if (uniform_)
+        weigh(k, window);
+    else
+        sum_up(k, window);
     return std::sqrt(variance_);
 }
 

@@ -4,40 +4,32 @@
 #include <cmath>
 #include <numbers>
 
+#include "arm/fit/parting.hpp"
 #include "arm/fit/smooth_along.hpp"
-#include "core/linear_algebra.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double most_rotor_kgm2 = 1.0;
 
-// Knowledge of n values that belong together as knowledge of n others that do not: with precision = L L',
-// z = L' x has the covariance 1, and columns * x = (columns * L'^-1) z.
+// Columns and knowledge of values that do not belong together.
 void part(const ArmJointFit& own, std::vector<std::vector<double>>& columns, GivenTerm& term) {
+    const Parting parting(own);
     const auto n = static_cast<Index>(own.mean.size());
-    const MatrixXd precision = Eigen::Map<const MatrixXd>(own.precision.data(), n, n);
-    const VectorXd mean = Eigen::Map<const VectorXd>(own.mean.data(), n);
-    // Scaled, or the smallest inertia would be lost beside the largest mass.
-    const VectorXd scale = precision.diagonal().cwiseSqrt();
-    const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * precision * scale.cwiseInverse().asDiagonal();
-    const Eigen::LLT<MatrixXd> factored(scaled);
-    const MatrixXd lower = factored.matrixL();
-    const VectorXd parted = lower.transpose() * scale.cwiseProduct(mean);
     VectorXd row(n);
     for (std::size_t k = 0; k < columns.front().size(); ++k) {
-        for (Index c = 0; c < n; ++c) row[c] = columns[static_cast<std::size_t>(c)][k] / scale[c];
-        lower.triangularView<Eigen::Lower>().solveInPlace(row);
+        for (Index c = 0; c < n; ++c) row[c] = columns[static_cast<std::size_t>(c)][k];
+        parting.part(row);
         for (Index c = 0; c < n; ++c) columns[static_cast<std::size_t>(c)][k] = row[c];
     }
+    const VectorXd mean = parting.of_values();
     term.torque_nm = std::move(columns);
-    term.mean.assign(parted.begin(), parted.end());
-    term.deviation.assign(parted.size() == 0 ? 0 : static_cast<std::size_t>(n), 1.0);
+    term.mean.assign(mean.begin(), mean.end());
+    term.deviation.assign(own.mean.size(), 1.0);
 }
 
 // Links before the joint bring it no torque; all others stay, so that two logs have the same columns.

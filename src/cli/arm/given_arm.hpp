@@ -3,6 +3,7 @@
 // An arm and a log of its joints: the term that a diagnosis of one of them is given, and what is told of it.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,17 @@ namespace ripplenotch {
 
 class GivenArm {
   public:
-    /// Reads the log. Throws what read_arm and arm_travel throw.
-    GivenArm(ArmOption option, const std::string& path, const ReadOptions& options);
+    /// Reads the log. `smoothing`: of the motion that the arm sees; left out: the fit chooses it. Throws what
+    /// read_arm and arm_travel throw.
+    GivenArm(ArmOption option, const std::string& path, const ReadOptions& options,
+             std::optional<Seconds> smoothing = {});
 
     [[nodiscard]] const Chain& chain() const { return option_.chain; }
+    /// That the chain was read from.
+    [[nodiscard]] const std::optional<std::string>& file() const { return option_.file; }
     [[nodiscard]] const ArmReading& reading() const { return reading_; }
-    /// Another log of the same arm, matched alike.
-    [[nodiscard]] ArmReading read_other(const std::string& path, const ReadOptions& options) const;
+    /// Another log of the same arm, matched alike; read when it is first asked for.
+    [[nodiscard]] const ArmReading& other(const std::string& path, const ReadOptions& options);
     /// The place in the chain of a joint of the log.
     [[nodiscard]] std::size_t find(const std::string& joint) const { return reading_.find(chain(), joint); }
 
@@ -31,10 +36,14 @@ class GivenArm {
     /// Columns for the rows of the log that the arm was fitted to, or for those of another one.
     [[nodiscard]] GivenTerm term(std::size_t joint, const ArmReading& log);
     [[nodiscard]] ArmAccount account(std::size_t joint);
+    /// The same of an arm whose values are stated, which has no fit.
+    [[nodiscard]] ArmAccount stated_account(std::size_t joint, Seconds smoothing) const;
 
   private:
     ArmOption option_;
+    std::optional<Seconds> smoothing_;
     ArmReading reading_;
+    std::map<std::string, ArmReading> others_;  ///< by path
     std::vector<JointTravel> travel_;
     std::map<std::size_t, ArmFit> fits_;  ///< by joint; all joints at once: under 0
 };

@@ -10,6 +10,7 @@
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/gear/joint_methods.hpp"
+#include "cli/given/residual.hpp"
 #include "cli/identify/identify_text.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
@@ -33,6 +34,7 @@ struct Request {
     GearOptions gear;  ///< a ratio to check
     std::vector<double> order_hint;
     IdentifyOptions identify;
+    ResidualOptions residual;
     bool require_conclusive = false;
 };
 
@@ -44,7 +46,9 @@ struct Joint {
 
 std::vector<Joint> read_all_joints(const Request& request, Provenance& provenance) {
     std::vector<Joint> joints;
-    ReadOptions read = request.log.resolve();
+    LogOptions words = request.log;
+    take_joint_of(request.residual, words.joint);
+    ReadOptions read = words.resolve();
     read.gear_ratio = request.gear.ratio;
     read.takes_motor_units = true;
     const bool each = read.joint && *read.joint == "all";
@@ -59,6 +63,8 @@ std::vector<Joint> read_all_joints(const Request& request, Provenance& provenanc
             {path, path == "-" ? "" : sha256_of_file(path), logs.front().recording.rows()});
         for (Log& log : logs) {
             say_layout(request.common, log.layout);
+            take_residual(request.residual, read, request.logs.size(), {path, log}, request.common,
+                          provenance);
             say_warnings(request.common, log.recording.warnings);
             provenance.recordings.push_back({log.recording});
             const std::string name = each ? log.trace.joint : logs.front().trace.joint;
@@ -196,6 +202,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.quantity("--steady-for", request->identify.steady_for, Dimension::time, "for at least this long");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
+    attach_residual(options, request->residual);
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"what identify found", ".txt .json"});
