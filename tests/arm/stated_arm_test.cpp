@@ -46,7 +46,8 @@ std::vector<double> sum_of(const GivenTerm& term, const std::vector<double>& val
 
 }  // namespace
 
-TEST_CASE("links of fitted columns give the same torque, along the log of the fit and along another", "[arm]") {
+TEST_CASE("links of fitted columns give the same torque, along the log of the fit and along another",
+          "[arm]") {
     const Chain chain = chain_of_dh("three.csv", three_dh);
     const Recorded log(chain, 3), other(chain, 8);
     const ArmFit fit = fit_arm(chain, log.view(), {.smoothing = Seconds(0.12), .pull = 1e-3});
@@ -61,8 +62,7 @@ TEST_CASE("links of fitted columns give the same torque, along the log of the fi
             for (const Recorded* recorded : {&log, &other}) {
                 term = arm_term(chain, fit, recorded->view(), joint, knowledge);
                 const auto by_columns = sum_of(term, values);
-                const auto by_links =
-                    stated_torque(chain, stated, fit.smoothing, recorded->view(), joint);
+                const auto by_links = stated_torque(chain, stated, fit.smoothing, recorded->view(), joint);
                 double size = 0.0, worst = 0.0;
                 for (std::size_t k = 0; k < by_links.size(); ++k) {
                     size = std::max(size, std::abs(by_columns[k]));

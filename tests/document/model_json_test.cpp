@@ -118,9 +118,8 @@ TEST_CASE("an arm is read back as it was written, and refused where nobody knows
     for (int v = 0; v < 40; ++v) arm.values->links.push_back(0.1 * v - 1.3);
     arm.values->rotor_inertia_kgm2 = 0.25;
     arm.nuisance = {.offset_nm = 0.4, .coulomb_nm = 1.0, .viscous_nm_per_deg_s = 0.02, .stribeck_nm = 0.3};
-    const ModelWithGiven model{{GearRatio(101.0), {parse_term("coulomb-friction,torque_nm=1,width_deg_s=1")}},
-                               std::nullopt,
-                               arm};
+    const ModelWithGiven model{
+        {GearRatio(101.0), {parse_term("coulomb-friction,torque_nm=1,width_deg_s=1")}}, std::nullopt, arm};
     const std::string text = write_model(model, {});
     const ModelWithGiven back = read_model_with_given(text, "m.json");
     REQUIRE(back.arm);

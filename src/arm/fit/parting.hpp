@@ -28,7 +28,8 @@ class Parting {
     }
     /// The values that belong together again.
     [[nodiscard]] Eigen::VectorXd values_of(const Eigen::VectorXd& parted) const {
-        return lower_.transpose().triangularView<Eigen::Upper>().solve(parted).cwiseQuotient(scale_);
+        const Eigen::VectorXd scaled = lower_.transpose().triangularView<Eigen::Upper>().solve(parted);
+        return scaled.cwiseQuotient(scale_);
     }
     /// A row of columns, in place: columns L'^-1.
     void part(Eigen::VectorXd& row) const {

@@ -11,7 +11,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::string_view arm_name = "arm";
+constexpr std::string_view arm_name = "arm",
+                           once = "arm: standard input cannot be read twice; give the log as a file";
 
 // The term's rows that the log still has; both are in order of time and come from one file.
 GivenTerm at_rows_of(const Log& log, const Log& whole, GivenTerm term) {
@@ -70,7 +71,7 @@ std::vector<std::string> GivenTerms::open() const {
 }
 
 std::shared_ptr<GivenArm> GivenSource::arm(const ReadOptions& reading, const std::string& path) {
-    if (path == "-") raise<UsageError>("--arm: standard input cannot be read twice; give the log as a file");
+    if (path == "-") raise<UsageError>("{}", once);
     if (!arm_) arm_ = std::make_shared<GivenArm>(read_arm_option(*options_.arm), path, reading);
     return arm_;
 }
@@ -100,6 +101,7 @@ void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated,
 
 void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
                           const GivenLog& log, const GivenLog* validation) {
+    if (log.path == "-") raise<UsageError>("{}", once);
     const auto given = options_.arm ? arm(reading, log.path)
                                     : std::make_shared<GivenArm>(option_of(*stated.arm), log.path, reading,
                                                                  stated.arm->smoothing);
