@@ -43,10 +43,15 @@ void leave_out_links_before(std::size_t joint, GivenTerm& term) {
 }  // namespace
 
 GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std::size_t joint,
-                   ArmKnowledge knowledge, std::optional<double> row_noise_nm) {
+                   ArmKnowledge knowledge, std::optional<double> row_noise_nm,
+                   std::span<const Motion> motions) {
     const ArmJointFit* const own = fit.find(joint);
     if (own == nullptr) raise<UsageError>("arm: the torque of joint {} was not fitted", joint + 1);
-    const auto motions = arm_motions(log, fit.smoothing);
+    std::vector<Motion> made;
+    if (motions.empty()) {
+        made = arm_motions(log, fit.smoothing);
+        motions = made;
+    }
     auto columns = arm_columns(chain, motions, joint);
     GivenTerm term{"arm", {}, {}, {}};
     if (knowledge == ArmKnowledge::other_joints && fit.joints.size() > 1) {

@@ -45,7 +45,11 @@ const ArmFit& GivenArm::fit(std::size_t joint, const std::vector<bool>& use) {
 }
 
 GivenTerm GivenArm::term(std::size_t joint, const ArmReading& log) {
-    return arm_term(chain(), fit(joint), log.view(), joint);
+    const ArmFit& found = fit(joint);
+    const ArmLog view = log.view();
+    std::vector<Motion>& motions = motions_[{&log, found.smoothing.value()}];
+    if (motions.empty()) motions = arm_motions(view, found.smoothing);
+    return arm_term(chain(), found, view, joint, ArmKnowledge::other_joints, {}, motions);
 }
 
 ArmAccount GivenArm::stated_account(std::size_t joint, Seconds smoothing) const {

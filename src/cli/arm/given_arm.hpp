@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/arm/arm_option.hpp"
@@ -33,7 +34,8 @@ class GivenArm {
     /// One fit for all joints; where lengths are guessed, rows of two joints do not agree, and each has a fit
     /// of its own. Made when it is first asked for. `use`: rows that count, by the first call; empty: all.
     const ArmFit& fit(std::size_t joint, const std::vector<bool>& use = {});
-    /// Columns for the rows of the log that the arm was fitted to, or for those of another one.
+    /// Columns for the rows of the log that the arm was fitted to, or for those of another one; `log` is
+    /// reading() or other().
     [[nodiscard]] GivenTerm term(std::size_t joint, const ArmReading& log);
     [[nodiscard]] ArmAccount account(std::size_t joint);
     /// The same of an arm whose values are stated, which has no fit.
@@ -45,6 +47,8 @@ class GivenArm {
     ArmReading reading_;
     std::map<std::string, ArmReading> others_;  ///< by path
     std::vector<JointTravel> travel_;
+    /// Of a log, for all its joints; by smoothing.
+    std::map<std::pair<const ArmReading*, double>, std::vector<Motion>> motions_;
     std::map<std::size_t, ArmFit> fits_;  ///< by joint; all joints at once: under 0
 };
 
