@@ -54,24 +54,42 @@ double dot(const Row& a, const Row& b) {
 // the positions.
 struct PowerSums {
     std::array<double, 9> time{};
-    std::array<double, 5> velocity{}, position{};
+    std::array<double, 4> velocity{};
+    std::array<double, 5> position{};
 };
 
-PowerSums power_sums(const TraceView& log, std::size_t k, SampleWindow window, double reach_s, bool both) {
-    PowerSums sums;
-    const double now_s = log.time_s[k], here_deg = both ? log.position_deg[k] : 0.0;
+// Written out, so that all sums stay in registers: nothing of a motion costs as much.
+template <bool both>
+PowerSums power_sums(const TraceView& log, std::size_t k, SampleWindow window, double reach_s) {
+    const double now_s = log.time_s[k], by_reach = 1.0 / reach_s, here_deg = both ? log.position_deg[k] : 0.0;
+    double t1 = 0, t2 = 0, t3 = 0, t4 = 0, t5 = 0, t6 = 0, t7 = 0, t8 = 0;
+    double v0 = 0, v1 = 0, v2 = 0, v3 = 0, p0 = 0, p1 = 0, p2 = 0, p3 = 0, p4 = 0;
     for (std::size_t j = window.first; j < window.end; ++j) {
-        const double u = (log.time_s[j] - now_s) / reach_s, velocity = log.velocity_deg_s[j];
-        const double position = both ? log.position_deg[j] - here_deg : 0.0;
-        double power = 1.0;
-        for (std::size_t p = 0; p < 5; ++p, power *= u) {
-            sums.time[p] += power;
-            sums.velocity[p] += power * velocity;
-            sums.position[p] += power * position;
+        const double u = (log.time_s[j] - now_s) * by_reach, velocity = log.velocity_deg_s[j];
+        const double u2 = u * u, u3 = u2 * u, u4 = u2 * u2;
+        t1 += u;
+        t2 += u2;
+        t3 += u3;
+        t4 += u4;
+        t5 += u4 * u;
+        t6 += u4 * u2;
+        v0 += velocity;
+        v1 += u * velocity;
+        v2 += u2 * velocity;
+        v3 += u3 * velocity;
+        if constexpr (both) {
+            const double position = log.position_deg[j] - here_deg;
+            t7 += u4 * u3;
+            t8 += u4 * u4;
+            p0 += position;
+            p1 += u * position;
+            p2 += u2 * position;
+            p3 += u3 * position;
+            p4 += u4 * position;
         }
-        for (std::size_t p = 5; p < 9; ++p, power *= u) sums.time[p] += power;
     }
-    return sums;
+    const auto count = static_cast<double>(window.end - window.first);
+    return {{count, t1, t2, t3, t4, t5, t6, t7, t8}, {v0, v1, v2, v3}, {p0, p1, p2, p3, p4}};
 }
 
 // The same matrix as add() of every row makes, from sums of powers.
@@ -143,7 +161,8 @@ void LocalFit::sum_up(std::size_t k, SampleWindow window) {
     const bool both = noise_.position_deg > 0.0;
     const double by_velocity = 1.0 / (noise_.velocity_deg_s * noise_.velocity_deg_s);
     const double by_position = both ? reach_s * reach_s / (noise_.position_deg * noise_.position_deg) : 0.0;
-    const PowerSums sums = power_sums(log_, k, window, reach_s, both);
+    const PowerSums sums =
+        both ? power_sums<true>(log_, k, window, reach_s) : power_sums<false>(log_, k, window, reach_s);
     const auto moments = moments_of(sums, by_velocity, by_position);
     const std::size_t n = both ? unknowns : cubic;
     const Row value = column_of_inverse(moments, n, 0), slope = column_of_inverse(moments, n, 1);

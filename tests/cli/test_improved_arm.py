@@ -53,7 +53,7 @@ class Improved(unittest.TestCase):
     def test_the_model_holds_the_chain_its_links_and_the_hash_of_its_file(self):
         model = json.loads((self.folder / "j2.json").read_text())
         arm = model["arm"]
-        self.assertEqual((arm["joint"], [one["log"] for one in arm["joints"]]), ("2", ["j1", "j2"]))
+        self.assertEqual((arm["joint"], [one["log"] for one in arm["joints"]]), ("j2", ["j1", "j2"]))
         self.assertEqual(arm["gravity_m_s2"], [0, -9.81, 0])
         self.assertEqual(arm["identified"], "torque")
         self.assertEqual([len(link["inertia_kgm2"]) for link in arm["links"]], [6, 6])
@@ -137,7 +137,7 @@ class Improved(unittest.TestCase):
         (self.folder / "twice.json").write_text(json.dumps(model))
         for words, code, part in (
                 (("simulate", "--model", "j1.json", "--motion", "rest,duration=1s", "--sample-rate", "100Hz"), 3, "arm is part of"),
-                (("simulate", "--model", "j1.json", "log.csv", "--joint", "j2"), 2, "'1'"),
+                (("simulate", "--model", "j1.json", "log.csv", "--joint", "j2"), 2, "'j1'"),
                 (("diagnose", "log.csv", "--model", "twice.json"), 3, "inertia is part of arm; remove one of the two"),
                 (("diagnose", "log.csv", "--model", "j1.json", "--arm", ARM), 2, "--arm: the model states it already"),
                 (("diagnose", "log.csv", "--model", "j1.json", "--accept", "hysteresis"), 2, "--accept hysteresis")):

@@ -70,8 +70,7 @@ GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std
         term.mean.push_back(0.0);
         term.deviation.push_back(most_rotor_kgm2 / std::sqrt(fit.pull));
     }
-    for (std::vector<double>& column : term.torque_nm)
-        column = smooth_along(log.joints[joint].time_s, column, fit.smoothing);
+    term.torque_nm = smooth_along(log.joints[joint].time_s, term.torque_nm, fit.smoothing);
     const double own_noise = own->smoothed_error_nm * std::sqrt(fit.weighed_rows);
     if (row_noise_nm && own_noise > 0.0)
         for (double& deviation : term.deviation) deviation *= *row_noise_nm / own_noise;
