@@ -43,8 +43,7 @@ struct GivenLog {
         Case rest = c;
         const auto brought = brought_nm(columns, values, 0, columns.stated);
         add_scaled(-1.0, brought.data(), rest.torque_nm.data(), rest.torque_nm.size());
-        // The last is the offset, which nothing carries.
-        rest.motion.carried_nm = brought_nm(columns, values, 0, columns.stated - 1);
+        rest.motion.carried_nm = carried_nm(columns, values);
         return rest;
     }
 };
@@ -169,6 +168,7 @@ class GivenDiagnosis {
         const Case after = whole_.less(model_, values, rules_);
         told_.residual_before_nm = left_of(before, told_.baseline);
         told_.residual_after_nm = left_of(after, told_.model);
+        told_.beside_given_nm = after.torque_nm;
         const GapCase log{before, after};
         if (other_) {
             const Case other_before = other_->less(model_, as_given(model_, *other_, rules_), rules_);

@@ -7,17 +7,13 @@
 #include <cmath>
 #include <map>
 
+#include "cli/diagnose/decided_text.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_places = 4, most_of_a_kind = 3;
-
-std::string short_number(double value) {
-    const std::string text = fmt::format("{:.4g}", value);
-    return text == "-0" ? "0" : text;
-}
 
 std::string unit_after(std::string_view unit) { return unit.empty() ? "" : fmt::format(" {}", unit); }
 
@@ -45,15 +41,6 @@ std::string where_text(const Place& place) {
     std::string text;
     for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
     return text.empty() ? "all over the log" : text;
-}
-
-std::string value_text(const Term& term, const FittedValue& value) {
-    const Parameter& parameter = term.effect->parameters[value.parameter];
-    std::string text = fmt::format("{} = {}", parameter.name, short_number(value.value));
-    if (value.at_bound) text += " (at its bound)";
-    if (value.ci95)
-        text += fmt::format(" [{}, {}]", short_number(value.ci95->low), short_number(value.ci95->high));
-    return text;
 }
 
 // What a finding beside a leftover rests on.
@@ -88,7 +75,7 @@ std::string given_text(const Diagnosis& diagnosis) {
     std::string mended;
     const GivenValue* scale = nullptr;
     for (const GivenValue& value : diagnosis.given) {
-        if (value.name == "arm") continue;
+        if (value.name == "arm" || value.name == "nuisance") continue;
         if (value.name != "simulated") {
             mended +=
                 fmt::format("{}{} = {}", mended.empty() ? "" : ", ", value.name, short_number(value.value));
@@ -269,13 +256,15 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
         text += "\n";
     }
     text += bands_text(diagnosis.leftover);
+    text += accepted_text(diagnosis);
     text += gap_text(gap);
     if (diagnosis.search_ended)
         text += fmt::format(
             "the search was ended after {:.0f} evaluations of the model; what is left is unexplained\n",
             diagnosis.evaluations);
     text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
-    return text + fmt::format("verdict: {}\n", closing(diagnosis));
+    text += fmt::format("verdict: {}\n", closing(diagnosis));
+    return text + band_table(diagnosis.bands) + next_text(diagnosis.next);
 }
 
 }  // namespace ripplenotch

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/gear/joint_methods.hpp"
+#include "cli/given/residual.hpp"
 #include "cli/identify/identify_text.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
@@ -38,6 +40,7 @@ struct Request {
     GearOptions gear;  ///< a ratio to check
     std::vector<double> order_hint;
     IdentifyOptions identify;
+    ResidualOptions residual;
     bool require_conclusive = false;
 };
 
@@ -49,11 +52,16 @@ struct Joint {
 
 std::vector<Joint> read_all_joints(const Request& request, Provenance& provenance) {
     std::vector<Joint> joints;
-    ReadOptions read = request.log.resolve();
+    LogOptions words = request.log;
+    take_joint_of(request.residual, words.joint);
+    ReadOptions read = words.resolve();
     read.gear_ratio = request.gear.ratio;
     read.takes_motor_units = true;
     const bool each = read.joint && *read.joint == "all";
-    const std::size_t most_rows = std::max(fewest_rows_held, most_rows_held / request.logs.size());
+    // A simulated torque stands row by row against all of its log.
+    const std::size_t most_rows = request.residual.any()
+                                      ? std::numeric_limits<std::size_t>::max()
+                                      : std::max(fewest_rows_held, most_rows_held / request.logs.size());
     for (const std::string& path : request.logs) {
         std::vector<Log> logs;
         if (each) {
@@ -65,6 +73,8 @@ std::vector<Joint> read_all_joints(const Request& request, Provenance& provenanc
             {path, path == "-" ? "" : sha256_as_read(path), logs.front().recording.rows()});
         for (Log& log : logs) {
             say_layout(request.common, log.layout);
+            take_residual(request.residual, read, request.logs.size(), {path, log}, request.common,
+                          provenance);
             say_warnings(request.common, log.recording.warnings);
             provenance.recordings.push_back({log.recording});
             const std::string name = each ? log.trace.joint : logs.front().trace.joint;
@@ -202,6 +212,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.quantity("--steady-for", request->identify.steady_for, Dimension::time, "for at least this long");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
+    attach_residual(options, request->residual);
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"what identify found", ".txt .json"});

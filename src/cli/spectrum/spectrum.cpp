@@ -9,6 +9,7 @@
 
 #include "cli/command.hpp"
 #include "cli/gear/joint_facts.hpp"
+#include "cli/given/residual.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/spectrum/spectrum_text.hpp"
 #include "cli/spectrum/speed_map_request.hpp"
@@ -35,11 +36,14 @@ struct Request {
     double false_alarm = 0.01;
     SteadyRule steady;
     SpeedMapRequest map;
+    ResidualOptions residual;
     PlotRequest plot;
     bool peaks = false;
 
     /// Half-overlapping pieces of all of the log, which need no more of it at a time.
-    [[nodiscard]] bool in_pieces() const { return segment && !stretch && !map.map && domain == "frequency"; }
+    [[nodiscard]] bool in_pieces() const {
+        return segment && !stretch && !map.map && !residual.any() && domain == "frequency";
+    }
 };
 
 /// The parts of the log that are asked for: all of it, every steady stretch, or one of them by number.
@@ -183,10 +187,13 @@ Made whole_result(const Request& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const MapLines lines = request.map.map ? map_lines(request.map, provenance) : MapLines{};
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
-    const ReadOptions read = read_options(request.log, lines.gear);
-    require_memory(request, read);
-    const Log log = read_log(request.path, read);
+    LogOptions words = request.log;
+    take_joint_of(request.residual, words.joint);
+    const ReadOptions reading = read_options(words, lines.gear);
+    require_memory(request, reading);
+    Log log = read_log(request.path, reading);
     say_layout(request.common, log.layout);
+    take_residual(request.residual, reading, 1, {request.path, log}, request.common, provenance);
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.insert(provenance.inputs.begin(), input_record(request.path));
     provenance.recordings.push_back({log.recording});
@@ -237,6 +244,7 @@ std::function<ExitCode()> attach(Options& options) {
                    "... or within this speed, whichever is wider; none by default");
     options.quantity("--steady-for", request->steady.at_least, Dimension::time, "for at least this long");
     attach_speed_map(options, request->map);
+    attach_residual(options, request->residual);
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a spectrum", ".csv .txt .json", true});
