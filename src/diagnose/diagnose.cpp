@@ -141,7 +141,7 @@ Searched search_rest(Case& part, const Model& model, std::span<const Effect* con
     return found;
 }
 
-// What was found may tell more of the angle than the model as given did; then the search begins anew.
+// What was found may tell more of the angle than the model as given did; then the search goes on from there.
 Searched search_straight(Case& whole, Case& part, const Model& model, std::span<const Effect* const> effects,
                          Diagnosis& diagnosis, std::vector<Leftover>& aside, Work& work,
                          const DiagnosisRules& rules, bool has_position) {
@@ -149,10 +149,18 @@ Searched search_straight(Case& whole, Case& part, const Model& model, std::span<
     if (has_position || !straightened_by(whole, found.last, found.bench->floor_nm(found.last.stated), rules))
         return found;
     found.bench.reset();
-    part = excerpt(whole, rules.recording);
-    aside.clear();
-    work = Work(rules.search.most_evaluations);
-    return search_rest(part, model, effects, diagnosis, aside, work, rules);
+    for (std::size_t k = 0; k < part.size(); ++k)
+        part.motion.position_deg[k] = whole.motion.position_deg[part.row[k]];
+    found.noise = noise_floor(part, found.last.stated, found.last.open, rules);
+    found.bench = std::make_unique<ModelBench>(part, found.noise, work, rules);
+    found.bench->settle_on(found.last.stated);
+    const auto again = [&](const Candidate& model_now) {
+        return found.bench->fitted(model_now.open, model_now.stated, model_now.prices);
+    };
+    found.first = again(found.first);
+    found.refused.clear();
+    found.last = search(*found.bench, again(found.last), model.terms.size(), effects, found.refused);
+    return found;
 }
 
 // What of the findings is believed, and what is left then. `other`: the validation log, if there is one;

@@ -10,6 +10,7 @@
 #include "diagnose/lines.hpp"
 #include "diagnose/undecidable.hpp"
 #include "model/fit_coordinates.hpp"
+#include "model/local_motion.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
@@ -18,6 +19,8 @@ namespace {
 
 // How the torque changes with the position: so little that it is a slope, and far above rounding.
 constexpr double shift_deg = 1e-4;
+// What is slower than that is no ripple's.
+constexpr double window_s = 0.2;
 
 Motion moved(Motion motion, double by_deg) {
     for (double& position : motion.position_deg) position += by_deg;
@@ -29,6 +32,19 @@ std::vector<double> left_of(const Case& looked_at, const Model& stated, const Mo
     for (std::size_t k = 0; k < left.size(); ++k)
         left[k] = looked_at.use[k] != 0 ? looked_at.torque_nm[k] - left[k] : 0.0;
     return left;
+}
+
+// Less its mean over some tenths of a second: what is slow, or rests, tells nothing of a ripple's phase, and
+// an effect that nobody has named yet is mostly slow.
+std::vector<double> quick_part(const std::vector<double>& values, double rate_hz) {
+    const auto half = static_cast<std::size_t>(0.5 * window_s * rate_hz) + 1;
+    std::vector<double> sum{0.0}, quick(values.size());
+    for (const double value : values) sum.push_back(sum.back() + value);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const std::size_t first = k - std::min(k, half), end = std::min(k + half + 1, values.size());
+        quick[k] = values[k] - (sum[end] - sum[first]) / static_cast<double>(end - first);
+    }
+    return quick;
 }
 
 /// Changes of the position, how far each usually goes, and the torque that goes with each.
@@ -47,12 +63,38 @@ std::vector<double> sine_of(const std::vector<double>& time_s, std::size_t mode)
     return sine;
 }
 
+// What of the quick part is noise of the sensor counts as it is. The rest is coherent as long as the window
+// is: an effect without a name, a lag for one, turns the ripple's phase with the speed, and must not pass for
+// a walk.
+double noise_of(const Case& looked_at, const std::vector<double>& quick) {
+    const double white_nm = sample_noise(looked_at.torque_nm);
+    const double square = dot(quick.data(), quick.data(), quick.size()) /
+                          static_cast<double>(std::max<std::size_t>(looked_at.used(), 1));
+    const double coherent = window_s * looked_at.motion.sample_rate.value();
+    return std::sqrt(square + coherent * std::max(square - white_nm * white_nm, 0.0));
+}
+
+// Between two places at which another log is tried: a cosine is met within an eighth of its period, from
+// where a slope leads to its top.
+constexpr double places_a_period = 8.0;
+
+std::size_t places_a_turn(const StatedRipple& ripple) {
+    double highest = 1.0;
+    for (const double order : ripple.orders) highest = std::max(highest, order);
+    return static_cast<std::size_t>(std::ceil(places_a_period * highest));
+}
+
+double grid_deg(const Model& stated) {
+    const StatedRipple ripple = stated_ripple(stated);
+    return 360.0 / ripple.ratio.value() / static_cast<double>(places_a_turn(ripple));
+}
+
 Walk walk_of(const Case& looked_at, const Model& stated, WalkOf of, const RecordingRules& rules) {
     Walk walk;
     const auto& time_s = looked_at.motion.time_s;
     if (of == WalkOf::other_log) {
         walk.position_deg.emplace_back(time_s.size(), 1.0);
-        walk.deviation.push_back(any_size);
+        walk.deviation.push_back(grid_deg(stated));
     }
     const double usual_deg = looked_at.walk_deg * std::sqrt(time_s.back() - time_s.front());
     for (std::size_t mode = 1; usual_deg > 0.0 && mode <= rules.walk_modes; ++mode) {
@@ -117,10 +159,10 @@ double take_out_walk(Case& looked_at, const Model& open, const Model& stated, Wa
     Walk walk = walk_of(looked_at, stated, of, rules);
     if (walk.position_deg.empty()) return 0.0;
     if (of == WalkOf::log) add_slopes(walk, looked_at, open, stated);
-    const auto left = left_of(looked_at, stated, looked_at.motion);
-    const double noise_nm = std::sqrt(dot(left.data(), left.data(), left.size()) /
-                                      static_cast<double>(std::max<std::size_t>(looked_at.used(), 1)));
-    const auto sizes = Ridge(walk.torque_nm, walk.deviation, noise_nm).solve(left);
+    const double rate_hz = looked_at.motion.sample_rate.value();
+    for (auto& torque : walk.torque_nm) torque = quick_part(torque, rate_hz);
+    const auto left = quick_part(left_of(looked_at, stated, looked_at.motion), rate_hz);
+    const auto sizes = Ridge(walk.torque_nm, walk.deviation, noise_of(looked_at, left)).solve(left);
     std::vector<double> change(looked_at.size(), 0.0);
     for (std::size_t i = 0; i < walk.position_deg.size(); ++i)
         add_scaled(sizes[i], walk.position_deg[i].data(), change.data(), change.size());
@@ -129,15 +171,10 @@ double take_out_walk(Case& looked_at, const Model& open, const Model& stated, Wa
 }
 
 void put_in_place(Case& other, const Model& stated, const RecordingRules& rules) {
-    // A cosine is met within an eighth of its period, from where a slope leads to its top.
-    constexpr double places_a_period = 8.0;
     constexpr int steps = 4;
     const StatedRipple ripple = stated_ripple(stated);
     const double turn_deg = 360.0 / ripple.ratio.value();
-    double highest = 1.0;
-    for (const double order : ripple.orders) highest = std::max(highest, order);
-    const auto places = static_cast<std::size_t>(std::ceil(places_a_period * highest));
-    double place_deg = best_place(other, stated, 0.0, turn_deg / static_cast<double>(places), places);
+    double place_deg = best_place(other, stated, 0.0, grid_deg(stated), places_a_turn(ripple));
     if (goes_with_output(stated)) {
         const auto turns = static_cast<std::size_t>(std::max(1.0, std::round(ripple.ratio.value())));
         place_deg = best_place(other, stated, place_deg, turn_deg, turns);
