@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "document/angle_fields.hpp"
 #include "document/beside_fields.hpp"
 #include "document/decided_fields.hpp"
 #include "document/diagnosis_fields.hpp"
@@ -210,6 +211,7 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;
     json["position_in_log"] = diagnosis.has_position;
+    put_angle(json, diagnosis);
     json["search"] = {{"evaluations", std::round(diagnosis.evaluations)}, {"ended", diagnosis.search_ended}};
     json["noise_color"] = numbers_json(diagnosis.noise_color);
     json["false_alarm"] = diagnosis.false_alarm;

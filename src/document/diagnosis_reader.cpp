@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <limits>
 
+#include "document/angle_fields.hpp"
 #include "document/beside_fields.hpp"
 #include "document/decided_fields.hpp"
 #include "document/fields.hpp"
@@ -30,7 +31,7 @@ Enum enumerator_of(Fields& fields, std::string_view name, Enum last, std::string
 
 Span span_of(const Json& json, const std::string& where) {
     if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number())
-        raise<DataError>("{} holds {}, expected two numbers", where, json.dump());
+        raise<DataError>("{} holds {}, expected two numbers", where, in_words(json));
     return {json[0].get<double>(), json[1].get<double>()};
 }
 
@@ -213,6 +214,7 @@ Diagnosis read_diagnosis(std::string_view text, const std::string& source) {
     diagnosis.samples = fields.whole("samples");
     diagnosis.samples_used = fields.whole("samples_used");
     diagnosis.has_position = fields.flag("position_in_log");
+    read_angle(fields, diagnosis);
     Fields search = fields.object("search");
     diagnosis.evaluations = search.number("evaluations");
     diagnosis.search_ended = search.flag("ended");

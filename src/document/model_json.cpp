@@ -120,7 +120,8 @@ Model model_of(Fields& fields) {
         raise<DataError>("{} is {}, expected a number above 0 and at most {}", fields.where("gear_ratio"),
                          shortest(model.gear_ratio.value()), shortest(largest_gear_ratio.value()));
     }
-    fields.each("effects", [&](Fields& entry) { model.terms.push_back(term_of(entry)); });
+    fields.each(
+        "effects", [&](Fields& entry) { model.terms.push_back(term_of(entry)); }, most_effects);
     return model;
 }
 

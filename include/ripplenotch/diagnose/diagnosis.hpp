@@ -187,6 +187,13 @@ struct DiagnosisGap {
     std::optional<double> validation_before_nm, validation_after_nm, validation_closed_percent;
 };
 
+/// The angle where a log has no position, as the ripple tells it.
+struct AngleAccount {
+    double walk_deg = 0.0;  ///< rms by which the integral of the log's velocity was moved, less its mean
+    /// Where the validation log begins, in the angle of the log; empty where both have a position.
+    std::optional<double> validation_start_deg;
+};
+
 struct Diagnosis {
     DiagnosisVerdict verdict = DiagnosisVerdict::matches;
     Model baseline;  ///< the model as given, with the values that were fitted to it alone
@@ -217,8 +224,9 @@ struct Diagnosis {
     double evaluations = 0.0;
     bool search_ended = false;
     bool has_position = false;
-    std::vector<double> noise_color;  ///< a1 ... ap of FitOptions::noise_color
-    double false_alarm = 0.01;        ///< chance that a log with nothing hidden gets a name, by design
+    std::optional<AngleAccount> angle;  ///< where the log or the validation log has no position
+    std::vector<double> noise_color;    ///< a1 ... ap of FitOptions::noise_color
+    double false_alarm = 0.01;          ///< chance that a log with nothing hidden gets a name, by design
 };
 
 struct DiagnosisOptions {

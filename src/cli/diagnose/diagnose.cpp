@@ -11,6 +11,7 @@
 #include "cli/diagnose/joint_diagnosis.hpp"
 #include "cli/diagnose/joints_table.hpp"
 #include "cli/gear/joint_methods.hpp"
+#include "cli/talk.hpp"
 #include "cli/text_table.hpp"
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -36,8 +37,8 @@ std::string story(const JointDiagnosis& one, bool explain) {
 void write_improved(const DiagnoseRequest& request, const JointDiagnosis& one) {
     if (request.common.output == "-") return;
     const std::string path = with_joint(request.common.output, one.joint);
-    write_all(path, write_model(improved_model(one.given, one.diagnosis), one.provenance),
-              request.common.overwrite());
+    write_text(path, write_model(improved_model(one.given, one.diagnosis), one.provenance),
+               request.common.overwrite());
     say(request.common, fmt::format("the improved model is in {}", path));
 }
 
@@ -45,11 +46,11 @@ ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::
     const JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
     if (!one.diagnosis.not_accepted.empty()) raise<UsageError>("{}", one.diagnosis.not_accepted.front());
     write_improved(request, one);
-    write_all("-",
-              request.common.json ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
-                                                    one.given.account ? &*one.given.account : nullptr)
-                                  : story(one, request.explain),
-              ByteSink::Overwrite::no);
+    write_text("-",
+               request.common.json ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
+                                                     one.given.account ? &*one.given.account : nullptr)
+                                   : story(one, request.explain),
+               ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, one.provenance, [&] {
         return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view(), request.smoothing);
     });
@@ -91,8 +92,8 @@ ExitCode run_all(const DiagnoseRequest& request, GivenSource& given, const std::
         text += fmt::format("joint {}\n{}\n", joint, story(one, request.explain));
         let_columns_go(one);
     }
-    write_all("-", request.common.json ? list_of(all, command_line) : text + joints_table(all),
-              ByteSink::Overwrite::no);
+    write_text("-", request.common.json ? list_of(all, command_line) : text + joints_table(all),
+               ByteSink::Overwrite::no);
     const bool conclusive =
         std::all_of(all.begin(), all.end(), [](const JointDiagnosis& one) { return one.is_conclusive(); });
     return request.require_conclusive && !conclusive ? ExitCode::inconclusive : ExitCode::done;
@@ -101,7 +102,7 @@ ExitCode run_all(const DiagnoseRequest& request, GivenSource& given, const std::
 ExitCode run(const DiagnoseRequest& request, const std::string& command_line) {
     const DiagnosisRules rules = rules_of(request);  // refused before anything is read
     if (request.list_rules) {
-        write_all("-", rules_text(rules), ByteSink::Overwrite::no);
+        write_text("-", rules_text(rules), ByteSink::Overwrite::no);
         return ExitCode::done;
     }
     check(request);

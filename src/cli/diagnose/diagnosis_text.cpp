@@ -217,6 +217,20 @@ std::string gap_text(const DiagnosisGap& gap) {
     return text;
 }
 
+std::string angle_text(const Diagnosis& diagnosis) {
+    if (!diagnosis.angle) return "";
+    std::string text;
+    if (!diagnosis.has_position)
+        text += fmt::format(
+            "the angle is the velocity's integral, moved by {} deg rms as the ripple tells; phases are this "
+            "log's own\n",
+            short_number(diagnosis.angle->walk_deg));
+    if (const auto& start = diagnosis.angle->validation_start_deg)
+        text += fmt::format("the validation log begins at {} deg of it, as the model tells best\n",
+                            short_number(*start));
+    return text;
+}
+
 }  // namespace
 
 std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
@@ -227,7 +241,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
         text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));
-    text += given_text(diagnosis);
+    text += angle_text(diagnosis) + given_text(diagnosis);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
     text += findings_text(diagnosis, explain);

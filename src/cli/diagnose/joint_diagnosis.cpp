@@ -23,9 +23,10 @@ ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path,
     return model;
 }
 
-Log read(const DiagnoseRequest& request, const ReadOptions& reading, const std::string& path,
+// What is given beside the log stands row by row against all of it.
+Log read(const DiagnoseRequest& request, bool given, const ReadOptions& reading, const std::string& path,
          Provenance& provenance) {
-    Log log = read_log(path, reading);
+    Log log = given ? read_log(path, reading) : read_log_in_part(path, reading);
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.recordings.push_back({log.recording});
@@ -91,10 +92,11 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     one.gear = gear_of(model.model, path.empty() ? "--gear-ratio" : source_of(path));
     say(request.common, gear_in_words(one.gear));
     const ReadOptions reading = read_options(words, one.gear);
-    one.log = read(request, reading, request.path, one.provenance);
+    const bool given = request.given.any() || model.any_given();
+    one.log = read(request, given, reading, request.path, one.provenance);
     one.joint = one.log.trace.joint;
     std::optional<Log> other;
-    if (request.validate) other = read(request, reading, *request.validate, one.provenance);
+    if (request.validate) other = read(request, given, reading, *request.validate, one.provenance);
     one.given = given_of(request, model, reading, source, one, other);
     if (one.given.fitted_arm && one.given.fitted_arm->file())
         one.provenance.inputs.push_back(input_record(*one.given.fitted_arm->file()));

@@ -12,6 +12,7 @@
 #include "cli/given/stated_along.hpp"
 #include "cli/options/name_list.hpp"
 #include "cli/simulate/joint_model.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
@@ -226,8 +227,8 @@ ExitCode simulate(const SimulateOptions& options) {
                                         shortest(gap->residual_rms_nm), shortest(gap->measured_rms_nm)));
     }
     if (options.common.json)
-        write_all("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),
-                  ByteSink::Overwrite::no);
+        write_text("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),
+                   ByteSink::Overwrite::no);
     return ExitCode::done;
 }
 

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""A short round of scripts/prove-trust faults: some seconds."""
+
+import os
+import pathlib
+import sys
+import tempfile
+import time
+import unittest
+
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+sys.path.insert(0, str(SOURCE / "scripts"))
+sys.dont_write_bytecode = True
+
+from prove_trust import faults  # noqa: E402
+from prove_trust.workshop import Workshop  # noqa: E402
+
+TOOL = os.environ["RIPPLENOTCH"]
+PRELOADABLE, LIBRARY = os.environ.get("RIPPLENOTCH_PRELOADABLE"), os.environ.get("RIPPLENOTCH_FAULTS")
+
+
+class Faults(unittest.TestCase):
+    def test_a_short_round(self):
+        with tempfile.TemporaryDirectory() as folder:
+            shop = Workshop(PRELOADABLE or TOOL, SOURCE, folder, faults.ROWS)
+            rows = faults.short_round(faults.Saboteur(shop, LIBRARY), 8, time.monotonic() + 60.0)
+        self.assertGreater(sum(row.runs for row in rows), 30)
+        self.assertEqual([finding for row in rows for finding in row.findings], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
