@@ -173,6 +173,7 @@ double take_out_walk(Case& looked_at, const Model& open, const Model& stated, Wa
 void put_in_place(Case& other, const Model& stated, const RecordingRules& rules) {
     constexpr int steps = 3;
     const StatedRipple ripple = stated_ripple(stated);
+    if (ripple.orders.empty() && !goes_with_output(stated)) return;
     const double turn_deg = 360.0 / ripple.ratio.value();
     const auto settle = [&](double place_deg) {
         other.motion = moved(std::move(other.motion), place_deg);
