@@ -193,6 +193,7 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_DFL);
     ripplenotch::hold_closed_streams();
     ripplenotch::remove_unfinished_files_on_signals();
+    ripplenotch::end_where_nothing_may_throw();
     try {
         return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));
     } catch (const std::bad_alloc&) {  // not even for the words of the command line, or for a message

@@ -12,9 +12,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <new>
 
 #include "core/sanitized.hpp"
+#include "core/unfinished_files.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/version.hpp"
 
 namespace ripplenotch {
@@ -30,7 +33,24 @@ double peak_mebibytes() {
     return static_cast<double>(usage.ru_maxrss) / kibibytes;
 }
 
+std::terminate_handler before = nullptr;
+
+[[noreturn]] void say_and_end() noexcept {
+    try {
+        if (const auto error = std::current_exception()) std::rethrow_exception(error);
+    } catch (const std::bad_alloc&) {
+        say_out_of_memory("");
+        remove_unfinished_files();
+        ::_exit(static_cast<int>(ExitCode::memory));
+    } catch (...) {
+    }
+    if (before != nullptr) before();
+    std::abort();
+}
+
 }  // namespace
+
+void end_where_nothing_may_throw() { before = std::set_terminate(say_and_end); }
 
 void say_out_of_memory(std::string_view command) noexcept {
     std::array<char, 64> wanted{};
@@ -42,11 +62,11 @@ void say_out_of_memory(std::string_view command) noexcept {
     std::array<char, 512> message{};
     const int size =
         std::snprintf(message.data(), message.size(),
-                      "%.*s %.*s: out of memory%s %.3g MiB in use; take a part of the log with --from and "
+                      "%.*s%s%.*s: out of memory%s %.3g MiB in use; take a part of the log with --from and "
                       "--to, or a spectrum in "
                       "pieces with --segment (info, identify, filter need no more for a longer log)\n",
-                      static_cast<int>(tool_name.size()), tool_name.data(), static_cast<int>(command.size()),
-                      command.data(), wanted.data(), peak_mebibytes());
+                      static_cast<int>(tool_name.size()), tool_name.data(), command.empty() ? "" : " ",
+                      static_cast<int>(command.size()), command.data(), wanted.data(), peak_mebibytes());
     if (size > 0)
         static_cast<void>(!::write(STDERR_FILENO, message.data(),
                                    std::min(static_cast<std::size_t>(size), message.size() - 1)));

@@ -10,4 +10,8 @@ namespace ripplenotch {
 /// Takes no memory.
 void say_out_of_memory(std::string_view command) noexcept;
 
+/// Where memory runs out in a function of a library that must not throw, the process ends with that message
+/// and ExitCode::memory, and leaves no unfinished file.
+void end_where_nothing_may_throw();
+
 }  // namespace ripplenotch

@@ -37,9 +37,7 @@ Place* claim_place(const char* path) {
 }
 
 void remove_and_end(int signal) {
-    for (const Place* place = newest; place != nullptr; place = place->next) {
-        if (const char* const name = place->path.load()) ::unlink(name);
-    }
+    remove_unfinished_files();
     std::signal(signal, SIG_DFL);
     std::raise(signal);
 }
@@ -66,6 +64,12 @@ void remove_on(int signal) {
 }
 
 }  // namespace
+
+void remove_unfinished_files() noexcept {
+    for (const Place* place = newest; place != nullptr; place = place->next) {
+        if (const char* const name = place->path.load()) ::unlink(name);
+    }
+}
 
 UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), place_(claim_place(path_.c_str())) {}
 

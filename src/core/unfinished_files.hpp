@@ -21,6 +21,9 @@ class UnfinishedFile {
     Place* place_;
 };
 
+/// At once, for a process that ends without its destructors. May be called by a signal handler.
+void remove_unfinished_files() noexcept;
+
 /// For programs: every signal that ends the process and can be caught removes these files first, and then
 /// ends it as it always does. One that is ignored (nohup) stays so. A file that outgrows its limit (SIGXFSZ)
 /// ends no process, but fails to be written, with the system's reason.
