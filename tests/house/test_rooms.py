@@ -50,6 +50,7 @@ PRIVATE_DOORS = {
     "core/": (set(SEES), "what lies in core is for every room of the library; what is public there is for its users too"),
     "log/opening.hpp": ({"filter"}, "a stream judges the same first rows as a log that is read whole"),
     "log/account/account.hpp": ({"filter"}, "a stream goes through the same account as a log that is read whole"),
+    "model/carriers.hpp": ({"diagnose"}, "trials along one motion share what is the same in all of them"),
     "model/fit_coordinates.hpp": ({"diagnose"}, "effects that are tried are screened in the coordinates of the fit"),
     "model/weighing.hpp": ({"diagnose"}, "effects that are tried are screened by the weights of the fit"),
     "document/diagnosis_fields.hpp": ({"page"}, "values and places of a finding stand on the page as in the document"),
