@@ -23,7 +23,7 @@ class Faults(unittest.TestCase):
     def test_a_short_round(self):
         with tempfile.TemporaryDirectory() as folder:
             shop = Workshop(PRELOADABLE or TOOL, SOURCE, folder, faults.ROWS)
-            rows = faults.short_round(faults.Saboteur(shop, LIBRARY), 8, time.monotonic() + 60.0)
+            rows = faults.short_round(faults.Saboteur(shop, LIBRARY), 4, time.monotonic() + 60.0)
         self.assertGreater(sum(row.runs for row in rows), 30)
         self.assertEqual([finding for row in rows for finding in row.findings], [])
 
