@@ -54,11 +54,14 @@ void put(std::string_view bytes) {
     }
 }
 
+bool all_plain(std::string_view lines) {
+    return std::all_of(lines.begin(), lines.end(),
+                       [](char c) { return c == '\n' || (c >= 0x20 && c < 0x7F); });
+}
+
 }  // namespace
 
 std::string visible_lines(std::string_view lines) {
-    const auto plain = [](char c) { return c == '\n' || (c >= 0x20 && c < 0x7F); };
-    if (std::all_of(lines.begin(), lines.end(), plain)) return std::string(lines);
     std::string shown;
     while (!lines.empty()) {
         const std::size_t end = lines.find('\n');
@@ -75,7 +78,11 @@ void talk(std::string_view line) { put(visible_text(line) + "\n"); }
 void talk_lines(std::string_view lines) { put(visible_lines(lines)); }
 
 void write_text(const std::string& path, std::string_view lines, ByteSink::Overwrite overwrite) {
-    write_all(path, visible_lines(lines), overwrite);
+    if (all_plain(lines)) {
+        write_all(path, lines, overwrite);  // a spectrum may be long
+    } else {
+        write_all(path, visible_lines(lines), overwrite);
+    }
 }
 
 void hold_closed_streams() {

@@ -57,7 +57,8 @@ void tell_given(Diagnosis& diagnosis, const Model& model, std::span<const GivenT
     const std::vector<std::string> names = given_names(model, given);
     for (std::size_t i = 0; i < names.size(); ++i) {
         GivenValue value{names[i], outcome.given_values[i], std::nullopt};
-        if (i < outcome.given_errors.size()) {
+        // A value that is stated has none.
+        if (i < outcome.given_errors.size() && outcome.given_errors[i] > stated_deviation) {
             const double half = normal_95_errors * outcome.given_errors[i];
             value.ci95 = Interval{value.value - half, value.value + half};
         }

@@ -117,7 +117,7 @@ Diagnosis diagnose_in_full(const Model& model, const TraceView& log, const Trace
     if (!options.accept.empty()) told = with_accepted(model, log, validation, options, std::move(told));
     if (!told.ambiguous.empty() || !told.undecidable.empty() ||
         std::any_of(told.rounds.begin(), told.rounds.end(), is_doubtful))
-        told.next = next_steps(told, motion_along(log, options.smoothing));
+        told.next = next_steps(told, motion_along(log, options.smoothing), options.rules);
     if (!told.residual_after_nm.empty())
         told.bands = band_gaps(log.torque_nm, told.beside_given_nm, told.residual_after_nm, log.sample_rate);
     return told;

@@ -13,30 +13,24 @@
 namespace ripplenotch {
 namespace {
 
-// A side of the motion, or rest, that has less of the samples than this is missing.
-constexpr double least_part = 0.05;
-// Of the fastest speed: moving, and so slow that kinds of friction part.
-constexpr double moving = 0.01, slow = 0.2;
-constexpr double turn_deg = 360.0;
-
 // What of a motion tells effects apart.
 struct Seen {
     double positive = 0.0, negative = 0.0, rest = 0.0, slowly = 0.0;  ///< of the samples
     double travel_deg = 0.0;
 };
 
-Seen seen_in(const Motion& motion) {
+Seen seen_in(const Motion& motion, const DiagnosisRules& rules) {
     double fastest = 0.0;
     for (const double v : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
     Seen seen;
     const double one = 1.0 / static_cast<double>(motion.size());
     for (const double v : motion.velocity_deg_s) {
-        if (std::abs(v) <= moving * fastest) {
+        if (std::abs(v) <= rules.recording.moving_part * fastest) {
             seen.rest += one;
             continue;
         }
         (v > 0.0 ? seen.positive : seen.negative) += one;
-        if (std::abs(v) <= slow * fastest) seen.slowly += one;
+        if (std::abs(v) <= rules.advice.slow_part * fastest) seen.slowly += one;
     }
     const auto [low, high] = std::minmax_element(motion.position_deg.begin(), motion.position_deg.end());
     seen.travel_deg = *high - *low;
@@ -54,7 +48,8 @@ std::set<std::string_view> in_doubt(const Diagnosis& diagnosis) {
 }
 
 // What the motion of this log lacks for the effects in doubt.
-std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& seen) {
+std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& seen,
+                                        const DiagnosisRules::AdviceRules& rules) {
     bool direction = false, speed = false, position = false, load = false;
     for (const std::string_view name : in_doubt(diagnosis)) {
         const Effect& effect = find_effect(name);
@@ -64,12 +59,13 @@ std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& 
         load = load || effect.uses_load;
     }
     std::vector<std::string> missing;
-    if (direction && std::min(seen.positive, seen.negative) < least_part)
+    if (direction && std::min(seen.positive, seen.negative) < rules.least_part)
         missing.emplace_back("the other direction of motion");
-    if (direction && seen.rest < least_part) missing.emplace_back("rests of a second or more between moves");
-    if (speed && seen.slowly < least_part)
+    if (direction && seen.rest < rules.least_part)
+        missing.emplace_back("rests of a second or more between moves");
+    if (speed && seen.slowly < rules.least_part)
         missing.emplace_back("slow motion, at a fifth of the fastest speed or less");
-    if (position && diagnosis.has_position && seen.travel_deg < turn_deg)
+    if (position && diagnosis.has_position && seen.travel_deg < rules.turn_deg)
         missing.push_back(fmt::format("a travel of more than a turn (here {:.0f} deg)", seen.travel_deg));
     if (load) missing.emplace_back("the same motion with another load");
     if (!diagnosis.has_position && position) missing.emplace_back("a column with the position");
@@ -99,12 +95,13 @@ void add_doubtful(const Diagnosis& diagnosis, std::vector<std::string>& steps) {
 
 }  // namespace
 
-std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed) {
+std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed,
+                                    const DiagnosisRules& rules) {
     std::vector<std::string> steps;
     add_ties(diagnosis, steps);
     add_doubtful(diagnosis, steps);
     if (in_doubt(diagnosis).empty()) return steps;
-    const auto missing = missing_motion(diagnosis, seen_in(smoothed));
+    const auto missing = missing_motion(diagnosis, seen_in(smoothed, rules), rules.advice);
     if (missing.empty()) return steps;
     std::string words;
     for (const std::string& one : missing) words += (words.empty() ? "" : "; ") + one;

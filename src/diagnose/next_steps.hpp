@@ -12,6 +12,7 @@
 namespace ripplenotch {
 
 /// A sentence each; nothing where nothing is in doubt. `smoothed` is the log's motion.
-[[nodiscard]] std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed);
+[[nodiscard]] std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed,
+                                                  const DiagnosisRules& rules);
 
 }  // namespace ripplenotch

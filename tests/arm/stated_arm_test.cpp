@@ -37,6 +37,13 @@ struct Recorded {
     }
 };
 
+ArmFitOptions quick() {
+    ArmFitOptions options;
+    options.smoothing = Seconds(0.12);
+    options.pull = 1e-3;
+    return options;
+}
+
 std::vector<double> sum_of(const GivenTerm& term, const std::vector<double>& values) {
     std::vector<double> sum(term.torque_nm[0].size(), 0.0);
     for (std::size_t c = 0; c < values.size(); ++c)
@@ -50,7 +57,7 @@ TEST_CASE("links of fitted columns give the same torque, along the log of the fi
           "[arm]") {
     const Chain chain = chain_of_dh("three.csv", three_dh);
     const Recorded log(chain, 3), other(chain, 8);
-    const ArmFit fit = fit_arm(chain, log.view(), {.smoothing = Seconds(0.12), .pull = 1e-3});
+    const ArmFit fit = fit_arm(chain, log.view(), quick());
     for (const ArmKnowledge knowledge : {ArmKnowledge::other_joints, ArmKnowledge::pull}) {
         for (std::size_t joint = 0; joint < 3; ++joint) {
             GivenTerm term = arm_term(chain, fit, log.view(), joint, knowledge);
@@ -78,7 +85,7 @@ TEST_CASE("links of fitted columns give the same torque, along the log of the fi
 TEST_CASE("values for another joint are refused", "[arm]") {
     const Chain chain = chain_of_dh("three.csv", three_dh);
     const Recorded log(chain, 3);
-    const ArmFit fit = fit_arm(chain, log.view(), {.smoothing = Seconds(0.12), .pull = 1e-3});
+    const ArmFit fit = fit_arm(chain, log.view(), quick());
     CHECK_THROWS_AS(arm_values(chain, fit, 1, std::vector<double>(30, 0.0)), UsageError);
 }
 

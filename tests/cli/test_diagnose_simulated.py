@@ -123,14 +123,16 @@ class Simulated(unittest.TestCase):
             return arm_nm(t, q, 1.0) + 8 * math.cos(math.radians(231 * q))
         written(self.path / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"],
                 [[t, v, tau + 1.1 * teeth(t, q), q, teeth(t, q)] for t, v, tau, q in rows], )
-        for words in (["--simulated", "column,name=tau_model_nm"], ["--residual", "with.json"]):
+        # A scale that is fitted is a thousandth off, and so is what is left of the teeth.
+        for words, left_nm in ((["--simulated", "column,name=tau_model_nm"], 0.02), (["--residual", "with.json"], 0.0)):
             (self.path / "with.json").write_text(json.dumps({"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [],
                                                              "simulated": {"column": "tau_model_nm", "scale": 1.1}}))
             done = self.run_tool("identify", "log.csv", *words, "--json", "-q")
             self.assertEqual(done.returncode, 0, done.stderr)
             lines = json.loads(done.stdout)["lines"]
-            orders = [round(line["order_output"]) for line in lines if line["order_output"]]
-            self.assertEqual(sorted(orders), [100, 200], lines)
+            found = {round(line["order_output"]): line["amplitude_nm"] for line in lines if line["order_output"]}
+            self.assertLessEqual({100, 200}, set(found))
+            self.assertLessEqual(found.get(231, 0.0), left_nm)
         done = self.run_tool("identify", "log.csv", "--json", "-q")
         self.assertIn(231, [round(line["order_output"]) for line in json.loads(done.stdout)["lines"] if line["order_output"]])
 

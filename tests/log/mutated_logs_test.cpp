@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Logs of every dialect with a few bytes changed: vectors, the plain parser, the careful way and small pieces
 // give the same rows or the same words. The fuzz targets do the same for hours.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <random>
 

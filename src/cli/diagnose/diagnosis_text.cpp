@@ -220,7 +220,8 @@ std::string gap_text(const DiagnosisGap& gap) {
 std::string angle_text(const Diagnosis& diagnosis) {
     if (!diagnosis.angle) return "";
     std::string text;
-    if (!diagnosis.has_position)
+    constexpr double rounding_deg = 1e-9;
+    if (!diagnosis.has_position && diagnosis.angle->walk_deg > rounding_deg)
         text += fmt::format(
             "the angle is the velocity's integral, moved by {} deg rms as the ripple tells; phases are this "
             "log's own\n",

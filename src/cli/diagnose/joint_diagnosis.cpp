@@ -98,8 +98,7 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     std::optional<Log> other;
     if (request.validate) other = read(request, given, reading, *request.validate, one.provenance);
     one.given = given_of(request, model, reading, source, one, other);
-    if (one.given.fitted_arm && one.given.fitted_arm->file())
-        one.provenance.inputs.push_back(input_record(*one.given.fitted_arm->file()));
+    for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
     add_stated_nuisance(one.given, one.diagnosis);

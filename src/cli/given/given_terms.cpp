@@ -92,6 +92,7 @@ void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated,
             ? SimulatedOption(with_joint(*options_.simulated, log.log.trace.joint), stated.simulated)
             : SimulatedOption(*stated.simulated);
     terms.simulated = simulated.term();
+    if (simulated.file()) terms.files.push_back(*simulated.file());
     terms.log.push_back(simulated.read(reading, log.path, log.log));
     add_nuisance(terms.log, *terms.simulated, log.log, smoothing_);
     if (validation == nullptr) return;
@@ -113,6 +114,7 @@ void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const
     terms.arm->joint = given->chain().joints[joint].name;
     terms.arm->log_joints = given->reading().names;
     if (!terms.arm->values) terms.fitted_arm = given;
+    if (given->file()) terms.files.push_back(*given->file());
     if (terms.arm->values && !terms.arm->smoothing) terms.arm->smoothing = default_smoothing;
     terms.account =
         terms.arm->values ? given->stated_account(joint, *terms.arm->smoothing) : given->account(joint);

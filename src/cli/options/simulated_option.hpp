@@ -31,7 +31,8 @@ class SimulatedOption {
     [[nodiscard]] GivenTerm read_validation(const ReadOptions& reading, const std::string& path,
                                             Log& log) const;
     [[nodiscard]] const SimulatedTerm& term() const { return term_; }
-    [[nodiscard]] bool has_own_file() const { return file_.has_value(); }
+    /// Of the simulation, where it has one of its own.
+    [[nodiscard]] const std::optional<std::string>& file() const { return file_; }
 
   private:
     [[nodiscard]] GivenTerm from(ReadOptions reading, const std::string& path, Log& log) const;

@@ -57,7 +57,8 @@ std::optional<AngleAccount> AngleBefore::account(const Case& log, const Case* ot
     if (log_.empty() && other_.empty()) return std::nullopt;
     AngleAccount account;
     if (!log_.empty()) account.walk_deg = moved_by(log_, log.motion.position_deg).rms_deg;
-    if (!other_.empty()) account.validation_start_deg = other->motion.position_deg.front();
+    if (!other_.empty() && other->motion.position_deg != other_)
+        account.validation_start_deg = other->motion.position_deg.front();
     return account;
 }
 

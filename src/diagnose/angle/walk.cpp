@@ -128,8 +128,9 @@ void add_slopes(Walk& walk, const Case& looked_at, const Model& open, const Mode
     }
 }
 
-double squares_left(const Case& looked_at, const Model& stated, double by_deg) {
-    const auto left = left_of(looked_at, stated, moved(looked_at.motion, by_deg));
+double squares_left(const Case& looked_at, const Model& stated, double by_deg, bool quick) {
+    auto left = left_of(looked_at, stated, moved(looked_at.motion, by_deg));
+    if (quick) left = quick_part(left, looked_at.motion.sample_rate.value());
     return dot(left.data(), left.data(), left.size());
 }
 
@@ -138,13 +139,12 @@ bool goes_with_output(const Model& stated) {
                        [](const Term& term) { return needs_position(*term.effect); });
 }
 
-// The first of the best among `count` places.
-double best_place(const Case& other, const Model& stated, double from_deg, double step_deg,
-                  std::size_t count) {
-    double best = from_deg, least = squares_left(other, stated, from_deg);
+// The first of the best among `count` places, a step apart. `quick`: by what is quick alone.
+double best_place(const Case& other, const Model& stated, double step_deg, std::size_t count, bool quick) {
+    double best = 0.0, least = squares_left(other, stated, 0.0, quick);
     for (std::size_t i = 1; i < count; ++i) {
-        const double place = from_deg + step_deg * static_cast<double>(i);
-        const double squares = squares_left(other, stated, place);
+        const double place = step_deg * static_cast<double>(i);
+        const double squares = squares_left(other, stated, place, quick);
         if (squares >= least) continue;
         least = squares;
         best = place;
@@ -171,17 +171,19 @@ double take_out_walk(Case& looked_at, const Model& open, const Model& stated, Wa
 }
 
 void put_in_place(Case& other, const Model& stated, const RecordingRules& rules) {
-    constexpr int steps = 4;
+    constexpr int steps = 3;
     const StatedRipple ripple = stated_ripple(stated);
+    if (ripple.orders.empty() && !goes_with_output(stated)) return;
     const double turn_deg = 360.0 / ripple.ratio.value();
-    double place_deg = best_place(other, stated, 0.0, grid_deg(stated), places_a_turn(ripple));
-    if (goes_with_output(stated)) {
-        const auto turns = static_cast<std::size_t>(std::max(1.0, std::round(ripple.ratio.value())));
-        place_deg = best_place(other, stated, place_deg, turn_deg, turns);
-    }
-    other.motion = moved(std::move(other.motion), place_deg);
-    for (int step = 0; step < steps; ++step)
-        (void)take_out_walk(other, stated, stated, WalkOf::other_log, rules);
+    const auto settle = [&](double place_deg) {
+        other.motion = moved(std::move(other.motion), place_deg);
+        for (int step = 0; step < steps; ++step)
+            (void)take_out_walk(other, stated, stated, WalkOf::other_log, rules);
+    };
+    settle(best_place(other, stated, grid_deg(stated), places_a_turn(ripple), true));
+    if (!goes_with_output(stated)) return;
+    const auto turns = static_cast<std::size_t>(std::max(1.0, std::round(ripple.ratio.value())));
+    settle(best_place(other, stated, turn_deg, turns, false));
 }
 
 bool tells_position(const Motion& motion) {

@@ -109,8 +109,7 @@ std::vector<double> brought_nm(const AlwaysOn& columns, std::span<const double> 
 std::vector<double> carried_nm(const AlwaysOn& columns, std::span<const double> values) {
     std::vector<double> sum(columns.torque_nm.empty() ? 0 : columns.torque_nm[0].size(), 0.0);
     for (std::size_t i = 0; i < columns.stated; ++i) {
-        if (columns.bears_load[i])
-            add_scaled(values[i], columns.torque_nm[i].data(), sum.data(), sum.size());
+        if (columns.bears_load[i]) add_scaled(values[i], columns.torque_nm[i].data(), sum.data(), sum.size());
     }
     return sum;
 }
