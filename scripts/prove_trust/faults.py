@@ -56,7 +56,8 @@ class Saboteur:
             allowed = (whole[output],) if done.returncode == 0 else (whole[output], before.get(output))
             if now.get(output) not in allowed:
                 wrong.append(f"{output} is neither whole nor as before")
-        if litter := self.shop.litter(outputs):
+        self.shop.remove(outputs)
+        if litter := self.shop.litter(()):
             wrong.append(f"left {', '.join(litter)}")
             self.shop.remove(litter)
         how = " ".join(f"FAULT_{key}={value}" for key, value in faults.items())

@@ -46,7 +46,7 @@ struct Log {
 [[nodiscard]] std::optional<double> estimated_rows(const std::string& path, const ReadOptions& options);
 
 /// Rows that commands hold which look at pieces of a log anyway.
-inline constexpr std::size_t most_rows_held = 400'000;
+inline constexpr std::size_t most_rows_held = 320'000;
 
 /// Of a log with more than `most_rows`, the trace holds sixteen pieces, evenly spread, each a run of its own;
 /// all else is of the whole log, which is read twice then (a pipe waits in a temporary file), and
