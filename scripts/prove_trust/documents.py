@@ -45,8 +45,7 @@ def make(tool, source, folder):
         "comparison": ("compare", "--step", "10Nm", "--speed", "90deg/s", "--sample-rate", "1kHz", "--gear-ratio", "100",
                        "--orders", "1,2", "--method", "lowpass,cutoff=13Hz,order=1", "--json", "-o"),
         "effects": ("effects", "--json", "-o"),
-        "figure": ("compare", "--step", "10Nm", "--speed", "90deg/s", "--sample-rate", "100Hz", "--gear-ratio", "30",
-                   "--orders", "1", "--method", "lowpass,cutoff=13Hz,order=1", "--plot"),
+        "figure": ("design", "joint.json", "--speed", "18:180:54", "--q", "0.25", "--plot"),
     }
     for kind, words in made.items():
         target = pathlib.Path(folder, f"{kind}.json").name

@@ -28,7 +28,7 @@ def fuzz_target(options, name, corpus, seconds):
     program = options.source / "build/fuzz/tests/fuzz" / f"fuzz_{name}"
     row = outcome.Row(TARGETS[name][0], 0, 0.0, TARGETS[name][1])
     if not program.exists():
-        row.findings.append(f"{program} is not built: cmake --workflow --preset fuzz")
+        row.findings.append(f"{program.relative_to(options.source)} is not built: cmake --workflow --preset fuzz")
         return row
     kept = options.keep or pathlib.Path(tempfile.mkdtemp(prefix="prove-trust-"))
     kept.mkdir(parents=True, exist_ok=True)
@@ -43,7 +43,7 @@ def fuzz_target(options, name, corpus, seconds):
             break
         written = re.search(r"Test unit written to (\S+)", done.stderr)
         said = re.search(r"(ERROR: \S+: [^\n]*|runtime error: [^\n]*|SUMMARY: [^\n]*|differ[^\n]*)", done.stderr)
-        row.findings.append(f"{said[1] if said else done.stderr[-200:]} ({written[1] if written else 'no file'})")
+        row.findings.append(f"{said[1] if said else done.stderr[-200:]} ({pathlib.Path(written[1]).name if written else 'no file'})")
     row.seconds = time.monotonic() - start
     return row
 
