@@ -232,7 +232,8 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     if (!options.given.empty()) return diagnose_given(model, log, validation, options);
     const std::size_t own = model.terms.size();
     Case whole = whole_case(log, options.smoothing, rules.recording);
-    const auto effects = examined(model, options.without, log.has_position() || tells_position(whole.motion));
+    const auto effects =
+        examined(model, options.without, log.has_position() || tells_position(whole.motion, rules.recording));
     std::optional<Case> other;
     if (validation != nullptr) {
         other = whole_case(*validation, options.smoothing, rules.recording);

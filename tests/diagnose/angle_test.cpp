@@ -82,16 +82,16 @@ TEST_CASE(
 }
 
 TEST_CASE("a way of more than a turn in both directions tells what goes with the position") {
-    CHECK(tells_position(tour()));
+    CHECK(tells_position(tour(), standard.recording));
     const std::vector<std::string> to_and_fro = {"poly6,to=150deg,duration=2.2s",
                                                  "poly6,to=-60deg,duration=3s"};
-    CHECK_FALSE(tells_position(make_motion(to_and_fro, Hertz(500.0))));
+    CHECK_FALSE(tells_position(make_motion(to_and_fro, Hertz(500.0)), standard.recording));
     std::vector<std::string> short_way;
     for (int stroke = 0; stroke < 30; ++stroke) {
         short_way.emplace_back("poly6,to=30deg,duration=0.5s");
         short_way.emplace_back("poly6,to=0deg,duration=0.5s");
     }
-    CHECK_FALSE(tells_position(make_motion(short_way, Hertz(500.0))));
+    CHECK_FALSE(tells_position(make_motion(short_way, Hertz(500.0)), standard.recording));
 }
 
 TEST_CASE("logs of torque and velocity that begin anywhere bear each other's names out") {

@@ -190,8 +190,7 @@ struct DiagnosisGap {
 /// The angle where a log has no position, as the ripple tells it.
 struct AngleAccount {
     double walk_deg = 0.0;  ///< rms by which the integral of the log's velocity was moved, less its mean
-    /// Where the validation log begins, in the angle of the log; empty where both have a position, or where
-    /// the model holds nothing that tells.
+    /// Where the validation log begins, in the angle of the log; empty where both have a position.
     std::optional<double> validation_start_deg;
 };
 

@@ -10,8 +10,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr int steps = 3;  // each from where the one before has led
-
 struct Moved {
     double mean_deg = 0.0, rms_deg = 0.0;  ///< rms: about the mean
 };
@@ -32,7 +30,8 @@ Moved moved_by(const std::vector<double>& before, const std::vector<double>& aft
 }  // namespace
 
 void straighten(Case& whole, const Model& model, const DiagnosisRules& rules) {
-    for (int step = 0; step < steps; ++step) {
+    // Each from where the one before has led.
+    for (int step = 0; step < 3; ++step) {
         Work free(rules.search.most_evaluations);
         ModelBench rough(whole, {1.0, 1.0, {}}, free, rules);
         const Candidate fitted = baseline(rough, model);
@@ -42,7 +41,7 @@ void straighten(Case& whole, const Model& model, const DiagnosisRules& rules) {
 
 bool straightened_by(Case& whole, const Candidate& found, double floor_nm, const DiagnosisRules& rules) {
     std::vector<double> change = predict_nm(found.stated, whole.motion);
-    for (int step = 0; step < steps; ++step)
+    for (int step = 0; step < 3; ++step)
         (void)take_out_walk(whole, found.open, found.stated, WalkOf::log, rules.recording);
     const std::vector<double> now = predict_nm(found.stated, whole.motion);
     for (std::size_t k = 0; k < now.size(); ++k) change[k] -= now[k];

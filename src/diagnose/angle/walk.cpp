@@ -17,11 +17,6 @@
 namespace ripplenotch {
 namespace {
 
-// How the torque changes with the position: so little that it is a slope, and far above rounding.
-constexpr double shift_deg = 1e-4;
-// What is slower than that is no ripple's.
-constexpr double window_s = 0.2;
-
 Motion moved(Motion motion, double by_deg) {
     for (double& position : motion.position_deg) position += by_deg;
     return motion;
@@ -36,7 +31,7 @@ std::vector<double> left_of(const Case& looked_at, const Model& stated, const Mo
 
 // Less its mean over some tenths of a second: what is slow, or rests, tells nothing of a ripple's phase, and
 // an effect that nobody has named yet is mostly slow.
-std::vector<double> quick_part(const std::vector<double>& values, double rate_hz) {
+std::vector<double> quick_part(const std::vector<double>& values, double rate_hz, double window_s) {
     const auto half = static_cast<std::size_t>(0.5 * window_s * rate_hz) + 1;
     std::vector<double> sum{0.0}, quick(values.size());
     for (const double value : values) sum.push_back(sum.back() + value);
@@ -66,7 +61,7 @@ std::vector<double> sine_of(const std::vector<double>& time_s, std::size_t mode)
 // What of the quick part is noise of the sensor counts as it is. The rest is coherent as long as the window
 // is: an effect without a name, a lag for one, turns the ripple's phase with the speed, and must not pass for
 // a walk.
-double noise_of(const Case& looked_at, const std::vector<double>& quick) {
+double noise_of(const Case& looked_at, const std::vector<double>& quick, double window_s) {
     const double white_nm = sample_noise(looked_at.torque_nm);
     const double square = dot(quick.data(), quick.data(), quick.size()) /
                           static_cast<double>(std::max<std::size_t>(looked_at.used(), 1));
@@ -74,11 +69,10 @@ double noise_of(const Case& looked_at, const std::vector<double>& quick) {
     return std::sqrt(square + coherent * std::max(square - white_nm * white_nm, 0.0));
 }
 
-// Between two places at which another log is tried: a cosine is met within an eighth of its period, from
-// where a slope leads to its top.
-constexpr double places_a_period = 8.0;
-
+// At which another log is tried: a cosine is met within an eighth of its period, from where a slope leads to
+// its top.
 std::size_t places_a_turn(const StatedRipple& ripple) {
+    constexpr double places_a_period = 8.0;
     double highest = 1.0;
     for (const double order : ripple.orders) highest = std::max(highest, order);
     return static_cast<std::size_t>(std::ceil(places_a_period * highest));
@@ -102,6 +96,8 @@ Walk walk_of(const Case& looked_at, const Model& stated, WalkOf of, const Record
         walk.deviation.push_back(usual_deg * std::numbers::sqrt2 /
                                  ((static_cast<double>(mode) - 0.5) * std::numbers::pi));
     }
+    // How the torque changes with the position: so little that it is a slope, and far above rounding.
+    constexpr double shift_deg = 1e-4;
     const auto up = predict_nm(stated, moved(looked_at.motion, shift_deg));
     const auto down = predict_nm(stated, moved(looked_at.motion, -shift_deg));
     for (const auto& position : walk.position_deg) {
@@ -128,9 +124,10 @@ void add_slopes(Walk& walk, const Case& looked_at, const Model& open, const Mode
     }
 }
 
-double squares_left(const Case& looked_at, const Model& stated, double by_deg, bool quick) {
+// `window_s`: of what is quick; 0: of everything.
+double squares_left(const Case& looked_at, const Model& stated, double by_deg, double window_s) {
     auto left = left_of(looked_at, stated, moved(looked_at.motion, by_deg));
-    if (quick) left = quick_part(left, looked_at.motion.sample_rate.value());
+    if (window_s > 0.0) left = quick_part(left, looked_at.motion.sample_rate.value(), window_s);
     return dot(left.data(), left.data(), left.size());
 }
 
@@ -139,12 +136,13 @@ bool goes_with_output(const Model& stated) {
                        [](const Term& term) { return needs_position(*term.effect); });
 }
 
-// The first of the best among `count` places, a step apart. `quick`: by what is quick alone.
-double best_place(const Case& other, const Model& stated, double step_deg, std::size_t count, bool quick) {
-    double best = 0.0, least = squares_left(other, stated, 0.0, quick);
+// The first of the best among `count` places, a step apart. By what is quick, or with 0 by everything.
+double best_place(const Case& other, const Model& stated, double step_deg, std::size_t count,
+                  double window_s) {
+    double best = 0.0, least = squares_left(other, stated, 0.0, window_s);
     for (std::size_t i = 1; i < count; ++i) {
         const double place = step_deg * static_cast<double>(i);
-        const double squares = squares_left(other, stated, place, quick);
+        const double squares = squares_left(other, stated, place, window_s);
         if (squares >= least) continue;
         least = squares;
         best = place;
@@ -160,9 +158,10 @@ double take_out_walk(Case& looked_at, const Model& open, const Model& stated, Wa
     if (walk.position_deg.empty()) return 0.0;
     if (of == WalkOf::log) add_slopes(walk, looked_at, open, stated);
     const double rate_hz = looked_at.motion.sample_rate.value();
-    for (auto& torque : walk.torque_nm) torque = quick_part(torque, rate_hz);
-    const auto left = quick_part(left_of(looked_at, stated, looked_at.motion), rate_hz);
-    const auto sizes = Ridge(walk.torque_nm, walk.deviation, noise_of(looked_at, left)).solve(left);
+    for (auto& torque : walk.torque_nm) torque = quick_part(torque, rate_hz, rules.angle_window_s);
+    const auto left = quick_part(left_of(looked_at, stated, looked_at.motion), rate_hz, rules.angle_window_s);
+    const auto sizes =
+        Ridge(walk.torque_nm, walk.deviation, noise_of(looked_at, left, rules.angle_window_s)).solve(left);
     std::vector<double> change(looked_at.size(), 0.0);
     for (std::size_t i = 0; i < walk.position_deg.size(); ++i)
         add_scaled(sizes[i], walk.position_deg[i].data(), change.data(), change.size());
@@ -180,21 +179,20 @@ void put_in_place(Case& other, const Model& stated, const RecordingRules& rules)
         for (int step = 0; step < steps; ++step)
             (void)take_out_walk(other, stated, stated, WalkOf::other_log, rules);
     };
-    settle(best_place(other, stated, grid_deg(stated), places_a_turn(ripple), true));
+    settle(best_place(other, stated, grid_deg(stated), places_a_turn(ripple), rules.angle_window_s));
     if (!goes_with_output(stated)) return;
     const auto turns = static_cast<std::size_t>(std::max(1.0, std::round(ripple.ratio.value())));
-    settle(best_place(other, stated, turn_deg, turns, false));
+    settle(best_place(other, stated, turn_deg, turns, 0.0));
 }
 
-bool tells_position(const Motion& motion) {
-    constexpr double turn_deg = 360.0, least_span_deg = 180.0;
+bool tells_position(const Motion& motion, const RecordingRules& rules) {
     double forth = 0.0, back = 0.0;
     for (std::size_t k = 1; k < motion.size(); ++k) {
         const double by = motion.position_deg[k] - motion.position_deg[k - 1];
         (by > 0.0 ? forth : back) += std::abs(by);
     }
     const auto [low, high] = std::minmax_element(motion.position_deg.begin(), motion.position_deg.end());
-    return std::min(forth, back) > turn_deg && *high - *low >= least_span_deg;
+    return std::min(forth, back) > rules.least_turned_deg && *high - *low >= rules.least_span_deg;
 }
 
 }  // namespace ripplenotch

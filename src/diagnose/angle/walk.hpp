@@ -28,6 +28,6 @@ void put_in_place(Case& other, const Model& stated, const RecordingRules& rules)
 
 /// Whether the joint turns so far in both directions that what goes with the output's angle can be told from
 /// what goes with direction, speed or time, though nobody knows where it began.
-[[nodiscard]] bool tells_position(const Motion& motion);
+[[nodiscard]] bool tells_position(const Motion& motion, const RecordingRules& rules);
 
 }  // namespace ripplenotch

@@ -14,15 +14,13 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// True when the name is worth its price beside another as well, or nearly what it is worth without it: then
-// the other is not in its place, but explains something else.
-bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, double price, double own_gain) {
-    constexpr double nearly = 0.7;
+// True when the name is worth its price beside another as well: then the other is not in its place.
+bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, double price) {
     Names both = rivals;
     both.push_back(own);
     const OutsideGain gain = outside_gain(sums.residual_outside(rivals), sums.residual_outside(both),
                                           sums.lens().ground().blocks(), sums.lens().sigma());
-    return is_worth(gain, price, sums.lens().rules().beside) || gain.gain >= nearly * own_gain;
+    return is_worth(gain, price, sums.lens().rules().beside);
 }
 
 // True for a friction of a size below 0. One that is a part of another's curve (quadratic beside viscous
@@ -34,8 +32,7 @@ bool drives(const Sums& sums, const Names& names, std::size_t place) {
 }
 
 // The best other name in its place, refined; one that is bent stands in for something else.
-std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price,
-                                double own_gain) {
+std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price) {
     std::vector<Named> rivals;
     const Shape shape = sums.shapes()[own];
     // What a given term leaves is a function of the posture, which any wave over the position takes up.
@@ -56,7 +53,7 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
         Named rival = refined(sums, rivals[i]);
         if (sums.lens().bounds().is_bent(sums.shapes()[rival.names.back()])) continue;
         if (drives(sums, rival.names, rival.names.size() - 1)) continue;
-        if (!of_posture && stands_beside(sums, rival.names, own, price, own_gain)) continue;
+        if (!of_posture && stands_beside(sums, rival.names, own, price)) continue;
         if (!best || rival.left < best->left) best = std::move(rival);
     }
     return best;
@@ -116,7 +113,7 @@ void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const std
                     BesideFinding& finding) {
     Names rest = names;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
-    const auto rival = best_rival(sums, rest, names[place], finding.price, finding.gain.gain);
+    const auto rival = best_rival(sums, rest, names[place], finding.price);
     if (!rival) return;
     const BesideRules& rules = sums.lens().rules().beside;
     const OutsideGain ahead = outside_gain(sums.residual_outside(rival->names), left,
