@@ -9,7 +9,7 @@ namespace {
 
 // About half a second each. A response is taken at 257 speeds of a band, of each line through each notch.
 constexpr double most_responses = 60000.0;  // lines times notches, over all bands
-constexpr double most_steps = 5e7;          // samples of a step response times notches, over all bands
+constexpr double most_steps = 2e8;          // samples of a step response times notches, over all bands
 
 }  // namespace
 

@@ -20,13 +20,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::string other = reading(input.rest(), options, whole);
         if (other != usual) fail("vectors and the plain parser differ", usual, other);
     }
+    // Blanks behind the last cell belong to the row for the quick ways alone, so that places are not
+    // compared.
+    const std::string at_once = reading(input.rest(), options, size + 1);
     {
         const CarefulRows careful;
-        const std::string other = reading(input.rest(), options, whole);
-        if (other != usual) fail("the quick and the careful way differ", usual, other);
+        const std::string other = reading(input.rest(), options, size + 1);
+        if (other != at_once) fail("the quick and the careful way differ", at_once, other);
     }
     const std::string pieces = reading(input.rest(), options, piece);
-    const std::string at_once = reading(input.rest(), options, size + 1);
     if (pieces != at_once) fail("pieces and the whole differ", at_once, pieces);
     return 0;
 }

@@ -71,12 +71,12 @@ TEST_CASE("mutated logs read the same way by vectors, plainly, carefully and in 
             const NarrowVectors narrow;
             REQUIRE(fuzz::reading(text, options, whole) == usual);
         }
+        const std::string rows = fuzz::reading(text, options, text.size() + 1);
         {
             const CarefulRows careful;
-            REQUIRE(fuzz::reading(text, options, whole) == usual);
+            REQUIRE(fuzz::reading(text, options, text.size() + 1) == rows);
         }
-        REQUIRE(fuzz::reading(text, options, 1 + random() % 100) ==
-                fuzz::reading(text, options, text.size() + 1));
+        REQUIRE(fuzz::reading(text, options, 1 + random() % 100) == rows);
     }
     CHECK(read > 300);  // the others are refused
 }
