@@ -39,7 +39,8 @@ void hash_inputs(bool all) {
 }
 
 bool should_hash(const OpenFile& file, std::string_view name) {
-    if (!wanted) return false;
+    // What comes through standard input is gone when the run ends: no artifact tells its hash.
+    if (!wanted || file.path() == "-") return false;
     const std::lock_guard lock(mutex);
     const auto found = inputs().find(file.path());
     if (found == inputs().end()) return true;

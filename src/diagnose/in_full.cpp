@@ -101,6 +101,9 @@ Diagnosis with_accepted(const Model& model, const TraceView& log, const TraceVie
             if (value.term == place) accepted[i].values.push_back(value);
     }
     told.accepted = std::move(accepted);
+    // What the user accepts is not what the log confirms.
+    if (told.verdict == DiagnosisVerdict::matches || told.verdict == DiagnosisVerdict::explained)
+        told.verdict = DiagnosisVerdict::partly_explained;
     told.baseline.terms.resize(model.terms.size());
     told.disagreement = std::move(first.disagreement);
     told.residual_before_nm = std::move(first.residual_before_nm);

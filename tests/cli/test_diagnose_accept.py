@@ -49,6 +49,8 @@ class Accept(unittest.TestCase):
         after = self.json_of(*words, "--accept", "load-friction", "-o", "improved.json")
         self.assertEqual([(one["effect"], one["status"]) for one in after["accepted"]], [("load-friction", "tentative")])
         self.assertNotIn("load-friction", after["named"])
+        self.assertEqual(after["verdict"], "partly-explained")
+        self.assertEqual(self.tool(*words, "--accept", "load-friction", "--require-conclusive").returncode, 5)
         self.assertEqual(after["gap"]["before_nm"], before["gap"]["before_nm"])
         self.assertLess(after["gap"]["after_nm"], 0.6 * before["gap"]["after_nm"])
         effects = [one["effect"] for one in json.loads((self.folder / "improved.json").read_text())["effects"]]

@@ -180,7 +180,9 @@ std::string closing(const Diagnosis& diagnosis) {
         case DiagnosisVerdict::explained:
             return "explained";
         case DiagnosisVerdict::partly_explained:
-            return "partly explained: something is left";
+            return diagnosis.unexplained.empty() && !diagnosis.accepted.empty()
+                       ? "partly explained: this log does not confirm what you accepted"
+                       : "partly explained: something is left";
         case DiagnosisVerdict::unexplained:
             return "unexplained: no effect of the catalogue accounts for what is left";
         case DiagnosisVerdict::undecided:
