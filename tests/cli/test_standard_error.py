@@ -102,7 +102,7 @@ class Visible(unittest.TestCase):
                      '{"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "\\u001b[2J"}]}',
                      '{"schema": "ripplenotch/model/1", "gear_ratio": "\\u001b[2J\\u202e", "effects": []}', "\x1b[2J", "\u009b31m"):
             self.write("x.json", text)
-            for words in (("report", "x.json"), ("export", "x.json", "--to", "c-header"), ("design", "x.json"),
+            for words in (("report", "x.json", "--no-plotly"), ("export", "x.json", "--to", "c-header"), ("design", "x.json"),
                           ("simulate", "--model", "x.json", "--motion", "constant,speed=60deg/s,duration=1s", "--sample-rate", "1kHz")):
                 done = self.shown(*words)
                 self.assertEqual(done.stderr.count(b"\n"), 1, done.stderr)
