@@ -76,7 +76,7 @@ void check_jobs(const FilterRequest& request, const std::vector<FilterJob>& jobs
         claims.writes(job.output, own_names ? "the filtered " + job.log + ":" : "-o");
         if (job.metrics) claims.writes(*job.metrics, "--metrics");
     }
-    claims.check("; filter logs of one name into different folders");
+    claims.check(", or say --in-place; filter logs of one name into different folders");
 }
 
 std::vector<FilterJob> jobs_of(const FilterRequest& request) {
