@@ -10,6 +10,7 @@
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/chart/identification_figure.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/document/identification_json.hpp"
@@ -97,6 +98,28 @@ PageSection section_of_result(const std::string& text, const std::string& source
         section.figures.push_back(gap_figure(fmt::format("How the gap shrank: {}", source), *diagnosis));
     }
     return section;
+}
+
+std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source) {
+    const auto [kind, whole] = parse_any_document(text, source);
+    if (kind != "diagnoses") return {section_of_result(text, source)};
+    const auto joints = whole.find("joints");
+    if (joints == whole.end() || !joints->is_array())
+        raise<DataError>(
+            "{}: joints: expected a list of diagnoses, as 'diagnose --joint all --json' prints it", source);
+    std::vector<PageSection> sections;
+    for (const Json& joint : *joints) {
+        // Each is what diagnose prints of one joint, under a head of its own.
+        Json one{{"schema", "ripplenotch/diagnosis/1"}};
+        for (const char* name : {"tool", "version", "command", "inputs"})
+            if (whole.contains(name)) one[name] = whole[name];
+        if (joint.is_object())
+            for (const auto& [name, entry] : joint.items())
+                if (name != "joint") one[name] = entry;
+        const std::string name = joint.is_object() ? text_at(joint, "joint") : "";
+        sections.push_back(section_of_result(one.dump(), fmt::format("{}, joint {}", source, name)));
+    }
+    return sections;
 }
 
 }  // namespace ripplenotch

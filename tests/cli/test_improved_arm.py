@@ -113,6 +113,11 @@ class Improved(unittest.TestCase):
             self.assertEqual(json.dumps(without_head(one)), json.dumps(without_head(self.found[joint])))
             models = [json.loads((self.folder / name).read_text()) for name in (f"all_{joint}.json", f"{joint}.json")]
             self.assertEqual(*(json.dumps(without_head(model)) for model in models))
+        (self.folder / "every.json").write_text(json.dumps(every))
+        page = self.tool("report", "every.json", "-o", "every.html", "--no-plotly")
+        self.assertEqual(page.returncode, 0, page.stderr)
+        for one in every["joints"]:
+            self.assertIn(f'diagnosis: every.json, joint {one["joint"]}', (self.folder / "every.html").read_text())
         told = self.tool(*words, "--joint", "all")
         self.assertEqual(told.returncode, 0, told.stderr)
         table = told.stdout.split("\n\n")[-1].splitlines()

@@ -62,7 +62,8 @@ ExitCode run(const Request& request) {
     check_output_name(request.output, "a report", ".html .htm");
     Page page{request.title, {}};
     for (const std::string& path : request.results) {
-        page.sections.push_back(section_of_result(read_all(path), path == "-" ? "standard input" : path));
+        for (PageSection& section : sections_of_result(read_all(path), path == "-" ? "standard input" : path))
+            page.sections.push_back(std::move(section));
     }
     write_all(request.output, html_page(page, plotly_js_of(request)),
               ByteSink::Overwrite{request.force, !request.no_sync});
