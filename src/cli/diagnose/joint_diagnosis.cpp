@@ -14,6 +14,8 @@
 namespace ripplenotch {
 namespace {
 
+constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17;  // with all that is made of them, 256 MiB
+
 std::string source_of(const std::string& model) { return model == "-" ? "standard input" : model; }
 
 ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path, Provenance& provenance) {
@@ -26,7 +28,7 @@ ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path,
 // What is given beside the log stands row by row against all of it.
 Log read(const DiagnoseRequest& request, bool given, const ReadOptions& reading, const std::string& path,
          Provenance& provenance) {
-    Log log = given ? read_log(path, reading) : read_log_in_part(path, reading);
+    Log log = given ? read_log(path, reading) : read_log_in_part(path, reading, most_rows_diagnosed);
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.recordings.push_back({log.recording});
