@@ -104,7 +104,8 @@ void add_smooth(NoiseColumns& columns, const Case& c, const NoiseRules& rules) {
     const double width_deg_s = rules.step_part * c.moving_deg_s;
     const std::size_t positions = rules.position_splines, speeds = rules.speed_splines,
                       times = rules.time_splines;
-    const auto [low_q, high_q] = std::minmax_element(m.position_deg.begin(), m.position_deg.end());
+    const auto span = std::minmax_element(m.position_deg.begin(), m.position_deg.end());
+    const double low_deg = *span.first, high_deg = *span.second;
     double fastest = 0.0;
     for (const double v : m.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
     for (const double direction : {-1.0, 1.0}) {
@@ -113,7 +114,7 @@ void add_smooth(NoiseColumns& columns, const Case& c, const NoiseRules& rules) {
         };
         for (std::size_t i = 0; i < positions; ++i) {
             columns.add([&](std::size_t k) {
-                return moves(k) * spline(m.position_deg[k], *low_q, *high_q, i, positions);
+                return moves(k) * spline(m.position_deg[k], low_deg, high_deg, i, positions);
             });
         }
         for (std::size_t i = 0; i < speeds; ++i) {  // closer where it is slow: friction changes most there
