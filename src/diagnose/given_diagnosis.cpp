@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "diagnose/beside/always_on.hpp"
-#include "diagnose/beside/dot.hpp"
+#include "core/vectors/dot.hpp"
 #include "diagnose/beside/sizes.hpp"
 #include "diagnose/beside/told.hpp"
 #include "diagnose/doubt.hpp"
