@@ -13,6 +13,7 @@
 #include "cli/options/name_list.hpp"
 #include "cli/simulate/joint_model.hpp"
 #include "cli/talk.hpp"
+#include "core/rms.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
@@ -65,12 +66,6 @@ void round_to(std::vector<double>& values, const std::optional<double>& decimals
     double scale = 1.0;
     for (int i = 0; i < static_cast<int>(*decimals); ++i) scale *= 10.0;
     for (double& value : values) value = std::round(value * scale) / scale + 0.0;
-}
-
-double rms(std::span<const double> values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value * value;
-    return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
