@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "cli/reference/reference.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <sstream>
 
+#include "cli/options/options_implementation.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
