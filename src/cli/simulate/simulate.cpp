@@ -218,8 +218,8 @@ ExitCode simulate(const SimulateOptions& options) {
     say(options.common, fmt::format("{} rows of {} columns at {} Hz as {}", columns[0].values.size(),
                                     columns.size(), shortest(sample_rate.value()), format.name));
     if (gap) {
-        say(options.common, fmt::format("measured less modelled torque: {} Nm rms of {} Nm rms",
-                                        shortest(gap->residual_rms_nm), shortest(gap->measured_rms_nm)));
+        say(options.common, fmt::format("measured less modelled torque: {:.4g} Nm rms of {:.4g} Nm rms",
+                                        gap->residual_rms_nm, gap->measured_rms_nm));
     }
     if (options.common.json)
         write_text("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),
