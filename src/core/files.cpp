@@ -107,7 +107,8 @@ ByteSource::ByteSource(const std::string& path) : name_(path == "-" ? "standard 
         raise<FileError>("{}: is a directory; name a file in it", path);
     }
     if (S_ISFIFO(status.st_mode)) widen_pipe(descriptor_);
-    if (S_ISREG(status.st_mode) && status.st_size > 0) size_ = static_cast<std::uint64_t>(status.st_size);
+    regular_ = S_ISREG(status.st_mode);
+    if (regular_ && status.st_size > 0) size_ = static_cast<std::uint64_t>(status.st_size);
     Progress::current().begin("reading", "B", size_);
 }
 

@@ -13,8 +13,8 @@ using Catch::Contains;
 namespace {
 
 // Its magic is that of files which are refused while no format knows them.
-constexpr std::string_view magic = "\x89MCAP";
-constexpr std::array<std::string_view, 1> extensions = {".mcap"};
+constexpr std::string_view magic = "TDSm";
+constexpr std::array<std::string_view, 1> extensions = {".tdms"};
 
 class TrialReader final : public LogReader {
   public:
@@ -55,13 +55,13 @@ std::string trial_bytes() {
 }  // namespace
 
 TEST_CASE("every listed format is asked before foreign bytes are refused", "[log]") {
-    CHECK_THROWS_WITH(detect_format(magic, "run.mcap"),
-                      Contains("run.mcap: read an MCAP file, expected a log as"));
+    CHECK_THROWS_WITH(detect_format(magic, "run.tdms"),
+                      Contains("run.tdms: read a TDMS file, expected a log as"));
     for (const LogFormat* format : log_formats())
-        CHECK_THROWS_WITH(detect_format(magic, "run.mcap"), Contains(std::string(format->name)));
+        CHECK_THROWS_WITH(detect_format(magic, "run.tdms"), Contains(std::string(format->name)));
     std::vector<const LogFormat*> formats(log_formats().begin(), log_formats().end());
     formats.push_back(&trial);
-    CHECK(&detect_format(magic, "run.mcap", formats) == &trial);
+    CHECK(&detect_format(magic, "run.tdms", formats) == &trial);
     CHECK(detect_format("time_s,velocity_deg_s", "run.csv", formats).name == "csv");
     CHECK(detect_format("", "empty", formats).name == "csv");
 }

@@ -39,6 +39,8 @@ class ByteSource {
     [[nodiscard]] const std::string& name() const { return name_; }
     /// Of a file in bytes when it was opened; 0 where nobody knows.
     [[nodiscard]] std::uint64_t size() const { return size_; }
+    /// Of a regular file, for readers that go back and forth in it; -1 where bytes come once.
+    [[nodiscard]] int file_descriptor() const { return regular_ ? descriptor_ : -1; }
 
   protected:
     struct Name {
@@ -53,7 +55,7 @@ class ByteSource {
     std::size_t piece_size_ = 0, given_ = 0;
     std::uint64_t size_ = 0;
     int descriptor_ = -1;
-    bool owns_ = false;
+    bool owns_ = false, regular_ = false;
 };
 
 /// Reads a whole file, or standard input when the path is "-".
