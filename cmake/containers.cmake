@@ -11,8 +11,7 @@ function(ripplenotch_container name)
     foreach(module IN LISTS ARGN)
         pkg_check_modules(${name} QUIET IMPORTED_TARGET GLOBAL ${module})
         if(${name}_FOUND)
-            target_link_libraries(ripplenotch_containers INTERFACE PkgConfig::${name})
-            target_compile_definitions(ripplenotch_containers INTERFACE RIPPLENOTCH_HAS_${name}=1)
+            target_link_libraries(ripplenotch_containers INTERFACE $<LINK_ONLY:PkgConfig::${name}>)
             set(RIPPLENOTCH_CONTAINERS_FOUND ${RIPPLENOTCH_CONTAINERS_FOUND} ${name} PARENT_SCOPE)
             set(RIPPLENOTCH_CONTAINER_MODULES ${RIPPLENOTCH_CONTAINER_MODULES} ${module} PARENT_SCOPE)
             return()
@@ -26,6 +25,21 @@ ripplenotch_container(LZ4 liblz4)
 ripplenotch_container(LZMA liblzma)
 ripplenotch_container(HDF5 hdf5-serial hdf5)
 ripplenotch_container(SQLITE sqlite3)
+
+# The files that know a library, and they alone: what is here and what is missing compiles nothing else anew. Called in the
+# folder that compiles them.
+function(ripplenotch_container_sources)
+    set(sources_ZLIB log/unpack/gzip_unpacker.cpp)
+    set(sources_ZSTD log/unpack/zstd_unpacker.cpp)
+    set(sources_LZ4 log/unpack/lz4_unpacker.cpp)
+    set(sources_LZMA log/unpack/xz_unpacker.cpp)
+    set(sources_HDF5 log/formats/hdf5.cpp log/containers/hdf5_arrays.cpp log/containers/hdf5_numbers.cpp)
+    set(sources_SQLITE log/formats/rosbag2.cpp log/messages/rosbag2_messages.cpp)
+    foreach(name IN LISTS RIPPLENOTCH_CONTAINERS_FOUND)
+        set_source_files_properties(${sources_${name}} PROPERTIES COMPILE_DEFINITIONS RIPPLENOTCH_HAS_${name}
+            INCLUDE_DIRECTORIES "${${name}_INCLUDE_DIRS}" COMPILE_OPTIONS "${${name}_CFLAGS_OTHER}")
+    endforeach()
+endfunction()
 
 # The archives of those libraries, for a program without shared ones; RESULT is false where one is missing.
 function(ripplenotch_static_containers result)

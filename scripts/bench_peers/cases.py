@@ -43,7 +43,7 @@ class Bench:
 
     def filter(self, log, *words):
         out = self.out(TOOL, log)
-        return Side(TOOL, [self.tool, "filter", log, "--table", self.table, "-o", out, "-q", *words], out)
+        return Side(TOOL, [self.tool, "filter", log, "--table", self.table, "-o", out, "-q", "--no-sync", *words], out)
 
     def peer(self, name, words, log, most_runs=1000):
         return Side(name, [word if word != "OUT" else self.out(name, log) for word in words], self.out(name, log), most_runs)
@@ -119,7 +119,7 @@ class Bench:
     def analyse(self, found, words, motion, rows):
         out = self.out("analysis", words[1])
         name = " ".join([words[0], *words[2:]])
-        runs, failed = measure.in_turn(self.run_once, [Side(name, [self.tool, *words, "-q", "-o", out], out)], self.rounds, self.say)
+        runs, failed = measure.in_turn(self.run_once, [Side(name, [self.tool, *words, "-q", "--no-sync", "-o", out], out)], self.rounds, self.say)
         found[f"{name}, {motion}, {rows} rows"] = {"rows": rows, "failed": failed, "runs": [asdict(one) for one in runs.get(name, [])]}
 
     def simulated(self, rows, wanted=("one speed", "moves")):

@@ -102,9 +102,26 @@ def bars(rows, told):
     ]
 
 
+def recorded_bars():
+    """37 logs in each way of recording: how many have to be right, and how many may have a false name."""
+    found = []
+    for way, right, false in (("without position", 30, 0), ("250 Hz", 35, 1), ("jitter", 35, 1), ("0.1 Nm steps", 35, 1),
+                              ("libfranka", 35, 1)):
+        of_way = {"studies": ("recorded",), "also": lambda r, way=way: r["recorded"] == way}
+        found += [Bar(f"recorded otherwise, {way}: names exactly right", f"{right} of 37", test=lambda r: r["exact"],
+                      low=right / 37, **of_way),
+                  Bar(f"the same, {way}: a false name", f"at most {false} of 37", test=lambda r: bool(r["false"]),
+                      high=false / 37, **of_way)]
+    return found
+
+
 HEAD = ["what is asked", "asked", "measured", "95 % of chance", "met"]
 
 
 def lines(rows, told):
     found = [bar.line(rows) for bar in bars(rows, told)]
     return [*found[:6], gap_line(rows), *found[6:]]
+
+
+def recorded_lines(rows):
+    return [bar.line(rows) for bar in recorded_bars()]

@@ -70,10 +70,11 @@ class Case:
     variant: str = ""
     without: str = ""  # an effect that the tool may not try
     header: str = ""  # of HEADERS: how the logs are written
+    recorded: str = ""  # of recordings.WAYS; the log itself is the same
 
     @property
     def name(self):
-        words = (self.study, self.label, self.variant, self.header, self.motion, self.noise,
+        words = (self.study, self.label, self.variant, self.header, self.recorded, self.motion, self.noise,
                  "" if self.position else "no-position", str(self.number))
         return "-".join(word.replace(" ", "_").replace(",", "") for word in words if word)
 
@@ -81,7 +82,9 @@ class Case:
     def log_of(self):
         """Name of the case whose log it is: variants and logs with an effect taken out are those of the singles."""
         study = "single" if self.variant or self.without else self.study
-        return dataclasses.replace(self, study=study, variant="", header="").name
+        if study == "recorded":
+            study = ("null", "single", "pair", "triple")[len(self.hidden)]
+        return dataclasses.replace(self, study=study, variant="", header="", recorded="").name
 
     def rng(self, purpose):
         return np.random.default_rng([zlib.crc32(f"{self.log_of} {purpose}".encode())])
@@ -112,6 +115,10 @@ class Case:
         v = v + sum(e["bias_deg_s"] for e in joint.named(hidden, "velocity-bias"))
         position = np.round(q * 2**19 / 360) * 360 / 2**19 if self.position else None  # an encoder of 19 bits
         return Log(time, v, torque, position, float(np.sqrt(np.mean(noise**2))), place)
+
+
+# One number of the study "recorded": 37 logs with something hidden.
+RECORDED = {"single": 1, "pair": 8, "triple": 8}
 
 
 def without_hidden(case):
@@ -152,6 +159,9 @@ def studies(name, seeds, seed0=0):
     if name == "variant":
         return [Case(name, label, n, hidden=(label,), variant=variant)
                 for variant in VARIANTS for label in strengths.HIDDEN for n in numbers]
+    if name == "recorded":
+        return [dataclasses.replace(case, study=name) for n in numbers for kind, count in RECORDED.items()
+                for case in studies(kind, count, n * count)]
     if name == "without":
         return [Case(name, label, n, hidden=(label,), without=label) for label in strengths.HIDDEN for n in numbers]
     raise SystemExit(f"there is no study '{name}'")

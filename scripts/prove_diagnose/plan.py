@@ -7,11 +7,16 @@ cases, and within a study every effect has had its first log before any has its 
 
 import dataclasses
 
-from . import cases
+from . import cases, recordings
 
 # How many of each kind: 5 of each single effect, 40 pairs, 200 logs with nothing hidden, ...
 SEEDS = {"single": 5, "rarer": 2, "pair": 40, "triple": 30, "null": 200, "null ar0.5": 20, "null t4": 20, "outside": 15,
          "outside+single": 5, "formula": 2, "noise": 1, "poor": 1, "variant": 1, "without": 1}
+# Run when asked for: the same logs as another recorder writes them.
+ALL = {**SEEDS, "recorded": 1}
+
+
+WAYS = tuple(recordings.WAYS)  # of recording the same log
 
 
 def study(name, seeds, first):
@@ -21,30 +26,37 @@ def study(name, seeds, first):
 
 def planned(names, seeds=None, first=0):
     """The cases of several studies, taken in turns so that each study advances in proportion to its size."""
-    unknown = [name for name in names if name not in SEEDS]
+    unknown = [name for name in names if name not in ALL]
     if unknown:
-        raise SystemExit(f"prove-diagnose: there is no study '{unknown[0]}'; there are: {', '.join(SEEDS)}")
-    found = [(k / len(all_of), case) for name in names for all_of in [study(name, seeds or SEEDS[name], first)]
+        raise SystemExit(f"prove-diagnose: there is no study '{unknown[0]}'; there are: {', '.join(ALL)}")
+    found = [(k / len(all_of), case) for name in names for all_of in [study(name, seeds or ALL[name], first)]
              for k, case in enumerate(all_of, 1)]
     return [case for _, case in sorted(found, key=lambda pair: pair[0])]
+
+
+def as_recorded(case, way):
+    """The same case as another recorder writes it; a header alone is the case's own."""
+    return dataclasses.replace(case, header=way) if way in cases.HEADERS else dataclasses.replace(case, recorded=way)
 
 
 def by_name(name):
     """The case of that name."""
     number = name.rpartition("-")[2]
-    for known in SEEDS if number.isdigit() else ():
-        for case in cases.studies(known, 1, int(number)):
-            for header in ("", *cases.HEADERS):
-                if dataclasses.replace(case, header=header).name == name:
-                    return dataclasses.replace(case, header=header)
+    for known in ALL if number.isdigit() else ():
+        first = int(number)
+        several = cases.studies(known, 1, first // cases.RECORDED["pair"]) if known == "recorded" else []
+        for case in cases.studies(known, 1, first) + several:
+            for way in ("", *recordings.WAYS):
+                if as_recorded(case, way).name == name:
+                    return as_recorded(case, way)
     raise SystemExit(f"prove-diagnose: there is no case '{name}'")
 
 
 def in_table_order(rows):
     """Scores sorted as tables list them: by study, then as the catalogue lists effects, then by number."""
-    kinds = [(c.study, c.label, c.variant, c.motion, c.noise) for name in SEEDS for c in cases.studies(name, 1)]
+    kinds = [(c.study, c.label, c.variant, c.motion, c.noise) for name in ALL for c in cases.studies(name, 1)]
     places = {kind: k for k, kind in enumerate(kinds)}
-    studies = {name: min(k for k, kind in enumerate(kinds) if kind[0] == name) for name in SEEDS}
+    studies = {name: min(k for k, kind in enumerate(kinds) if kind[0] == name) for name in ALL}
 
     def place(row):
         kind = (row["study"], row["label"], row["variant"], row["motion"], row["noise"])

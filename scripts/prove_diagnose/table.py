@@ -100,6 +100,19 @@ def without(rows):
                            for label, group in groups(rows, lambda r: r["label"])])
 
 
+def recorded(rows):
+    head = ["the same logs", "logs", "exactly right", "in the set", "logs with a false name", "gap closed", "interval holds",
+            "time"]
+    lines = []
+    for way, group in groups(rows, lambda r: r["recorded"] or "as they are"):
+        of = [p for row in group for p in row["parameters"]]
+        lines.append([way, str(len(group)), share(group, lambda r: r["exact"]), share(group, lambda r: r["in_set"]),
+                      share(group, lambda r: r["false"]), median_percent(r["gap"]["closed"] for r in group),
+                      share(of, lambda p: None if p["beyond"] is None else p["beyond"] <= 1.0),
+                      median([r["seconds"] for r in group], "{:.1f} s")])
+    return markdown(head, lines)
+
+
 def yardsticks(rows):
     """For each study the tool and the yardsticks on the same logs."""
     head = ["study", "logs", "method", "exactly right", "false name in", "false names a log", "gap closed"]
@@ -144,7 +157,8 @@ def about(abouts, rows):
         return "Measured with an unknown program."
     first, last = abouts[0], max(row.get("finished", abouts[0]["begun"]) for row in rows)
     options = f", options {' '.join(first['options'])}" if first["options"] else ""
-    numbers = sorted({int(row["case"].rpartition("-")[2]) for row in rows if row["study"] == "single"}) or [0]
+    numbers = sorted({int(row["case"].rpartition("-")[2]) for row in rows
+                      if row["study"] == "single" or "+" not in row["label"]}) or [0]
     day, _, begun = first["begun"].partition("T")
     return (f"Measured on {day} from {begun} to {last.partition('T')[2]} with `diagnose` of commit `{first['commit']}`{options}, "
             f"on a machine ({first['machine']}) whose load was {first['load']:g} at the start: {len(rows)} logs, numbers from "
@@ -161,10 +175,22 @@ def studies(rows):
     return "\n\n".join(parts)
 
 
+def of_recorders(abouts, rows, failed):
+    """The same logs as other recorders write them: bars, table, what went wrong."""
+    wrong = "\n".join(f"* {failure(row)}" for row in rows if failed(row)) or "Nothing went wrong."
+    answered = [r for r in rows if "named" in r]
+    return f"{about(abouts, rows)}\n\n{markdown(bars.HEAD, bars.recorded_lines(answered))}\n\n{recorded(answered)}\n\n{wrong}"
+
+
 def blocks(abouts, rows, failed):
     """Every table by the name of its mark in docs/diagnose.md; failed(row) says which cases are listed as wrong."""
-    wrong = [failure(row) for row in rows if failed(row)]
-    return {"about": about(abouts, rows),
-            "bars": markdown(bars.HEAD, bars.lines([r for r in rows if "named" in r], reach.ENOUGH)),
-            "studies": studies(rows),
-            "wrong": "\n".join(f"* {line}" for line in wrong) or "Nothing."}
+    others, found = [row for row in rows if row["study"] != "recorded"], {}
+    if others or not rows:
+        wrong = [failure(row) for row in others if failed(row)]
+        found = {"about": about(abouts, others),
+                 "bars": markdown(bars.HEAD, bars.lines([r for r in others if "named" in r], reach.ENOUGH)),
+                 "studies": studies(others),
+                 "wrong": "\n".join(f"* {line}" for line in wrong) or "Nothing."}
+    if len(others) < len(rows):
+        found["recorded"] = of_recorders(abouts, [row for row in rows if row["study"] == "recorded"], failed)
+    return found

@@ -7,7 +7,7 @@ import pathlib
 import shutil
 import tempfile
 
-from . import cases, measured, other_formulas, reach, score, strengths, tool, yardsticks
+from . import cases, measured, other_formulas, reach, recordings, score, strengths, tool, yardsticks
 
 
 # A diagnosis that does not come counts as wrong in every way that can be counted.
@@ -29,7 +29,7 @@ def write_files(case, folder):
         logs["train"] = logs["train"].part(*halves[case.variant])
     units = cases.OTHER_UNITS if case.variant == "other units" else cases.HEADERS.get(case.header)
     for purpose, log in logs.items():
-        log.save(folder / f"{purpose}.npy", units)
+        recordings.recorded(log, case, purpose).save(folder / f"{purpose}.npy", units)
     return logs
 
 
@@ -39,15 +39,21 @@ def floor_nm(program, case, base, hidden, folder):
     The truth of another formula has no words in model.json; there the same log with nothing hidden stands for it.
     """
     log = folder / "validate.npy"
-    if case.other:
-        hidden, log = [], folder / "plain.npy"
-        cases.without_hidden(case).log("validate").save(log)
+    if case.other or case.recorded == "without position":
+        plain = cases.without_hidden(case) if case.other else case
+        hidden, log = [] if case.other else hidden, folder / "plain.npy"
+        plain.log("validate").save(log)
     model = folder / "floor.json"
     model.write_text(json.dumps(tool.as_model(base + hidden)))
     return tool.residual_nm(program, model, log)
 
 
 def gaps(program, case, found, train, validate, floor, folder):
+    if case.recorded:  # the angle of such a log is what the diagnosis makes of it
+        said, counted = found["gap"], score.explainable(case.truth()[1])
+        before, after = said["validation_before_nm"], said["validation_after_nm"]
+        return {"before_nm": before, "after_nm": after, "floor_nm": floor, "as_said": None,
+                "closed": score.share_closed(before, after, floor) if counted else None}
     after = tool.residual_nm(program, folder / "improved.json", folder / "validate.npy")
     before = measured.baseline_gap_nm(train, validate)
     said = found["gap"]
@@ -58,12 +64,12 @@ def gaps(program, case, found, train, validate, floor, folder):
             "closed": score.share_closed(before, after, floor) if counted else None}
 
 
-def laws(program, found, folder):
+def laws(program, case, found, folder):
     """Does each name lower the residual, and does taking it out of the improved model open its share again?"""
     confirmed = [entry for entry in found["rounds"] if entry["status"] == "confirmed"]
     lower = [entry["gap_after_nm"] <= entry["gap_before_nm"] for entry in found["rounds"]]
     after, shorter, opens = found["gap"]["after_nm"], folder / "shorter.json", []
-    for entry in confirmed:
+    for entry in [] if case.recorded else confirmed:
         wanted = score.key(entry["effect"], entry["parameters"])
         kept = [e for e in found["model"]["effects"] if score.key(e["effect"], e) != wanted]
         shorter.write_text(json.dumps({**found["model"], "effects": kept}))
@@ -90,8 +96,11 @@ def diagnosed(program, case, folder, options, logs, acceptable):
     without = ["--without", case.without] if case.without else []
     found, seconds = tool.diagnose(program, folder, [*options, *without])
     row = {"verdict": found["verdict"], "seconds": seconds, "samples": len(logs["train"].time_s),
-           **score.names(case, acceptable, hidden, found), "parameters": score.parameters(hidden, found, case.seconds),
-           "unexplained": len(found["unexplained"]), **laws(program, found, folder), "found": found}
+           **score.names(case, acceptable, hidden, found, recordings.BROUGHT.get(case.recorded, ())),
+           "parameters": score.parameters(hidden, found, case.seconds),
+           "unexplained": len(found["unexplained"]), **laws(program, case, found, folder), "found": found}
+    if case.recorded == "without position":  # where it began is its own
+        row["parameters"] = [p for p in row["parameters"] if p["relative"] is not None]
     if case.disturbance:
         row["disturbance_s"] = logs["train"].place_s
         row["place"] = score.place(case, logs["train"].place_s, found)
@@ -123,14 +132,14 @@ def failed(row):
         return bool(row["false"]) or not row["place"]
     if row["study"] == "without":
         return bool(row["named"]) or row["told"] < reach.ENOUGH
-    return not row["exact"] or not row["gap"]["as_said"] or False in (row["lowers"], row["reopens"])
+    return not row["exact"] or False in (row["gap"]["as_said"], row["lowers"], row["reopens"])
 
 
 def trial(program, case, options=(), methods=("diagnose",), keep=None):
     """The scores of a case; keep: a folder in which the files of those that fail are left."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="prove-diagnose-"))
     about = {"study": case.study, "label": case.label, "case": case.name, "motion": case.motion, "noise": case.noise,
-             "variant": case.variant}
+             "variant": case.variant, "recorded": case.recorded or case.header}
     try:
         row = {**about, **scores(program, case, folder, options, methods)}
     except (tool.ToolFailed, KeyError, TypeError, ValueError) as failure:

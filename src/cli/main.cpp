@@ -6,17 +6,21 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <new>
 #include <optional>
+#include <sstream>
 
 #include "cli/command.hpp"
 #include "cli/options/options_implementation.hpp"
+#include "cli/out_of_memory.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/talk.hpp"
 #include "core/unfinished_files.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/version.hpp"
 
@@ -26,11 +30,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 ExitCode complain(ExitCode code, std::string_view command, std::string_view message) {
-    if (command.empty()) {
-        fmt::print(stderr, "{}: {}\n", tool_name, message);
-    } else {
-        fmt::print(stderr, "{} {}: {}\n", tool_name, command, message);
-    }
+    talk(fmt::format("{}{}{}: {}", tool_name, command.empty() ? "" : " ", command, message));
     return code;
 }
 
@@ -110,8 +110,16 @@ void declare(CLI::App& app, const Words& words, bool named_first, std::string& r
             declared.work = work;
             running = command->name;
             for (const auto& check : parsed.after_parse) check();
+            parsed.check_files();
         });
     }
+}
+
+// A word that is not understood would leave vectors on in silence.
+void check_environment() {
+    const char* const vectors = std::getenv("RIPPLENOTCH_VECTORS");
+    if (vectors != nullptr && *vectors != '\0' && std::string_view(vectors) != "none")
+        raise<UsageError>("RIPPLENOTCH_VECTORS={}: it is none, or not set at all", vectors);
 }
 
 // Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.
@@ -125,7 +133,7 @@ ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
     declare(app, words, named_first, running, declared);
 
     if (words.empty()) {
-        fmt::print(stderr, "{}", app.help());
+        talk_lines(app.help());
         return ExitCode::usage;
     }
     for (const auto& implementation : declared.implementations) implementation->spell_out(words);
@@ -145,6 +153,8 @@ ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
             ExitCode::usage, running,
             fmt::format("{} is given more than once; see {} {} --help", *twice, tool_name, running));
     }
+    check_environment();
+    hash_inputs(true);
     const ProgressBar bar(words);  // gone before a complaint is printed
     return declared.work();
 }
@@ -157,7 +167,9 @@ ExitCode run(const Words& words) {
         try {
             return parse_and_work(app, words, running);
         } catch (const CLI::Success& request) {  // --help or --version
-            app.exit(request);
+            std::ostringstream asked;
+            app.exit(request, asked, asked);
+            write_text("-", asked.str(), ByteSink::Overwrite::no);
             return ExitCode::done;
         }
     } catch (const CLI::ParseError& error) {
@@ -166,7 +178,8 @@ ExitCode run(const Words& words) {
     } catch (const Error& error) {
         return complain(error.code(), running, error.what());
     } catch (const std::bad_alloc&) {
-        return complain(ExitCode::internal, running, "out of memory");
+        say_out_of_memory(running);
+        return ExitCode::memory;
     } catch (const std::exception& error) {
         return complain(ExitCode::internal, running, fmt::format("internal fault: {}", error.what()));
     }
@@ -178,6 +191,13 @@ ExitCode run(const Words& words) {
 int main(int argc, char** argv) {
     // "| head" must end us quietly even where the parent process has SIGPIPE ignored.
     std::signal(SIGPIPE, SIG_DFL);
+    ripplenotch::hold_closed_streams();
     ripplenotch::remove_unfinished_files_on_signals();
-    return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));
+    ripplenotch::end_where_nothing_may_throw();
+    try {
+        return static_cast<int>(ripplenotch::run({argv + 1, argv + argc}));
+    } catch (const std::bad_alloc&) {  // not even for the words of the command line, or for a message
+        ripplenotch::say_out_of_memory("");
+        return static_cast<int>(ripplenotch::ExitCode::memory);
+    }
 }

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <mutex>
 #include <string_view>
+#include <system_error>
 #include <thread>
 
 #include "ripplenotch/core/progress.hpp"
@@ -95,7 +96,12 @@ struct ProgressBar::Painter {
 ProgressBar::Painter* ProgressBar::Painter::at_work = nullptr;
 
 ProgressBar::ProgressBar(const std::vector<std::string>& words) {
-    if (can_show(words)) painter_ = std::make_unique<Painter>(words.empty() ? "" : words.front());
+    if (!can_show(words)) return;
+    try {
+        painter_ = std::make_unique<Painter>(words.empty() ? "" : words.front());
+    } catch (const std::system_error&) {  // no thread to be had: no bar
+        Progress::current().on_step_aside(nullptr);
+    }
 }
 
 ProgressBar::~ProgressBar() = default;

@@ -5,9 +5,14 @@
 
 #include <algorithm>
 
+#include "ripplenotch/core/visible_text.hpp"
+
 namespace ripplenotch {
 
-std::string text_table(const std::vector<std::vector<std::string>>& rows, std::string_view alignment) {
+std::string text_table(const std::vector<std::vector<std::string>>& cells, std::string_view alignment) {
+    std::vector<std::vector<std::string>> rows = cells;
+    for (auto& row : rows)
+        for (std::string& cell : row) cell = visible_text(cell);
     std::vector<std::size_t> widths;
     for (const auto& row : rows) {
         widths.resize(std::max(widths.size(), row.size()));

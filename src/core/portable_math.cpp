@@ -12,26 +12,13 @@
 #include <numbers>
 
 #include "core/polynomial.hpp"
+#include "core/power_terms.hpp"
 
 namespace ripplenotch::portable {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-// 1, 1/3, 1/5, ... of atanh(f) / f, with f^2 <= 0.0295: the first term left out is below 2e-19.
-constexpr std::array<double, 12> logarithm_terms = [] {
-    std::array<double, 12> terms{};
-    for (std::size_t n = 0; n < terms.size(); ++n) terms[n] = 1.0 / static_cast<double>(2 * n + 1);
-    return terms;
-}();
-
-// 1/n! with |x| <= ln(2)/2: the first term left out is below 5e-18.
-constexpr std::array<double, 14> exponential_terms = [] {
-    std::array<double, 14> terms{1.0};
-    for (std::size_t n = 1; n < terms.size(); ++n) terms[n] = terms[n - 1] / static_cast<double>(n);
-    return terms;
-}();
 
 // Powers of ten that are exact.
 constexpr std::array<double, 23> powers_of_ten = [] {
@@ -128,10 +115,6 @@ double log1p(double x) {
 
 double exp(double x) {
     if (!(std::abs(x) < 750.0)) return exp_outside(x);
-    // ln(2) in two parts: the first has 21 trailing zero bits, so that its product with a power up to 1024 is
-    // exact.
-    constexpr double ln2_high = 0x1.62e42fefap-1;
-    constexpr double ln2_low = 0x1.cf79abc9e3b39p-40;
     const double power = nearest_integer(x / std::numbers::ln2);
     const double rest = (x - power * ln2_high) - power * ln2_low;
     return scaled(polynomial(exponential_terms, rest), static_cast<int>(power));

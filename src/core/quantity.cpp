@@ -11,6 +11,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/reading.hpp"
 #include "ripplenotch/core/units.hpp"
 
 namespace ripplenotch {
@@ -141,10 +142,14 @@ double parse_quantity(std::string_view text, Dimension dimension, std::string_vi
     if (!number || !std::isfinite(*number)) {
         raise<UsageError>("{}: cannot read '{}' as a number; write {}", what, text, understood());
     }
-    if (unit.empty()) return *number;
-    const auto factor = unit_factor(dimension, unit);
+    const auto factor = unit.empty() ? std::optional(1.0) : unit_factor(dimension, unit);
     if (!factor) raise<UsageError>("{}: '{}' has the unit '{}'; write {}", what, text, unit, understood());
-    return *number * *factor;
+    const double value = *number * *factor;
+    if (!is_reading(value)) {
+        raise<UsageError>("{}: '{}' is {} {}; write a number from -{} to {}", what, text, shortest(value),
+                          base_unit(dimension), largest_reading, largest_reading);
+    }
+    return value;
 }
 
 }  // namespace ripplenotch

@@ -4,11 +4,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <vector>
 
+#include "core/open_file.hpp"
+#include "core/temporary_file.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -16,7 +15,7 @@ namespace {
 
 constexpr std::size_t piece_size = std::size_t{1} << 20;
 
-void copy_to(ByteSource& source, int descriptor, const std::string& temporary) {
+void copy_to(ByteSource& source, int descriptor, const std::string& folder) {
     std::vector<char> piece(piece_size);
     while (const std::size_t size = source.read(piece.data(), piece.size())) {
         std::size_t written = 0;
@@ -25,8 +24,8 @@ void copy_to(ByteSource& source, int descriptor, const std::string& temporary) {
             if (taken < 0 && errno == EINTR) continue;
             if (taken < 0) {
                 raise<FileError>(
-                    "{}: cannot keep {} for a second pass: {}; TMPDIR=FOLDER names another place", temporary,
-                    source.name(), std::strerror(errno));
+                    "{}: cannot keep {} for a second pass: {}; TMPDIR=FOLDER names another place", folder,
+                    source.name(), system_reason());
             }
             written += static_cast<std::size_t>(taken);
         }
@@ -36,35 +35,31 @@ void copy_to(ByteSource& source, int descriptor, const std::string& temporary) {
 }  // namespace
 
 Spool::Spool(const std::string& path) : path_(path) {
-    std::error_code failed;
-    if (path != "-" &&
-        (std::filesystem::is_regular_file(path, failed) || !std::filesystem::exists(path, failed)))
+    const auto file = std::make_shared<const OpenFile>(path);
+    if (file->by_place()) {
+        file_ = file;
         return;
-    ByteSource source(path);
+    }
+    // Read under its own name, so that it is hashed like any other input.
+    ByteSource source(file);
     name_ = source.name();
-    std::string name = (std::filesystem::temp_directory_path(failed) / "ripplenotch-XXXXXX").string();
-    if (failed)
-        raise<FileError>("no folder for temporary files: {}; TMPDIR=FOLDER names one", failed.message());
-    const int descriptor = ::mkstemp(name.data());
-    if (descriptor < 0) raise<FileError>("{}: cannot make a temporary file: {}", name, std::strerror(errno));
-    temporary_ = name;
+    const std::string folder = temporary_folder();
+    TemporaryFile kept(folder + "/ripplenotch-spool", std::nullopt);
+    const int descriptor = kept.release_without_name();
     try {
-        copy_to(source, descriptor, temporary_);
+        copy_to(source, descriptor, folder);
+        file_ = std::make_shared<const OpenFile>("", descriptor);
     } catch (...) {
         ::close(descriptor);
-        ::unlink(temporary_.c_str());
         throw;
     }
-    ::close(descriptor);
 }
 
-Spool::~Spool() {
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
-}
+Spool::~Spool() = default;
 
 std::unique_ptr<ByteSource> Spool::open() const {
-    if (temporary_.empty()) return std::make_unique<ByteSource>(path_);
-    return std::make_unique<ByteSource>(temporary_, name_);
+    if (name_.empty()) return std::make_unique<ByteSource>(file_);
+    return std::make_unique<ByteSource>(file_, name_);
 }
 
 }  // namespace ripplenotch

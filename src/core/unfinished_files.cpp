@@ -3,45 +3,86 @@
 
 #include <unistd.h>
 
-#include <array>
 #include <atomic>
 #include <csignal>
 
+#include "core/sanitized.hpp"
+
 namespace ripplenotch {
+
+// What a signal handler may touch: atomics without locks, and unlink(). Places are made and never freed, so
+// that a handler on another thread can walk along them at any time.
+struct UnfinishedFile::Place {
+    std::atomic<const char*> path = nullptr;
+    Place* next = nullptr;
+};
+
 namespace {
 
-// What a signal handler may touch: atomics without locks, and unlink().
-std::array<std::atomic<const char*>, 64> unfinished;
-static_assert(std::atomic<const char*>::is_always_lock_free);
+using Place = UnfinishedFile::Place;
+static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<Place*>::is_always_lock_free);
+std::atomic<Place*> newest = nullptr;
 
-std::size_t claim_slot(const char* path) {
-    for (std::size_t slot = 0; slot < unfinished.size(); ++slot) {
+Place* claim_place(const char* path) {
+    for (Place* place = newest; place != nullptr; place = place->next) {
         const char* free = nullptr;
-        if (unfinished[slot].compare_exchange_strong(free, path)) return slot;
+        if (place->path.compare_exchange_strong(free, path)) return place;
     }
-    return unfinished.size();
+    auto* const place = new Place;
+    place->path = path;
+    place->next = newest;
+    while (!newest.compare_exchange_weak(place->next, place)) {
+    }
+    return place;
 }
 
 void remove_and_end(int signal) {
-    for (const auto& path : unfinished) {
-        if (const char* const name = path.load()) ::unlink(name);
-    }
+    remove_unfinished_files();
     std::signal(signal, SIG_DFL);
     std::raise(signal);
 }
 
-}  // namespace
+// All that end a process unless somebody says otherwise. A sanitizer wants to report the faults itself.
+constexpr int ending_signals[] = {
+    SIGHUP,    SIGINT,  SIGQUIT, SIGPIPE, SIGALRM, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF,
+#if defined(SIGPOLL)
+    SIGPOLL,
+#endif
+#if defined(SIGPWR)
+    SIGPWR,
+#endif
+#if defined(SIGSTKFLT)
+    SIGSTKFLT,
+#endif
+#if !defined(RIPPLENOTCH_SANITIZED)
+    SIGILL,    SIGTRAP, SIGABRT, SIGBUS,  SIGFPE,  SIGSEGV, SIGSYS,
+#endif
+};
 
-UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), slot_(claim_slot(path_.c_str())) {}
-
-UnfinishedFile::~UnfinishedFile() {
-    if (slot_ < unfinished.size()) unfinished[slot_] = nullptr;
+void remove_on(int signal) {
+    if (std::signal(signal, remove_and_end) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
-void remove_unfinished_files_on_signals() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        if (std::signal(signal, remove_and_end) == SIG_IGN) std::signal(signal, SIG_IGN);
+}  // namespace
+
+void remove_unfinished_files() noexcept {
+    for (const Place* place = newest; place != nullptr; place = place->next) {
+        if (const char* const name = place->path.load()) ::unlink(name);
     }
+}
+
+UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path), place_(claim_place(path_.c_str())) {}
+
+UnfinishedFile::~UnfinishedFile() { place_->path = nullptr; }
+
+void remove_unfinished_files_on_signals() {
+    for (const int signal : ending_signals) remove_on(signal);
+#if defined(SIGRTMIN)
+    for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) remove_on(signal);
+#endif
+#if defined(SIGXFSZ)
+    std::signal(SIGXFSZ, SIG_IGN);
+#endif
 }
 
 }  // namespace ripplenotch

@@ -6,7 +6,7 @@
 
 namespace ripplenotch {
 
-/// While it lives, `path` is one of them. More than sixty-four at a time are not remembered.
+/// While it lives, `path` is one of them.
 class UnfinishedFile {
   public:
     explicit UnfinishedFile(const std::string& path);
@@ -14,13 +14,19 @@ class UnfinishedFile {
     UnfinishedFile(const UnfinishedFile&) = delete;
     UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
+    struct Place;
+
   private:
     std::string path_;
-    std::size_t slot_;
+    Place* place_;
 };
 
-/// For programs: SIGINT, SIGTERM and SIGHUP remove these files before they end the process as they always
-/// do. A signal that is ignored (nohup) stays so.
+/// At once, for a process that ends without its destructors. May be called by a signal handler.
+void remove_unfinished_files() noexcept;
+
+/// For programs: every signal that ends the process and can be caught removes these files first, and then
+/// ends it as it always does. One that is ignored (nohup) stays so. A file that outgrows its limit (SIGXFSZ)
+/// ends no process, but fails to be written, with the system's reason.
 void remove_unfinished_files_on_signals();
 
 }  // namespace ripplenotch

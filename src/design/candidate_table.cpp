@@ -7,12 +7,12 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/design/table_work.hpp"
 #include "ripplenotch/design/transient.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_bands = 10000;
 constexpr int grid_points = 256;  // over one band, for the worst attenuation
 
 // 12 significant digits: 100 * 27 / 360 stays 7.5, and 0.1 + 2 * 0.1 becomes 0.3.
@@ -216,6 +216,7 @@ CandidateTable CandidateTable::design(const TableSpec& spec) {
     check_bands(spec.bands);
     CandidateTable table;
     table.spec_ = spec;
+    TableWork work;
     for (const auto& [from, to] : spec.bands) {
         Band band;
         band.number = static_cast<int>(table.bands_.size()) + 1;
@@ -228,6 +229,7 @@ CandidateTable CandidateTable::design(const TableSpec& spec) {
                 const NotchSpec notch{center, spec.q, spec.depth_db, spec.width};
                 band.notches.push_back({order, notch, design_notch(notch, spec.sample_rate)});
             }
+            work.add(band, spec.settle_band_percent);
             measure_band(band, spec);
         } catch (const UsageError& error) {
             raise<UsageError>("{}: {}", band_label(band.number, from, to), error.what());
@@ -243,7 +245,11 @@ CandidateTable CandidateTable::from_bands(TableSpec spec, std::vector<Band> band
     check_ripple(spec);
     if (spec.bands.empty()) raise<UsageError>("no speed bands to design for");
     check_bands(spec.bands);
-    for (std::size_t i = 0; i < bands.size(); ++i) check_stored(bands[i], static_cast<int>(i) + 1, spec);
+    TableWork work;
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+        check_stored(bands[i], static_cast<int>(i) + 1, spec);
+        work.add(bands[i], spec.settle_band_percent);
+    }
     CandidateTable table;
     table.spec_ = std::move(spec);
     table.bands_ = std::move(bands);

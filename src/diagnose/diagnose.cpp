@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "diagnose/angle/angle.hpp"
 #include "diagnose/beside/told.hpp"
 #include "diagnose/examined.hpp"
 #include "diagnose/faults.hpp"
@@ -140,9 +141,32 @@ Searched search_rest(Case& part, const Model& model, std::span<const Effect* con
     return found;
 }
 
-// What of the findings is believed, and what is left then. `other`: the validation log, if there is one.
+// What was found may tell more of the angle than the model as given did; then the search goes on from there.
+Searched search_straight(Case& whole, Case& part, const Model& model, std::span<const Effect* const> effects,
+                         Diagnosis& diagnosis, std::vector<Leftover>& aside, Work& work,
+                         const DiagnosisRules& rules, bool has_position) {
+    Searched found = search_rest(part, model, effects, diagnosis, aside, work, rules);
+    if (has_position || !straightened_by(whole, found.last, found.bench->floor_nm(found.last.stated), rules))
+        return found;
+    found.bench.reset();
+    for (std::size_t k = 0; k < part.size(); ++k)
+        part.motion.position_deg[k] = whole.motion.position_deg[part.row[k]];
+    found.noise = noise_floor(part, found.last.stated, found.last.open, rules);
+    found.bench = std::make_unique<ModelBench>(part, found.noise, work, rules);
+    found.bench->settle_on(found.last.stated);
+    const auto again = [&](const Candidate& model_now) {
+        return found.bench->fitted(model_now.open, model_now.stated, model_now.prices);
+    };
+    found.first = again(found.first);
+    found.refused.clear();
+    found.last = search(*found.bench, again(found.last), model.terms.size(), effects, found.refused);
+    return found;
+}
+
+// What of the findings is believed, and what is left then. `other`: the validation log, if there is one;
+// it may begin at an angle that only the model tells.
 Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
-                 std::span<const Effect* const> effects, const Case* other) {
+                 std::span<const Effect* const> effects, Case* other, bool begins_anywhere) {
     const ModelBench& bench = *found.bench;
     diagnosis.unexplained = leftovers(bench, found.last.stated);
     diagnosis.rounds = judge(bench, found.last, own, effects, diagnosis.unexplained);
@@ -155,6 +179,7 @@ Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
     diagnosis.noise_color = found.noise.color;
     tell_rounds(diagnosis, bench, found.last, own);
     Candidate last = believed(bench, found.last, own, diagnosis.rounds);
+    if (other != nullptr && begins_anywhere) put_in_place(*other, last.stated, bench.rules().recording);
     if (other != nullptr)
         last = reproduced(bench, found.last, last, diagnosis.baseline, *other, own, diagnosis.rounds);
     // What a doubtful finding would explain is not explained.
@@ -205,9 +230,10 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     check(rules);
     for (const std::string& name : options.without) (void)find_effect(name);
     if (!options.given.empty()) return diagnose_given(model, log, validation, options);
-    const auto effects = examined(model, options.without, log.has_position());
     const std::size_t own = model.terms.size();
     Case whole = whole_case(log, options.smoothing, rules.recording);
+    const auto effects =
+        examined(model, options.without, log.has_position() || tells_position(whole.motion, rules.recording));
     std::optional<Case> other;
     if (validation != nullptr) {
         other = whole_case(*validation, options.smoothing, rules.recording);
@@ -220,9 +246,14 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     diagnosis.samples = whole.size();
     diagnosis.faults = find_faults(whole, rules.faults);
     std::vector<Leftover> spoiled = nameless(diagnosis.faults, options.without), aside;
+    AngleBefore before(whole, log.has_position());
+    if (!log.has_position()) straighten(whole, model, rules);
     Case part = excerpt(whole, rules.recording);
-    const Searched found = search_rest(part, model, effects, diagnosis, aside, work, rules);
-    Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr);
+    const Searched found =
+        search_straight(whole, part, model, effects, diagnosis, aside, work, rules, log.has_position());
+    if (other && !(log.has_position() && validation->has_position())) before.of_other(*other);
+    Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr, before.has_other());
+    diagnosis.angle = before.account(whole, other ? &*other : nullptr);
     last = with_findings_beside(diagnosis, *found.bench, last, other ? &*other : nullptr, effects);
     if (!log.has_position())
         diagnosis.undecidable = undecidable(*found.bench, last, effects, options.without);

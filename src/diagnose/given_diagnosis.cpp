@@ -43,8 +43,7 @@ struct GivenLog {
         Case rest = c;
         const auto brought = brought_nm(columns, values, 0, columns.stated);
         add_scaled(-1.0, brought.data(), rest.torque_nm.data(), rest.torque_nm.size());
-        // The last is the offset, which nothing carries.
-        rest.motion.carried_nm = brought_nm(columns, values, 0, columns.stated - 1);
+        rest.motion.carried_nm = carried_nm(columns, values);
         return rest;
     }
 };
@@ -58,7 +57,8 @@ void tell_given(Diagnosis& diagnosis, const Model& model, std::span<const GivenT
     const std::vector<std::string> names = given_names(model, given);
     for (std::size_t i = 0; i < names.size(); ++i) {
         GivenValue value{names[i], outcome.given_values[i], std::nullopt};
-        if (i < outcome.given_errors.size()) {
+        // A value that is stated has none.
+        if (i < outcome.given_errors.size() && outcome.given_errors[i] > stated_deviation) {
             const double half = normal_95_errors * outcome.given_errors[i];
             value.ci95 = Interval{value.value - half, value.value + half};
         }
@@ -169,6 +169,7 @@ class GivenDiagnosis {
         const Case after = whole_.less(model_, values, rules_);
         told_.residual_before_nm = left_of(before, told_.baseline);
         told_.residual_after_nm = left_of(after, told_.model);
+        told_.beside_given_nm = after.torque_nm;
         const GapCase log{before, after};
         if (other_) {
             const Case other_before = other_->less(model_, as_given(model_, *other_, rules_), rules_);

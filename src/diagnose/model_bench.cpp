@@ -50,12 +50,14 @@ Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::v
                    .most_iterations = most_iterations,
                    .settled = settled,
                    .errors = false,
-                   .weighing = &weighing_});
+                   .weighing = &weighing_,
+                   .carriers = &carriers_});
 }
 
 Candidate ModelBench::with_errors(Candidate model) const {
-    const Fit there = fit(model.open, case_.motion, case_.torque_nm,
-                          {.first_guess = &model.stated, .most_iterations = 0, .weighing = &weighing_});
+    const Fit there = fit(
+        model.open, case_.motion, case_.torque_nm,
+        {.first_guess = &model.stated, .most_iterations = 0, .weighing = &weighing_, .carriers = &carriers_});
     work_.add(there.applied, case_.size());
     model.values = there.values;
     return model;
@@ -67,7 +69,8 @@ Candidate ModelBench::settled(const Candidate& model) const {
                    .most_iterations = 30,
                    .error_stretch = static_cast<std::size_t>(
                        std::ceil(rules_.values.error_stretch_s * case_.motion.sample_rate.value())),
-                   .weighing = &weighing_});
+                   .weighing = &weighing_,
+                   .carriers = &carriers_});
 }
 
 Candidate ModelBench::fitted(const Model& open, std::vector<double> prices, const FitOptions& options) const {

@@ -10,6 +10,7 @@
 #include "diagnose/case.hpp"
 #include "diagnose/noise_floor.hpp"
 #include "diagnose/work.hpp"
+#include "model/carriers.hpp"
 #include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {
@@ -91,6 +92,7 @@ class ModelBench {
     [[nodiscard]] Candidate fitted(const Model& open, std::vector<double> prices,
                                    const FitOptions& options) const;
     mutable std::vector<Screened> screened_;
+    mutable Carriers carriers_;
     const Case& case_;
     NoiseFloor noise_;
     Work& work_;

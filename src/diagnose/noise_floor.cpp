@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "core/many_numbers.hpp"
 #include "diagnose/lines.hpp"
+#include "diagnose/noise_columns.hpp"
 #include "model/fit_coordinates.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -15,29 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 using NoiseRules = DiagnosisRules::NoiseRules;
-
-struct Columns {
-    explicit Columns(std::size_t rows) : rows_(rows) {}
-    template <class Function>
-    void add(const Function& value_at) {
-        std::vector<double> column(rows_);
-        double squares = 0.0;
-        for (std::size_t k = 0; k < rows_; ++k) squares += (column[k] = value_at(k)) * column[k];
-        if (!(squares > 0.0) || !std::isfinite(squares)) return;
-        const double scale = std::sqrt(static_cast<double>(rows_) / squares);
-        for (const double value : column) values.push_back(scale * value);
-    }
-    [[nodiscard]] Index count() const { return static_cast<Index>(values.size() / rows_); }
-    std::vector<double> values;
-
-  private:
-    std::size_t rows_;
-};
 
 // Cubic B-spline number i of n over [low, high].
 double spline(double x, double low, double high, std::size_t i, std::size_t n) {
@@ -48,52 +26,86 @@ double spline(double x, double low, double high, std::size_t i, std::size_t n) {
     return d < 1.0 ? (4.0 - 6.0 * d * d + 3.0 * d * d * d) / 6.0 : (2.0 - d) * (2.0 - d) * (2.0 - d) / 6.0;
 }
 
-template <class Function>
-void add_wave(Columns& columns, const Function& turns_at, const std::function<double(std::size_t)>& size) {
-    columns.add([&](std::size_t k) { return size(k) * portable::cos(2.0 * std::numbers::pi * turns_at(k)); });
-    columns.add([&](std::size_t k) { return size(k) * portable::sin(2.0 * std::numbers::pi * turns_at(k)); });
+// Cosine and sine of an angle in turns, at every sample.
+struct Wave {
+    template <class Function>
+    Wave(std::size_t rows, const Function& turns_at) : cosine(rows), sine(rows) {
+        std::vector<double> angle(rows);
+        for (std::size_t k = 0; k < rows; ++k) angle[k] = 2.0 * std::numbers::pi * turns_at(k);
+        portable::phasors(angle, cosine, sine);
+    }
+    std::vector<double> cosine, sine;
+};
+
+void add_wave(NoiseColumns& columns, const Wave& wave) {
+    columns.add([&](std::size_t k) { return wave.cosine[k]; });
+    columns.add([&](std::size_t k) { return wave.sine[k]; });
+}
+
+void add_wave(NoiseColumns& columns, const Wave& wave, const std::vector<double>& size) {
+    columns.add([&](std::size_t k) { return size[k] * wave.cosine[k]; });
+    columns.add([&](std::size_t k) { return size[k] * wave.sine[k]; });
+}
+
+// tanh of the speed over the width of a step of direction, at every sample.
+std::vector<double> direction_of(const Case& c, const NoiseRules& rules) {
+    const double width_deg_s = rules.step_part * c.moving_deg_s;
+    std::vector<double> direction = c.motion.velocity_deg_s;
+    for (double& value : direction) value /= width_deg_s;
+    portable::many_tanh(direction);
+    return direction;
+}
+
+// With what ripple may swell.
+std::vector<std::vector<double>> swells_of(const Case& c, const NoiseRules& rules) {
+    const Motion& m = c.motion;
+    const double middle_s = 0.5 * (m.time_s.front() + m.time_s.back()), half_s = m.time_s.back() - middle_s;
+    std::vector<std::vector<double>> swells(8);
+    for (std::size_t k = 0; k < c.size(); ++k) {
+        const double v = m.velocity_deg_s[k], elapsed = (m.time_s[k] - middle_s) / half_s;
+        swells[0].push_back(std::abs(v));
+        swells[1].push_back(v);
+        swells[2].push_back(v * v);
+        swells[4].push_back(std::abs(m.acceleration_deg_s2[k]));
+        swells[5].push_back(elapsed);
+        swells[6].push_back(elapsed * elapsed);
+        swells[7].push_back(m.position_deg[k]);
+    }
+    swells[3] = direction_of(c, rules);
+    return swells;
 }
 
 // Ripple of the model and of its neighbourhood, each swelling with whatever the motion shows.
-void add_ripple(Columns& columns, const Case& c, double ratio, const std::vector<double>& orders,
+void add_ripple(NoiseColumns& columns, const Case& c, double ratio, const std::vector<double>& orders,
                 const NoiseRules& rules) {
     const Motion& m = c.motion;
-    const auto one = [](std::size_t) { return 1.0; };
+    const auto wave = [&](double cycles_per_turn) {
+        return Wave(c.size(), [&](std::size_t k) { return cycles_per_turn * m.position_deg[k] / 360.0; });
+    };
     std::vector<double> all = orders;
     for (double order = 1.0; order <= 6.0; ++order) {
         if (std::find(all.begin(), all.end(), order) == all.end()) all.push_back(order);
     }
-    for (const double order : all)
-        add_wave(
-            columns, [&](std::size_t k) { return order * ratio * m.position_deg[k] / 360.0; }, one);
-    const double width_deg_s = rules.step_part * c.moving_deg_s;
-    const double middle_s = 0.5 * (m.time_s.front() + m.time_s.back()), half_s = m.time_s.back() - middle_s;
-    const std::function<double(std::size_t)> swells[] = {
-        [&](std::size_t k) { return std::abs(m.velocity_deg_s[k]); },
-        [&](std::size_t k) { return m.velocity_deg_s[k]; },
-        [&](std::size_t k) { return m.velocity_deg_s[k] * m.velocity_deg_s[k]; },
-        [&](std::size_t k) { return portable::tanh(m.velocity_deg_s[k] / width_deg_s); },
-        [&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); },
-        [&](std::size_t k) { return (m.time_s[k] - middle_s) / half_s; },
-        [&](std::size_t k) { return portable::pow((m.time_s[k] - middle_s) / half_s, 2); },
-        [&](std::size_t k) { return m.position_deg[k]; }};
-    for (const double order : orders) {
-        const auto turns = [&](std::size_t k) { return order * ratio * m.position_deg[k] / 360.0; };
-        for (const auto& swell : swells) add_wave(columns, turns, swell);
-        for (const double side : {-2.0, -1.0, 1.0, 2.0}) {
-            add_wave(
-                columns, [&](std::size_t k) { return (order * ratio + side) * m.position_deg[k] / 360.0; },
-                one);
-        }
+    std::vector<Wave> own;
+    for (const double order : all) {
+        Wave found = wave(order * ratio);
+        add_wave(columns, found);
+        if (own.size() < orders.size()) own.push_back(std::move(found));
+    }
+    const auto swells = swells_of(c, rules);
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        for (const auto& swell : swells) add_wave(columns, own[i], swell);
+        for (const double side : {-2.0, -1.0, 1.0, 2.0}) add_wave(columns, wave(orders[i] * ratio + side));
     }
 }
 
-void add_smooth(Columns& columns, const Case& c, const NoiseRules& rules) {
+void add_smooth(NoiseColumns& columns, const Case& c, const NoiseRules& rules) {
     const Motion& m = c.motion;
     const double width_deg_s = rules.step_part * c.moving_deg_s;
     const std::size_t positions = rules.position_splines, speeds = rules.speed_splines,
                       times = rules.time_splines;
-    const auto [low_q, high_q] = std::minmax_element(m.position_deg.begin(), m.position_deg.end());
+    const auto span = std::minmax_element(m.position_deg.begin(), m.position_deg.end());
+    const double low_deg = *span.first, high_deg = *span.second;
     double fastest = 0.0;
     for (const double v : m.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
     for (const double direction : {-1.0, 1.0}) {
@@ -102,7 +114,7 @@ void add_smooth(Columns& columns, const Case& c, const NoiseRules& rules) {
         };
         for (std::size_t i = 0; i < positions; ++i) {
             columns.add([&](std::size_t k) {
-                return moves(k) * spline(m.position_deg[k], *low_q, *high_q, i, positions);
+                return moves(k) * spline(m.position_deg[k], low_deg, high_deg, i, positions);
             });
         }
         for (std::size_t i = 0; i < speeds; ++i) {  // closer where it is slow: friction changes most there
@@ -117,13 +129,12 @@ void add_smooth(Columns& columns, const Case& c, const NoiseRules& rules) {
             [&](std::size_t k) { return spline(m.time_s[k], m.time_s.front(), m.time_s.back(), i, times); });
     columns.add([&](std::size_t k) { return m.acceleration_deg_s2[k]; });
     columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); });
-    columns.add([&](std::size_t k) { return portable::tanh(m.velocity_deg_s[k] / width_deg_s); });
-    columns.add([&](std::size_t k) {
-        return std::abs(m.acceleration_deg_s2[k]) * portable::tanh(m.velocity_deg_s[k] / width_deg_s);
-    });
+    const std::vector<double> direction = direction_of(c, rules);
+    columns.add([&](std::size_t k) { return direction[k]; });
+    columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]) * direction[k]; });
 }
 
-void add_slopes(Columns& columns, const Case& c, const Model& model, const Model& open) {
+void add_slopes(NoiseColumns& columns, const Case& c, const Model& model, const Model& open) {
     const Coordinates coordinates(open, &model);
     std::vector<double> point;
     for (const Coordinate& coordinate : coordinates.list()) point.push_back(coordinate.start);
@@ -132,22 +143,6 @@ void add_slopes(Columns& columns, const Case& c, const Model& model, const Model
         const auto slope = slope_nm(prediction, coordinates, point, i);
         columns.add([&](std::size_t k) { return slope[k]; });
     }
-}
-
-VectorXd left_by(const Columns& columns, const Case& c, const std::vector<double>& torque_nm) {
-    const auto n = static_cast<Index>(c.size());
-    Eigen::Map<const MatrixXd> all(columns.values.data(), n, columns.count());
-    VectorXd used(n), y(n);
-    for (Index k = 0; k < n; ++k) {
-        used[k] = c.use[static_cast<std::size_t>(k)] != 0 ? 1.0 : 0.0;
-        y[k] = used[k] * torque_nm[static_cast<std::size_t>(k)];
-    }
-    const MatrixXd masked = used.asDiagonal() * all;
-    MatrixXd gram = MatrixXd::Zero(all.cols(), all.cols());
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(masked.transpose());
-    gram.diagonal().array() += 1e-7 * static_cast<double>(n);
-    const VectorXd theta = gram.selfadjointView<Eigen::Lower>().ldlt().solve(masked.transpose() * y);
-    return y - masked * theta;
 }
 
 // Levinson's recursion; the order that the length of the log supports.
@@ -177,13 +172,13 @@ void color_of(const std::vector<double>& covariance, double samples, double lag_
 }
 
 // rms of a stretch of the log that is quieter than most.
-double quiet_rms(const VectorXd& left, const Case& c, const NoiseRules& rules) {
-    const Index length = std::max<Index>(left.size() / static_cast<Index>(rules.quiet_stretches), 50);
+double quiet_rms(const std::vector<double>& left, const Case& c, const NoiseRules& rules) {
+    const std::size_t length = std::max<std::size_t>(left.size() / rules.quiet_stretches, 50);
     std::vector<double> powers;
-    for (Index first = 0; first + length <= left.size(); first += length) {
+    for (std::size_t first = 0; first + length <= left.size(); first += length) {
         double sum = 0.0, count = 0.0;
-        for (Index k = first; k < first + length; ++k) {
-            if (c.use[static_cast<std::size_t>(k)] == 0) continue;
+        for (std::size_t k = first; k < first + length; ++k) {
+            if (c.use[k] == 0) continue;
             sum += left[k] * left[k];
             count += 1.0;
         }
@@ -208,32 +203,28 @@ double NoiseFloor::of_sums() const {
 namespace {
 
 // Lines that stand out of what is about them are no noise: they become columns, two at a time.
-VectorXd left_without_lines(Columns& columns, const Case& c, const std::vector<double>& torque_nm,
-                            const DiagnosisRules& rules) {
-    VectorXd left = left_by(columns, c, torque_nm);
+std::vector<double> left_without_lines(NoiseColumns& columns, const Case& c,
+                                       const std::vector<double>& torque_nm, const DiagnosisRules& rules) {
+    std::vector<double> left = columns.left_of(torque_nm);
     for (std::size_t line = 0; line < rules.noise_floor.most_lines; line += 2) {
-        const std::vector<double> values(left.data(), left.data() + left.size());
-        const auto found = standing_out(c, values, rules.noise_floor.stands_out, 2, rules.lines);
+        const auto found = standing_out(c, left, rules.noise_floor.stands_out, 2, rules.lines);
         if (found.empty()) break;
         for (const ResidualLine& strong : found) {
             const auto& where = strong.by_angle ? c.motion.position_deg : c.motion.time_s;
-            add_wave(
-                columns, [&](std::size_t k) { return strong.frequency * where[k]; },
-                [](std::size_t) { return 1.0; });
+            add_wave(columns, Wave(c.size(), [&](std::size_t k) { return strong.frequency * where[k]; }));
         }
-        left = left_by(columns, c, torque_nm);
+        left = columns.left_of(torque_nm);
     }
     return left;
 }
 
 // At lags 0 to most_lags, over pairs of samples that both count.
-std::vector<double> autocovariance(const VectorXd& left, const Case& c, std::size_t most_lags) {
+std::vector<double> autocovariance(const std::vector<double>& left, const Case& c, std::size_t most_lags) {
     std::vector<double> covariance;
-    for (Index lag = 0; lag <= static_cast<Index>(most_lags); ++lag) {
+    for (std::size_t lag = 0; lag <= most_lags; ++lag) {
         double sum = 0.0, count = 0.0;
-        for (Index k = lag; k < left.size(); ++k) {
-            if (c.use[static_cast<std::size_t>(k)] == 0 || c.use[static_cast<std::size_t>(k - lag)] == 0)
-                continue;
+        for (std::size_t k = lag; k < left.size(); ++k) {
+            if (c.use[k] == 0 || c.use[k - lag] == 0) continue;
             sum += left[k] * left[k - lag];
             count += 1.0;
         }
@@ -251,13 +242,13 @@ NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& o
     const auto predicted = predict_nm(model, c.motion);
     for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];
     const StatedRipple ripple = stated_ripple(model);
-    Columns columns(c.size());
+    NoiseColumns columns(c.use);
     add_slopes(columns, c, model, open);
     add_ripple(columns, c, ripple.ratio.value(), ripple.orders, rules.noise_floor);
     add_smooth(columns, c, rules.noise_floor);
     for (const Nuisance& nuisance : motion_errors(c, model, rules.recording))
         columns.add([&](std::size_t k) { return nuisance.torque_nm[k]; });
-    const VectorXd left = left_without_lines(columns, c, torque_nm, rules);
+    const std::vector<double> left = left_without_lines(columns, c, torque_nm, rules);
     std::vector<double> covariance = autocovariance(left, c, rules.noise_floor.most_lags);
     const double samples = static_cast<double>(c.used());
     const double spent = samples / std::max(samples - static_cast<double>(columns.count()), 0.2 * samples);

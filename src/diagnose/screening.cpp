@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "core/linear_algebra.hpp"
+#include "core/vectors/dot.hpp"
 #include "diagnose/search_starts.hpp"
+#include "model/carriers.hpp"
 #include "model/fit_coordinates.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -22,18 +24,41 @@ VectorXd to_vector(const std::vector<double>& values) {
     return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
+// Takes off what lies along the first `count` columns of the basis.
+void take_off(const MatrixXd& basis, Index count, VectorXd& column) {
+    const auto rows = static_cast<std::size_t>(column.size());
+    for (Index b = 0; b < count; ++b) {
+        const double* const other = basis.col(b).data();
+        add_scaled(-dot(other, column.data(), rows), other, column.data(), rows);
+    }
+}
+
+double length_of(const VectorXd& column) {
+    return std::sqrt(dot(column.data(), column.data(), static_cast<std::size_t>(column.size())));
+}
+
+// A column that keeps most of its length is orthogonal to rounding after one pass; twice is enough for any
+// other (Kahan, Parlett).
 MatrixXd orthonormal(const std::vector<VectorXd>& columns, Index rows) {
     MatrixXd basis(rows, static_cast<Index>(columns.size()));
     Index kept = 0;
     for (const VectorXd& given : columns) {
-        VectorXd column = given;
-        const double length = column.norm();
+        const double length = length_of(given);
         if (!(length > 0.0)) continue;
-        for (int pass = 0; pass < 2; ++pass)
-            column -= basis.leftCols(kept) * (basis.leftCols(kept).transpose() * column);
-        if (column.norm() > 1e-7 * length) basis.col(kept++) = column.normalized();
+        VectorXd column = given;
+        take_off(basis, kept, column);
+        if (length_of(column) < 0.5 * length) take_off(basis, kept, column);
+        const double left = length_of(column);
+        if (left > 1e-7 * length) basis.col(kept++) = column / left;
     }
-    return basis.leftCols(kept);
+    basis.conservativeResize(rows, kept);
+    return basis;
+}
+
+// Of a column, what lies outside the basis.
+VectorXd outside_of(const MatrixXd& basis, VectorXd column) {
+    take_off(basis, basis.cols(), column);
+    return column;
 }
 
 // A joint has one delay, one lag, one gear ratio, and ripple grows with the speed in one way: what a second
@@ -62,7 +87,7 @@ class Screening {
         : model_(model),
           rules_(bench.rules()),
           case_(std::move(some)),
-          prediction_(model.stated, case_.motion),
+          prediction_(model.stated, case_.motion, &carriers_),
           samples_(bench.samples()),
           work_(bench.work()),
           hints_(hints) {
@@ -111,9 +136,7 @@ class Screening {
         return columns;
     }
 
-    [[nodiscard]] VectorXd outside(const VectorXd& column) const {
-        return column - basis_ * (basis_.transpose() * column);
-    }
+    [[nodiscard]] VectorXd outside(const VectorXd& column) const { return outside_of(basis_, column); }
 
     static std::size_t free_values(const Term& term) {
         std::size_t count = 0;
@@ -181,7 +204,12 @@ class Screening {
         if (beside.empty()) return 0.0;
         if (columns.size() == 1 && least == 0.0 && beside[0].dot(left_) < 0.0) return 0.0;
         const MatrixXd basis = orthonormal(beside, left_.size());
-        return (basis.transpose() * left_).squaredNorm();
+        double gain = 0.0;
+        for (Index b = 0; b < basis.cols(); ++b) {
+            const double along = basis.col(b).dot(left_);
+            gain += along * along;
+        }
+        return gain;
     }
 
     // Of an effect that changes the model's own torque: everything linear is solved anew.
@@ -189,16 +217,17 @@ class Screening {
         Model with = model_.stated, open = model_.open;
         with.terms.push_back(start);
         open.terms.push_back(start);
-        const Prediction changed(with, case_.motion);
+        const Prediction changed(with, case_.motion, &carriers_);
         const MatrixXd basis = orthonormal(columns_of(open, changed, true), torque_.size());
         const VectorXd left = counted(torque_ - to_vector(changed.torque_nm()));
         work_.add(changed.applied(), case_.size());
-        return left_.squaredNorm() - (left - basis * (basis.transpose() * left)).squaredNorm();
+        return left_.squaredNorm() - outside_of(basis, left).squaredNorm();
     }
 
     const Candidate& model_;
     const DiagnosisRules& rules_;
     Case case_;
+    mutable Carriers carriers_;
     Prediction prediction_;
     double samples_, unit_ = 1.0;
     Work& work_;

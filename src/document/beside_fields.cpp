@@ -51,7 +51,8 @@ void put_beside(Json& json, const Diagnosis& diagnosis) {
     Json given = Json::object();
     double scale = 1.0;
     for (const GivenValue& value : diagnosis.given) {
-        if (value.name == "arm") continue;  // values of no link, but of what the log tells of all
+        // Values of no link, but of what the log tells of all; and what was stated.
+        if (value.name == "arm" || value.name == "nuisance") continue;
         if (value.name != simulated) {
             if (!given.empty()) given[value.name] = six(value.value);
         } else if (!given.contains("scale")) {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "document/angle_fields.hpp"
 #include "document/beside_fields.hpp"
+#include "document/decided_fields.hpp"
 #include "document/diagnosis_fields.hpp"
 #include "document/gear_fields.hpp"
 #include "document/model_fields.hpp"
@@ -153,13 +155,17 @@ Json arm_json(const ArmAccount& arm) {
     for (const JointTravel& joint : arm.joints)
         json["joints"].push_back(
             {{"name", joint.name}, {"log", joint.log}, {"travel_deg", six(joint.travel_deg)}});
+    json["lengths_are_guessed"] = arm.lengths_are_guessed;
+    json["smoothing_s"] = arm.smoothing.value();
+    json["gap_before_nm"] = six(arm.gap_before_nm);
+    if (arm.values_are_stated) {
+        json["values_are_stated"] = true;
+        return json;
+    }
     json["values_there"] = arm.values_there;
     json["values_told"] = arm.values_told;
     json["all_joints_at_once"] = arm.all_joints_at_once;
-    json["lengths_are_guessed"] = arm.lengths_are_guessed;
     json["lambda"] = arm.pull;
-    json["smoothing_s"] = arm.smoothing.value();
-    json["gap_before_nm"] = six(arm.gap_before_nm);
     json["gap_nm"] = six(arm.gap_nm);
     return json;
 }
@@ -177,11 +183,7 @@ Json decisions_json(const Diagnosis& diagnosis) {
     return list;
 }
 
-}  // namespace
-
-std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
-                            const ArmAccount* arm) {
-    Json json = document_head("diagnosis", provenance);
+void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& gear, const ArmAccount* arm) {
     json["verdict"] = verdict_name(diagnosis.verdict);
     if (!diagnosis.doubt.empty()) json["doubt"] = diagnosis.doubt;
     json["gear"] = gear_to_json(gear);
@@ -203,16 +205,37 @@ std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
                                        {"would_explain_nm", six(entry.would_explain_nm)}});
     json["gap"] = gap_json(diagnosis.gap);
     put_beside(json, diagnosis);
+    put_decided(json, diagnosis);
     if (arm != nullptr) json["arm"] = arm_json(*arm);
     json["own_terms"] = baseline_json(diagnosis);
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;
     json["position_in_log"] = diagnosis.has_position;
+    put_angle(json, diagnosis);
     json["search"] = {{"evaluations", std::round(diagnosis.evaluations)}, {"ended", diagnosis.search_ended}};
     json["noise_color"] = numbers_json(diagnosis.noise_color);
     json["false_alarm"] = diagnosis.false_alarm;
     json["model"] = {{"schema", "ripplenotch/model/1"}};
     put_model(json["model"], diagnosis.model);
+}
+
+}  // namespace
+
+std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
+                            const ArmAccount* arm) {
+    Json json = document_head("diagnosis", provenance);
+    put_diagnosis(json, diagnosis, gear, arm);
+    return to_fitted_text(std::move(json));
+}
+
+std::string write_diagnoses(std::span<const DiagnosedJoint> joints, const Provenance& provenance) {
+    Json json = document_head("diagnoses", provenance);
+    json["joints"] = Json::array();
+    for (const DiagnosedJoint& one : joints) {
+        Json entry{{"joint", one.joint}};
+        put_diagnosis(entry, one.diagnosis, one.gear, one.arm);
+        json["joints"].push_back(std::move(entry));
+    }
     return to_fitted_text(std::move(json));
 }
 

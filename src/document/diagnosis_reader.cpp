@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <limits>
 
+#include "document/angle_fields.hpp"
 #include "document/beside_fields.hpp"
+#include "document/decided_fields.hpp"
 #include "document/fields.hpp"
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -29,7 +31,7 @@ Enum enumerator_of(Fields& fields, std::string_view name, Enum last, std::string
 
 Span span_of(const Json& json, const std::string& where) {
     if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number())
-        raise<DataError>("{} holds {}, expected two numbers", where, json.dump());
+        raise<DataError>("{} holds {}, expected two numbers", where, in_words(json));
     return {json[0].get<double>(), json[1].get<double>()};
 }
 
@@ -151,6 +153,16 @@ void decision_of(Fields& fields, Diagnosis& diagnosis) {
     finding.decisions = rules_of(fields);
 }
 
+void accepted_of(Fields& fields, Diagnosis& diagnosis) {
+    AcceptedFinding one;
+    const std::size_t place = diagnosis.baseline.terms.size() + diagnosis.accepted.size();
+    one.term = fitted_term_of(fields, place, one.values);
+    one.status = enumerator_of(fields, "status", FindingStatus::not_reproduced, status_name);
+    if (fields.has("reason")) one.reason = fields.text("reason");
+    diagnosis.values.insert(diagnosis.values.end(), one.values.begin(), one.values.end());
+    diagnosis.accepted.push_back(std::move(one));
+}
+
 // Everything that was found, beside the model.
 void findings_of(Fields& fields, Diagnosis& diagnosis) {
     fields.each("own_terms", [&](Fields& entry) {
@@ -158,7 +170,9 @@ void findings_of(Fields& fields, Diagnosis& diagnosis) {
         diagnosis.baseline.terms.push_back({fitted.effect, {}});
         diagnosis.baseline.terms.back().values.resize(fitted.values.size());
     });
-    const std::size_t own = diagnosis.baseline.terms.size();
+    if (fields.has("accepted"))
+        fields.each("accepted", [&](Fields& entry) { accepted_of(entry, diagnosis); });
+    const std::size_t own = diagnosis.baseline.terms.size() + diagnosis.accepted.size();
     fields.each("rounds", [&](Fields& entry) {
         diagnosis.rounds.push_back(finding_at(entry, own + diagnosis.rounds.size()));
     });
@@ -196,9 +210,11 @@ Diagnosis read_diagnosis(std::string_view text, const std::string& source) {
     findings_of(fields, diagnosis);
     diagnosis.gap = gap_of(fields);
     read_beside(fields, diagnosis);
+    read_decided(fields, diagnosis);
     diagnosis.samples = fields.whole("samples");
     diagnosis.samples_used = fields.whole("samples_used");
     diagnosis.has_position = fields.flag("position_in_log");
+    read_angle(fields, diagnosis);
     Fields search = fields.object("search");
     diagnosis.evaluations = search.number("evaluations");
     diagnosis.search_ended = search.flag("ended");

@@ -9,6 +9,14 @@
 
 namespace ripplenotch {
 
+std::string in_words(const Json& value) {
+    constexpr std::size_t most = 40;
+    if (value.is_array()) return "a list";
+    if (value.is_object()) return "an object";
+    const std::string text = value.dump();
+    return text.size() <= most ? text : text.substr(0, most) + "...";
+}
+
 Fields::Fields(const Json& object, std::string source, std::string path)
     : object_(object), source_(std::move(source)), path_(std::move(path)) {
     if (!object_.is_object()) {
@@ -38,7 +46,7 @@ const Json& Fields::at(std::string_view name) {
 
 double Fields::number(std::string_view name) {
     const Json& value = at(name);
-    if (!value.is_number()) raise<DataError>("{} is {}, expected a number", where(name), value.dump());
+    if (!value.is_number()) raise<DataError>("{} is {}, expected a number", where(name), in_words(value));
     return value.get<double>();
 }
 
@@ -63,7 +71,7 @@ bool Fields::flag(std::string_view name) {
 
 std::string Fields::text(std::string_view name) {
     const Json& value = at(name);
-    if (!value.is_string()) raise<DataError>("{} is {}, expected a text", where(name), value.dump());
+    if (!value.is_string()) raise<DataError>("{} is {}, expected a text", where(name), in_words(value));
     return value.get<std::string>();
 }
 
@@ -76,7 +84,8 @@ const Json& Fields::list(std::string_view name) {
 std::vector<double> Fields::numbers(std::string_view name) {
     std::vector<double> values;
     for (const Json& value : list(name)) {
-        if (!value.is_number()) raise<DataError>("{} holds {}, expected numbers", where(name), value.dump());
+        if (!value.is_number())
+            raise<DataError>("{} holds {}, expected numbers", where(name), in_words(value));
         values.push_back(value.get<double>());
     }
     return values;
@@ -85,7 +94,7 @@ std::vector<double> Fields::numbers(std::string_view name) {
 std::vector<std::string> Fields::texts(std::string_view name) {
     std::vector<std::string> values;
     for (const Json& value : list(name)) {
-        if (!value.is_string()) raise<DataError>("{} holds {}, expected texts", where(name), value.dump());
+        if (!value.is_string()) raise<DataError>("{} holds {}, expected texts", where(name), in_words(value));
         values.push_back(value.get<std::string>());
     }
     return values;
@@ -97,8 +106,24 @@ void Fields::refuse_name(std::string_view name, const std::string& word) const {
     raise<DataError>("{} is \"{}\", which is none of its names", where(name), word);
 }
 
+const Json& Fields::list(std::string_view name, std::size_t most) {
+    const Json& value = list(name);
+    if (value.size() > most)
+        raise<DataError>("{} has {} entries, expected at most {}", where(name), value.size(), most);
+    return value;
+}
+
 void Fields::ignore_head() {
-    ignore({"schema", "tool", "version", "command", "inputs", "recording", "recordings"});
+    for (const std::string_view name : {"schema", "tool", "version", "command"})
+        if (has(name)) static_cast<void>(text(name));
+    if (has("inputs")) {
+        each("inputs", [](Fields& input) {
+            static_cast<void>(input.text("name"));
+            if (input.has("sha256")) static_cast<void>(input.text("sha256"));
+            if (input.has("rows")) static_cast<void>(input.whole("rows"));
+        });
+    }
+    ignore({"recording", "recordings"});
 }
 
 void Fields::ignore(std::initializer_list<std::string_view> names) {

@@ -10,8 +10,12 @@
 #include <vector>
 
 #include "document/json.hpp"
+#include "document/limits.hpp"
 
 namespace ripplenotch {
+
+/// A value as a message names it: short, whatever it is.
+[[nodiscard]] std::string in_words(const Json& value);
 
 /// One object of a document. What is asked for by name must be there and of its kind, but for `find` and
 /// `number_if_any`.
@@ -29,6 +33,7 @@ class Fields {
     [[nodiscard]] std::vector<double> numbers(std::string_view name);
     [[nodiscard]] std::vector<std::string> texts(std::string_view name);
     [[nodiscard]] const Json& list(std::string_view name);
+    [[nodiscard]] const Json& list(std::string_view name, std::size_t most);  ///< of so many entries at most
     /// The object of this name; its finish() is the caller's.
     [[nodiscard]] Fields object(std::string_view name);
     /// The value that `value_of` (text to optional) has for the text of this name.
@@ -39,19 +44,19 @@ class Fields {
         if (!value) refuse_name(name, word);
         return *value;
     }
-    /// Calls read(Fields&) with each object of a list, and finishes each.
+    /// Calls read(Fields&) with each object of a list of at most so many, and finishes each.
     template <class Read>
-    void each(std::string_view name, Read read) {
-        const Json& objects = list(name);
+    void each(std::string_view name, Read read, std::size_t most = most_entries) {
+        const Json& objects = list(name, most);
         for (std::size_t i = 0; i < objects.size(); ++i) {
             Fields entry(objects[i], source_, path_of(fmt::format("{}[{}]", name, i)));
             read(entry);
             entry.finish();
         }
     }
-    void ignore(std::initializer_list<std::string_view> names);    ///< known, not used
-    void ignore_head();                                            ///< the same of document_head()
-    void finish() const;                                           ///< throws on fields nobody asked for
+    void ignore(std::initializer_list<std::string_view> names);  ///< known, not used
+    void ignore_head();   ///< the same of document_head(), whose kinds are checked
+    void finish() const;  ///< throws on fields nobody asked for
     [[nodiscard]] std::string where(std::string_view name) const;  ///< "table.json: bands[2].q"
 
   private:

@@ -19,6 +19,7 @@ Enum word_of(Fields& fields, std::string_view name, const std::array<const char*
                      words.front());
 }
 
+constexpr double lowest_panel = 0.1, highest_panel = 10.0;  // against the others
 constexpr std::array scales = {"linear", "logarithmic", "whole"};
 constexpr std::array styles = {"line", "dashed", "steps", "points", "stems"};
 constexpr std::array runs = {"at-x", "at-y", "ray"};
@@ -31,6 +32,13 @@ Ink ink_of(Fields& fields) {
                      ink_rgb(Ink::blue));
 }
 
+std::string words(Fields& fields, std::string_view name) {
+    std::string text = fields.text(name);
+    if (text.size() > most_words)
+        raise<DataError>("{} has {} bytes, expected at most {}", fields.where(name), text.size(), most_words);
+    return text;
+}
+
 // null is a nan: a break, an empty cell.
 std::vector<double> numbers_of(Fields& fields, std::string_view name) {
     const Json& array = fields.at(name);
@@ -38,7 +46,7 @@ std::vector<double> numbers_of(Fields& fields, std::string_view name) {
     std::vector<double> values;
     for (const Json& entry : array) {
         if (!entry.is_number() && !entry.is_null())
-            raise<DataError>("{}: holds {}, expected numbers and null", fields.where(name), entry.dump());
+            raise<DataError>("{}: holds {}, expected numbers and null", fields.where(name), in_words(entry));
         values.push_back(entry.is_null() ? std::numeric_limits<double>::quiet_NaN() : entry.get<double>());
     }
     return values;
@@ -59,28 +67,34 @@ class Reader {
     Panel panel(const Json& json, const std::string& path) const {
         Fields fields(json, source_, path);
         Panel panel;
-        panel.title = fields.text("title");
+        panel.title = words(fields, "title");
         panel.x = axis(fields.at("x"), path + ".x");
         panel.y = axis(fields.at("y"), path + ".y");
         panel.legend = flag(fields, "legend");
         panel.height = fields.number("height");
+        if (!(panel.height >= lowest_panel && panel.height <= highest_panel))
+            raise<DataError>("{} is {}, expected {} to {}", fields.where("height"), panel.height,
+                             lowest_panel, highest_panel);
         if (const Json* map = fields.find("map")) panel.map = heat_map(*map, path + ".map");
-        each(fields, "shades", path, [&](Fields& f) {
-            const auto [x_from, x_to] = edges_of(f, "x");
-            const auto [y_from, y_to] = edges_of(f, "y");
-            panel.shades.push_back({f.text("name"), ink_of(f), x_from, x_to, y_from, y_to});
-        });
+        each(
+            fields, "shades", path,
+            [&](Fields& f) {
+                const auto [x_from, x_to] = edges_of(f, "x");
+                const auto [y_from, y_to] = edges_of(f, "y");
+                panel.shades.push_back({words(f, "name"), ink_of(f), x_from, x_to, y_from, y_to});
+            },
+            most_shades);
         each(fields, "ribbons", path, [&](Fields& f) {
-            panel.ribbons.push_back(
-                {f.text("name"), ink_of(f), numbers_of(f, "x"), numbers_of(f, "low"), numbers_of(f, "high")});
+            panel.ribbons.push_back({words(f, "name"), ink_of(f), numbers_of(f, "x"), numbers_of(f, "low"),
+                                     numbers_of(f, "high")});
         });
         each(fields, "curves", path, [&](Fields& f) {
-            panel.curves.push_back({f.text("name"), ink_of(f), word_of<CurveStyle>(f, "style", styles),
+            panel.curves.push_back({words(f, "name"), ink_of(f), word_of<CurveStyle>(f, "style", styles),
                                     numbers_of(f, "x"), numbers_of(f, "y")});
         });
         each(fields, "lines", path, [&](Fields& f) {
-            panel.lines.push_back({f.text("name"), word_of<NamedLine::Run>(f, "run", runs), f.number("value"),
-                                   ink_of(f), flag(f, "dashed")});
+            panel.lines.push_back({words(f, "name"), word_of<NamedLine::Run>(f, "run", runs),
+                                   f.number("value"), ink_of(f), flag(f, "dashed")});
         });
         fields.finish();
         return panel;
@@ -95,8 +109,9 @@ class Reader {
 
     PlotAxis axis(const Json& json, const std::string& path) const {
         Fields fields(json, source_, path);
-        PlotAxis axis{fields.text("label"), fields.text("unit"), word_of<PlotScale>(fields, "scale", scales),
-                      fields.number("from"), fields.number("to")};
+        PlotAxis axis{words(fields, "label"), words(fields, "unit"),
+                      word_of<PlotScale>(fields, "scale", scales), fields.number("from"),
+                      fields.number("to")};
         fields.finish();
         if (!(*axis.from < *axis.to) || (axis.scale == PlotScale::logarithmic && !(*axis.from > 0.0)))
             raise<DataError>("{}: {}: cannot span {} to {}", source_, path, *axis.from, *axis.to);
@@ -105,8 +120,8 @@ class Reader {
 
     HeatMap heat_map(const Json& json, const std::string& path) const {
         Fields fields(json, source_, path);
-        HeatMap map{fields.text("label"),
-                    fields.text("unit"),
+        HeatMap map{words(fields, "label"),
+                    words(fields, "unit"),
                     word_of<PlotScale>(fields, "scale", scales),
                     fields.number("lowest"),
                     fields.number("highest"),
@@ -118,9 +133,9 @@ class Reader {
     }
 
     template <class Read>
-    void each(Fields& fields, std::string_view name, const std::string& path, const Read& read) const {
-        const Json& array = fields.at(name);
-        if (!array.is_array()) raise<DataError>("{}: not a list", fields.where(name));
+    void each(Fields& fields, std::string_view name, const std::string& path, const Read& read,
+              std::size_t most = most_curves) const {
+        const Json& array = fields.list(name, most);
         for (std::size_t i = 0; i < array.size(); ++i) {
             Fields entry(array[i], source_, fmt::format("{}.{}[{}]", path, name, i));
             read(entry);
@@ -137,10 +152,9 @@ Figure figure_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "figure");
     Fields fields(json, source, "");
     fields.ignore_head();
-    Figure figure{fields.text("name"), fields.text("title"), fields.text("sentence"), {}};
+    Figure figure{words(fields, "name"), words(fields, "title"), words(fields, "sentence"), {}};
     figure.columns = static_cast<int>(std::clamp(fields.number("columns"), 1.0, 4.0));
-    const Json& panels = fields.at("panels");
-    if (!panels.is_array()) raise<DataError>("{}: not a list", fields.where("panels"));
+    const Json& panels = fields.list("panels", most_panels);
     const Reader reader(source);
     for (std::size_t i = 0; i < panels.size(); ++i)
         figure.panels.push_back(reader.panel(panels[i], fmt::format("panels[{}]", i)));

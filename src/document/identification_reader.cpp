@@ -13,7 +13,7 @@ namespace {
 std::array<double, 2> pair_at(Fields& fields, std::string_view name) {
     const Json& value = fields.list(name);
     if (value.size() != 2 || !value[0].is_number() || !value[1].is_number()) {
-        raise<DataError>("{} is {}, expected two numbers", fields.where(name), value.dump());
+        raise<DataError>("{} is {}, expected two numbers", fields.where(name), in_words(value));
     }
     return {value[0].get<double>(), value[1].get<double>()};
 }
@@ -87,12 +87,21 @@ Disagreement disagreement_from_json(Fields& fields) {
     return one;
 }
 
+int multiple_of(const Fields& fields, double number) {
+    constexpr double most = 1e6;
+    if (!(number >= 1.0 && number <= most) || number != std::floor(number))
+        raise<DataError>("{} holds {}, expected whole numbers from 1 to {}", fields.where("multiples"),
+                         number, most);
+    return static_cast<int>(number);
+}
+
 // Older files have none of it.
 void besides_from_json(Fields& fields, Identification& found) {
     if (fields.has("families")) {
         fields.each("families", [&](Fields& entry) {
             ToneFamily family{entry.number("hz"), entry.number("hz_stderr"), {}};
-            for (const double n : entry.numbers("multiples")) family.multiples.push_back(static_cast<int>(n));
+            for (const double n : entry.numbers("multiples"))
+                family.multiples.push_back(multiple_of(entry, n));
             found.families.push_back(std::move(family));
         });
     }
@@ -134,7 +143,8 @@ Identification identification_from_json(std::string_view text, const std::string
     Fields ratio = fields.object("gear_ratio");
     found.gear_ratio = ratio_from_json(ratio);
     ratio.finish();
-    fields.each("lines", [&](Fields& entry) { found.lines.push_back(line_from_json(entry)); });
+    fields.each(
+        "lines", [&](Fields& entry) { found.lines.push_back(line_from_json(entry)); }, most_lines);
     besides_from_json(fields, found);
     found.notes = fields.texts("notes");
     fields.finish();

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "document/json.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
+#include "document/fields.hpp"
+#include "document/json_door.hpp"
 #include "document/recording_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/version.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 
@@ -55,7 +56,7 @@ std::string to_fitted_text(Json json) {
 
 std::string to_text(const Json& json) {
     // Names of files and columns may hold bytes that are not UTF-8; they are replaced rather than refused.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return visible_json(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 namespace {
@@ -79,30 +80,10 @@ std::string wanted(std::string_view kind) {
     return fmt::format("\"ripplenotch/{}/1\", as '{}' writes it", kind, written_by(kind));
 }
 
-// The opening of the line that is no JSON.
-std::string opening_of(std::string_view text) {
-    constexpr std::size_t most = 20;
-    if (text.empty()) return "an empty file";
-    const std::string_view line = text.substr(0, text.find('\n'));
-    return fmt::format("'{}{}', which is not JSON", visible_text(line.substr(0, most)),
-                       line.size() > most ? "..." : "");
-}
-
 }  // namespace
 
 Json parse_document(std::string_view text, const std::string& source, std::string_view kind) {
-    Json json;
-    try {
-        json = Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        const std::size_t at = std::min<std::size_t>(error.byte == 0 ? 0 : error.byte - 1, text.size());
-        const std::string_view before = text.substr(0, at);
-        const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-        const std::size_t line_start =
-            before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-        raise<DataError>("{}:{}:{}: read {}, expected schema {}", source, line, at - line_start + 1,
-                         opening_of(text.substr(std::min(line_start, text.size()))), wanted(kind));
-    }
+    Json json = read_json(text, source, "schema " + wanted(kind));
     const std::string expected = fmt::format("ripplenotch/{}/1", kind);
     const auto schema = json.is_object() ? json.find("schema") : json.end();
     if (!json.is_object() || schema == json.end() || !schema->is_string()) {
@@ -113,6 +94,25 @@ Json parse_document(std::string_view text, const std::string& source, std::strin
                          wanted(kind));
     }
     return json;
+}
+
+AnyDocument parse_any_document(std::string_view text, const std::string& source) {
+    constexpr std::array kinds = {"comparison", "diagnoses", "diagnosis", "effects", "export",  "figure",
+                                  "frontier",   "info",      "joint",     "joints",  "metrics", "model",
+                                  "simulation", "spectrum",  "table",     "track"};
+    constexpr std::string_view wanted_of_any =
+        "a result of ripplenotch such as joint.json or what --json prints";
+    Json json = read_json(text, source, wanted_of_any);
+    const auto schema = json.is_object() ? json.find("schema") : json.end();
+    if (!json.is_object() || schema == json.end() || !schema->is_string())
+        raise<DataError>("{}: read no \"schema\" field, expected {}", source, wanted_of_any);
+    for (const std::string kind : kinds) {
+        if (*schema != fmt::format("ripplenotch/{}/1", kind)) continue;
+        Fields(json, source, "").ignore_head();
+        return {kind, std::move(json)};
+    }
+    raise<DataError>("{}: read schema \"{}\", expected {}", source, schema->get<std::string>(),
+                     wanted_of_any);
 }
 
 }  // namespace ripplenotch

@@ -30,6 +30,14 @@ using Json = nlohmann::ordered_json;
 /// and the schema expected and found.
 [[nodiscard]] Json parse_document(std::string_view text, const std::string& source, std::string_view kind);
 
+/// A document of any kind that a command writes: "table", "metrics".
+struct AnyDocument {
+    std::string kind;
+    Json json;
+};
+/// The same for a document of any of these kinds, with a head whose fields are of their types.
+[[nodiscard]] AnyDocument parse_any_document(std::string_view text, const std::string& source);
+
 /// Null for what is not finite: JSON has no nan.
 [[nodiscard]] inline Json finite_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "document/arm_fields.hpp"
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -75,6 +76,13 @@ SimulatedTerm simulated_of(Fields& fields) {
     return term;
 }
 
+void refuse_twice(const Model& model, const std::string& source) {
+    for (const Term& term : model.terms) {
+        if (term.effect->name == "gravity" || term.effect->name == "inertia")
+            raise<DataError>("{}: {} is part of arm; remove one of the two", source, term.effect->name);
+    }
+}
+
 }  // namespace
 
 void put_model(Json& json, const Model& model) {
@@ -83,12 +91,16 @@ void put_model(Json& json, const Model& model) {
     for (const Term& term : model.terms) json["effects"].push_back(term_json(term));
 }
 
-std::string write_model(const Model& model, const Provenance& provenance,
-                        const std::optional<SimulatedTerm>& simulated) {
+std::string write_model(const ModelWithGiven& model, const Provenance& provenance) {
     Json json = document_head("model", provenance);
-    if (simulated) json["simulated"] = simulated_json(*simulated);
-    put_model(json, model);
+    if (model.simulated) json["simulated"] = simulated_json(*model.simulated);
+    if (model.arm) json["arm"] = stated_arm_json(*model.arm);
+    put_model(json, model.model);
     return to_text(json);
+}
+
+std::string write_model(const Model& model, const Provenance& provenance) {
+    return write_model(ModelWithGiven{model}, provenance);
 }
 
 // The catalogue answers an unknown name as a wrong request; in a file it is wrong data, and the file must be
@@ -108,7 +120,8 @@ Model model_of(Fields& fields) {
         raise<DataError>("{} is {}, expected a number above 0 and at most {}", fields.where("gear_ratio"),
                          shortest(model.gear_ratio.value()), shortest(largest_gear_ratio.value()));
     }
-    fields.each("effects", [&](Fields& entry) { model.terms.push_back(term_of(entry)); });
+    fields.each(
+        "effects", [&](Fields& entry) { model.terms.push_back(term_of(entry)); }, most_effects);
     return model;
 }
 
@@ -125,6 +138,11 @@ ModelWithGiven read_model_with_given(std::string_view text, const std::string& s
         const Json& stated = json["simulated"];
         found.simulated->fit_delay = stated.contains("delay_s") && stated["delay_s"].is_null();
     }
+    if (fields.has("arm")) {
+        Fields arm = fields.object("arm");
+        found.arm = stated_arm_of(arm, source);
+        refuse_twice(found.model, source);
+    }
     fields.finish();
     return found;
 }
@@ -134,6 +152,8 @@ Model read_model(std::string_view text, const std::string& source) {
     if (found.simulated)
         raise<DataError>("{}: simulated is part of the model; this command has no log to read '{}' from",
                          source, found.simulated->column);
+    if (found.arm)
+        raise<DataError>("{}: an arm is part of the model; this command has no log of its joints", source);
     return std::move(found.model);
 }
 

@@ -60,6 +60,8 @@ Json recording_json(const Recording& recording) {
     if (recording.angle.contradicted) json["angle"]["until_row"] = recording.angle.contradicted->row;
     json["assumptions"] = assumptions_json(recording.assumptions);
     json["inferences"] = assumptions_json(recording.inferences);
+    if (recording.looked_at)
+        json["looked_at"] = {{"rows", recording.looked_at->rows}, {"pieces", recording.looked_at->pieces}};
     if (recording.outside) json["rows_outside"] = outside_json(*recording.outside);
     return json;
 }

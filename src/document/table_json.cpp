@@ -9,6 +9,7 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/design/table_work.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -116,7 +117,8 @@ CandidateNotch notch_from_json(const Json& json, const std::string& source, cons
     return notch;
 }
 
-Band band_from_json(const Json& json, const std::string& source, const std::string& path, TableSpec& spec) {
+Band band_from_json(const Json& json, const std::string& source, const std::string& path, TableSpec& spec,
+                    TableWork& work) {
     Fields fields(json, source, path);
     Band band;
     const double number = fields.number("number");
@@ -126,7 +128,7 @@ Band band_from_json(const Json& json, const std::string& source, const std::stri
     band.number = static_cast<int>(number);
     band.from = DegPerSec(fields.number("speed_from_deg_s"));
     band.to = DegPerSec(fields.number("speed_to_deg_s"));
-    const Json& notches = fields.list("notches");
+    const Json& notches = fields.list("notches", most_orders);
     for (std::size_t i = 0; i < notches.size(); ++i) {
         band.notches.push_back(
             notch_from_json(notches[i], source, fmt::format("{}.notches[{}]", path, i), spec));
@@ -134,6 +136,7 @@ Band band_from_json(const Json& json, const std::string& source, const std::stri
     spec.settle_band_percent = fields.number("settle_band_percent");
     try {
         check_ripple(spec);
+        work.add(band, spec.settle_band_percent);
         measure_band(band, spec);
     } catch (const UsageError& error) {
         raise<DataError>("{}: {}: {}", source, path, error.what());
@@ -185,6 +188,7 @@ CandidateTable table_from_json(std::string_view text, const std::string& source)
     TableSpec spec;
     spec.sample_rate = Hertz(fields.number("sample_rate_hz"));
     spec.gear_ratio = GearRatio(fields.number("gear_ratio"));
+    static_cast<void>(fields.list("orders", most_orders));
     for (const double order : fields.numbers("orders")) spec.orders.emplace_back(order);
     if (fields.has("gear_ratio_error_percent"))
         spec.ratio_error = fields.number("gear_ratio_error_percent") / 100.0;
@@ -194,11 +198,12 @@ CandidateTable table_from_json(std::string_view text, const std::string& source)
     constexpr std::array rules = {OutsideRule::pass, OutsideRule::hold, OutsideRule::fade};
     spec.below = choice_at(fields, "below_first_band", rules, outside_rule_name);
     spec.above = choice_at(fields, "above_last_band", rules, outside_rule_name);
-    const Json& rows = fields.list("bands");
+    const Json& rows = fields.list("bands", most_bands);
     fields.finish();
     std::vector<Band> bands;
+    TableWork work;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        bands.push_back(band_from_json(rows[i], source, fmt::format("bands[{}]", i), spec));
+        bands.push_back(band_from_json(rows[i], source, fmt::format("bands[{}]", i), spec, work));
     }
     if (!bands.empty() && !bands.front().notches.empty()) {
         spec.q = bands.front().notches.front().notch.q;

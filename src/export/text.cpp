@@ -13,6 +13,7 @@
 #include "export/targets.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -68,7 +69,7 @@ std::string comment_lines(std::span<const std::string> lines, std::string_view m
             if (static_cast<unsigned char>(c) < 0x20) c = ' ';
         }
         for (std::size_t at = 0; (at = line.find("*/", at)) != std::string::npos;) line.replace(at, 2, "* /");
-        text += fmt::format("{}{}\n", mark, line);
+        text += fmt::format("{}{}\n", mark, visible_text(line));
     }
     return text;
 }

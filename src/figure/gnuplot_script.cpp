@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -7,9 +7,9 @@
 #include "figure/gnuplot_process.hpp"
 #include "figure/gnuplot_script.hpp"
 #include "figure/picture_layout.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
 #include "ripplenotch/figure/min_max.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "figure/gnuplot_script.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {

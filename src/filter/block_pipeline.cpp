@@ -4,8 +4,12 @@
 #include <condition_variable>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <optional>
+#include <system_error>
 #include <thread>
+#include <utility>
+#include <vector>
 
 namespace ripplenotch {
 namespace {
@@ -102,6 +106,24 @@ class Convoy {
     std::exception_ptr failure_;  ///< behind put_door_
 };
 
+/// As many as the system gives: what they leave undone, the caller's own thread does.
+void start_helpers(Convoy& convoy, std::size_t count, std::vector<std::jthread>& helpers) {
+    const auto help = [&convoy] {
+        std::optional<BlockItem> item;
+        try {
+            item.emplace();
+        } catch (const std::bad_alloc&) {
+            return;
+        }
+        convoy.work(std::move(*item));
+    };
+    helpers.reserve(count);
+    try {
+        while (helpers.size() < count) helpers.emplace_back(help);
+    } catch (const std::system_error&) {  // no thread to be had
+    }
+}
+
 /// Runs blocks one after another until there are none left (true) or `most_bytes` have passed.
 bool run_alone(const BlockSteps& steps, std::size_t most_bytes, BlockItem& item) {
     for (std::size_t bytes = 0; bytes < most_bytes; Convoy::renew(item)) {
@@ -124,7 +146,7 @@ void run_blocks(const BlockSteps& steps, std::size_t threads) {
     Convoy convoy(steps);
     {
         std::vector<std::jthread> helpers;
-        for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back([&convoy] { convoy.work(); });
+        start_helpers(convoy, threads - 1, helpers);
         convoy.work(std::move(item));
     }
     if (convoy.failure()) std::rethrow_exception(convoy.failure());

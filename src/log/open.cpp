@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "log/clock/stamp.hpp"
 #include "log/columns/derived_velocity.hpp"
 #include "log/detect_format.hpp"
@@ -88,6 +90,16 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
 
 std::unique_ptr<LogReader> open_log(const std::string& path, const ReadOptions& options) {
     return open_log(std::make_unique<ByteSource>(path), options);
+}
+
+std::optional<double> estimated_rows(const std::string& path, const ReadOptions& options) {
+    std::error_code failed;
+    if (options.range.given() || !std::filesystem::is_regular_file(path, failed)) return std::nullopt;
+    const auto size = static_cast<double>(std::filesystem::file_size(path, failed));
+    const auto reader = open_log(path, options);
+    RowBlock block;
+    if (failed || !reader->next(block) || block.size() == 0) return std::nullopt;
+    return size / (static_cast<double>(block.bytes.size()) / static_cast<double>(block.size()));
 }
 
 std::unique_ptr<LogWriter> rewrite_log(const std::string& path, const LogReader& reader,

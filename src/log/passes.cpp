@@ -4,20 +4,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "log/account/account.hpp"
 #include "log/account/unwrap.hpp"
 #include "log/clock/clock_check.hpp"
-#include "ripplenotch/core/spool.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 
 class LogPasses::Work {
   public:
-    Work(const std::string& path, ReadOptions options)
-        : spool_(path), options_(std::move(options)), reader_(open_log(spool_.open(), options_)) {}
+    Work(std::shared_ptr<const Spool> log, ReadOptions options)
+        : spool_(std::move(log)), options_(std::move(options)), reader_(open_log(spool_->open(), options_)) {}
 
     void first(const Use& use);
     void second(const Use& use);
@@ -31,7 +31,9 @@ class LogPasses::Work {
     Account run(const Use& use);
     void look_at(const TraceView& rows);
 
-    Spool spool_;
+    void go_on_from(const Use& logged, const Use& use);
+
+    std::shared_ptr<const Spool> spool_;
     ReadOptions options_;
     std::unique_ptr<LogReader> reader_;  ///< of the pass that comes next; made when it begins, but the first
     WrapWatch wrap_;
@@ -41,12 +43,14 @@ class LogPasses::Work {
 };
 
 Account LogPasses::Work::run(const Use& use) {
-    if (!reader_) reader_ = open_log(spool_.open(), options_);
+    if (!reader_) reader_ = open_log(spool_->open(), options_);
     Opening opening = read_opening(*reader_);
     Account account(reader_->layout(), opening);
     constexpr std::array<std::size_t, 1> at_first_row = {0};
     RowBlock block;
+    std::size_t held_bad_values = 0;
     while (next_block(opening, *reader_, block)) {
+        held_bad_values += block.held_bad_values;
         for (const RunPart& part : account.add(block)) {
             if (!part.usable || part.count == 0) continue;
             TraceView rows = view_of(block, 0, part.first, part.count);
@@ -57,6 +61,7 @@ Account LogPasses::Work::run(const Use& use) {
     }
     if (options_.needs_torque) account.clock().require();
     if (facts.rows == 0) layout = reader_->layout();
+    facts.held_bad_values = held_bad_values;
     reader_.reset();
     return account;
 }
@@ -88,6 +93,11 @@ void LogPasses::Work::first(const Use& use) {
 }
 
 void LogPasses::Work::again(const Use& use) {
+    go_on_from([](const TraceView&) {}, use);
+}
+
+// `logged` gets the rows with the position as it was logged, made continuous; then `use` gets the joint's.
+void LogPasses::Work::go_on_from(const Use& logged_use, const Use& use) {
     std::optional<Unwrapper> unwrapper;
     if (const auto period = wrap_.period()) unwrapper.emplace(*period);
     std::vector<double> continuous;
@@ -99,24 +109,40 @@ void LogPasses::Work::again(const Use& use) {
             unwrapper->apply(continuous);
             rows.position_deg = continuous;
         }
+        logged_use(rows);
         rows.position_deg = joints.of(recording.angle, rows);
         use(rows);
     }));
 }
 
-// The clock is compared with the motion by the position as it was logged.
+// As read_log compares the clock with the motion: by the joint's position; by the logged one where that is
+// not the joint's, or runs the other way.
 void LogPasses::Work::second(const Use& use) {
     MotionPieces motion(facts.rows);
     const bool turned = recording.angle.verdict == AngleFacts::Verdict::reversed;
-    again([&](const TraceView& rows) {
-        if (!turned) motion.add(rows);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    TraceView as_logged;
+    const auto look_at = [&](const TraceView& rows) {
+        as_logged = rows;
+        for (const double angle : rows.position_deg) {
+            low = std::min(low, angle);
+            high = std::max(high, angle);
+        }
+    };
+    go_on_from(look_at, [&](const TraceView& rows) {
+        motion.add(turned || !rows.has_position() ? as_logged : rows);
         use(rows);
     });
-    recording.warnings = recording_warnings(recording, motion.check(facts.sample_rate).warning);
+    const ClockCheck check = motion.check(facts.sample_rate);
+    facts.clock_factor = check.factor;
+    if (low <= high) facts.position_range_deg.emplace(low, high);
+    recording.warnings = recording_warnings(recording, check.warning);
 }
 
 LogPasses::LogPasses(const std::string& path, const ReadOptions& options)
-    : work_(std::make_unique<Work>(path, options)) {}
+    : LogPasses(std::make_shared<const Spool>(path), options) {}
+LogPasses::LogPasses(std::shared_ptr<const Spool> log, const ReadOptions& options)
+    : work_(std::make_unique<Work>(std::move(log), options)) {}
 LogPasses::~LogPasses() = default;
 
 void LogPasses::first(const Use& use) { work_->first(use); }

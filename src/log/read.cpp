@@ -2,11 +2,13 @@
 // Whole logs in memory, with an account of them.
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "log/account/account.hpp"
 #include "log/account/unwrap.hpp"
 #include "log/clock/clock_check.hpp"
+#include "log/pieces.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
@@ -40,12 +42,6 @@ void settle_angle(Log& log) {
     if (as_logged) log.trace.position_deg = std::move(position);
 }
 
-std::unique_ptr<ByteSource> source_of(const std::string& path,
-                                      const std::shared_ptr<const std::string>& bytes) {
-    if (bytes) return std::make_unique<ByteSource>("standard input", bytes);
-    return std::make_unique<ByteSource>(path);
-}
-
 // What is known when all rows are there.
 void finish(Log& log, const Account& account, const LogReader& reader, std::size_t joint) {
     const Layout& layout = reader.layout();
@@ -68,7 +64,8 @@ void finish(Log& log, const Account& account, const LogReader& reader, std::size
     settle_angle(log);
 }
 
-std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) {
+// Empty where there are more than `most_rows`.
+std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options, std::size_t most_rows) {
     Opening opening = read_opening(reader);
     Account account(reader.layout(), opening);
     std::vector<Log> logs(reader.layout().all_chosen().size());
@@ -79,10 +76,38 @@ std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) 
                 append(logs[j].trace, view_of(block, j, part.first, part.count), part.begins_run);
         }
         for (Log& log : logs) log.held_bad_values += block.held_bad_values;
+        if (logs.front().trace.size() > most_rows) return {};
     }
     if (options.needs_torque) account.clock().require();
     for (std::size_t j = 0; j < logs.size(); ++j) finish(logs[j], account, reader, j);
     return logs;
+}
+
+constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
+
+std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) {
+    return read_all_joints(reader, options, all_rows);
+}
+
+// Each joint by itself, as `read` reads it.
+template <class Read>
+std::vector<Log> joint_by_joint(const Spool& spool, const ReadOptions& options, const Read& read) {
+    const std::vector<std::string> joints = joint_names(spool, options);
+    std::vector<Log> logs;
+    ReadOptions one = options;
+    for (const std::string& joint : joints) {
+        one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
+        logs.push_back(read(one));
+    }
+    if (!logs.empty()) return logs;
+    one.joint.reset();
+    logs.push_back(read(one));
+    return logs;
+}
+
+Log in_part(const std::shared_ptr<const Spool>& spool, const ReadOptions& options, std::size_t most_rows) {
+    if (auto whole = read_log_if_short(*spool, options, most_rows)) return std::move(*whole);
+    return read_pieces(spool, options, most_rows);
 }
 
 }  // namespace
@@ -107,25 +132,34 @@ Log read_log(const std::string& path, const ReadOptions& options) {
     return read_log(std::make_unique<ByteSource>(path), options);
 }
 
+std::optional<Log> read_log_if_short(const Spool& log, const ReadOptions& options, std::size_t most_rows) {
+    const auto reader = open_log(log.open(), options);
+    std::vector<Log> logs = read_all_joints(*reader, options, most_rows);
+    if (logs.empty()) return std::nullopt;
+    return std::move(logs.front());
+}
+
+std::vector<std::string> joint_names(const Spool& log, ReadOptions options) {
+    options.joint.reset();
+    options.needs_torque = false;
+    return open_log(log.open(), options)->layout().joints;
+}
+
 std::vector<Log> read_joints(const std::string& path, const ReadOptions& options) {
-    // A pipe can be read once only, so it is kept; a file is read again for each joint.
-    std::shared_ptr<const std::string> bytes;
-    if (path == "-") bytes = std::make_shared<const std::string>(read_all(path));
-    ReadOptions survey = options;
-    survey.joint.reset();
-    survey.needs_torque = false;
-    const std::vector<std::string> joints = open_log(source_of(path, bytes), survey)->layout().joints;
-    std::vector<Log> logs;
-    ReadOptions one = options;
-    for (const std::string& joint : joints) {
-        one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
-        logs.push_back(read_log(source_of(path, bytes), one));
-    }
-    if (logs.empty()) {
-        one.joint.reset();
-        logs.push_back(read_log(source_of(path, bytes), one));
-    }
-    return logs;
+    const Spool spool(path);
+    return joint_by_joint(spool, options,
+                          [&](const ReadOptions& one) { return read_log(spool.open(), one); });
+}
+
+Log read_log_in_part(const std::string& path, const ReadOptions& options, std::size_t most_rows) {
+    return in_part(std::make_shared<const Spool>(path), options, most_rows);
+}
+
+std::vector<Log> read_joints_in_part(const std::string& path, const ReadOptions& options,
+                                     std::size_t most_rows) {
+    const auto spool = std::make_shared<const Spool>(path);
+    return joint_by_joint(*spool, options,
+                          [&](const ReadOptions& one) { return in_part(spool, one, most_rows); });
 }
 
 }  // namespace ripplenotch

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -76,13 +77,28 @@ void shift_samples(std::span<double> values, double delay) {
     const auto weights = lagrange_weights<shift_points>(whole - delay);
     const auto steps = static_cast<std::ptrdiff_t>(whole);
     const std::vector<double> before(values.begin(), values.end());
-    for (std::size_t k = 0; k < values.size(); ++k) {
-        const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(k) - steps - (shift_points / 2 - 1);
+    const auto n = static_cast<std::ptrdiff_t>(values.size());
+    constexpr std::ptrdiff_t points = shift_points, back = shift_points / 2 - 1;
+    // Where all points are samples, point after point for many samples at once: the same sums.
+    const std::ptrdiff_t begin = std::clamp<std::ptrdiff_t>(steps + back, 0, n),
+                         end = std::clamp<std::ptrdiff_t>(n + steps + back - points + 1, begin, n);
+    const auto by_itself = [&](std::ptrdiff_t k) {
         double sum = 0.0;
-        for (int i = 0; i < shift_points; ++i)
-            sum += weights[static_cast<std::size_t>(i)] * at(before, first + i);
-        values[k] = sum;
+        for (std::ptrdiff_t i = 0; i < points; ++i)
+            sum += weights[static_cast<std::size_t>(i)] * at(before, k - steps - back + i);
+        values[static_cast<std::size_t>(k)] = sum;
+    };
+    for (std::ptrdiff_t k = 0; k < begin; ++k) by_itself(k);
+    constexpr std::ptrdiff_t block = 512;
+    for (std::ptrdiff_t k = begin; k < end; k += block) {
+        const auto count = static_cast<std::size_t>(std::min(block, end - k));
+        std::fill_n(values.data() + k, count, 0.0);
+        for (std::ptrdiff_t i = 0; i < points; ++i) {
+            add_scaled(weights[static_cast<std::size_t>(i)], before.data() + k - steps - back + i,
+                       values.data() + k, count);
+        }
     }
+    for (std::ptrdiff_t k = end; k < n; ++k) by_itself(k);
 }
 
 void first_order_lag(std::span<double> values, double time_constant) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/linear_algebra.hpp"
+#include "model/carriers.hpp"
 #include "model/fit_coordinates.hpp"
 #include "model/fit_errors.hpp"
 #include "model/weighing.hpp"
@@ -32,14 +33,15 @@ class Problem {
         : coordinates(model, options.first_guess),
           motion_(motion),
           torque_nm_(torque_nm),
-          weighing_(weighing) {
+          weighing_(weighing),
+          carriers_(options.carriers != nullptr ? options.carriers : &own_carriers_) {
         const std::size_t samples = weighing.rows().size(), values = coordinates.list().size();
         if (samples <= values + weighing.used_up())
             raise<UsageError>("{} samples are too few to fit {} values", samples, values);
     }
 
     [[nodiscard]] Place at(std::vector<double> point) const {
-        Prediction prediction(coordinates.at(point), motion_);
+        Prediction prediction(coordinates.at(point), motion_, carriers_);
         applied_ += prediction.applied();
         std::vector<double> left = prediction.torque_nm();
         for (std::size_t k = 0; k < left.size(); ++k) left[k] = torque_nm_[k] - left[k];
@@ -70,6 +72,8 @@ class Problem {
     const Motion& motion_;
     std::span<const double> torque_nm_;
     const Weighing& weighing_;
+    Carriers own_carriers_;
+    Carriers* carriers_;
     mutable std::size_t applied_ = 0;
 };
 

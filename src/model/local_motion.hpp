@@ -37,13 +37,18 @@ class LocalFit {
 
   private:
     void weigh(std::size_t k, SampleWindow window);
+    void sum_up(std::size_t k, SampleWindow window);
 
     TraceView log_;
     MotionNoise noise_;
     bool uniform_;
+    // Of times that are not uniform: what was found for the sample summed up last. Each window has times of
+    // its own there, and factors would cost more than they are used.
+    std::size_t summed_ = 0, summed_end_ = 0;  // no window ends at 0
+    LocalMotion found_{0.0, 0.0};
     // Factors of the samples of the window weighed last, of velocities and of positions, for the velocity and
     // for the acceleration.
-    std::size_t weighed_ = 0, before_ = 0, after_ = 0;
+    std::size_t before_ = 0, after_ = 0;
     std::vector<double> velocity_by_velocity_, velocity_by_position_, acceleration_by_velocity_,
         acceleration_by_position_;
     double variance_ = 0.0;

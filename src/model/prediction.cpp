@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "model/carriers.hpp"
 #include "model/term_torque.hpp"
 
 namespace ripplenotch {
@@ -35,16 +36,19 @@ struct Prediction::State {
     std::map<double, Gain> rest;  ///< of the gains, without the change at rest_place
     std::size_t rest_place = 0;
     bool load_is_used = false, sum_is_linear = true;
+    Carriers* carriers;
     std::size_t changes = 0;  ///< of the ripple
     std::size_t applied = 0;
 
-    State(Model given, const Motion& motion)
-        : model(std::move(given)), logged(motion), ratio(model.gear_ratio) {
+    State(Model given, const Motion& motion, Carriers* kept)
+        : model(std::move(given)), logged(motion), ratio(model.gear_ratio), carriers(kept) {
         refuse_missing_values(model);
         each(model, Side::motion, [&](const Effect& effect, const std::vector<double>& values) {
             if (!changed) changed = logged;
             effect.change_motion(values, *changed, ratio);
         });
+        // Carriers are of the motion as it was logged, whatever the gear ratio.
+        if (changed && changed->position_deg != logged.position_deg) carriers = nullptr;
         load = load_nm(model, situation({}));
         load_is_used = !load.empty();
         for (const Term& term : model.terms) {
@@ -54,7 +58,7 @@ struct Prediction::State {
         applied = model.terms.size();
         joint_nm.assign(motion.size(), 0.0);
         for (const Term& term : model.terms) {
-            if (term.effect->side == Side::joint) add_torque(term, situation(load), gain(term), joint_nm);
+            if (term.effect->side == Side::joint) add(term, situation(load), gain(term), joint_nm);
         }
         torque_nm = joint_nm;
         through_sensors(model, load, torque_nm);
@@ -81,6 +85,12 @@ struct Prediction::State {
         }
     }
 
+    void add(const Term& term, const Situation& around, const Gain& with_gain,
+             std::vector<double>& torque) const {
+        if (carriers != nullptr && carriers->add_torque(term, around, with_gain, torque)) return;
+        add_torque(term, around, with_gain, torque);
+    }
+
     // Of a joint term of this model, as it is.
     const std::vector<double>& own(std::size_t place) {
         auto [entry, is_new] = own_nm.try_emplace(place);
@@ -88,7 +98,7 @@ struct Prediction::State {
         const Term& term = model.terms[place];
         entry->second.assign(joint_nm.size(), 0.0);
         ++applied;
-        add_torque(term, situation(load), gain(term), entry->second);
+        add(term, situation(load), gain(term), entry->second);
         return entry->second;
     }
 
@@ -109,7 +119,7 @@ struct Prediction::State {
                                        std::vector<double>& torque) {
         if (!torque.empty()) return torque;
         torque.assign(joint_nm.size(), 0.0);
-        add_torque(model.terms[place], situation(load), Gain(joint_nm.size(), unit), torque);
+        add(model.terms[place], situation(load), Gain(joint_nm.size(), unit), torque);
         ++applied;
         return torque;
     }
@@ -179,7 +189,7 @@ struct Prediction::State {
             std::vector<double> now(sum.size(), 0.0);
             const Situation around = situation(with_load);
             applied += ripple ? 1 + changes : 1;
-            add_torque(term, around, ripple ? gain_for(other, term, around) : gain(term), now);
+            add(term, around, ripple ? gain_for(other, term, around) : gain(term), now);
             for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += now[k];
             if (i >= model.terms.size()) continue;
             const std::vector<double>& before = own(i);
@@ -205,8 +215,8 @@ struct Prediction::State {
     }
 };
 
-Prediction::Prediction(Model model, const Motion& motion)
-    : state_(std::make_unique<State>(std::move(model), motion)) {}
+Prediction::Prediction(Model model, const Motion& motion, Carriers* carriers)
+    : state_(std::make_unique<State>(std::move(model), motion, carriers)) {}
 Prediction::~Prediction() = default;
 Prediction::Prediction(Prediction&&) noexcept = default;
 Prediction& Prediction::operator=(Prediction&&) noexcept = default;

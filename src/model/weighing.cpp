@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "core/linear_algebra.hpp"
+#include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // A nuisance of which less than this part lies outside the others brings rounding noise alone.
@@ -42,11 +42,10 @@ std::vector<double> Weighing::whitened(std::span<const double> torque_nm) const 
 std::vector<double> Weighing::operator()(std::span<const double> torque_nm) const {
     std::vector<double> white = whitened(torque_nm);
     if (basis_.empty()) return white;
-    const auto n = static_cast<Index>(size());
-    const Eigen::Map<const MatrixXd> basis(basis_.data(), n, static_cast<Index>(used_up()));
-    Eigen::Map<VectorXd> vector(white.data(), n);
-    const VectorXd part = basis.transpose() * vector;
-    vector.noalias() -= basis * part;
+    for (std::size_t first = 0; first < basis_.size(); first += size()) {
+        const double* const nuisance = basis_.data() + first;
+        add_scaled(-dot(nuisance, white.data(), size()), nuisance, white.data(), size());
+    }
     return white;
 }
 

@@ -8,8 +8,8 @@
 
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/version.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
 #include "ripplenotch/page/plotly.hpp"
 
 namespace ripplenotch {
@@ -184,7 +184,7 @@ class Writer {
         // Shown as text and kept as data: a program finds it by its type.
         if (one.json.empty()) return;
         put("<details><summary>The result as JSON</summary><pre>{}</pre></details>\n",
-            html_escaped(one.json));
+            html_escaped(visible_json(one.json)));
     }
 
     const std::optional<std::string>& plotly_js_;

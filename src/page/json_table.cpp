@@ -2,13 +2,14 @@
 #include "page/json_table.hpp"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "page/json_words.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_rows = 200;
+constexpr std::size_t most_rows = 200, most_columns = 100;
 
 // Short enough to be columns of a table.
 bool is_short_list(const Json& json) {
@@ -23,10 +24,12 @@ bool says_nothing(const std::string& cell) {
     return cell.empty() || cell == "-" || cell.ends_with(" values");
 }
 
-// A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms".
+// A row's objects become columns of their own: settle_ms {"0.5": 147} is column "settle 0.5, ms". One more
+// cell than there may be columns tells that some are left out.
 void cells_of(const Json& row, const std::string& prefix, const std::string& unit,
               std::vector<std::pair<std::string, std::string>>& cells) {
     for (const auto& [name, entry] : row.items()) {
+        if (cells.size() > most_columns) return;
         const Spoken said = spoken(name);
         const std::string full = prefix + said.name;
         const std::string in = said.unit.empty() ? unit : said.unit;
@@ -55,20 +58,21 @@ bool is_table(const Json& json) {
 PageTable table_of(const std::string& name, const Json& rows) {
     PageTable table{spoken(name).name, {}, {}};
     std::vector<std::vector<std::pair<std::string, std::string>>> all;
+    std::unordered_map<std::string, std::size_t> places;  // of columns in the header
+    bool left_out = false;
     for (const Json& row : rows) {
         if (all.size() == most_rows) break;
         cells_of(row, "", "", all.emplace_back());
         for (const auto& [column, value] : all.back()) {
-            if (std::find(table.header.begin(), table.header.end(), column) == table.header.end())
+            if (places.size() < most_columns && places.emplace(column, places.size()).second)
                 table.header.push_back(column);
+            left_out |= places.size() == most_columns && !places.contains(column);
         }
     }
     for (const auto& cells : all) {
         std::vector<std::string> row(table.header.size(), "-");
         for (const auto& [column, value] : cells) {
-            const auto at =
-                std::find(table.header.begin(), table.header.end(), column) - table.header.begin();
-            row[static_cast<std::size_t>(at)] = value;
+            if (const auto at = places.find(column); at != places.end()) row[at->second] = value;
         }
         table.rows.push_back(std::move(row));
     }
@@ -80,6 +84,7 @@ PageTable table_of(const std::string& name, const Json& rows) {
         table.header.erase(table.header.begin() + static_cast<std::ptrdiff_t>(c));
         for (auto& row : table.rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(c));
     }
+    if (left_out) table.title += fmt::format(" (the first {} columns)", most_columns);
     if (rows.size() > most_rows) table.title += fmt::format(" (the first {} of {})", most_rows, rows.size());
     return table;
 }

@@ -8,7 +8,7 @@
 #include "page/plotly_lines.hpp"
 #include "page/plotly_traces.hpp"
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {

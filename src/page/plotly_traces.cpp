@@ -6,8 +6,8 @@
 #include "figure/gnuplot_script.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/figure/min_max.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -49,18 +49,6 @@ std::string text_at(const Json& json, const char* name) {
     return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-// What was read is JSON; whether it is an object is seen here.
-std::string kind_of(const Json& json, const std::string& source) {
-    const std::string schema = json.is_object() ? text_at(json, "schema") : "";
-    constexpr std::string_view before = "ripplenotch/", after = "/1";
-    if (!schema.starts_with(before) || !schema.ends_with(after)) {
-        raise<DataError>(
-            "{}: read schema '{}', expected a result of ripplenotch such as joint.json or what --json prints",
-            source, schema);
-    }
-    return schema.substr(before.size(), schema.size() - before.size() - after.size());
-}
-
 // Every field as a fact or a table, in the order of the document, but for what stands elsewhere in the
 // section.
 void add_fields(PageSection& section, const Json& json, const std::optional<Diagnosis>& diagnosis) {
@@ -86,14 +74,7 @@ PageSection section_of_figure(Figure figure) {
 }  // namespace
 
 PageSection section_of_result(const std::string& text, const std::string& source) {
-    Json json;
-    try {
-        json = Json::parse(text);
-    } catch (const Json::parse_error&) {
-        raise<DataError>("{}: read {}, expected JSON as --json, -o joint.json or --plot FILE.json write it",
-                         source, text.empty() ? "an empty file" : "what is not JSON");
-    }
-    const std::string kind = kind_of(json, source);
+    const auto [kind, json] = parse_any_document(text, source);
     PageSection section;
     if (kind == "figure") section = section_of_figure(figure_from_json(text, source));
     if (kind != "figure") section.title = fmt::format("{}: {}", kind, source);
@@ -117,6 +98,28 @@ PageSection section_of_result(const std::string& text, const std::string& source
         section.figures.push_back(gap_figure(fmt::format("How the gap shrank: {}", source), *diagnosis));
     }
     return section;
+}
+
+std::vector<PageSection> sections_of_result(const std::string& text, const std::string& source) {
+    const auto [kind, whole] = parse_any_document(text, source);
+    if (kind != "diagnoses") return {section_of_result(text, source)};
+    const auto joints = whole.find("joints");
+    if (joints == whole.end() || !joints->is_array())
+        raise<DataError>(
+            "{}: joints: expected a list of diagnoses, as 'diagnose --joint all --json' prints it", source);
+    std::vector<PageSection> sections;
+    for (const Json& joint : *joints) {
+        // Each is what diagnose prints of one joint, under a head of its own.
+        Json one{{"schema", "ripplenotch/diagnosis/1"}};
+        for (const char* name : {"tool", "version", "command", "inputs"})
+            if (whole.contains(name)) one[name] = whole[name];
+        if (joint.is_object())
+            for (const auto& [name, entry] : joint.items())
+                if (name != "joint") one[name] = entry;
+        const std::string name = joint.is_object() ? text_at(joint, "joint") : "";
+        sections.push_back(section_of_result(one.dump(), fmt::format("{}, joint {}", source, name)));
+    }
+    return sections;
 }
 
 }  // namespace ripplenotch

@@ -6,9 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "ripplenotch/analysis/steady.hpp"
+#include "ripplenotch/log/passes.hpp"
+#include "survey/passing_rows.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -49,29 +53,82 @@ std::vector<SteadyStretch> stretches_of(const Log& log) {
     return stretches;
 }
 
-JointInfo joint_info(const Log& log) {
+/// One joint, and of its log what is told beside: no rows.
+struct Surveyed {
+    Log log;
+    JointInfo info;
+};
+
+Surveyed surveyed(Log log) {
     JointInfo joint;
-    joint.joint = log.layout.chosen.joint;
     joint.speed_deg_s = range_of(log.trace.velocity_deg_s);
     joint.torque_nm = range_of(log.trace.torque_nm);
-    if (log.position_range_deg)
-        joint.position_deg = Range{log.position_range_deg->first, log.position_range_deg->second};
-    joint.recording = log.recording;
-    joint.clock_factor = log.clock_factor;
     joint.turns = turns_of(log.trace, log.trace.sample_rate.value());
     joint.stretches = stretches_of(log);
-    joint.options = log.layout.options;
-    return joint;
+    log.trace = {};
+    return {std::move(log), std::move(joint)};
+}
+
+// A log that is too long to be held goes by twice, and its motion is judged by the means of many rows.
+Surveyed survey_long(const std::shared_ptr<const Spool>& spool, const ReadOptions& options,
+                     std::size_t most_rows) {
+    LogPasses passes(spool, options);
+    Surveyed found;
+    passes.first([](const TraceView&) {});
+    PassingRows rows(passes.facts(), most_rows);
+    passes.second([&](const TraceView& part) { rows.add(part); });
+    found.log.layout = passes.layout();
+    found.log.recording = passes.recording();
+    found.log.held_bad_values = passes.facts().held_bad_values;
+    found.log.clock_factor = passes.facts().clock_factor;
+    found.log.position_range_deg = passes.facts().position_range_deg;
+    found.info.speed_deg_s = rows.speed_deg_s();
+    found.info.torque_nm = rows.torque_nm();
+    found.info.turns = rows.turns();
+    Log thinned;
+    thinned.trace = rows.take_means();
+    found.info.stretches = stretches_of(thinned);
+    return found;
+}
+
+Surveyed survey_joint(const std::shared_ptr<const Spool>& spool, const ReadOptions& options,
+                      std::size_t most_rows) {
+    if (auto whole = read_log_if_short(*spool, options, most_rows)) return surveyed(std::move(*whole));
+    return survey_long(spool, options, most_rows);
+}
+
+std::vector<Surveyed> survey_joints(const std::string& path, const ReadOptions& options,
+                                    std::size_t most_rows) {
+    const auto spool = std::make_shared<const Spool>(path);
+    std::vector<std::string> joints = {options.joint.value_or("")};
+    if (!options.joint || *options.joint == "all") joints = joint_names(*spool, options);
+    if (joints.empty()) joints.emplace_back();
+    std::vector<Surveyed> all;
+    ReadOptions one = options;
+    for (const std::string& joint : joints) {
+        one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
+        all.push_back(survey_joint(spool, one, most_rows));
+        JointInfo& info = all.back().info;
+        const Log& log = all.back().log;
+        info.joint = log.layout.chosen.joint;
+        if (log.position_range_deg)
+            info.position_deg = Range{log.position_range_deg->first, log.position_range_deg->second};
+        info.recording = log.recording;
+        info.clock_factor = log.clock_factor;
+        info.options = log.layout.options;
+    }
+    return all;
 }
 
 // Several joints that are warned of the same are told in one warning, with the text of the first.
-void add_warnings(LogInfo& info, const std::vector<Log>& logs) {
+void add_warnings(LogInfo& info, const std::vector<Surveyed>& joints) {
     struct Told {
         const LogWarning* first;
         std::vector<std::string> joints;
     };
     std::vector<Told> all;
-    for (const Log& log : logs) {
+    for (const Surveyed& joint : joints) {
+        const Log& log = joint.log;
         for (const std::vector<LogWarning>* list : {&log.layout.warnings, &log.recording.warnings}) {
             for (const LogWarning& warning : *list) {
                 auto same = std::find_if(all.begin(), all.end(), [&](const Told& told) {
@@ -85,7 +142,7 @@ void add_warnings(LogInfo& info, const std::vector<Log>& logs) {
     }
     for (const Told& told : all) {
         std::string text = told.first->text;
-        if (logs.size() > 1 && (told.first->of_one_joint || told.joints.size() < logs.size())) {
+        if (joints.size() > 1 && (told.first->of_one_joint || told.joints.size() < joints.size())) {
             const auto others = std::span(told.joints).subspan(1);
             text = fmt::format("joint {}{}: {}", told.joints.front(),
                                others.empty() ? "" : fmt::format(" (and {} alike)", fmt::join(others, ", ")),
@@ -160,25 +217,20 @@ void state_uses(LogInfo& info) {
 
 }  // namespace
 
-LogInfo survey_log(const std::string& path, ReadOptions options) {
+LogInfo survey_log(const std::string& path, ReadOptions options, std::size_t most_rows) {
     options.needs_torque = false;
-    const bool one = options.joint && *options.joint != "all";
-    std::vector<Log> logs;
-    if (one) {
-        logs.push_back(read_log(path, options));
-    } else {
-        logs = read_joints(path, options);
-    }
+    const std::vector<Surveyed> joints = survey_joints(path, options, most_rows);
     LogInfo info;
-    const Log& first = logs.front();
+    const Log& first = joints.front().log;
     info.source = first.layout.source;
     info.layout = first.layout;
     info.rows = first.recording.rows();
     info.clock = first.recording.clock;
     if (first.layout.chosen.time || first.layout.stated_rate)
         info.duration_s = info.clock.last_s - info.clock.first_s;
-    for (const Log& log : logs) {
-        info.joints.push_back(joint_info(log));
+    for (const Surveyed& joint : joints) {
+        const Log& log = joint.log;
+        info.joints.push_back(joint.info);
         info.bad_values_held = std::max(info.bad_values_held, log.held_bad_values);
         // What a joint chose among its columns is known by its own reading.
         const std::string& name = log.layout.chosen.joint;
@@ -188,7 +240,7 @@ LogInfo survey_log(const std::string& path, ReadOptions options) {
             if (own.joint == name || info.layout.columns[c].joint == name) info.layout.columns[c] = own;
         }
     }
-    add_warnings(info, logs);
+    add_warnings(info, joints);
     state_uses(info);
     return info;
 }

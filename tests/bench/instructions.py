@@ -79,9 +79,18 @@ def per_row(tool, folder, words):
     return (count(LONG) - count(SHORT)) / (LONG - SHORT)
 
 
+def without_symbols(tool, folder):
+    """The same instructions; valgrind would read its symbols anew in each of the runs, which takes as long as some of them."""
+    if not shutil.which("strip"):
+        return tool
+    subprocess.run(["strip", "-o", folder / "tool", tool], check=True)
+    return folder / "tool"
+
+
 def measure(tool):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
+        tool = without_symbols(tool, folder)
         for count in (SHORT, LONG):
             make_logs(folder, count)
         subprocess.run([tool, "design", "--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20",

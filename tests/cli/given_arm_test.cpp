@@ -103,7 +103,7 @@ TEST_CASE("a log of an arm becomes a term for one joint and an account of it", "
     CHECK_THAT(arm_text(account), Contains("3 joints of") && Contains("matched by name"));
     CHECK_THROWS_WITH(arm.find("7"), Contains("'7' is no joint of"));
     // The same values for another log: the same columns.
-    CHECK(arm.term(joint, arm.read_other(log.path, {})).mean == term.mean);
+    CHECK(arm.term(joint, arm.other(log.path, {})).mean == term.mean);
 }
 
 TEST_CASE("an arm of which only directions are known is fitted joint by joint", "[arm]") {

@@ -7,6 +7,7 @@ What is broken is told by the function's docstring; everything else is a clean r
 and ripple of order 1 (0.8 Nm) and 2 (0.4 Nm) that swings to and fro.
 """
 
+import collections.abc
 import math
 import pathlib
 import random
@@ -175,14 +176,25 @@ LOGS = {case.__name__: case for case in (
     clock_that_stands, rate_falls_on_the_way, rate_rises_on_the_way, lost_rows, gaps, jitter, a_clock_of_years)}
 
 
-def write_all(folder):
-    paths = {}
-    for name, make in LOGS.items():
-        paths[name] = pathlib.Path(folder) / f"{name}.csv"
-        paths[name].write_text(make())
-    return paths
+class Written(collections.abc.Mapping):
+    """Paths of all logs by name; each is written when it is first asked for."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+
+    def __iter__(self):
+        return iter(LOGS)
+
+    def __len__(self):
+        return len(LOGS)
+
+    def __getitem__(self, name):
+        make, path = LOGS[name], self.folder / f"{name}.csv"
+        if not path.exists():
+            path.write_text(make())
+        return path
 
 
 if __name__ == "__main__":
-    for path in write_all(sys.argv[1]).values():
+    for path in Written(sys.argv[1]).values():
         print(path)

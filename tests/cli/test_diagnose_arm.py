@@ -123,7 +123,9 @@ class Arm(unittest.TestCase):
         arm = f"dh,file=dh.csv,{DOWN}"
         whole = ["diagnose", "log.csv", "--joint", "j1", "--gear-ratio", "100"]
         for words, code, message in (
-                ([*whole, "--arm", arm, "-o", "improved.json"], 2, "model.json holds no arm"),
+                (["diagnose", "log.csv", "--joint", "all", "--gear-ratio", "100", "--arm", arm, "-o", "one.json"], 2, "{joint}"),
+                (["diagnose", "log.csv", "--joint", "all", "--gear-ratio", "100", "--arm", arm, "--plot", "a.svg"], 2, "--plot"),
+                (["diagnose", "log.csv", "--joint", "j1", "--gear-ratio", "100", "--arm", arm, "--accept", "frictoin"], 2, "frictoin"),
                 ([*whole, "--arm", "dh"], 2, "file"),
                 ([*whole, "--arm", "dh,file=none.csv"], 4, "none.csv"),
                 ([*whole, "--arm", "axes,word=zq"], 2, "zq"),
@@ -136,7 +138,7 @@ class Arm(unittest.TestCase):
                 self.assertEqual(done.returncode, code, done.stderr)
                 self.assertIn(message, done.stderr)
                 self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-        self.assertFalse((self.folder / "improved.json").exists())
+        self.assertFalse((self.folder / "one.json").exists())
 
     @unittest.skipUnless((LOGS / "ur10_unisa_exciting_all.csv").is_file(), "the real log is not here")
     def test_a_real_shoulder_has_names_and_its_gap_closes_on_rows_that_nothing_was_fitted_to(self):

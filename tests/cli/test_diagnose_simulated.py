@@ -60,6 +60,82 @@ class Simulated(unittest.TestCase):
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertIn("named: nothing", again.stdout)
 
+    def residual_nm(self, *words):
+        done = self.run_tool("simulate", *words, "-o", "again.csv", "--force", "--json", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)["along_log"]["residual_rms_nm"]
+
+    def test_the_improved_model_leaves_what_was_said_and_diagnosed_again_begins_there(self):
+        for name, scale in (("fitted", ""), ("kept", ",scale=1"), ("late", ",delay=fit")):
+            with self.subTest(name):
+                done = self.run_tool("diagnose", "log.csv", "--simulated", f"column,name=tau_model_nm{scale}", "--gear-ratio",
+                                     "100", "--json", "-o", f"{name}.json")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                found = json.loads(done.stdout)
+                stated = json.loads((self.path / f"{name}.json").read_text())["simulated"]
+                self.assertLessEqual({"offset_nm", "inertia_kgm2", "gravity_cosine_nm", "gravity_sine_nm"}, set(stated["nuisance"]))
+                # A fitted delay is the slope of the column in the fit and a shift of it in the model.
+                off = 0.02 if name == "late" else 1e-4
+                left = self.residual_nm("--model", f"{name}.json", "log.csv")
+                self.assertAlmostEqual(left / found["gap"]["after_nm"], 1.0, delta=off)
+                again = self.run_tool("diagnose", "log.csv", "--model", f"{name}.json", "--json", "-o", "again.json", "--force")
+                self.assertEqual(again.returncode, 0, again.stderr)
+                before = json.loads(again.stdout)
+                self.assertAlmostEqual(before["gap"]["before_nm"] / left, 1.0, delta=1e-4)
+                self.assertEqual(before["named"], [])
+                told = json.loads((self.path / "again.json").read_text())["simulated"]["nuisance"]
+                for key, value in stated["nuisance"].items():
+                    self.assertAlmostEqual(told[key], value, delta=0.02 + 0.05 * abs(value))
+
+    def test_simulate_takes_a_simulation_whose_scale_is_stated(self):
+        words = ["--gear-ratio", "100", "--effect", "coulomb-friction,torque_nm=0.9,width_deg_s=1"]
+        left = self.residual_nm(*words, "--simulated", "column,name=tau_model_nm,scale=1", "log.csv")
+        alone = self.residual_nm(*words, "log.csv")
+        self.assertLess(left, 0.2 * alone)
+        done = self.run_tool("simulate", *words, "--simulated", "column,name=tau_model_nm", "log.csv")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("simulated.scale", done.stderr)
+        done = self.run_tool("simulate", *words, "--simulated", "column,name=tau", "--motion", "rest,duration=1s", "--sample-rate",
+                             "100Hz")
+        self.assertEqual(done.returncode, 2)
+
+    def test_a_simulation_in_a_file_of_its_own_is_named_again_beside_the_model(self):
+        written(self.path / "sim.csv", ["time_s", "velocity_deg_s", "torque_nm"], [[t, v, arm_nm(t, q, 1.0)] for t, v, _, q in self.rows])
+        own = "log,file=sim.csv,column=torque_nm"
+        done = self.run_tool("diagnose", "log.csv", "--simulated", own, "--gear-ratio", "100", "--json", "-o", "own.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        left = self.residual_nm("--model", "own.json", "--simulated", own, "log.csv")
+        self.assertAlmostEqual(left / json.loads(done.stdout)["gap"]["after_nm"], 1.0, delta=1e-4)
+        done = self.run_tool("simulate", "--model", "own.json", "--simulated", own + ",scale=1", "log.csv")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("the model states its scale", done.stderr)
+
+    def test_ripple_is_found_in_measured_minus_simulated(self):
+        motion = [word for lap in range(4) for to, s in ((150, 2.2), (-150, 4), (0, 1.6))
+                  for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
+        done = self.run_tool("simulate", "--gear-ratio", "100", "--ripple", "1:0.3Nm:20deg", "--ripple", "2:0.4Nm:50deg", *motion,
+                             "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", "1", "-o", "ripple.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.path / "ripple.csv") as file:
+            rows = [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
+        # A simulation that knows of the ripple's neighbours: teeth that mesh 231 times a turn, 8 Nm.
+        def teeth(t, q):
+            return arm_nm(t, q, 1.0) + 8 * math.cos(math.radians(231 * q))
+        written(self.path / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"],
+                [[t, v, tau + 1.1 * teeth(t, q), q, teeth(t, q)] for t, v, tau, q in rows], )
+        # A scale that is fitted is a thousandth off, and so is what is left of the teeth.
+        for words, left_nm in ((["--simulated", "column,name=tau_model_nm"], 0.02), (["--residual", "with.json"], 0.0)):
+            (self.path / "with.json").write_text(json.dumps({"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [],
+                                                             "simulated": {"column": "tau_model_nm", "scale": 1.1}}))
+            done = self.run_tool("identify", "log.csv", *words, "--json", "-q")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            lines = json.loads(done.stdout)["lines"]
+            found = {round(line["order_output"]): line["amplitude_nm"] for line in lines if line["order_output"]}
+            self.assertLessEqual({100, 200}, set(found))
+            self.assertLessEqual(found.get(231, 0.0), left_nm)
+        done = self.run_tool("identify", "log.csv", "--json", "-q")
+        self.assertIn(231, [round(line["order_output"]) for line in json.loads(done.stdout)["lines"] if line["order_output"]])
+
     def test_a_file_of_its_own_on_the_same_clock_gives_the_same_names_and_rows_outside_it_do_not_count(self):
         simulation = [[t, v, arm_nm(t, q, 1.0)] for t, v, _, q in self.rows[100:-100:2]]
         written(self.path / "sim.csv", ["time_s", "velocity_deg_s", "torque_nm"], simulation)

@@ -88,6 +88,27 @@ class Joints(Case):
                 if key not in ("command", "inputs", "tool"):
                     self.assertEqual(first.get(key), second.get(key), key)
 
+    def test_motion_before_the_gears_is_divided_by_each_joints_own_ratio(self):
+        text = wide_log()
+        head, *rows = (line.split(",") for line in text.splitlines())
+        columns = [(head.index(f"{joint}_velocity_deg_s"), ratio) for joint, ratio in (("j1", 100), ("j2", 120), ("j3", 80))]
+        for column, _ in columns:
+            head[column] = head[column].replace("velocity_deg_s", "motor_velocity_rpm")
+        for row in rows:
+            for column, ratio in columns:
+                row[column] = f"{float(row[column]) * ratio / 6:.4f}"
+        before = self.write("motors.csv", "\n".join(",".join(row) for row in (head, *rows)) + "\n")
+        words = ("--joint", "all", "--table", "{joint}.json")
+        self.good("filter", before, *words, "--metrics", "m_{joint}.json", "-o", "motors_done.csv", "--decimals", "9")
+        self.good("filter", self.log, *words, "--metrics", "n_{joint}.json", "-o", "joints_done.csv", "--decimals", "9")
+        for joint in ("j1", "j2", "j3"):
+            motor, behind = (json.loads((self.folder / f"{m}_{joint}.json").read_text()) for m in "mn")
+            # The speeds have four decimals: one in the last place moves a switch by no row.
+            self.assertEqual(motor["switch_count"], behind["switch_count"], joint)
+        torques = [[[float(c) for i, c in enumerate(line.split(",")) if head[i].endswith("torque_nm")]
+                    for line in (self.folder / name).read_text().splitlines()[1:]] for name in ("motors_done.csv", "joints_done.csv")]
+        self.assertLess(max(abs(a - b) for m, n in zip(*torques) for a, b in zip(m, n)), 1e-4)
+
     def test_a_limit_that_one_joint_breaks_is_told_with_its_name(self):
         done = self.run_tool("filter", self.log, "--joint", "all", "--table", "{joint}.json", "--max-delay", "12ms", "-o", "all.csv")
         self.assertEqual(done.returncode, 1, done.stderr)

@@ -39,7 +39,7 @@ class Case(unittest.TestCase):
         cls.nothing_tried = without_effects()
         cls.folder = tempfile.TemporaryDirectory()
         cls.path = pathlib.Path(cls.folder.name)
-        cls.hard = hard_logs.write_all(cls.path)
+        cls.hard = hard_logs.Written(cls.path)
 
     @classmethod
     def tearDownClass(cls):

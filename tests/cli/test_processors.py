@@ -40,6 +40,13 @@ COMMANDS = {
     "tracking": ("filter", MOVE, *GEAR, "--method", "tracking"),
     "oscillator": ("filter", MOVE, *GEAR, "--method", "oscillator"),
     "subtract": ("filter", MOVE, *GEAR, "--method", "subtract"),
+    "info": ("info", "made.csv", "--json"),
+    "spectrum in pieces": ("spectrum", "made.csv", "--segment", "1s", "--json"),
+    "filter by a table": ("filter", MOVE, "--table", "table.json"),
+    "low-pass": ("filter", MOVE, "--method", "lowpass,cutoff=13rad/s,order=4", "--decimals", "6"),
+    "export": ("export", "table.json", "--to", "c-header"),
+    "report": ("report", "table.json", "--no-plotly"),
+    "effects": ("effects",),
     "diagnose": ("diagnose", "--model", "model.json", "made.csv", "--json"),
 }
 SLOW_UNDER_EMULATION = ("diagnose",)
@@ -53,6 +60,7 @@ class Processors(unittest.TestCase):
         folder = pathlib.Path(cls.scratch.name)
         (folder / "model.json").write_text(MODEL)
         (folder / "made.csv").write_bytes(cls.run_tool(*MADE))
+        (folder / "table.json").write_bytes(cls.run_tool(*COMMANDS["design"]))
         cls.here = {name: cls.run_tool(*words) for name, words in COMMANDS.items()}
 
     @classmethod
@@ -67,6 +75,23 @@ class Processors(unittest.TestCase):
         for name, words in COMMANDS.items():
             with self.subTest(name):
                 self.assertEqual(self.run_tool(*words, GLIBC_TUNABLES=FEWER), self.here[name])
+
+    def test_every_command_is_compared(self):
+        listed = subprocess.run([TOOL, "--help"], capture_output=True, text=True).stdout
+        commands = {line.split()[0] for line in listed.partition("Subcommands:\n")[2].splitlines() if line.startswith("  ")}
+        self.assertGreater(len(commands), 10)
+        self.assertEqual(commands, {words[0] for words in COMMANDS.values()})
+
+    def test_without_the_vectors_of_its_own_kernels(self):
+        for name, words in COMMANDS.items():
+            with self.subTest(name):
+                self.assertEqual(self.run_tool(*words, RIPPLENOTCH_VECTORS="none"), self.here[name])
+
+    def test_a_word_that_turns_nothing_off_is_refused(self):
+        done = subprocess.run([TOOL, "effects"], capture_output=True, text=True,
+                              env={**os.environ, "RIPPLENOTCH_VECTORS": "off"})
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("RIPPLENOTCH_VECTORS=off", done.stderr)
 
     @unittest.skipUnless(EMULATOR, "no qemu-x86_64 here; Debian's qemu-user brings it")
     def test_on_a_processor_of_2008(self):

@@ -5,9 +5,13 @@
 #include <sys/stat.h>
 
 #include <filesystem>
+#include <fstream>
 #include <random>
+#include <thread>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
+#include "ripplenotch/core/spool.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -52,6 +56,113 @@ TEST_CASE("nothing is overwritten unasked, not even what appears while writing")
     CHECK_THROWS_AS(sink.finish(), FileError);
     CHECK(read_all(folder.file("b")) == "someone else's");
     CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("what is replaced keeps its rights") {
+    const Folder folder;
+    for (const auto rights : {0600, 0640, 0444, 0755}) {
+        write_all(folder.file("a"), "old", ByteSink::Overwrite::yes);
+        REQUIRE(::chmod(folder.file("a").c_str(), static_cast<mode_t>(rights)) == 0);
+        write_all(folder.file("a"), "new", ByteSink::Overwrite::yes);
+        CHECK(read_all(folder.file("a")) == "new");
+        CHECK(static_cast<int>(fs::status(folder.file("a")).permissions()) == rights);
+    }
+}
+
+TEST_CASE("a file that replaces a private one is private from its first byte on") {
+    const Folder folder;
+    write_all(folder.file("a"), "old", ByteSink::Overwrite::no);
+    REQUIRE(::chmod(folder.file("a").c_str(), 0600) == 0);
+    ByteSink sink(folder.file("a"), ByteSink::Overwrite::yes);
+    sink.write("new");
+    for (const auto& entry : fs::directory_iterator(folder.path))
+        CHECK((entry.status().permissions() & fs::perms::others_all) == fs::perms::none);
+}
+
+TEST_CASE("a link stays, and the file behind it is replaced") {
+    const Folder folder;
+    fs::create_directory(folder.path / "there");
+    write_all(folder.file("there/a"), "old", ByteSink::Overwrite::no);
+    fs::create_symlink("there/a", folder.file("link"));
+    CHECK_THROWS_WITH(write_all(folder.file("link"), "new", ByteSink::Overwrite::no), Contains("--force"));
+    write_all(folder.file("link"), "new", ByteSink::Overwrite::yes);
+    CHECK(fs::is_symlink(folder.file("link")));
+    CHECK(read_all(folder.file("there/a")) == "new");
+    CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("a link to nothing is refused") {
+    const Folder folder;
+    fs::create_symlink("nowhere", folder.file("link"));
+    for (const auto& overwrite : {ByteSink::Overwrite::no, ByteSink::Overwrite::yes})
+        CHECK_THROWS_WITH(write_all(folder.file("link"), "new", overwrite), Contains("link"));
+    CHECK(fs::is_symlink(folder.file("link")));
+}
+
+TEST_CASE("a file that changes while it is read is refused at its end") {
+    const Folder folder;
+    const std::string path = folder.file("log");
+    const auto read_with = [&](auto change) {
+        write_all(path, std::string(100000, 'x'), ByteSink::Overwrite::yes);
+        ByteSource source(path);
+        std::string bytes(40000, '\0');
+        REQUIRE(source.read(bytes.data(), bytes.size()) == bytes.size());
+        change();
+        while (source.read(bytes.data(), bytes.size()) > 0) {
+        }
+    };
+    CHECK_NOTHROW(read_with([] {}));
+    CHECK_THROWS_WITH(read_with([&] { fs::resize_file(path, 60000); }),
+                      Contains("changed while it was read") && Contains("100000 bytes") && Contains("60000"));
+    CHECK_THROWS_WITH(read_with([&] { fs::resize_file(path, 10000); }), Contains("changed"));
+    CHECK_THROWS_WITH(read_with([&] { std::ofstream(path, std::ios::app) << "more"; }), Contains("100004"));
+    CHECK_THROWS_WITH(
+        read_with([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));  // clocks of files are coarse
+            std::fstream(path) << "other";
+        }),
+        Contains("something wrote to it"));
+}
+
+TEST_CASE("the hash is that of the bytes that were read") {
+    const Folder folder;
+    const std::string path = folder.file("log");
+    write_all(path, "abc", ByteSink::Overwrite::no);
+    hash_inputs(true);
+    CHECK(read_all(path) == "abc");
+    write_all(path, "what came later", ByteSink::Overwrite::yes);
+    CHECK(sha256_as_read(path) == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    CHECK_THROWS_WITH(read_all(path), Contains("another than when it was read"));
+    hash_inputs(false);
+    CHECK(read_all(path) == "what came later");
+}
+
+TEST_CASE("a second pass reads the same file, whatever has its name by then") {
+    const Folder folder;
+    write_all(folder.file("log"), "first", ByteSink::Overwrite::no);
+    const Spool spool(folder.file("log"));
+    write_all(folder.file("log"), "second", ByteSink::Overwrite::yes);
+    std::string bytes(10, '\0');
+    CHECK(spool.open()->read(bytes.data(), bytes.size()) == 5);
+    CHECK(bytes.substr(0, 5) == "first");
+}
+
+TEST_CASE("what a pipe said waits in a file that nobody sees") {
+    const Folder folder;
+    REQUIRE(::mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+    fs::create_directory(folder.path / "tmp");
+    const std::string before = std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "";
+    ::setenv("TMPDIR", folder.file("tmp").c_str(), 1);
+    std::thread writer([&] { std::ofstream(folder.file("pipe")) << "from a pipe"; });
+    const Spool spool(folder.file("pipe"));
+    writer.join();
+    CHECK(fs::is_empty(folder.path / "tmp"));
+    for (int pass = 0; pass < 2; ++pass) {
+        std::string bytes(20, '\0');
+        CHECK(spool.open()->read(bytes.data(), bytes.size()) == 11);
+        CHECK(bytes.substr(0, 11) == "from a pipe");
+    }
+    before.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before.c_str(), 1);
 }
 
 TEST_CASE("bytes of an unfinished file can be rewritten") {

@@ -35,6 +35,11 @@ TEST_CASE("a header's rad_s is rad/s, and a torque is no speed") {
 }
 
 TEST_CASE("a refused quantity says what was read and what is understood") {
+    CHECK(parse_quantity("1e27kNm", Dimension::torque, "--noise") == 1e30);
+    for (const char* beyond : {"1e308kNm", "1.1e30", "-1e34mNm", "1e308"}) {
+        CHECK_THROWS_WITH(parse_quantity(beyond, Dimension::torque, "--noise"),
+                          Contains("--noise: '") && Contains("write a number from -1e+30 to 1e+30"));
+    }
     CHECK_THROWS_WITH(parse_quantity("5V", Dimension::frequency, "--cutoff"),
                       Contains("--cutoff") && Contains("'5V'") && Contains("'V'") && Contains("rad/s"));
     CHECK_THROWS_WITH(parse_quantity("fast", Dimension::speed, "--speed"),

@@ -141,13 +141,18 @@ TEST_CASE(
     CHECK(diagnose(opened(joint()), log.view(), nullptr).evaluations == whole.evaluations);
 }
 
-TEST_CASE("without position, what depends on where the joint is cannot be decided, and is not named") {
+TEST_CASE("on a short way without position, what depends on where the joint is cannot be decided") {
     Names needing;
     for (const Effect* effect : catalogue()) {
         if (needs_position(*effect)) needing.emplace_back(effect->name);
     }
     CHECK(sorted(needing) == Names{"gravity", "output-ripple", "ripple-modulation"});
-    Trace log = logged(joint_with({"gravity,amplitude_nm=2,phase_deg=30"}), tour(), 37);
+    // The joint turns back before it has made a turn.
+    std::vector<std::string> specs = {"rest,duration=0.4s", "poly6,to=150deg,duration=2.2s",
+                                      "rest,duration=0.4s", "poly6,to=-60deg,duration=3s",
+                                      "rest,duration=0.4s"};
+    Trace log =
+        logged(joint_with({"gravity,amplitude_nm=2,phase_deg=30"}), make_motion(specs, Hertz(500.0)), 37);
     log.position_deg.clear();
     const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr);
     tell(found);
@@ -156,9 +161,7 @@ TEST_CASE("without position, what depends on where the joint is cannot be decide
     REQUIRE(found.undecidable.size() == 3);
     const auto gravity = std::find_if(found.undecidable.begin(), found.undecidable.end(),
                                       [](const Undecidable& entry) { return entry.effect == "gravity"; });
-    CHECK(gravity->would_explain_nm == Approx(1.4).margin(0.7));
-    log.position_deg = tour().position_deg;
-    CHECK(diagnose(opened(joint()), log.view(), nullptr).undecidable.empty());
+    CHECK(gravity->would_explain_nm > 0.3);
 }
 
 TEST_CASE("faults that may not be named are unexplained at their samples") {

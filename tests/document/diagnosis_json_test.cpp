@@ -12,7 +12,11 @@ using Catch::Contains;
 TEST_CASE("a diagnosis survives the way to JSON and back, byte for byte") {
     Diagnosis nothing_found;
     nothing_found.model.gear_ratio = nothing_found.baseline.gear_ratio = GearRatio(100.0);
-    for (const Diagnosis& diagnosis : {testing::full_diagnosis(), nothing_found}) {
+    Diagnosis of_velocity = nothing_found, both_begin_anywhere = nothing_found;
+    of_velocity.angle = AngleAccount{0.0125, std::nullopt};
+    both_begin_anywhere.angle = AngleAccount{0.0125, 71.3};
+    for (const Diagnosis& diagnosis :
+         {testing::full_diagnosis(), nothing_found, of_velocity, both_begin_anywhere}) {
         const std::string text = write_diagnosis(diagnosis, testing::known_gear(), {});
         CHECK(write_diagnosis(read_diagnosis(text, "d.json"), testing::known_gear(), {}) == text);
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/model_json.hpp"
 
+#include "ripplenotch/arm/chain_files.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 
@@ -82,7 +83,7 @@ TEST_CASE("a simulation is read back as it was written, and refused by who canno
     SimulatedTerm stated{.column = "tau_model", .scale = 0.9, .delay_s = 0.002};
     stated.offset_nm = -0.1;
     stated.gravity_sine_nm = 2.5;
-    const std::string text = write_model(model, {}, stated);
+    const std::string text = write_model(ModelWithGiven{model, stated}, {});
     const ModelWithGiven read_back = read_model_with_given(text, "m.json");
     REQUIRE(read_back.simulated);
     CHECK(read_back.simulated->column == "tau_model");
@@ -104,4 +105,61 @@ TEST_CASE("a simulation is read back as it was written, and refused by who canno
                             "simulated": {"column": "tau", "skale": 1}})",
                         "m.json"),
                     DataError);
+}
+
+TEST_CASE("an arm is read back as it was written, and refused where nobody knows what to do with it") {
+    StatedArm arm{chain_of_axes("zyYx"), "2", {"a", "b", "c", "d"}};
+    arm.chain.joints[3].kind = JointKind::prismatic;
+    arm.chain.joints[1].rotation = rotation_of_rpy({10.0, 20.0, -130.0});
+    arm.chain.gravity_m_s2 = {1.0, 2.0, -9.0};
+    arm.joint = arm.chain.joints[1].name;
+    arm.smoothing = Seconds(0.12);
+    arm.values.emplace();
+    for (int v = 0; v < 40; ++v) arm.values->links.push_back(0.1 * v - 1.3);
+    arm.values->rotor_inertia_kgm2 = 0.25;
+    arm.nuisance = {.offset_nm = 0.4, .coulomb_nm = 1.0, .viscous_nm_per_deg_s = 0.02, .stribeck_nm = 0.3};
+    const ModelWithGiven model{
+        {GearRatio(101.0), {parse_term("coulomb-friction,torque_nm=1,width_deg_s=1")}}, std::nullopt, arm};
+    const std::string text = write_model(model, {});
+    const ModelWithGiven back = read_model_with_given(text, "m.json");
+    REQUIRE(back.arm);
+    CHECK(back.arm->joint == arm.joint);
+    CHECK(back.arm->log_joints == arm.log_joints);
+    CHECK(back.arm->values == arm.values);
+    CHECK(back.arm->nuisance == arm.nuisance);
+    CHECK(back.arm->smoothing->value() == 0.12);
+    CHECK(back.arm->chain.lengths_are_guessed);
+    CHECK(back.arm->chain.gravity_m_s2 == arm.chain.gravity_m_s2);
+    for (std::size_t j = 0; j < 4; ++j) {
+        const ChainJoint &was = arm.chain.joints[j], &is = back.arm->chain.joints[j];
+        CHECK(is.name == was.name);
+        CHECK(is.kind == was.kind);
+        CHECK(is.origin_m == was.origin_m);
+        CHECK(is.axis == was.axis);
+        for (std::size_t i = 0; i < 9; ++i)
+            CHECK_THAT(is.rotation[i], Catch::Matchers::WithinAbs(was.rotation[i], 1e-14));
+    }
+    CHECK_THROWS_WITH(read_model(text, "m.json"), Contains("m.json") && Contains("arm"));
+}
+
+TEST_CASE("what an arm cannot be is refused with its place") {
+    const auto refused = [](const std::string& from, const std::string& to) {
+        StatedArm arm{chain_of_axes("zy"), {}, {"a", "b"}};
+        arm.joint = arm.chain.joints[0].name;
+        arm.values = ArmValues{std::vector<double>(20, 1.0), 0.0};
+        std::string text = write_model(ModelWithGiven{{GearRatio(100.0), {}}, std::nullopt, arm}, {});
+        text.replace(text.find(from), from.size(), to);
+        try {
+            (void)read_model_with_given(text, "m.json");
+        } catch (const DataError& error) {
+            return std::string(error.what());
+        }
+        return std::string("read");
+    };
+    CHECK_THAT(refused("\"mass_kg\"", "\"mass_lb\""), Contains("m.json: arm.links[0].mass_kg is missing"));
+    CHECK_THAT(refused("\"effects\": []", "\"effects\": [{\"effect\": \"gravity\"}]"),
+               Contains("gravity is part of arm; remove one of the two"));
+    CHECK_THAT(refused("\"identified\": \"torque\"", "\"smoothing_s\": -1"), Contains("arm.smoothing_s"));
+    CHECK_THAT(refused("\"identified\": \"torque\"", "\"mass\": 1"), Contains("not a known field"));
+    CHECK_THAT(refused("\"joint\": \"", "\"joint\": \"no "), Contains("expected one of joints"));
 }

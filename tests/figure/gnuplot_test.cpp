@@ -5,7 +5,7 @@
 
 #include "figure/gnuplot_script.hpp"
 #include "figure/same_bytes.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

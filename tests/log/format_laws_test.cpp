@@ -32,7 +32,7 @@ std::vector<NumberColumn> table(std::size_t rows) {
     }
     columns[2].values[0] = -0.0;
     columns[2].values[1] = 5e-324;
-    columns[2].values[2] = 1.7976931348623157e308;
+    columns[2].values[2] = 1e30;
     return columns;
 }
 

@@ -120,13 +120,14 @@ TEST_CASE("a stated unit is believed, and a contradiction keeps a verdict back",
 TEST_CASE("a position that turns a hundred times more, or less, is the other side of a gear", "[log]") {
     const Log position = read_text(text_of({"velocity_deg_s", "position_deg", 1.0, 100.0}));
     CHECK(error_factor(position) == Approx(1.0));
-    CHECK(position.layout.motor_ratio.value() == Approx(100.0).epsilon(0.002));
+    CHECK(position.layout.columns[*position.layout.chosen.position].motor_ratio.value() ==
+          Approx(100.0).epsilon(0.002));
     const Log velocity = read_text(text_of({"velocity_rpm", "position_deg", 100.0 / 6.0, 1.0}));
     CHECK(error_factor(velocity) == Approx(1.0).epsilon(0.002));
     // The position of another joint is no gear.
     const Log other = read_text(text_of({"velocity_deg_s", "position_deg", 1.0, 0.3}));
     CHECK(error_factor(other) == 1.0);
-    CHECK_FALSE(other.layout.motor_ratio.has_value());
+    CHECK_FALSE(other.layout.columns[*other.layout.chosen.position].motor_ratio.has_value());
 }
 
 TEST_CASE("motion of the motor is divided by the ratio that is known, and only by that", "[log]") {

@@ -141,13 +141,13 @@ TEST_CASE("without plotly the page carries pictures, says so, and runs no script
 }
 
 TEST_CASE("any result becomes verdict, facts and tables with units from its names") {
-    const std::string text = R"({"schema": "ripplenotch/clock/1", "command": "ripplenotch x",
+    const std::string text = R"({"schema": "ripplenotch/info/1", "command": "ripplenotch x",
         "inputs": [{"name": "x.csv", "sha256": "ab"}], "verdict": "the clock is right", "rows": 500,
         "clock": {"rate_hz": 1000.0, "jitter_ms": 0.0123456, "gaps": [{"from_s": 0.5, "to_s": 2.25}]},
         "steps": [{"name": "first", "level_nm": 2.0, "settle_ms": {"0.5": 147.0, "1": 130.0}},
                   {"name": "second", "level_nm": 0.123456, "note": "late"}]})";
     const PageSection section = section_of_result(text, "c.json");
-    CHECK(section.title == "clock: c.json");
+    CHECK(section.title == "info: c.json");
     CHECK(section.verdict == "the clock is right");
     CHECK(section.inputs.size() == 1);
     CHECK(section.figures.empty());

@@ -17,6 +17,7 @@ struct ArmAccount {
     std::string option;  ///< that would force it
     std::vector<JointTravel> joints;
     std::size_t values_there = 0, values_told = 0;
+    bool values_are_stated = false;   ///< by a model; there is no fit then, and nothing below of one
     bool all_joints_at_once = false;  ///< or this joint alone
     bool lengths_are_guessed = false;
     double pull = 0.0;

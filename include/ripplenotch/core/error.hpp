@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Throw when the user's request cannot be carried out; return a value when the answer is "no". Four types,
+// Throw when the user's request cannot be carried out; return a value when the answer is "no". Five types,
 // one helper, one catch in main. A message says what, the value, the limit, and the remedy.
 
 #include <fmt/format.h>
@@ -19,6 +19,7 @@ enum class ExitCode : int {
     data = 3,
     file = 4,
     inconclusive = 5,
+    memory = 6,
     internal = 70,
 };
 
@@ -47,6 +48,12 @@ class DataError : public Error {
 class FileError : public Error {
   public:
     explicit FileError(const std::string& message) : Error(ExitCode::file, message) {}
+};
+
+/// What was asked for takes more memory than there is. The message names size and remedy.
+class MemoryError : public Error {
+  public:
+    explicit MemoryError(const std::string& message) : Error(ExitCode::memory, message) {}
 };
 
 /// raise<DataError>("{}:{}: ...", file, line) formats and throws.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Files as the tool promises them: read whole or in pieces, written to a temporary name and renamed, never
-// overwritten unasked, "-" is the pipe.
+// Files as the tool promises them: read whole or in pieces, written under no name and put in place when they
+// are complete, never overwritten unasked, "-" is the pipe. docs/durability.md says what a crash leaves.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,9 @@
 
 namespace ripplenotch {
 
-class UnfinishedFile;
+class OpenFile;
+class Sha256;
+class TemporaryFile;
 
 /// A source of bytes: a file, or standard input when the path is "-".
 class ByteSource {
@@ -21,8 +23,10 @@ class ByteSource {
     /// Throws FileError naming the path and the system's reason, UsageError when "-" is a terminal: nobody
     /// wants to type a log, and a tool that waits in silence looks broken.
     explicit ByteSource(const std::string& path);
-    /// The same file under another name for messages.
-    ByteSource(const std::string& path, std::string name);
+    /// A file that is open already, read from its start; hashed where inputs are (inputs_read.hpp).
+    explicit ByteSource(std::shared_ptr<const OpenFile> file);
+    /// The same under another name for messages, and not hashed.
+    ByteSource(std::shared_ptr<const OpenFile> file, std::string name);
     /// Bytes already in memory, under a name for messages, given out in pieces of at most `piece_size`.
     ByteSource(std::string name, std::shared_ptr<const std::string> bytes,
                std::size_t piece_size = std::size_t(-1));
@@ -30,7 +34,8 @@ class ByteSource {
     ByteSource(const ByteSource&) = delete;
     ByteSource& operator=(const ByteSource&) = delete;
 
-    /// Reads up to `size` bytes, blocking until at least one is there; 0 means the end. Throws FileError.
+    /// Reads up to `size` bytes, blocking until at least one is there; 0 means the end. Throws FileError; so
+    /// does the end of a file that was written to, cut or made longer since it was opened.
     virtual std::size_t read(char* into, std::size_t size);
     /// Of a source that leaves parts of a file out: the number in the file of its `number`th line or record,
     /// for messages. Both count from 1.
@@ -39,23 +44,32 @@ class ByteSource {
     [[nodiscard]] const std::string& name() const { return name_; }
     /// Of a file in bytes when it was opened; 0 where nobody knows.
     [[nodiscard]] std::uint64_t size() const { return size_; }
-    /// Of a regular file, for readers that go back and forth in it; -1 where bytes come once.
-    [[nodiscard]] int file_descriptor() const { return regular_ ? descriptor_ : -1; }
+    /// A regular file, which can be read at any place; else bytes come once.
+    [[nodiscard]] bool by_place() const;
+    /// Of a file that is by_place(), for readers that go back and forth in it. They pass read() by, so the
+    /// file is hashed when its hash is asked for, and refused if it is another by then (inputs_read.hpp).
+    [[nodiscard]] int descriptor_by_place();
+    /// For such readers, at their end: throws FileError if the file was written to since it was opened.
+    void require_unchanged() const;
 
   protected:
     struct Name {
         std::string name;
     };
     /// Of bytes that an heir's read() gives.
-    explicit ByteSource(Name name) : name_(std::move(name.name)) {}
+    explicit ByteSource(Name name);
 
   private:
+    void take(std::string_view bytes);
+    void end();
+
     std::string name_;
+    std::shared_ptr<const OpenFile> file_;
     std::shared_ptr<const std::string> bytes_;
-    std::size_t piece_size_ = 0, given_ = 0;
-    std::uint64_t size_ = 0;
-    int descriptor_ = -1;
-    bool owns_ = false, regular_ = false;
+    std::unique_ptr<Sha256> hash_;
+    std::size_t piece_size_ = 0;
+    std::uint64_t size_ = 0, at_ = 0;
+    bool ended_ = false;
 };
 
 /// Reads a whole file, or standard input when the path is "-".
@@ -66,9 +80,14 @@ class ByteSource {
 /// process quietly by SIGPIPE's default action.
 class ByteSink {
   public:
-    enum class Overwrite { no, yes };
+    /// How a finished file takes its place. `synced`: with its bytes and its name on the disk.
+    struct Overwrite {
+        bool allowed = false, synced = true;
+        static const Overwrite no, yes;
+    };
     /// Throws FileError when the path exists and overwriting was not asked for, or cannot be written.
-    /// Throws UsageError when `binary` is true and the sink is a terminal.
+    /// Throws UsageError when `binary` is true and the sink is a terminal. What is replaced keeps its rights,
+    /// owner and group as far as the system allows; a link stays, and the file behind it is replaced.
     ByteSink(const std::string& path, Overwrite overwrite, bool binary = false);
     ~ByteSink();
     ByteSink(const ByteSink&) = delete;
@@ -80,25 +99,26 @@ class ByteSink {
     /// room are written in half the time, and a full disk shows at the start. What is left over goes back.
     void expect(std::uint64_t bytes);
     /// True when bytes already written can be replaced (a file, not a pipe).
-    [[nodiscard]] bool can_rewrite() const { return !temporary_.empty(); }
+    [[nodiscard]] bool can_rewrite() const { return file_ != nullptr; }
     /// Replaces bytes at an offset from the start; only when can_rewrite().
     void rewrite(std::size_t offset, std::string_view bytes);
-    /// Renames the temporary file into place; for a pipe, checks that all was taken.
+    /// Puts the file in its place; of a pipe, hears what it has to say against the bytes. Throws FileError.
     void finish();
 
   private:
     void write_pages(std::string_view bytes);
     void write_waiting();
+    void close_special();
 
-    std::string path_;
-    std::string temporary_;
-    std::unique_ptr<UnfinishedFile> unfinished_;
-    std::string waiting_;  ///< behind the last whole pages of a file
+    std::string path_, target_;            ///< as given; behind links
+    std::unique_ptr<TemporaryFile> file_;  ///< none for pipes and devices
+    std::string waiting_;                  ///< behind the last whole pages of a file
     std::uint64_t reserved_ = 0, written_ = 0;
     int descriptor_ = -1;
-    bool finished_ = false;
-    Overwrite overwrite_ = Overwrite::no;
+    Overwrite overwrite_;
 };
+inline constexpr ByteSink::Overwrite ByteSink::Overwrite::no{false, true};
+inline constexpr ByteSink::Overwrite ByteSink::Overwrite::yes{true, true};
 
 /// Writes a finished text in one go, with the same promises.
 void write_all(const std::string& path, std::string_view bytes, ByteSink::Overwrite overwrite);

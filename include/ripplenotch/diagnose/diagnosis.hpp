@@ -158,6 +158,21 @@ struct BandLeft {
     double rms_nm = 0.0;
 };
 
+/// The torque of a log in a band of frequencies: all of it less its mean, what the given terms leave of it,
+/// and what they and the improved model leave.
+struct BandGap {
+    double from_hz = 0.0, to_hz = 0.0;  ///< 0: up to half the sample rate
+    double torque_nm = 0.0, beside_given_nm = 0.0, after_nm = 0.0;
+};
+
+/// A finding that the log leaves in doubt and the user takes into the model.
+struct AcceptedFinding {
+    Term term;                                        ///< with its values, of the last fit
+    FindingStatus status = FindingStatus::tentative;  ///< before
+    std::string reason;                               ///< of the doubt
+    std::vector<FittedValue> values;
+};
+
 /// A value of a given term, or of what mends it.
 struct GivenValue {
     std::string name;  ///< of the term; "inertia_kgm2", "gravity_cosine_nm", "gravity_sine_nm", "offset_nm"
@@ -170,6 +185,13 @@ struct DiagnosisGap {
     double noise_floor_nm = 0.0;
     std::optional<double> closed_percent;  ///< of the squared gap above the floor; empty when there was none
     std::optional<double> validation_before_nm, validation_after_nm, validation_closed_percent;
+};
+
+/// The angle where a log has no position, as the ripple tells it.
+struct AngleAccount {
+    double walk_deg = 0.0;  ///< rms by which the integral of the log's velocity was moved, less its mean
+    /// Where the validation log begins, in the angle of the log; empty where both have a position.
+    std::optional<double> validation_start_deg;
 };
 
 struct Diagnosis {
@@ -190,6 +212,11 @@ struct Diagnosis {
     /// Beside given terms: measured less predicted torque of the model as given and of the improved one, an
     /// entry per row of the log. Empty without given terms: a model's own prediction tells it then.
     std::vector<double> residual_before_nm, residual_after_nm;
+    std::vector<double> beside_given_nm;  ///< beside given terms: torque less what they bring, as fitted
+    std::vector<BandGap> bands;           ///< beside given terms
+    std::vector<AcceptedFinding> accepted;
+    std::vector<std::string> not_accepted;  ///< why a name is not, a sentence each
+    std::vector<std::string> next;          ///< what to do where something is in doubt, a sentence each
     std::vector<BandLeft> leftover;      ///< of the improved model, where something is left beside findings
     std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
@@ -197,13 +224,17 @@ struct Diagnosis {
     double evaluations = 0.0;
     bool search_ended = false;
     bool has_position = false;
-    std::vector<double> noise_color;  ///< a1 ... ap of FitOptions::noise_color
-    double false_alarm = 0.01;        ///< chance that a log with nothing hidden gets a name, by design
+    std::optional<AngleAccount> angle;  ///< where the log or the validation log has no position
+    std::vector<double> noise_color;    ///< a1 ... ap of FitOptions::noise_color
+    double false_alarm = 0.01;          ///< chance that a log with nothing hidden gets a name, by design
 };
 
 struct DiagnosisOptions {
     Seconds smoothing = default_smoothing;
     std::span<const std::string> without = {};  ///< names of effects that are not tried
+    /// Names of findings that are taken into the model though the log leaves them in doubt; diagnose_in_full
+    /// looks at them.
+    std::span<const std::string> accept = {};
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
     std::span<const GivenTerm> given = {}, validation_given = {};
@@ -215,5 +246,11 @@ struct DiagnosisOptions {
 /// model whose lines are not stated; DataError: a log too short, or without motion.
 [[nodiscard]] Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
                                  const DiagnosisOptions& options = {});
+
+/// diagnose(), then once more with what the user accepts as a part of the model, its values open: gap and
+/// disagreement are those before that. A name that is neither in doubt nor a side of a tie is told in
+/// `not_accepted`. `next` and `bands` are told, too. Throws as diagnose().
+[[nodiscard]] Diagnosis diagnose_in_full(const Model& model, const TraceView& log,
+                                         const TraceView* validation, const DiagnosisOptions& options = {});
 
 }  // namespace ripplenotch

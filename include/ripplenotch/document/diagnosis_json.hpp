@@ -2,6 +2,7 @@
 #pragma once
 // diagnosis.json: what a diagnosis found, docs/formats/diagnosis.md.
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,18 @@ namespace ripplenotch {
 /// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one.
 [[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
                                           const Provenance& provenance, const ArmAccount* arm = nullptr);
+
+/// One of the joints of a log.
+struct DiagnosedJoint {
+    std::string joint;
+    const Diagnosis& diagnosis;
+    const GearAccount& gear;
+    const ArmAccount* arm;  ///< what an arm was given, if one
+};
+
+/// Schema ripplenotch/diagnoses/1: a list of what write_diagnosis tells of each, with its joint's name.
+[[nodiscard]] std::string write_diagnoses(std::span<const DiagnosedJoint> joints,
+                                          const Provenance& provenance);
 
 /// Reads it back; `source` is its name in messages. What the document does not hold is not known then: values
 /// of Diagnosis::baseline and of refused candidates are empty, Evidence::raw_gain is nan, FittedValue has no

@@ -6,27 +6,33 @@
 #include <string>
 #include <string_view>
 
+#include "ripplenotch/arm/stated_arm.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/document/simulated_term.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {
 
+/// A model with what is given beside its effects.
+struct ModelWithGiven {
+    Model model;
+    std::optional<SimulatedTerm> simulated = {};
+    std::optional<StatedArm> arm = {};
+
+    [[nodiscard]] bool any_given() const { return simulated || arm; }
+};
+
 /// Text of model.json. Values that the model does not state are left out.
-[[nodiscard]] std::string write_model(const Model& model, const Provenance& provenance,
-                                      const std::optional<SimulatedTerm>& simulated = std::nullopt);
+[[nodiscard]] std::string write_model(const Model& model, const Provenance& provenance);
+[[nodiscard]] std::string write_model(const ModelWithGiven& model, const Provenance& provenance);
 
 /// Reads model.json; `source` is its name in messages. A parameter left out is to be fitted. Throws
 /// DataError: not JSON, another schema, an unknown effect, parameter or field, a value out of its bounds, no
 /// gear ratio.
 [[nodiscard]] Model read_model(std::string_view text, const std::string& source);
 
-/// A model with what is given beside its effects.
-struct ModelWithGiven {
-    Model model;
-    std::optional<SimulatedTerm> simulated;
-};
-/// The same for commands that know what to do with a `simulated`; read_model refuses it.
+/// The same for commands that know what to do with a `simulated` or an `arm`; read_model refuses both. Throws
+/// DataError for an arm beside gravity or inertia, too, which are part of it.
 [[nodiscard]] ModelWithGiven read_model_with_given(std::string_view text, const std::string& source);
 
 }  // namespace ripplenotch

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,6 +32,7 @@ struct Column {
     bool unit_assumed = false;  ///< nothing settled the unit: it is in Layout::assumptions
     std::string joint;          ///< "" when the file holds one unnamed joint
     Shaft side = Shaft::joint;  ///< of a velocity or position, as measured; the factor divides by the ratio
+    std::optional<double> motor_ratio;  ///< of a motion measured before the gear: what the factor divides by
 };
 
 /// What the numbers would be had a log been written otherwise than assumed: factors on the values as read.
@@ -69,11 +71,13 @@ struct ReadOptions {
     std::uint64_t skip_bytes = 0;         ///< at the start of a raw dump
     std::optional<std::string> clock;     ///< of messages: "log" when they were recorded, "header" their own
     std::optional<std::string> join;   ///< of signals with clocks of their own: "nearest", "hold", "linear"
-    std::map<Role, Shaft> sides;       ///< of velocity and position (--side)
-    std::optional<double> gear_ratio;  ///< for what is measured before the gear
-    bool takes_motor_units = false;    ///< motion before a gear of unknown ratio is not refused
-    bool needs_torque = true;          ///< false for info
-    TimeRange range;                   ///< rows outside are as if they were not there
+    std::map<Role, Shaft> sides;          ///< of velocity and position (--side)
+    std::optional<double> gear_ratio;     ///< for what is measured before the gear
+    /// Where the joints' gears differ: of a joint by its name. Asked for the joints that are read only.
+    std::function<std::optional<double>(const std::string& joint)> gear_ratio_of;
+    bool takes_motor_units = false;              ///< motion before a gear of unknown ratio is not refused
+    bool needs_torque = true;                    ///< false for info
+    TimeRange range;                             ///< rows outside are as if they were not there
     std::shared_ptr<const RowsOutside> outside;  ///< what open_log left out of the bytes, by `range`
 };
 
@@ -105,7 +109,6 @@ struct Layout {
     std::int64_t time_origin = 0;  ///< in the column's own unit: taken off stamps that count from long ago
     bool time_as_text = false;     ///< stamps like 12:30:00.5 or 2024-05-01T12:30:00.5Z
     bool velocity_from_position = false;  ///< no velocity is logged: it is the slope of the position
-    std::optional<double> motor_ratio;    ///< by which motion measured before the gear was divided
     bool motor_units = false;             ///< motion is the motor's, and no ratio was known to divide it by
     std::optional<Hertz> stated_rate;     ///< from --sample-rate, or from the head of a file without a clock
     std::string options;                  ///< the option line that would force this reading

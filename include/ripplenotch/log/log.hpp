@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "ripplenotch/core/spool.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/log/format.hpp"
 #include "ripplenotch/log/recording.hpp"
@@ -27,7 +28,7 @@ namespace ripplenotch {
                                                      const LogFormat& format, const WriteOptions& options,
                                                      ByteSink::Overwrite overwrite);
 
-/// A whole log of one joint.
+/// A log of one joint.
 struct Log {
     Layout layout;
     Trace trace;  ///< sample_rate is recording.clock.mean_rate; rows at another rate are left out
@@ -39,6 +40,27 @@ struct Log {
     /// Least and greatest of the position column, made continuous, whether or not the trace has it.
     std::optional<std::pair<double, double>> position_range_deg;
 };
+
+/// About how many rows a file has, by its size and the size of its first rows; empty for pipes, and for a
+/// part of a log. Throws what open_log throws.
+[[nodiscard]] std::optional<double> estimated_rows(const std::string& path, const ReadOptions& options);
+
+/// Rows that commands hold which look at pieces of a log anyway.
+inline constexpr std::size_t most_rows_held = 320'000;
+
+/// Of a log with more than `most_rows`, the trace holds sixteen pieces, evenly spread, each a run of its own;
+/// all else is of the whole log, which is read twice then (a pipe waits in a temporary file), and
+/// recording.looked_at says so. Throws what read_log throws. O(most_rows) memory.
+[[nodiscard]] Log read_log_in_part(const std::string& path, const ReadOptions& options,
+                                   std::size_t most_rows = most_rows_held);
+/// read_log of a log with at most so many rows; nothing of a longer one.
+[[nodiscard]] std::optional<Log> read_log_if_short(const Spool& log, const ReadOptions& options,
+                                                   std::size_t most_rows);
+/// Each joint as read_log_in_part gives it.
+[[nodiscard]] std::vector<Log> read_joints_in_part(const std::string& path, const ReadOptions& options,
+                                                   std::size_t most_rows = most_rows_held);
+/// The names of a log's joints: "" for one that has no name.
+[[nodiscard]] std::vector<std::string> joint_names(const Spool& log, ReadOptions options);
 
 /// Reads everything. With options.joint "all" use read_joints. Throws what open_log throws, and DataError
 /// where options.needs_torque and the clock is of no use (ClockFacts::refusal).

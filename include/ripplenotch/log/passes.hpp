@@ -5,9 +5,12 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "ripplenotch/core/spool.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/log/layout.hpp"
 #include "ripplenotch/log/recording.hpp"
@@ -21,6 +24,10 @@ struct LogFacts {
     double first_s = 0.0, last_s = 0.0;
     double mean_s = 0.0;             ///< of the times
     double mean_position_deg = 0.0;  ///< of the continuous position; 0 where there is none
+    std::size_t held_bad_values = 0;
+    // Known after the second pass, as in Log:
+    std::optional<double> clock_factor;
+    std::optional<std::pair<double, double>> position_range_deg;
 };
 
 class LogPasses {
@@ -30,6 +37,7 @@ class LogPasses {
 
     /// A pipe is kept in a temporary file (Spool). Throws what open_log throws.
     LogPasses(const std::string& path, const ReadOptions& options);
+    LogPasses(std::shared_ptr<const Spool> log, const ReadOptions& options);
     ~LogPasses();
     LogPasses(const LogPasses&) = delete;
     LogPasses& operator=(const LogPasses&) = delete;

@@ -19,6 +19,11 @@ struct HeldSamples {
     std::size_t longest = 0;  ///< rows in the longest unbroken repetition
 };
 
+/// What is held of a log that is too long to be held: evenly spread pieces of its rows.
+struct LookedAt {
+    std::size_t rows = 0, pieces = 0;
+};
+
 struct Recording {
     std::string source, joint;  ///< joint: empty for a log of one unnamed joint
     ClockFacts clock;
@@ -26,6 +31,7 @@ struct Recording {
     AngleFacts angle;
     std::vector<Assumption> assumptions, inferences;  ///< as in Layout
     std::optional<RowsOutside> outside;               ///< where a range was asked for
+    std::optional<LookedAt> looked_at;                ///< where only part of the rows was held
     std::vector<LogWarning> warnings;                 ///< about clock, held samples and angle
 
     [[nodiscard]] std::size_t rows() const { return clock.rows; }

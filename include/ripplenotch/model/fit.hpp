@@ -16,6 +16,7 @@ struct Interval {
     double low = 0.0, high = 0.0;
 };
 
+class Carriers;
 class Weighing;
 
 struct FittedValue {
@@ -54,6 +55,8 @@ struct FitOptions {
     bool errors = true;
     /// In place of noise_color and use; it must be made for torques of the same length.
     const Weighing* weighing = nullptr;
+    /// Kept for further fits along the same motion; none: the fit has its own.
+    Carriers* carriers = nullptr;
 };
 
 /// Estimates the values that `model` leaves out (LeftOut::fitted) so that the sum of squares of `torque_nm`

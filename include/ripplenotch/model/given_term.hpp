@@ -9,15 +9,19 @@
 
 namespace ripplenotch {
 
+/// Deviation of a value that is stated: so small that nothing moves it.
+inline constexpr double stated_deviation = 1e-9;
+
 /// Columns whose values are fitted together with everything else.
 struct GivenTerm {
-    std::string name;  ///< "arm", "simulated"
+    std::string name;  ///< "arm", "simulated"; "nuisance": stated beside one of them, and nobody's name
     /// One column a value: the torque in newton-metres that one unit of the value brings, an entry per row of
     /// the log.
     std::vector<std::vector<double>> torque_nm;
     /// What is known of each value before the log: drawn towards `mean` as by a measurement with this
     /// standard deviation, in the value's own unit. A deviation of infinity leaves it free.
     std::vector<double> mean, deviation;
+    bool bears_load = true;  ///< gear and bearings carry this torque
 };
 
 }  // namespace ripplenotch

@@ -10,16 +10,20 @@
 
 namespace ripplenotch {
 
+class Carriers;
+
 class Prediction {
   public:
-    /// `motion` must outlive it. Throws UsageError where predict_nm does.
-    Prediction(Model model, const Motion& motion);
+    /// `motion` must outlive it, and so must `carriers`, where there are any: they keep what many predictions
+    /// along the same motion have in common, and leave their torques as they are but for rounding. Throws
+    /// UsageError where predict_nm does.
+    Prediction(Model model, const Motion& motion, Carriers* carriers = nullptr);
     ~Prediction();
     Prediction(Prediction&&) noexcept;
     Prediction& operator=(Prediction&&) noexcept;
 
     [[nodiscard]] const Model& model() const;
-    /// predict_nm of the model, to the last bit.
+    /// predict_nm of the model, to the last bit where there are no carriers.
     [[nodiscard]] const std::vector<double>& torque_nm() const;
     /// predict_nm with the term appended, less torque_nm(). A joint effect is evaluated alone and taken
     /// through the sensors; any other costs a whole prediction.

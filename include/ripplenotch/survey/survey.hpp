@@ -56,7 +56,9 @@ struct LogInfo {
 };
 
 /// Reads the log, each joint of it unless one is chosen. Throws what reading throws; a log without torque,
-/// velocity or time is described all the same.
-[[nodiscard]] LogInfo survey_log(const std::string& path, ReadOptions options);
+/// velocity or time is described all the same. One of more than `most_rows` goes by twice and is not held:
+/// its stretches are then those of means of as many rows as it takes.
+[[nodiscard]] LogInfo survey_log(const std::string& path, ReadOptions options,
+                                 std::size_t most_rows = most_rows_held);
 
 }  // namespace ripplenotch

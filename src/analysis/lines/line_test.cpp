@@ -78,16 +78,66 @@ void gather_below(const PowerSpectrum& s, std::size_t bin, double guard, double 
     for (std::size_t d = inner; d <= outer; ++d) into.push_back(s.power[bin - d]);
 }
 
-struct LocalFloor {
-    double power = 0.0;
-    double cells = 0.0;
-};
-LocalFloor floor_around(const PowerSpectrum& s, std::size_t bin, double reach_cells,
-                        std::vector<double>& scratch) {
-    gather(s, bin, guard_cells * s.bins_per_cell, reach_cells * s.bins_per_cell, scratch);
-    const double cells = static_cast<double>(scratch.size()) / s.bins_per_cell;
-    return {median_in(scratch) / median_over_mean(s.averages_at(bin)), cells};
+/// Cells of the ring between `guard_cells` and `reach_cells`.
+double cells_around(const PowerSpectrum& s, std::size_t bin, double reach_cells) {
+    const auto inner = static_cast<std::size_t>(std::ceil(guard_cells * s.bins_per_cell));
+    const std::size_t outer =
+        std::min(static_cast<std::size_t>(std::ceil(reach_cells * s.bins_per_cell)), room_around(s, bin));
+    return outer < inner ? 0.0 : 2.0 * static_cast<double>(outer - inner + 1) / s.bins_per_cell;
 }
+
+/// The four floors about a bin, the cheapest first, until their largest is above `most`.
+double floor_at(const PowerSpectrum& s, std::size_t bin, double most, std::vector<double>& scratch) {
+    const double to_mean = median_over_mean(s.averages_at(bin));
+    double local = 0.0;
+    const auto raised = [&] {
+        local = std::max(local, median_in(scratch) / to_mean);
+        return local > most;
+    };
+    gather(s, bin, inner_from_cells * s.bins_per_cell, inner_to_cells * s.bins_per_cell, scratch);
+    if (raised()) return local;
+    gather_below(s, bin, guard_cells * s.bins_per_cell, near_cells * s.bins_per_cell, scratch);
+    if (raised()) return local;
+    for (const double reach_cells : {near_cells, far_cells}) {
+        gather(s, bin, guard_cells * s.bins_per_cell, reach_cells * s.bins_per_cell, scratch);
+        if (raised()) return local;
+    }
+    return local;
+}
+
+/// A ratio below which noise exceeds it more often than `chance`, and not far below the highest such: most
+/// bins are below it, and are not worth more than a comparison. Neighbouring bins share it; one that nobody
+/// shares is not worth finding, and is 0.
+class LeastRatio {
+  public:
+    explicit LeastRatio(double chance) : chance_(chance) {}
+
+    double at(double averages, double cells) {
+        const bool again = averages == averages_ && cells == cells_;
+        if (again && ratio_ > 0.0) return ratio_;
+        averages_ = averages;
+        cells_ = cells;
+        return ratio_ = again ? found() : 0.0;
+    }
+
+  private:
+    [[nodiscard]] double found() const {
+        const auto is_below = [this](double ratio) {
+            return exceedance(ratio * (1.0 + 1e-9), averages_, cells_) > chance_;
+        };
+        double high = 1.0;
+        while (is_below(high) && high < 1e100) high *= 2.0;
+        double low = 0.5 * high;
+        if (!is_below(low)) return 1e-300;
+        for (int halving = 0; halving < 8; ++halving) {
+            const double middle = 0.5 * (low + high);
+            (is_below(middle) ? low : high) = middle;
+        }
+        return low;
+    }
+
+    double chance_, averages_ = -1.0, cells_ = -1.0, ratio_ = 0.0;
+};
 
 }  // namespace
 
@@ -148,23 +198,20 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
     const double tries =
         tries_per_cell * static_cast<double>(power.size() - spectrum.first) / spectrum.bins_per_cell;
     std::vector<double> scratch;
+    LeastRatio worth_a_look(1.0 / tries), significant(false_alarm / tries);
     for (std::size_t k = spectrum.first + 1; k + 1 < power.size(); ++k) {
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
         // A cheap sieve with a wide margin: the floors below are seldom less than a quarter of the running
         // one.
-        if (tries * exceedance(4.0 * power[k] / floor[k], spectrum.averages_at(k), 1e6) > 1.0) continue;
-        const LocalFloor near = floor_around(spectrum, k, near_cells, scratch);
-        const LocalFloor far = floor_around(spectrum, k, far_cells, scratch);
-        gather_below(spectrum, k, guard_cells * spectrum.bins_per_cell, near_cells * spectrum.bins_per_cell,
-                     scratch);
-        const double below = median_in(scratch) / median_over_mean(spectrum.averages_at(k));
-        gather(spectrum, k, inner_from_cells * spectrum.bins_per_cell,
-               inner_to_cells * spectrum.bins_per_cell, scratch);
-        const double inner = median_in(scratch) / median_over_mean(spectrum.averages_at(k));
-        const double local = std::max({near.power, far.power, below, inner});
-        if (near.cells < fewest_cells || !(local > 0.0)) continue;
-        const double chance =
-            std::min(1.0, tries * exceedance(power[k] / local, spectrum.averages_at(k), far.cells));
+        const double averages = spectrum.averages_at(k), rough = 4.0 * power[k] / floor[k];
+        if (rough < worth_a_look.at(averages, 1e6) || tries * exceedance(rough, averages, 1e6) > 1.0)
+            continue;
+        if (cells_around(spectrum, k, near_cells) < fewest_cells) continue;
+        const double cells = cells_around(spectrum, k, far_cells);
+        const double most = power[k] / significant.at(averages, cells);  // infinite at 0
+        const double local = floor_at(spectrum, k, most, scratch);
+        if (!(local > 0.0) || local > most) continue;
+        const double chance = std::min(1.0, tries * exceedance(power[k] / local, averages, cells));
         if (chance <= false_alarm) peaks.push_back({k, local, chance});
     }
     return peaks;

@@ -2,12 +2,14 @@
 #include "ripplenotch/analysis/sweeps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "core/linear_algebra.hpp"
+#include "core/many_numbers.hpp"
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -37,42 +39,81 @@ std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std
     return pieces;
 }
 
-/// Takes the smooth part out: constant, slope and cosines over the piece, least squares under the weights.
-void remove_trend(Sweep& sweep, std::span<const double> torque, const SweepRule& rule) {
-    const double start = sweep.turns.front();
-    sweep.torque_nm.resize(torque.size());
-    sweep.value.resize(torque.size());
-    const auto cosines =
-        static_cast<Eigen::Index>(std::lround(rule.trend_terms_per_turn * sweep.length_turns));
-    const Eigen::Index terms = std::max<Eigen::Index>(cosines, 3) + 2;
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(terms, terms);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(terms), row(terms);
-    const auto fill = [&](std::size_t k) {
-        const double u = std::abs(sweep.turns[k] - start) / sweep.length_turns;
-        row[0] = 1.0;
-        row[1] = u - 0.5;
-        // cos(m pi u) by the recurrence of Chebyshev's polynomials.
-        const double c = portable::cos(std::numbers::pi * u);
-        double before = 1.0, now = c;
-        for (Eigen::Index m = 2; m < terms; ++m) {
-            row[m] = now;
-            const double next = 2.0 * c * now - before;
-            before = now;
-            now = next;
+/// The smooth part of a piece: constant, slope, and cosines of m pi u by the recurrence of Chebyshev's
+/// polynomials, at some of its samples; a row of `length` numbers each.
+class TrendRows {
+  public:
+    static constexpr std::size_t length = 256;
+
+    explicit TrendRows(std::size_t terms) : values_(terms * length) {}
+
+    void fill(std::span<const double> place) {
+        std::array<double, length> cosine{}, before{}, now{};
+        for (std::size_t i = 0; i < place.size(); ++i) {
+            row(0)[i] = 1.0;
+            row(1)[i] = place[i] - 0.5;
+            cosine[i] = std::numbers::pi * place[i];
+            before[i] = 1.0;
         }
-    };
-    for (std::size_t k = 0; k < torque.size(); ++k) {
-        fill(k);
-        normal.selfadjointView<Eigen::Lower>().rankUpdate(row, sweep.weight[k]);
-        right += sweep.weight[k] * torque[k] * row;
+        portable::cos(std::span(cosine).first(place.size()), cosine);
+        now = cosine;
+        for (std::size_t m = 2; m < values_.size() / length; ++m) {
+            for (std::size_t i = 0; i < place.size(); ++i) {
+                row(m)[i] = now[i];
+                const double next = 2.0 * cosine[i] * now[i] - before[i];
+                before[i] = now[i];
+                now[i] = next;
+            }
+        }
     }
+
+    [[nodiscard]] double* row(std::size_t term) { return values_.data() + term * length; }
+
+  private:
+    std::vector<double> values_;
+};
+
+/// action(first sample, count) for all samples of the sweep, the rows filled with them.
+template <class Action>
+void in_blocks(const Sweep& sweep, TrendRows& rows, const Action& action) {
+    std::array<double, TrendRows::length> place{};
+    for (std::size_t first = 0; first < sweep.turns.size(); first += place.size()) {
+        const std::size_t count = std::min(place.size(), sweep.turns.size() - first);
+        for (std::size_t i = 0; i < count; ++i)
+            place[i] = std::abs(sweep.turns[first + i] - sweep.turns.front()) / sweep.length_turns;
+        rows.fill(std::span(place).first(count));
+        action(first, count);
+    }
+}
+
+/// Takes the smooth part out by least squares under the weights.
+void remove_trend(Sweep& sweep, std::span<const double> torque, const SweepRule& rule) {
+    sweep.torque_nm.assign(torque.begin(), torque.end());
+    sweep.value.resize(torque.size());
+    const auto cosines = std::lround(rule.trend_terms_per_turn * sweep.length_turns);
+    const auto terms = static_cast<std::size_t>(std::max(cosines, 3L)) + 2;
+    const auto n = static_cast<Eigen::Index>(terms);
+    TrendRows rows(terms);
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+    in_blocks(sweep, rows, [&](std::size_t first, std::size_t count) {
+        std::array<double, TrendRows::length> weighed{};
+        for (Eigen::Index a = 0; a < n; ++a) {
+            const double* const row = rows.row(static_cast<std::size_t>(a));
+            for (std::size_t i = 0; i < count; ++i) weighed[i] = sweep.weight[first + i] * row[i];
+            for (Eigen::Index b = 0; b <= a; ++b)
+                normal(a, b) += dot(weighed.data(), rows.row(static_cast<std::size_t>(b)), count);
+            right[a] += dot(weighed.data(), torque.data() + first, count);
+        }
+    });
     normal.diagonal().array() *= 1.0 + 1e-10;  // line and first cosine are nearly parallel
     const Eigen::VectorXd trend = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-    for (std::size_t k = 0; k < torque.size(); ++k) {
-        fill(k);
-        sweep.torque_nm[k] = torque[k] - trend.dot(row);
-        sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
-    }
+    in_blocks(sweep, rows, [&](std::size_t first, std::size_t count) {
+        for (std::size_t m = 0; m < terms; ++m)
+            add_scaled(-trend[static_cast<Eigen::Index>(m)], rows.row(m), sweep.torque_nm.data() + first,
+                       count);
+    });
+    for (std::size_t k = 0; k < torque.size(); ++k) sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
 }
 
 /// Speeds that a quarter and three quarters of the weight lie below.
@@ -97,7 +138,11 @@ void weigh(Sweep& sweep) {
     for (std::size_t k = 0; k < sweep.turns.size(); ++k) {
         const double u =
             std::clamp(std::abs(sweep.turns[k] - sweep.turns.front()) / sweep.length_turns, 0.0, 1.0);
-        sweep.weight[k] = (0.5 - 0.5 * portable::cos(2.0 * std::numbers::pi * u)) * sweep.share_turns[k];
+        sweep.weight[k] = 2.0 * std::numbers::pi * u;
+    }
+    portable::cos(sweep.weight, sweep.weight);
+    for (std::size_t k = 0; k < sweep.turns.size(); ++k) {
+        sweep.weight[k] = (0.5 - 0.5 * sweep.weight[k]) * sweep.share_turns[k];
         sweep.weight_sum += sweep.weight[k];
         sweep.weight_square_sum += sweep.weight[k] * sweep.weight[k];
     }

@@ -19,6 +19,7 @@
 #include "analysis/kernels/point_kernel.hpp"
 #include "analysis/kernels/power_kernel.hpp"
 #include "analysis/kernels/spreading_kernel.hpp"
+#include "core/many_numbers.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -155,13 +156,20 @@ class Places {
         if (off_grid_ * std::abs(frequency) <= 1e-4)
             return even_point(where_, value, middle_, step_, frequency);
         FourierPoint point;
-        for (std::size_t j = 0; j < where_.size(); ++j) {
-            const double place = where_[j] - middle_;
-            const std::complex<double> phasor = unit_phasor(-tau * frequency * place);
-            const double weight = value[j], first = weight * place;
-            point.value += weight * phasor;
-            point.first += first * phasor;
-            point.second += first * place * phasor;
+        std::array<double, 256> angle{}, cosine{}, sine{};
+        for (std::size_t first_row = 0; first_row < where_.size(); first_row += angle.size()) {
+            const std::size_t count = std::min(angle.size(), where_.size() - first_row);
+            for (std::size_t i = 0; i < count; ++i)
+                angle[i] = -tau * frequency * (where_[first_row + i] - middle_);
+            portable::phasors(std::span(angle).first(count), cosine, sine);
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::complex<double> phasor(cosine[i], sine[i]);
+                const double place = where_[first_row + i] - middle_;
+                const double weight = value[first_row + i], first = weight * place;
+                point.value += weight * phasor;
+                point.first += first * phasor;
+                point.second += first * place * phasor;
+            }
         }
         return point;
     }

@@ -13,6 +13,15 @@ namespace ripplenotch {
 /// The values of a joint's own: rotor, then what is beside the arm.
 inline constexpr std::size_t values_of_a_joint = 1 + values_beside_arm;
 
+/// Shapes of friction beside an arm at one speed: the side of the motion, and how much of it is slow.
+struct FrictionBeside {
+    double side, stribeck;
+};
+[[nodiscard]] FrictionBeside friction_beside(double speed_deg_s);
+/// A joint's speed as these shapes take it: of a prismatic joint, whose speed is in metres, that of a turn on
+/// 0.1 m.
+[[nodiscard]] double deg_s_of(JointKind kind);
+
 class ArmRows {
   public:
     /// `friction`: the motions whose speed friction sees. All must outlive this.

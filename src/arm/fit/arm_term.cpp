@@ -4,40 +4,32 @@
 #include <cmath>
 #include <numbers>
 
+#include "arm/fit/parting.hpp"
 #include "arm/fit/smooth_along.hpp"
-#include "core/linear_algebra.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double most_rotor_kgm2 = 1.0;
 
-// Knowledge of n values that belong together as knowledge of n others that do not: with precision = L L',
-// z = L' x has the covariance 1, and columns * x = (columns * L'^-1) z.
+// Columns and knowledge of values that do not belong together.
 void part(const ArmJointFit& own, std::vector<std::vector<double>>& columns, GivenTerm& term) {
+    const Parting parting(own);
     const auto n = static_cast<Index>(own.mean.size());
-    const MatrixXd precision = Eigen::Map<const MatrixXd>(own.precision.data(), n, n);
-    const VectorXd mean = Eigen::Map<const VectorXd>(own.mean.data(), n);
-    // Scaled, or the smallest inertia would be lost beside the largest mass.
-    const VectorXd scale = precision.diagonal().cwiseSqrt();
-    const MatrixXd scaled = scale.cwiseInverse().asDiagonal() * precision * scale.cwiseInverse().asDiagonal();
-    const Eigen::LLT<MatrixXd> factored(scaled);
-    const MatrixXd lower = factored.matrixL();
-    const VectorXd parted = lower.transpose() * scale.cwiseProduct(mean);
     VectorXd row(n);
     for (std::size_t k = 0; k < columns.front().size(); ++k) {
-        for (Index c = 0; c < n; ++c) row[c] = columns[static_cast<std::size_t>(c)][k] / scale[c];
-        lower.triangularView<Eigen::Lower>().solveInPlace(row);
+        for (Index c = 0; c < n; ++c) row[c] = columns[static_cast<std::size_t>(c)][k];
+        parting.part(row);
         for (Index c = 0; c < n; ++c) columns[static_cast<std::size_t>(c)][k] = row[c];
     }
+    const VectorXd mean = parting.of_values();
     term.torque_nm = std::move(columns);
-    term.mean.assign(parted.begin(), parted.end());
-    term.deviation.assign(parted.size() == 0 ? 0 : static_cast<std::size_t>(n), 1.0);
+    term.mean.assign(mean.begin(), mean.end());
+    term.deviation.assign(own.mean.size(), 1.0);
 }
 
 // Links before the joint bring it no torque; all others stay, so that two logs have the same columns.
@@ -51,10 +43,15 @@ void leave_out_links_before(std::size_t joint, GivenTerm& term) {
 }  // namespace
 
 GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std::size_t joint,
-                   ArmKnowledge knowledge, std::optional<double> row_noise_nm) {
+                   ArmKnowledge knowledge, std::optional<double> row_noise_nm,
+                   std::span<const Motion> motions) {
     const ArmJointFit* const own = fit.find(joint);
     if (own == nullptr) raise<UsageError>("arm: the torque of joint {} was not fitted", joint + 1);
-    const auto motions = arm_motions(log, fit.smoothing);
+    std::vector<Motion> made;
+    if (motions.empty()) {
+        made = arm_motions(log, fit.smoothing);
+        motions = made;
+    }
     auto columns = arm_columns(chain, motions, joint);
     GivenTerm term{"arm", {}, {}, {}};
     if (knowledge == ArmKnowledge::other_joints && fit.joints.size() > 1) {
@@ -73,8 +70,7 @@ GivenTerm arm_term(const Chain& chain, const ArmFit& fit, const ArmLog& log, std
         term.mean.push_back(0.0);
         term.deviation.push_back(most_rotor_kgm2 / std::sqrt(fit.pull));
     }
-    for (std::vector<double>& column : term.torque_nm)
-        column = smooth_along(log.joints[joint].time_s, column, fit.smoothing);
+    term.torque_nm = smooth_along(log.joints[joint].time_s, term.torque_nm, fit.smoothing);
     const double own_noise = own->smoothed_error_nm * std::sqrt(fit.weighed_rows);
     if (row_noise_nm && own_noise > 0.0)
         for (double& deviation : term.deviation) deviation *= *row_noise_nm / own_noise;

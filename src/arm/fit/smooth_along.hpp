@@ -15,5 +15,9 @@ namespace ripplenotch {
 /// left alone.
 [[nodiscard]] std::vector<double> smooth_along(std::span<const double> time_s, std::span<const double> values,
                                                Seconds window);
+/// The same of many columns over the same times.
+[[nodiscard]] std::vector<std::vector<double>> smooth_along(std::span<const double> time_s,
+                                                            std::span<const std::vector<double>> columns,
+                                                            Seconds window);
 
 }  // namespace ripplenotch

@@ -37,13 +37,13 @@ class JointDefaults {
 
   private:
     static Attributes with(Attributes base, const Attributes& more) {
-        for (const auto& [name, value] : more) {
+        for (const auto& one : more) {
             const auto same =
-                std::find_if(base.begin(), base.end(), [&](const auto& a) { return a.first == name; });
+                std::find_if(base.begin(), base.end(), [&](const auto& a) { return a.first == one.first; });
             if (same == base.end())
-                base.emplace_back(name, value);
+                base.push_back(one);
             else
-                same->second = value;
+                same->second = one.second;
         }
         return base;
     }

@@ -104,6 +104,7 @@ ArmOption read_arm_option(std::string_view words) {
     const Source& source = source_of(spec.name);
     const Settings settings(fmt::format("--arm {}", spec.name), spec, source.keys);
     ArmOption option{source.read(settings), {}, spec.text()};
+    if (settings.has("file")) option.file = settings.text("file");
     if (settings.has("gravity")) {
         const std::vector<double> gravity = settings.list("gravity");
         if (gravity.size() != 3)

@@ -2,6 +2,7 @@
 #pragma once
 // --arm: where the chain of an arm comes from, as it is typed.
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,7 @@ struct ArmOption {
     Chain chain;          ///< without joints that are kept still
     StatedJoints stated;  ///< partners in the log
     std::string words;    ///< as it would be typed again
+    std::optional<std::string> file = {};
 };
 
 /// Reads the file that the words name. Throws UsageError for the words, what the readers of chains throw for

@@ -3,7 +3,9 @@
 // An arm and a log of its joints: the term that a diagnosis of one of them is given, and what is told of it.
 
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/arm/arm_option.hpp"
@@ -15,27 +17,38 @@ namespace ripplenotch {
 
 class GivenArm {
   public:
-    /// Reads the log. Throws what read_arm and arm_travel throw.
-    GivenArm(ArmOption option, const std::string& path, const ReadOptions& options);
+    /// Reads the log. `smoothing`: of the motion that the arm sees; left out: the fit chooses it. Throws what
+    /// read_arm and arm_travel throw.
+    GivenArm(ArmOption option, const std::string& path, const ReadOptions& options,
+             std::optional<Seconds> smoothing = {});
 
     [[nodiscard]] const Chain& chain() const { return option_.chain; }
+    /// That the chain was read from.
+    [[nodiscard]] const std::optional<std::string>& file() const { return option_.file; }
     [[nodiscard]] const ArmReading& reading() const { return reading_; }
-    /// Another log of the same arm, matched alike.
-    [[nodiscard]] ArmReading read_other(const std::string& path, const ReadOptions& options) const;
+    /// Another log of the same arm, matched alike; read when it is first asked for.
+    [[nodiscard]] const ArmReading& other(const std::string& path, const ReadOptions& options);
     /// The place in the chain of a joint of the log.
     [[nodiscard]] std::size_t find(const std::string& joint) const { return reading_.find(chain(), joint); }
 
     /// One fit for all joints; where lengths are guessed, rows of two joints do not agree, and each has a fit
     /// of its own. Made when it is first asked for. `use`: rows that count, by the first call; empty: all.
     const ArmFit& fit(std::size_t joint, const std::vector<bool>& use = {});
-    /// Columns for the rows of the log that the arm was fitted to, or for those of another one.
+    /// Columns for the rows of the log that the arm was fitted to, or for those of another one; `log` is
+    /// reading() or other().
     [[nodiscard]] GivenTerm term(std::size_t joint, const ArmReading& log);
     [[nodiscard]] ArmAccount account(std::size_t joint);
+    /// The same of an arm whose values are stated, which has no fit.
+    [[nodiscard]] ArmAccount stated_account(std::size_t joint, Seconds smoothing) const;
 
   private:
     ArmOption option_;
+    std::optional<Seconds> smoothing_;
     ArmReading reading_;
+    std::map<std::string, ArmReading> others_;  ///< by path
     std::vector<JointTravel> travel_;
+    /// Of a log, for all its joints; by smoothing.
+    std::map<std::pair<const ArmReading*, double>, std::vector<Motion>> motions_;
     std::map<std::size_t, ArmFit> fits_;  ///< by joint; all joints at once: under 0
 };
 

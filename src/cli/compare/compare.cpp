@@ -14,6 +14,7 @@
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/name_list.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -170,7 +171,7 @@ void add_match_on_log(Comparison& comparison, const Request& request, const Comp
 std::vector<double> true_torque(const Request& request, const ReadOptions& read, std::size_t rows,
                                 Provenance& provenance) {
     if (request.truth.empty()) return {};
-    Log truth = read_log(request.truth, read);
+    Log truth = read_log_in_part(request.truth, read);
     provenance.inputs.push_back(input_record(request.truth));
     provenance.inputs.back().rows = truth.trace.size();
     if (truth.trace.size() != rows) {
@@ -184,7 +185,7 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
     if (request.log_options.joint == "all")
         raise<UsageError>("--joint all: compare looks at one joint; name it");
     const ReadOptions read = read_options(request.log_options, field.gear);
-    const Log log = read_log(request.log, read);
+    const Log log = read_log_in_part(request.log, read);
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.push_back(input_record(request.log));
@@ -235,7 +236,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
     add_costs(comparison, request.costs, field);
     const std::string text =
         request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison);
-    write_all(request.common.output, text, request.common.overwrite());
+    write_text(request.common.output, text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, [&] {
         std::vector<Contender> shown = field.contenders;
         if (comparison.match && comparison.match->low_pass)

@@ -9,8 +9,8 @@
 #include "cli/compare/ledger_text.hpp"
 #include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
-#include "ripplenotch/figure/visible_text.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -12,6 +12,7 @@
 #include "cli/design/design_request.hpp"
 #include "cli/design/design_text.hpp"
 #include "cli/design/frontier_text.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/frontier_json.hpp"
@@ -109,7 +110,7 @@ ExitCode print_frontier(const DesignRequest& request, const std::string& form, c
     const std::string text = form == "json"  ? frontier_to_json(frontier, gear.of().value(), provenance)
                              : form == "csv" ? frontier_to_csv(frontier)
                                              : frontier_to_text(frontier);
-    write_all(request.common.output, text, request.common.overwrite());
+    write_text(request.common.output, text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, [&] {
         std::vector<FrontierPoint> points;
         for (std::size_t i = 0; i < frontier.points.size(); ++i) {
@@ -141,7 +142,7 @@ ExitCode run(const DesignRequest& request, const std::string& command_line) {
     const std::string text = form == "json"  ? table_to_json(table, provenance, note)
                              : form == "csv" ? table_to_csv(table)
                                              : table_to_text(table, note);
-    write_all(request.common.output, text, request.common.overwrite());
+    write_text(request.common.output, text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, [&] { return table_figure(table); });
     const auto broken = violations(request, table);
     say_warnings(request.common, broken);

@@ -7,17 +7,13 @@
 #include <cmath>
 #include <map>
 
+#include "cli/diagnose/decided_text.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_places = 4, most_of_a_kind = 3;
-
-std::string short_number(double value) {
-    const std::string text = fmt::format("{:.4g}", value);
-    return text == "-0" ? "0" : text;
-}
 
 std::string unit_after(std::string_view unit) { return unit.empty() ? "" : fmt::format(" {}", unit); }
 
@@ -45,15 +41,6 @@ std::string where_text(const Place& place) {
     std::string text;
     for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
     return text.empty() ? "all over the log" : text;
-}
-
-std::string value_text(const Term& term, const FittedValue& value) {
-    const Parameter& parameter = term.effect->parameters[value.parameter];
-    std::string text = fmt::format("{} = {}", parameter.name, short_number(value.value));
-    if (value.at_bound) text += " (at its bound)";
-    if (value.ci95)
-        text += fmt::format(" [{}, {}]", short_number(value.ci95->low), short_number(value.ci95->high));
-    return text;
 }
 
 // What a finding beside a leftover rests on.
@@ -88,7 +75,7 @@ std::string given_text(const Diagnosis& diagnosis) {
     std::string mended;
     const GivenValue* scale = nullptr;
     for (const GivenValue& value : diagnosis.given) {
-        if (value.name == "arm") continue;
+        if (value.name == "arm" || value.name == "nuisance") continue;
         if (value.name != "simulated") {
             mended +=
                 fmt::format("{}{} = {}", mended.empty() ? "" : ", ", value.name, short_number(value.value));
@@ -193,7 +180,9 @@ std::string closing(const Diagnosis& diagnosis) {
         case DiagnosisVerdict::explained:
             return "explained";
         case DiagnosisVerdict::partly_explained:
-            return "partly explained: something is left";
+            return diagnosis.unexplained.empty() && !diagnosis.accepted.empty()
+                       ? "partly explained: this log does not confirm what you accepted"
+                       : "partly explained: something is left";
         case DiagnosisVerdict::unexplained:
             return "unexplained: no effect of the catalogue accounts for what is left";
         case DiagnosisVerdict::undecided:
@@ -230,6 +219,21 @@ std::string gap_text(const DiagnosisGap& gap) {
     return text;
 }
 
+std::string angle_text(const Diagnosis& diagnosis) {
+    if (!diagnosis.angle) return "";
+    std::string text;
+    constexpr double rounding_deg = 1e-9;
+    if (!diagnosis.has_position && diagnosis.angle->walk_deg > rounding_deg)
+        text += fmt::format(
+            "the angle is the velocity's integral, moved by {} deg rms as the ripple tells; phases are this "
+            "log's own\n",
+            short_number(diagnosis.angle->walk_deg));
+    if (const auto& start = diagnosis.angle->validation_start_deg)
+        text += fmt::format("the validation log begins at {} deg of it, as the model tells best\n",
+                            short_number(*start));
+    return text;
+}
+
 }  // namespace
 
 std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
@@ -240,7 +244,7 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
         text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));
-    text += given_text(diagnosis);
+    text += angle_text(diagnosis) + given_text(diagnosis);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
     text += findings_text(diagnosis, explain);
@@ -255,13 +259,15 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
         text += "\n";
     }
     text += bands_text(diagnosis.leftover);
+    text += accepted_text(diagnosis);
     text += gap_text(gap);
     if (diagnosis.search_ended)
         text += fmt::format(
             "the search was ended after {:.0f} evaluations of the model; what is left is unexplained\n",
             diagnosis.evaluations);
     text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
-    return text + fmt::format("verdict: {}\n", closing(diagnosis));
+    text += fmt::format("verdict: {}\n", closing(diagnosis));
+    return text + band_table(diagnosis.bands) + next_text(diagnosis.next);
 }
 
 }  // namespace ripplenotch

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cli/command.hpp"
+#include "cli/talk.hpp"
 #include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/effects_json.hpp"
@@ -57,7 +58,7 @@ ExitCode explain(const Request& request) {
         const auto effects = only != nullptr ? std::span<const Effect* const>(&only, 1) : catalogue();
         text = write_catalogue(effects, {.inputs = {}, .command = request.command_line()});
     }
-    write_all(request.common.output, text, request.common.overwrite());
+    write_text(request.common.output, text, request.common.overwrite());
     return ExitCode::done;
 }
 

@@ -14,6 +14,7 @@
 #include "cli/gear/chosen_method.hpp"
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/name_list.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/version.hpp"
@@ -110,11 +111,11 @@ void verify(const Request& request, const Target& target, const Settings& settin
 
 void say_violations(const ExportReport& report) {
     for (std::size_t i = 0; i < std::min(report.violations.size(), most_violations_said); ++i) {
-        fmt::print(stderr, "ripplenotch export: {}\n", report.violations[i]);
+        talk(fmt::format("ripplenotch export: {}", report.violations[i]));
     }
     if (report.violations.size() > most_violations_said) {
-        fmt::print(stderr, "ripplenotch export: and {} more past a limit\n",
-                   report.violations.size() - most_violations_said);
+        talk(fmt::format("ripplenotch export: and {} more past a limit",
+                         report.violations.size() - most_violations_said));
     }
 }
 
@@ -158,11 +159,11 @@ ExitCode run(const Request& request, const std::string& command_line) {
         verify(request, target, settings, filters, written.bytes, report);
 
     if (request.common.json) {
-        write_all("-", export_report_to_json(report, provenance), ByteSink::Overwrite::no);
+        write_text("-", export_report_to_json(report, provenance), ByteSink::Overwrite::no);
     } else if (report.verified && request.common.output != "-") {
-        write_all("-", export_report_to_text(report), ByteSink::Overwrite::no);
+        write_text("-", export_report_to_text(report), ByteSink::Overwrite::no);
     } else if (report.verified && !request.common.quiet) {
-        fmt::print(stderr, "{}", export_report_to_text(report));
+        talk_lines(export_report_to_text(report));
     }
     say_violations(report);
     return report.violations.empty() ? ExitCode::done : ExitCode::limit_violated;

@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <set>
 #include <thread>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "cli/filter/filter_work.hpp"
+#include "cli/options/file_claims.hpp"
 #include "cli/options/name_list.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -64,23 +65,18 @@ void check_jobs(const FilterRequest& request, const std::vector<FilterJob>& jobs
         raise<UsageError>("-o, --out-dir and --in-place: give one of them");
     if (jobs.size() > 1 && !own_names)
         raise<UsageError>("{} logs need --out-dir DIR, where each gets a file of its own name", jobs.size());
-    std::set<std::string> outputs;
+    FileClaims claims;
+    claims.reads(request.method, "--method");
+    if (request.table) claims.reads(*request.table, "--table");
+    if (request.gear.joint_file) claims.reads(*request.gear.joint_file, "--joint-file");
     for (const FilterJob& job : jobs) {
-        std::error_code failed;
         if (own_names && job.log == "-")
             raise<UsageError>("--out-dir and --in-place: standard input has no name; use -o FILE");
-        if (!outputs.insert(job.output).second)
-            raise<UsageError>("two logs would be written to {}; filter them into different folders",
-                              job.output);
-        // A raw log that its filtered torque replaces is gone for good.
-        if (!request.in_place && job.log != "-" && job.output != "-" &&
-            std::filesystem::equivalent(job.log, job.output, failed)) {
-            raise<UsageError>(
-                "{}: the filtered log would take the place of the raw one; name another file, or say "
-                "--in-place",
-                job.output);
-        }
+        if (!request.in_place) claims.reads(job.log, "LOG");
+        claims.writes(job.output, own_names ? "the filtered " + job.log + ":" : "-o");
+        if (job.metrics) claims.writes(*job.metrics, "--metrics");
     }
+    claims.check(", or say --in-place; filter logs of one name into different folders");
 }
 
 std::vector<FilterJob> jobs_of(const FilterRequest& request) {
@@ -159,10 +155,10 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     std::unique_ptr<LogWriter> writer;
     if (!request.plot.instead_of(job.output)) {
         const LogFormat& log_format = find_log_format(stream.reader().layout().format);
-        writer = rewrite_log(job.output, stream.reader(),
-                             output_format(job.output, request.output_format, log_format),
-                             write_options(request, stream.torque_decimals()),
-                             request.in_place ? ByteSink::Overwrite::yes : request.common.overwrite());
+        writer = rewrite_log(
+            job.output, stream.reader(), output_format(job.output, request.output_format, log_format),
+            write_options(request, stream.torque_decimals()),
+            ByteSink::Overwrite{request.in_place || request.common.force, !request.common.no_sync});
     }
     const WatchedWriter* watched = nullptr;
     if (request.plot.wanted()) {
@@ -188,6 +184,7 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
 
 ExitCode run(const FilterRequest& request, const std::string& command_line) {
     check(request);
+    hash_inputs(request.metrics || request.common.json || request.plot.wanted());
     JointMethods methods({request.method.empty() ? "switching" : request.method, request.table, request.gear,
                           request.gates.min_attenuation_db.has_value()});
     bool within = true;
@@ -220,6 +217,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "log's), or a number");
     options.text("--metrics", request->metrics, "FILE",
                  "JSON about attenuation, residual, delays, switches, gaps; with --out-dir a folder");
+    options.writes(&request->metrics);
     attach_gear(options, request->gear);
     options.quantity("--crossover", request->crossover, Dimension::frequency,
                      "the control loop's: phase lag and gain there, for -v and the metrics, e.g. 12Hz");

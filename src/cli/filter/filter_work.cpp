@@ -104,6 +104,10 @@ void start_filter(const FilterRequest& request, JointWork& work) {
 
 ReadOptions FilterRequest::read_options(const JointMethods& methods) const {
     ReadOptions options = ripplenotch::read_options(log, methods.common_gear());
+    options.gear_ratio_of = [&methods](const std::string& joint) -> std::optional<double> {
+        const std::optional<GearAccount> own = methods.of(joint)->gear;
+        return own ? std::optional(own->ratio.value()) : std::nullopt;
+    };
     if (!options.gear_ratio) options.gear_ratio = gear.ratio;
     options.every_joint = every_joint();
     if (options.every_joint) options.joint.reset();

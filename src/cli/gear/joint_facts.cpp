@@ -7,6 +7,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/identification_json.hpp"
 #include "ripplenotch/filter/engine.hpp"
@@ -76,7 +77,7 @@ JointFile load_joint(const std::string& path) {
 
 InputRecord input_record(const std::string& path) {
     if (path == "-") return {"-", "", std::nullopt};
-    return {path, sha256_of_file(path), std::nullopt};
+    return {path, sha256_as_read(path), std::nullopt};
 }
 
 }  // namespace ripplenotch

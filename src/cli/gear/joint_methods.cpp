@@ -29,7 +29,7 @@ JointMethods::JointMethods(MethodRequest request) : request_(std::move(request))
     if (!each) common_ = choose("");
 }
 
-std::shared_ptr<const Contender> JointMethods::of(const std::string& joint) {
+std::shared_ptr<const Contender> JointMethods::of(const std::string& joint) const {
     if (common_) return common_;
     return choose(joint);
 }

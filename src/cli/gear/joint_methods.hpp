@@ -34,7 +34,7 @@ class JointMethods {
     explicit JointMethods(MethodRequest request);
 
     /// Throws the same, and what with_joint throws.
-    [[nodiscard]] std::shared_ptr<const Contender> of(const std::string& joint);
+    [[nodiscard]] std::shared_ptr<const Contender> of(const std::string& joint) const;
     /// Of all joints; empty where each has its own, or nobody says it.
     [[nodiscard]] std::optional<GearAccount> common_gear() const;
     /// Whether the method looks at the whole log before it filters.

@@ -3,17 +3,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/gear/joint_methods.hpp"
+#include "cli/given/residual.hpp"
 #include "cli/identify/identify_text.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/chart/identification_figure.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/identification_json.hpp"
@@ -24,6 +29,8 @@ namespace {
 
 constexpr std::array<std::string_view, 3> evidence_names = {"automatic", "steady", "order"};
 
+constexpr std::size_t fewest_rows_held = most_rows_held / 4;  // of each of many long logs
+
 struct Request {
     CommonOptions common;
     PlotRequest plot;
@@ -33,6 +40,7 @@ struct Request {
     GearOptions gear;  ///< a ratio to check
     std::vector<double> order_hint;
     IdentifyOptions identify;
+    ResidualOptions residual;
     bool require_conclusive = false;
 };
 
@@ -44,21 +52,29 @@ struct Joint {
 
 std::vector<Joint> read_all_joints(const Request& request, Provenance& provenance) {
     std::vector<Joint> joints;
-    ReadOptions read = request.log.resolve();
+    LogOptions words = request.log;
+    take_joint_of(request.residual, words.joint);
+    ReadOptions read = words.resolve();
     read.gear_ratio = request.gear.ratio;
     read.takes_motor_units = true;
     const bool each = read.joint && *read.joint == "all";
+    // A simulated torque stands row by row against all of its log.
+    const std::size_t most_rows = request.residual.any()
+                                      ? std::numeric_limits<std::size_t>::max()
+                                      : std::max(fewest_rows_held, most_rows_held / request.logs.size());
     for (const std::string& path : request.logs) {
         std::vector<Log> logs;
         if (each) {
-            logs = read_joints(path, read);
+            logs = read_joints_in_part(path, read, most_rows);
         } else {
-            logs.push_back(read_log(path, read));
+            logs.push_back(read_log_in_part(path, read, most_rows));
         }
         provenance.inputs.push_back(
-            {path, path == "-" ? "" : sha256_of_file(path), logs.front().recording.rows()});
+            {path, path == "-" ? "" : sha256_as_read(path), logs.front().recording.rows()});
         for (Log& log : logs) {
             say_layout(request.common, log.layout);
+            take_residual(request.residual, read, request.logs.size(), {path, log}, request.common,
+                          provenance);
             say_warnings(request.common, log.recording.warnings);
             provenance.recordings.push_back({log.recording});
             const std::string name = each ? log.trace.joint : logs.front().trace.joint;
@@ -157,17 +173,17 @@ ExitCode run(Request& request, const std::string& command_line) {
     if (request.common.json || json_file) {
         if (names_joint(request.common.output)) {
             for (const Identification& one : found)
-                write_all(with_joint(request.common.output, one.joint), identification_text(one, provenance),
-                          request.common.overwrite());
+                write_text(with_joint(request.common.output, one.joint), identification_text(one, provenance),
+                           request.common.overwrite());
         } else {
             const std::string json = found.size() == 1 ? identification_text(found.front(), provenance)
                                                        : identifications_text(found, provenance);
-            write_all(request.common.output, json, request.common.overwrite());
+            write_text(request.common.output, json, request.common.overwrite());
         }
         // The file is for the next command; people still want to read what came out.
-        if (json_file && !request.common.json) write_all("-", text, ByteSink::Overwrite::yes);
+        if (json_file && !request.common.json) write_text("-", text, ByteSink::Overwrite::yes);
     } else {
-        write_all(request.common.output, text, request.common.overwrite());
+        write_text(request.common.output, text, request.common.overwrite());
     }
     draw_plot(request.plot, request.common, provenance,
               [&] { return identification_figure(logs_in_words(request.logs), found.front()); });
@@ -196,6 +212,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.quantity("--steady-for", request->identify.steady_for, Dimension::time, "for at least this long");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
+    attach_residual(options, request->residual);
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"what identify found", ".txt .json"});

@@ -5,6 +5,8 @@
 
 #include "cli/command.hpp"
 #include "cli/info/info_text.hpp"
+#include "cli/talk.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/document/info_json.hpp"
 
 namespace ripplenotch {
@@ -18,14 +20,14 @@ struct Request {
 
 ExitCode run(const Request& request, const std::string& command_line) {
     const ReadOptions options = request.log.resolve();
+    hash_inputs(request.common.json);
     std::vector<LogInfo> logs;
     Provenance provenance{{}, command_line};
     for (const std::string& path : request.paths) {
         logs.push_back(survey_log(path, options));
         const LogInfo& log = logs.back();
-        // A pipe cannot be read a second time for its hash.
         provenance.inputs.push_back(
-            {path, request.common.json && path != "-" ? sha256_of_file(path) : "", log.rows});
+            {path, request.common.json && path != "-" ? sha256_as_read(path) : "", log.rows});
         say(request.common, log.source + ": read as if with " + log.layout.options);
     }
     std::string text;
@@ -34,7 +36,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
     } else {
         for (const LogInfo& log : logs) text += (text.empty() ? "" : "\n") + info_to_text(log);
     }
-    write_all(request.common.output, text, request.common.overwrite());
+    write_text(request.common.output, text, request.common.overwrite());
     return ExitCode::done;
 }
 

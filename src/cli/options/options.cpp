@@ -5,15 +5,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
-#include <cstdio>
 
+#include "cli/options/file_claims.hpp"
 #include "cli/options/number_list.hpp"
 #include "cli/options/options_implementation.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
-#include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/core/version.hpp"
 
 namespace ripplenotch {
@@ -73,6 +74,7 @@ void Options::text(std::string_view names, std::string& target, std::string_view
     CLI::Option* option =
         single(implementation_.command->add_option(owned(names), target, owned(help)), type_name);
     if (!target.empty()) option->default_str(target);
+    names_file(names, type_name, &target, [&target] { return std::vector{target}; });
 }
 
 void Options::text(std::string_view names, std::optional<std::string>& target, std::string_view type_name,
@@ -80,6 +82,8 @@ void Options::text(std::string_view names, std::optional<std::string>& target, s
     single(implementation_.command->add_option_function<std::string>(
                owned(names), [&target](const std::string& value) { target = value; }, owned(help)),
            type_name);
+    names_file(names, type_name, &target,
+               [&target] { return target ? std::vector{*target} : std::vector<std::string>{}; });
 }
 
 void Options::texts(std::string_view names, std::vector<std::string>& target, std::string_view type_name,
@@ -87,6 +91,7 @@ void Options::texts(std::string_view names, std::vector<std::string>& target, st
     implementation_.command->add_option(owned(names), target, owned(help))
         ->type_name(owned(type_name))
         ->allow_extra_args(false);
+    names_file(names, type_name, &target, [&target] { return target; });
 }
 
 void Options::choice(std::string_view names, std::string& target, std::span<const std::string_view> choices,
@@ -163,15 +168,37 @@ void Options::numbers(std::string_view names, std::vector<double>& target, Dimen
 
 void Options::argument(std::string_view name, std::string& target, bool required, std::string_view help) {
     implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
+    names_file(name, "LOG", &target, [&target] { return std::vector{target}; });
 }
 
 void Options::arguments(std::string_view name, std::vector<std::string>& target, bool required,
                         std::string_view help) {
     implementation_.command->add_option(owned(name), target, owned(help))->required(required)->type_name("");
+    names_file(name, "LOG", &target, [&target] { return target; });
 }
 
 void Options::after_parse(std::function<void()> check) {
     implementation_.after_parse.push_back(std::move(check));
+}
+
+void Options::names_file(std::string_view names, std::string_view type_name, const void* target,
+                         std::function<std::vector<std::string>()> values) {
+    constexpr std::array types = {"FILE", "LOG", "OTHER", "SPEC", "NAME,KEY=VALUE,..."};
+    if (std::find(types.begin(), types.end(), type_name) == types.end()) return;
+    const std::string shown = owned(names.substr(0, names.find(',')));
+    implementation_.files.push_back({shown, std::move(values), target});
+}
+
+void Options::writes(const void* target) { implementation_.written.push_back(target); }
+
+void Options::Implementation::check_files() const {
+    FileClaims claims;
+    for (const FileOption& option : files) {
+        const bool writes = std::find(written.begin(), written.end(), option.target) != written.end();
+        for (const std::string& value : option.values())
+            writes ? claims.writes(value, option.name) : claims.reads(value, option.name);
+    }
+    claims.check(command->get_option_no_throw("--in-place") != nullptr ? ", or say --in-place" : "");
 }
 
 namespace {
@@ -191,7 +218,7 @@ Word letters(std::string_view word) {
 Word in_command_line(std::string_view word) {
     if (word.size() < 2 || word.front() != '-') return Word::stays;
     if (word[1] != '-') return letters(word);
-    for (const std::string_view flag : {"--force", "--quiet", "--verbose", "--json"})
+    for (const std::string_view flag : {"--force", "--no-sync", "--quiet", "--verbose", "--json"})
         if (word == flag) return Word::goes;
     for (const std::string_view option : {"--output", "--plot"}) {
         if (word == option) return Word::goes_with_the_next;
@@ -228,16 +255,17 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
         common.json = common.json || (names.json_is_option && ends_with_json(common.output));
     });
     options.text("-o,--output", common.output, "FILE", "where the result goes; - is standard output");
+    options.writes(&common.output);
     options.flag("--json", common.json, "one JSON object instead of text");
     options.flag("--force", common.force, "overwrite existing files");
+    options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
     options.flag("-v,--verbose", common.verbose, "say on standard error what was decided");
 }
 
 void say_warnings(const CommonOptions& common, std::span<const std::string> warnings) {
     if (common.quiet) return;
-    Progress::current().step_aside();
-    for (const std::string& warning : warnings) fmt::print(stderr, "{}: warning: {}\n", tool_name, warning);
+    for (const std::string& warning : warnings) talk(fmt::format("{}: warning: {}", tool_name, warning));
 }
 
 void say_warnings(const CommonOptions& common, std::span<const LogWarning> warnings) {
@@ -245,8 +273,7 @@ void say_warnings(const CommonOptions& common, std::span<const LogWarning> warni
 }
 
 void say(const CommonOptions& common, std::string_view sentence) {
-    Progress::current().step_aside();
-    if (common.verbose && !common.quiet) fmt::print(stderr, "{}: {}\n", tool_name, sentence);
+    if (common.verbose && !common.quiet) talk(fmt::format("{}: {}", tool_name, sentence));
 }
 
 void say_layout(const CommonOptions& common, const Layout& layout) {

@@ -60,6 +60,9 @@ class Options {
     void arguments(std::string_view name, std::vector<std::string>& target, bool required,
                    std::string_view help);
 
+    /// The file that this option's target names is written; of all others whose type says that they name
+    /// files (FILE, LOG, SPEC, ...), and of arguments, files are read. Those that collide are refused.
+    void writes(const void* target);
     /// Runs when all options are read, before the work.
     void after_parse(std::function<void()> check);
 
@@ -69,6 +72,8 @@ class Options {
     [[nodiscard]] std::string command_line() const;
 
   private:
+    void names_file(std::string_view names, std::string_view type_name, const void* target,
+                    std::function<std::vector<std::string>()> values);
     void parsed_number(std::string_view names, Dimension dimension, std::string_view help,
                        double default_value, bool has_default, std::function<void(double)> assign);
     Implementation& implementation_;
@@ -77,10 +82,8 @@ class Options {
 /// What every command has.
 struct CommonOptions {
     std::string output = "-";
-    bool json = false, quiet = false, verbose = false, force = false;
-    [[nodiscard]] ByteSink::Overwrite overwrite() const {
-        return force ? ByteSink::Overwrite::yes : ByteSink::Overwrite::no;
-    }
+    bool json = false, quiet = false, verbose = false, force = false, no_sync = false;
+    [[nodiscard]] ByteSink::Overwrite overwrite() const { return {force, !no_sync}; }
 };
 /// What -o may be called. Names that promise another kind of file are refused (core/output_name.hpp).
 struct OutputNames {

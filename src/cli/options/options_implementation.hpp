@@ -22,6 +22,18 @@ struct Options::Implementation {
     std::map<std::string, std::string> spelled_out = {};
 
     /// The names for CLI11: "--quality" of "--quality,--q", which goes to `spelled_out`.
+    /// What options and arguments name: those of a type that files are named by are read, unless a command
+    /// says that it writes them.
+    struct FileOption {
+        std::string name;
+        std::function<std::vector<std::string>()> values;
+        const void* target;
+    };
+    std::vector<FileOption> files = {};
+    std::vector<const void*> written = {};
+    /// Throws UsageError where files collide (file_claims.hpp).
+    void check_files() const;
+
     [[nodiscard]] std::string names_for_parser(std::string_view names);
     /// Rewrites the options before "--" as CLI11 knows them.
     void spell_out(std::vector<std::string>& command_line) const;

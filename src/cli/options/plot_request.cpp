@@ -57,6 +57,7 @@ void attach_plot(Options& options, PlotRequest& request) {
                  fmt::format("the result as a picture ({}): FILE.svg, .png or .pdf by gnuplot, FILE.json for "
                              "the data of the figure; - draws it in the terminal",
                              figures_of(options.command_name())));
+    options.writes(&request.path);
 }
 
 void check_plot(const PlotRequest& request, const CommonOptions& common) {
@@ -99,8 +100,10 @@ void draw_plot(const PlotRequest& request, const CommonOptions& common, const Pr
         return;
     }
     if (path == "-") raise<FileError>("--plot -: there is no gnuplot to draw with; {}", how_to_install);
-    write_all(data_path(path), data(), common.overwrite());
-    raise<FileError>("{}: there is no gnuplot to draw it with, its data are in {}; {}", path, data_path(path),
+    // The result may have that name.
+    const std::string data_file = data_path(path) == common.output ? path + ".json" : data_path(path);
+    write_all(data_file, data(), common.overwrite());
+    raise<FileError>("{}: there is no gnuplot to draw it with, its data are in {}; {}", path, data_file,
                      how_to_install);
 }
 

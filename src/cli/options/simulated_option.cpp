@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <utility>
 #include <vector>
 
 #include "ripplenotch/core/error.hpp"
@@ -18,8 +18,6 @@ namespace {
 
 // Of a scale that is fitted; hardly ever is a simulation in other units by more.
 constexpr double usual_scale = 10.0;
-// Of a value that is stated.
-constexpr double stated = 1e-9;
 // Of a delay that is fitted: within 40 ms.
 constexpr double usual_delay_s = 0.02, largest_delay_s = 0.04;
 
@@ -116,7 +114,7 @@ GivenTerm term_of(std::vector<double> at_log, std::vector<double> slope, const S
     GivenTerm term{"simulated", {}, {}, {}};
     term.torque_nm.push_back(std::move(at_log));
     term.mean.push_back(stated_term.scale.value_or(1.0));
-    term.deviation.push_back(stated_term.scale ? stated : usual_scale);
+    term.deviation.push_back(stated_term.scale ? stated_deviation : usual_scale);
     if (!slope.empty()) {
         term.torque_nm.push_back(std::move(slope));
         term.mean.push_back(0.0);
@@ -125,9 +123,14 @@ GivenTerm term_of(std::vector<double> at_log, std::vector<double> slope, const S
     return term;
 }
 
+bool states(const Spec& spec, std::string_view key) {
+    return std::any_of(spec.values.begin(), spec.values.end(),
+                       [&](const auto& pair) { return pair.first == key; });
+}
+
 }  // namespace
 
-SimulatedOption::SimulatedOption(std::string_view text) {
+SimulatedOption::SimulatedOption(std::string_view text, const std::optional<SimulatedTerm>& stated) {
     const Spec spec = parse_spec(text);
     if (spec.name != "column" && spec.name != "log")
         raise<UsageError>("--simulated: '{}' is neither column,name=NAME nor log,file=FILE,column=NAME",
@@ -139,6 +142,14 @@ SimulatedOption::SimulatedOption(std::string_view text) {
     if (own) file_ = settings.text("file");
     if (own && settings.has("validate")) validation_file_ = settings.text("validate");
     align_start_ = own && settings.has("align");
+    if (stated) {
+        if (states(spec, "scale") || states(spec, "delay"))
+            raise<UsageError>("--simulated: the model states its scale and delay; change them there");
+        const std::string column = std::exchange(term_.column, {});
+        term_ = *stated;
+        term_.column = column;
+        return;
+    }
     if (settings.has("scale")) term_.scale = settings.number("scale");
     const std::string delay = settings.text("delay");
     term_.fit_delay = delay == "fit";

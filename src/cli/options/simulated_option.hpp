@@ -16,8 +16,9 @@ namespace ripplenotch {
 class SimulatedOption {
   public:
     /// "column,name=tau_model[,scale=1][,delay=2ms]" or "log,file=sim.csv,column=torque[,validate=sim2.csv]
-    /// [,align=start]...". Throws UsageError.
-    explicit SimulatedOption(std::string_view text);
+    /// [,align=start]...". Beside a model that states a simulation it says only where its torque is: scale
+    /// and delay are the model's. Throws UsageError.
+    explicit SimulatedOption(std::string_view text, const std::optional<SimulatedTerm>& stated = {});
 
     /// As a model.json states it: a column of the log.
     explicit SimulatedOption(SimulatedTerm term) : term_(std::move(term)) {}
@@ -30,6 +31,8 @@ class SimulatedOption {
     [[nodiscard]] GivenTerm read_validation(const ReadOptions& reading, const std::string& path,
                                             Log& log) const;
     [[nodiscard]] const SimulatedTerm& term() const { return term_; }
+    /// Of the simulation, where it has one of its own.
+    [[nodiscard]] const std::optional<std::string>& file() const { return file_; }
 
   private:
     [[nodiscard]] GivenTerm from(ReadOptions reading, const std::string& path, Log& log) const;

@@ -20,7 +20,7 @@ struct Request {
     std::vector<std::string> results;
     std::string output = "-", title = "ripplenotch report";
     std::optional<std::string> plotly;
-    bool no_plotly = false, force = false, quiet = false;
+    bool no_plotly = false, force = false, no_sync = false, quiet = false;
 };
 
 // Where the build and the installation put it, as seen from the program itself.
@@ -62,10 +62,11 @@ ExitCode run(const Request& request) {
     check_output_name(request.output, "a report", ".html .htm");
     Page page{request.title, {}};
     for (const std::string& path : request.results) {
-        page.sections.push_back(section_of_result(read_all(path), path == "-" ? "standard input" : path));
+        for (PageSection& section : sections_of_result(read_all(path), path == "-" ? "standard input" : path))
+            page.sections.push_back(std::move(section));
     }
     write_all(request.output, html_page(page, plotly_js_of(request)),
-              request.force ? ByteSink::Overwrite::yes : ByteSink::Overwrite::no);
+              ByteSink::Overwrite{request.force, !request.no_sync});
     return ExitCode::done;
 }
 
@@ -76,11 +77,13 @@ std::function<ExitCode()> attach(Options& options) {
         "JSON that commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
         "(--plot FILE.json); - is standard input");
     options.text("-o,--output", request->output, "FILE", "where the page goes; - is standard output");
+    options.writes(&request->output);
     options.text("--title", request->title, "TEXT", "of the page");
     options.text("--plotly", request->plotly, "FILE",
                  "plotly.js to put into the page, instead of the installed one");
     options.flag("--no-plotly", request->no_plotly, "pictures by gnuplot instead of interactive plots");
     options.flag("--force", request->force, "overwrite existing files");
+    options.flag("--no-sync", request->no_sync, "do not wait until the page is on the disk");
     options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
     return [request] { return run(*request); };
 }

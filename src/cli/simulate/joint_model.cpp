@@ -8,7 +8,6 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/document/model_json.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -29,15 +28,20 @@ Term parse_ripple(const std::string& text) {
 
 }  // namespace
 
-Model assemble_model(const JointModelOptions& options) {
-    Model model;
+ModelWithGiven assemble_model(const JointModelOptions& options, bool takes_given) {
+    ModelWithGiven whole;
+    Model& model = whole.model;
     check_gear(options.gear);
     if (options.model) {
         const std::string source = *options.model == "-" ? "standard input" : *options.model;
         if (options.gear.ratio) {
             raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there", source);
         }
-        model = read_model(read_all(*options.model), source);
+        const std::string text = read_all(*options.model);
+        if (takes_given)
+            whole = read_model_with_given(text, source);
+        else
+            model = read_model(text, source);
     } else {
         if (!options.gear.ratio)
             raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
@@ -49,7 +53,7 @@ Model assemble_model(const JointModelOptions& options) {
     }
     for (const std::string& ripple : options.ripples) model.terms.push_back(parse_ripple(ripple));
     for (const std::string& effect : options.effects) model.terms.push_back(parse_term(effect));
-    return model;
+    return whole;
 }
 
 GearAccount assembled_gear(const JointModelOptions& joint, const Model& model) {

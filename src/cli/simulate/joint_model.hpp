@@ -8,7 +8,7 @@
 
 #include "cli/gear/gear_choice.hpp"
 #include "cli/options/options.hpp"
-#include "ripplenotch/model/model.hpp"
+#include "ripplenotch/document/model_json.hpp"
 
 namespace ripplenotch {
 
@@ -21,8 +21,9 @@ struct JointModelOptions {
 };
 void attach_joint_model(Options& options, JointModelOptions& joint);
 
-/// Throws UsageError, DataError, FileError.
-[[nodiscard]] Model assemble_model(const JointModelOptions& joint);
+/// With what is given beside the effects; only a command that has a log knows what to do with that, and
+/// `takes_given` says so: otherwise it is refused. Throws UsageError, DataError, FileError.
+[[nodiscard]] ModelWithGiven assemble_model(const JointModelOptions& joint, bool takes_given);
 
 /// The gear of the assembled model, with what was typed or read as its source.
 [[nodiscard]] GearAccount assembled_gear(const JointModelOptions& joint, const Model& model);

@@ -9,8 +9,10 @@
 
 #include "cli/command.hpp"
 #include "cli/gear/joint_facts.hpp"
+#include "cli/given/stated_along.hpp"
 #include "cli/options/name_list.hpp"
 #include "cli/simulate/joint_model.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
@@ -27,6 +29,7 @@ struct SimulateOptions {
     JointModelOptions joint;
     LogOptions log_options;
     std::string log;  ///< empty: motions are given
+    std::optional<std::string> simulated;
     std::optional<std::string> format;
     std::vector<std::string> motions;
     std::optional<Hertz> sample_rate;
@@ -47,6 +50,7 @@ struct Course {
     Motion motion;
     std::vector<double> velocity_deg_s;  ///< of a log: as logged, not smoothed
     std::vector<double> measured_nm;     ///< empty without a log
+    std::vector<double> given_nm;        ///< beside the model's effects; empty without a log
     bool has_position = true;
     std::vector<Recording> recordings = {};  ///< of a log
 };
@@ -69,22 +73,29 @@ double rms(std::span<const double> values) {
     return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-Course course_of(const SimulateOptions& options, const Model& model) {
+Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     if (!options.along_log()) {
         Motion motion = make_motion(options.motions, *options.sample_rate);
         std::vector<double> velocity_deg_s = motion.velocity_deg_s;
-        return {std::move(motion), std::move(velocity_deg_s), {}, true};
+        return {std::move(motion), std::move(velocity_deg_s), {}, {}, true};
     }
-    LogOptions reading = options.log_options;
-    reading.sample_rate = options.sample_rate;
-    const Log log = read_log(options.log, read_options(reading, assembled_gear(options.joint, model)));
+    LogOptions words = options.log_options;
+    words.sample_rate = options.sample_rate;
+    take_joint_of(model, words.joint);
+    const ReadOptions reading = read_options(words, assembled_gear(options.joint, model.model));
+    Log log = read_log(options.log, reading);
     say_layout(options.common, log.layout);
+    GivenTorque given = stated_torque_along({options.simulated, std::nullopt}, model, reading,
+                                            {options.log, log}, options.smoothing);
     say_warnings(options.common, log.recording.warnings);
-    return {motion_along(log.trace.view(), options.smoothing),
-            log.trace.velocity_deg_s,
-            log.trace.torque_nm,
-            log.trace.view().has_position(),
-            {{log.recording}}};
+    Motion motion = motion_along(log.trace.view(), options.smoothing);
+    if (!given.carried_nm.empty()) motion.carried_nm = std::move(given.carried_nm);
+    return {std::move(motion),          log.trace.velocity_deg_s,        log.trace.torque_nm,
+            std::move(given.torque_nm), log.trace.view().has_position(), {{log.recording}}};
+}
+
+void add_given(const Course& course, std::vector<double>& torque_nm) {
+    for (std::size_t k = 0; k < course.given_nm.size(); ++k) torque_nm[k] += course.given_nm[k];
 }
 
 // Along a log the result is a prediction, and which samples spikes and dropouts hit cannot be predicted.
@@ -97,6 +108,7 @@ std::vector<NumberColumn> make_columns(const SimulateOptions& options, const Mod
     std::vector<double> noise_nm(course.motion.size(), 0.0);
     add_noise(noise_nm, options.noise.value(), options.noise_correlation, seed, NoiseChannel::torque);
     std::vector<double> torque_nm = measure_nm(model, course.motion, noise_nm, chance_of(options));
+    add_given(course, torque_nm);
     add_white_noise(course.velocity_deg_s, options.velocity_noise.value(), seed, NoiseChannel::velocity);
     std::vector<NumberColumn> columns;
     columns.push_back({"time_s", std::move(course.motion.time_s)});
@@ -111,7 +123,8 @@ std::vector<NumberColumn> make_columns(const SimulateOptions& options, const Mod
 std::optional<Followed> followed(const SimulateOptions& options, const Model& model, const Course& course) {
     if (!options.along_log()) return std::nullopt;
     std::vector<double> residual_nm = course.measured_nm;
-    const auto predicted_nm = predict_nm(model, course.motion);
+    auto predicted_nm = predict_nm(model, course.motion);
+    add_given(course, predicted_nm);
     for (std::size_t k = 0; k < residual_nm.size(); ++k) residual_nm[k] -= predicted_nm[k];
     return Followed{options.smoothing, rms(course.measured_nm), rms(residual_nm)};
 }
@@ -128,6 +141,7 @@ void check_course(const SimulateOptions& options) {
     }
     if (options.log_options.from || options.log_options.to)
         raise<UsageError>("--from and --to: there is no LOG to take rows of");
+    if (options.simulated) raise<UsageError>("--simulated: it is beside a LOG, and there is none");
     if (options.motions.empty()) {
         raise<UsageError>(
             "--motion is missing, for example --motion constant,speed=60deg/s,duration=5s, or a LOG");
@@ -193,10 +207,11 @@ std::string summary(const SimulateOptions& options, const Model& model, Hertz sa
 ExitCode simulate(const SimulateOptions& options) {
     check(options);
     const LogFormat& format = output_format(options.common.output, options.format);
-    const Model model = assemble_model(options.joint);
+    const ModelWithGiven whole = assemble_model(options.joint, options.along_log());
+    const Model& model = whole.model;
     say(options.common, gear_in_words(assembled_gear(options.joint, model)));
     ByteSink sink(options.common.output, options.common.overwrite(), format.binary);
-    Course course = course_of(options, model);
+    Course course = course_of(options, whole);
     std::vector<Recording> recordings = std::move(course.recordings);
     const Hertz sample_rate =
         recordings.empty() ? course.motion.sample_rate : recordings.front().clock.nominal_rate;
@@ -212,8 +227,8 @@ ExitCode simulate(const SimulateOptions& options) {
                                         shortest(gap->residual_rms_nm), shortest(gap->measured_rms_nm)));
     }
     if (options.common.json)
-        write_all("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),
-                  ByteSink::Overwrite::no);
+        write_text("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),
+                   ByteSink::Overwrite::no);
     return ExitCode::done;
 }
 
@@ -221,6 +236,9 @@ std::function<ExitCode()> attach(Options& options) {
     auto o = std::make_shared<SimulateOptions>();
     options.argument("LOG", o->log, false, "log whose measured motion is used in place of --motion");
     attach_joint_model(options, o->joint);
+    options.text("--simulated", o->simulated, "SPEC",
+                 "with a LOG: torque of your own simulation as a part of the model, "
+                 "column,name=tau_model,scale=1 or log,file=sim.csv,column=torque,scale=1");
     options.texts(
         "--motion", o->motions, "NAME,KEY=VALUE,...",
         fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one "

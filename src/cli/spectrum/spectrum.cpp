@@ -9,11 +9,14 @@
 
 #include "cli/command.hpp"
 #include "cli/gear/joint_facts.hpp"
+#include "cli/given/residual.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/spectrum/spectrum_text.hpp"
 #include "cli/spectrum/speed_map_request.hpp"
 #include "cli/spectrum/streamed_spectrum.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
+#include "ripplenotch/core/memory.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/document/spectrum_json.hpp"
@@ -33,11 +36,14 @@ struct Request {
     double false_alarm = 0.01;
     SteadyRule steady;
     SpeedMapRequest map;
+    ResidualOptions residual;
     PlotRequest plot;
     bool peaks = false;
 
     /// Half-overlapping pieces of all of the log, which need no more of it at a time.
-    [[nodiscard]] bool in_pieces() const { return segment && !stretch && !map.map && domain == "frequency"; }
+    [[nodiscard]] bool in_pieces() const {
+        return segment && !stretch && !map.map && !residual.any() && domain == "frequency";
+    }
 };
 
 /// The parts of the log that are asked for: all of it, every steady stretch, or one of them by number.
@@ -159,13 +165,37 @@ Made piecewise_result(const Request& request, const std::string& command_line) {
     return {frequency_result(request, {spectrum}, log.layout().chosen.joint, provenance), provenance};
 }
 
+// Of a log that is held with all that is made of it; measured.
+constexpr double bytes_a_row_by_frequency = 144.0, bytes_a_row_by_order = 88.0;
+
+void require_memory(const Request& request, const ReadOptions& read) {
+    const auto rows = estimated_rows(request.path, read);
+    const auto left = memory_to_be_had();
+    if (!rows || !left) return;
+    const bool by_order = request.domain == "order" || request.map.map;
+    const double bytes = *rows * (by_order ? bytes_a_row_by_order : bytes_a_row_by_frequency);
+    if (bytes <= static_cast<double>(*left)) return;
+    constexpr double mebibyte = 1024.0 * 1024.0;
+    raise<MemoryError>(
+        "{}: a spectrum of the whole log takes about {:.3g} MiB for some {:.3g} rows, and {:.3g} MiB are to "
+        "be "
+        "had; take it in pieces with --segment, or a part of the log with --from and --to",
+        request.path, bytes / mebibyte, *rows, static_cast<double>(*left) / mebibyte);
+}
+
 Made whole_result(const Request& request, const std::string& command_line) {
-    Provenance provenance{{input_record(request.path)}, command_line};
+    Provenance provenance{{}, command_line};
     const MapLines lines = request.map.map ? map_lines(request.map, provenance) : MapLines{};
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
-    const Log log = read_log(request.path, read_options(request.log, lines.gear));
+    LogOptions words = request.log;
+    take_joint_of(request.residual, words.joint);
+    const ReadOptions reading = read_options(words, lines.gear);
+    require_memory(request, reading);
+    Log log = read_log(request.path, reading);
     say_layout(request.common, log.layout);
+    take_residual(request.residual, reading, 1, {request.path, log}, request.common, provenance);
     say_warnings(request.common, log.recording.warnings);
+    provenance.inputs.insert(provenance.inputs.begin(), input_record(request.path));
     provenance.recordings.push_back({log.recording});
     if (request.map.map) return {map_result(request, lines, log.trace, provenance), provenance};
     const TraceView trace = log.trace.view();
@@ -191,7 +221,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     const auto [result, provenance] =
         request.in_pieces() ? piecewise_result(request, command_line) : whole_result(request, command_line);
     if (request.peaks || !request.plot.instead_of(request.common.output))
-        write_all(request.common.output, result.text, request.common.overwrite());
+        write_text(request.common.output, result.text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, result.figure);
     return ExitCode::done;
 }
@@ -214,6 +244,7 @@ std::function<ExitCode()> attach(Options& options) {
                    "... or within this speed, whichever is wider; none by default");
     options.quantity("--steady-for", request->steady.at_least, Dimension::time, "for at least this long");
     attach_speed_map(options, request->map);
+    attach_residual(options, request->residual);
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a spectrum", ".csv .txt .json", true});

@@ -10,6 +10,7 @@
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/talk.hpp"
 #include "cli/track/track_words.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/vold_kalman.hpp"
@@ -196,7 +197,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     read_gear(request, provenance);
-    const Log log = read_log(request.path, read_options(request.log, request.gear));
+    const Log log = read_log_in_part(request.path, read_options(request.log, request.gear));
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.push_back(input_record(request.path));
@@ -211,7 +212,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     if (request.against == "speed")
         report.by_speed = gather_by_speed(report.tracks, request.speed_step.value_or(DegPerSec(0.0)));
     if (request.common.json) {
-        write_all(request.common.output, track_text(report, provenance), request.common.overwrite());
+        write_text(request.common.output, track_text(report, provenance), request.common.overwrite());
     } else {
         say(request.common, track_verdict(report));
         if (!request.plot.instead_of(request.common.output)) write_columns(request, report);

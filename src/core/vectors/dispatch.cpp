@@ -2,6 +2,8 @@
 #include "core/vectors/dispatch.hpp"
 
 #include <atomic>
+#include <cstdlib>
+#include <string_view>
 
 // glibc's own view of the processor, where there is one: it heeds GLIBC_TUNABLES, so that a test can have the
 // whole program do without AVX2. clang does not take its header in strict C++.
@@ -25,8 +27,14 @@ bool processor_has_them() {
 #endif
 }
 
+// For doubters, who compare a result with and without; main() refuses other words.
+bool switched_off() {
+    const char* const asked = std::getenv("RIPPLENOTCH_VECTORS");
+    return asked != nullptr && std::string_view(asked) == "none";
+}
+
 std::atomic<bool>& wide() {
-    static std::atomic<bool> answer = processor_has_them();
+    static std::atomic<bool> answer = processor_has_them() && !switched_off();
     return answer;
 }
 

@@ -15,7 +15,8 @@
 
 namespace ripplenotch {
 
-/// True on processors with wide vectors, unless somebody holds NarrowVectors.
+/// True on processors with wide vectors, unless somebody holds NarrowVectors, or RIPPLENOTCH_VECTORS=none is
+/// in the environment.
 [[nodiscard]] bool wide_vectors() noexcept;
 
 /// While it lives, all is done as on a processor without wide vectors: tests hold every kernel to its plain

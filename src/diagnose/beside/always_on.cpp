@@ -61,12 +61,15 @@ AlwaysOn given_columns(const Case& looked_at, const Model& model, std::span<cons
             std::vector<double> torque_nm;
             for (const std::size_t row : looked_at.row) torque_nm.push_back(term.torque_nm[i][row]);
             add(columns, std::move(torque_nm), term.mean[i], term.deviation[i]);
+            columns.bears_load.push_back(term.bears_load);
         }
     }
     columns.given = columns.torque_nm.size();
     const Prediction nothing({model.gear_ratio, {}}, looked_at.motion);
-    for (const Mend& mend : mends_of(model, given, rules.beside))
+    for (const Mend& mend : mends_of(model, given, rules.beside)) {
         add(columns, nothing.added(mend.term), 0.0, mend.deviation);
+        columns.bears_load.push_back(mend.term.effect->bears_load);
+    }
     columns.stated = columns.torque_nm.size();
     return columns;
 }
@@ -100,6 +103,14 @@ std::vector<double> brought_nm(const AlwaysOn& columns, std::span<const double> 
     std::vector<double> sum(columns.torque_nm.empty() ? 0 : columns.torque_nm[0].size(), 0.0);
     for (std::size_t i = first; i < end; ++i)
         add_scaled(values[i], columns.torque_nm[i].data(), sum.data(), sum.size());
+    return sum;
+}
+
+std::vector<double> carried_nm(const AlwaysOn& columns, std::span<const double> values) {
+    std::vector<double> sum(columns.torque_nm.empty() ? 0 : columns.torque_nm[0].size(), 0.0);
+    for (std::size_t i = 0; i < columns.stated; ++i) {
+        if (columns.bears_load[i]) add_scaled(values[i], columns.torque_nm[i].data(), sum.data(), sum.size());
+    }
     return sum;
 }
 

@@ -16,6 +16,7 @@ namespace ripplenotch {
 struct AlwaysOn {
     std::vector<std::vector<double>> torque_nm;
     std::vector<double> mean, deviation;
+    std::vector<bool> bears_load;  ///< of the stated ones
     std::size_t given = 0;  ///< the first so many are the given terms', in their order; then what mends them
 
     std::size_t stated = 0;    ///< of the given terms and of what mends them
@@ -38,5 +39,8 @@ struct AlwaysOn {
 /// What the given terms bring with these values: the sum of columns times values over the case.
 [[nodiscard]] std::vector<double> brought_nm(const AlwaysOn& columns, std::span<const double> values,
                                              std::size_t first, std::size_t end);
+
+/// The part of the stated ones that gear and bearings carry.
+[[nodiscard]] std::vector<double> carried_nm(const AlwaysOn& columns, std::span<const double> values);
 
 }  // namespace ripplenotch

@@ -8,6 +8,7 @@
 #include "diagnose/beside/other_log.hpp"
 #include "diagnose/doubt.hpp"
 #include "diagnose/place.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
@@ -73,8 +74,10 @@ std::vector<double> errors_of_given(const Lens& lens) {
             deviation.push_back(columns.deviation[other]);
         }
         const auto own = Ridge(others, deviation, lens.sigma()).left(white[i]);
-        errors.push_back(lens.rules().beside.interval_factor * lens.sigma() /
-                         std::sqrt(dot(own.data(), own.data(), own.size()) + 1e-300));
+        // The log and what is known before it: a value that is stated has next to no error.
+        const double by_log = std::sqrt(dot(own.data(), own.data(), own.size())) /
+                              (lens.rules().beside.interval_factor * lens.sigma());
+        errors.push_back(1.0 / portable::hypot(by_log, 1.0 / columns.deviation[i]));
     }
     return errors;
 }

@@ -23,6 +23,14 @@ bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, doubl
     return is_worth(gain, price, sums.lens().rules().beside);
 }
 
+// True for a friction of a size below 0. One that is a part of another's curve (quadratic beside viscous
+// friction) may be; what stands for another name by itself may not.
+bool drives(const Sums& sums, const Names& names, std::size_t place) {
+    const Kind kind = kind_of(*sums.shapes()[names[place]].term.effect);
+    return (kind == Kind::friction || kind == Kind::speed) &&
+           sums.sizes(names)[columns_at(sums, names, place).first] <= 0.0;
+}
+
 // The best other name in its place, refined; one that is bent stands in for something else.
 std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price) {
     std::vector<Named> rivals;
@@ -44,6 +52,7 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
     for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
         Named rival = refined(sums, rivals[i]);
         if (sums.lens().bounds().is_bent(sums.shapes()[rival.names.back()])) continue;
+        if (drives(sums, rival.names, rival.names.size() - 1)) continue;
         if (!of_posture && stands_beside(sums, rival.names, own, price)) continue;
         if (!best || rival.left < best->left) best = std::move(rival);
     }
@@ -115,7 +124,10 @@ void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const std
     Hearing hearing(sums.lens().rules(), finding.decisions);
     const bool tie = hearing.asked("beside.tie_margin", ahead.gain, ahead.gain < rules.tie_margin) ||
                      hearing.asked("beside.tie_t", ahead.t, ahead.t < rules.tie_t);
-    if (tie && finding.status == FindingStatus::confirmed) finding.status = FindingStatus::ambiguous;
+    if (!tie || finding.status != FindingStatus::confirmed) return;
+    finding.status = FindingStatus::ambiguous;
+    if (drives(sums, names, place))
+        doubt(finding, "its size is below 0, and another name does as well: it would drive the joint");
 }
 
 // A small one of a kind mends the form of the largest.
@@ -170,6 +182,40 @@ void look_at_rest(const Sums& sums, const Named& now, std::vector<BesideFinding>
     }
 }
 
+// The name that another is clearly ahead of; none, where the best is in each place.
+std::optional<std::size_t> outdone(const std::vector<BesideFinding>& findings, const BesideRules& rules) {
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+        if (findings[i].status == FindingStatus::ambiguous && findings[i].rival &&
+            findings[i].rival_margin < -rules.tie_margin && findings[i].rival_t < -rules.tie_t)
+            return i;
+    }
+    return std::nullopt;
+}
+
+bool any_tentative(const std::vector<BesideFinding>& findings) {
+    return std::any_of(findings.begin(), findings.end(), [](const BesideFinding& finding) {
+        return finding.status == FindingStatus::tentative;
+    });
+}
+
+// A name that was withdrawn in one shape may, in another, be the better one in the place of a name that
+// stayed.
+void give_way(Sums& sums, Named& now, std::vector<BesideFinding>& findings, const Judgement& by) {
+    constexpr int most_ways = 3;
+    for (int way = 0; way < most_ways; ++way) {
+        const auto place = outdone(findings, sums.lens().rules().beside);
+        if (!place) return;
+        Named other = now;
+        other.names[*place] = sums.place_of(*findings[*place].rival);
+        other.left = sums.left_outside(other.names);
+        other = refined(sums, std::move(other));
+        std::vector<BesideFinding> judged = judged_beside(sums, other, by);
+        if (any_tentative(judged) || outdone(judged, sums.lens().rules().beside) == place) return;
+        now = std::move(other);
+        findings = std::move(judged);
+    }
+}
+
 }  // namespace
 
 std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Judgement& by) {
@@ -205,6 +251,12 @@ NamedBeside named_beside(Sums& sums, const Judgement& by) {
             if (!weakest || findings[i].gain.gain < findings[*weakest].gain.gain) weakest = i;
         }
         if (!weakest || turn == sums.lens().rules().beside.most_withdrawals) {
+            if (!weakest) give_way(sums, now, findings, by);
+            std::erase_if(withdrawn, [&](const BesideFinding& one) {
+                return std::any_of(findings.begin(), findings.end(), [&](const BesideFinding& finding) {
+                    return same_name(finding.shape, one.shape);
+                });
+            });
             if (by.even_by_speed) look_at_rest(sums, now, findings);
             findings.insert(findings.end(), withdrawn.begin(), withdrawn.end());
             return {std::move(now), std::move(findings)};

@@ -1,13 +1,3 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Sums of products over long columns, four at a time and in one order on every machine.
-
-#include <cstddef>
-
-namespace ripplenotch {
-
-[[nodiscard]] double dot(const double* a, const double* b, std::size_t count);
-/// to[k] += factor * from[k].
-void add_scaled(double factor, const double* from, double* to, std::size_t count);
-
-}  // namespace ripplenotch
+#include "core/vectors/dot.hpp"

@@ -75,8 +75,7 @@ void Lens::carry(std::span<const GivenTerm> given, const Candidate& model) {
     std::vector<double> values =
         Ridge(beside, deviation, rules_.beside.first_noise * rms(open_nm)).solve(ground_.bridged(open_nm));
     for (std::size_t i = 0; i < columns.mean.size(); ++i) values[i] += columns.mean[i];
-    // The last of the stated ones is the offset, which nothing carries.
-    case_.motion.carried_nm = brought_nm(columns, values, 0, columns.stated - 1);
+    case_.motion.carried_nm = carried_nm(columns, values);
 }
 
 std::vector<double> Lens::left_by_all() const {

@@ -59,9 +59,7 @@ class OtherLog {
     }
 
   private:
-    void carry(const std::vector<double>& values) {
-        case_.motion.carried_nm = brought_nm(columns_, values, 0, columns_.stated - 1);
-    }
+    void carry(const std::vector<double>& values) { case_.motion.carried_nm = carried_nm(columns_, values); }
     const Lens& lens_;
     const Candidate& model_;
     Case case_;

@@ -12,8 +12,7 @@ DerivedVelocity::DerivedVelocity(std::unique_ptr<LogReader> reader) : reader_(st
     for (std::size_t j = 0; j < joints.size(); ++j) {
         if (joints[j].velocity || !joints[j].position) continue;
         joints_.push_back(j);
-        const bool divided = read.columns[*joints[j].position].side == Shaft::motor && read.motor_ratio;
-        turns_deg_.push_back(divided ? 360.0 / *read.motor_ratio : 360.0);
+        turns_deg_.push_back(360.0 / read.columns[*joints[j].position].motor_ratio.value_or(1.0));
     }
     before_.resize(joints_.size());
 }

@@ -25,7 +25,7 @@ class Inference {
         if (joints_.empty()) return;
         subject_ = &joints_.front();
         gather();
-        const MotionQuestion question{*subject_, evidence_, layout_, options_.gear_ratio};
+        const MotionQuestion question{*subject_, evidence_, layout_, known_ratio(*subject_)};
         std::vector<MotionReading> fitting = motion_readings(question, true);
         const bool fits = !fitting.empty() && !fitting.front().against_header;
         std::vector<MotionReading> readings = fits ? fitting : motion_readings(question, false);
@@ -87,6 +87,13 @@ class Inference {
         return motion_evidence(rows.time, rows.velocity, rows.position);
     }
 
+    /// Told by the user, for this joint or for all.
+    [[nodiscard]] std::optional<double> known_ratio(const MotionColumns& joint) const {
+        if (!options_.gear_ratio_of || !joint.chosen) return options_.gear_ratio;
+        const std::optional<double> own = options_.gear_ratio_of(joint.joint);
+        return own ? own : options_.gear_ratio;
+    }
+
     [[nodiscard]] bool stated() const {
         return (!subject_->velocity || subject_->velocity->unit_is_stated) &&
                (!subject_->position || subject_->position->unit_is_stated);
@@ -94,11 +101,12 @@ class Inference {
 
     void settle_on_best() {
         for (const MotionColumns& joint : joints_) {
-            if (joint.velocity) settle(*joint.velocity, best_.velocity);
-            if (joint.position) settle(*joint.position, best_.position);
+            const std::optional<double> known = known_ratio(joint);
+            const std::optional<double> ratio = known ? known : best_.ratio;
+            if (joint.velocity) settle(*joint.velocity, best_.velocity, ratio);
+            if (joint.position) settle(*joint.position, best_.position, ratio);
         }
         const bool motor = best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor;
-        if (motor) layout_.motor_ratio = best_.ratio;
         layout_.motor_units = motor && !best_.ratio;
     }
 
@@ -131,7 +139,7 @@ class Inference {
             layout_.source, label(*column));
     }
 
-    void settle(const MotionColumn& known, const ReadColumn& read) {
+    void settle(const MotionColumn& known, const ReadColumn& read, std::optional<double> ratio) {
         Column& column = layout_.columns[known.column];
         column.side = read.side;
         if (!known.unit_is_stated) {
@@ -139,7 +147,9 @@ class Inference {
             column.factor = read.unit_factor;
             column.unit_assumed = false;
         }
-        if (read.side == Shaft::motor) column.factor /= best_.ratio.value_or(1.0);
+        if (read.side != Shaft::motor) return;
+        column.motor_ratio = ratio;
+        column.factor /= ratio.value_or(1.0);
     }
 
     /// Readings that cost less than `margin` more and say another speed, each once, the likeliest first.
@@ -237,12 +247,11 @@ class Inference {
         }
         if (layout_.motor_units)
             return "named as the motor's, or too fast for a joint, and no ratio is known";
-        if (layout_.motor_ratio) {
+        if (best_.velocity.side == Shaft::motor || best_.position.side == Shaft::motor) {
             return evidence_.scale
                        ? fmt::format("position and velocity differ by {:.5g}, which is a gear ratio",
-                                     *layout_.motor_ratio)
-                       : fmt::format("named as the motor's; divided by the ratio {:.5g}",
-                                     *layout_.motor_ratio);
+                                     *best_.ratio)
+                       : fmt::format("named as the motor's; divided by the ratio {:.5g}", *best_.ratio);
         }
         for (const auto* column : {&subject_->velocity, &subject_->position}) {
             if (!*column || (*column)->unit_is_stated || (*column)->convention == nullptr) continue;

@@ -4,6 +4,7 @@
 // position goes in the time of the velocity, and from what a joint can do. The one place that decides.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "log/columns/conventions.hpp"
@@ -23,6 +24,7 @@ struct MotionColumn {
 
 /// The motion of one joint; one of the two may be missing.
 struct MotionColumns {
+    std::string joint;
     std::optional<MotionColumn> velocity, position;
     bool chosen = false;
 };

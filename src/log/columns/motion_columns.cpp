@@ -36,18 +36,20 @@ std::vector<MotionColumns> motions_of(const KnownColumns& known, const std::vect
                             side == options.sides.end() ? std::nullopt : std::optional<Shaft>(side->second)};
     };
     std::vector<MotionColumns> motions;
-    const auto add = [&](std::optional<std::size_t> velocity, std::optional<std::size_t> position,
-                         bool chosen) {
-        MotionColumns motion{column(velocity, Role::velocity), column(position, Role::position), chosen};
+    const auto add = [&](const std::string& joint, std::optional<std::size_t> velocity,
+                         std::optional<std::size_t> position, bool chosen) {
+        MotionColumns motion{joint, column(velocity, Role::velocity), column(position, Role::position),
+                             chosen};
         if (motion.velocity || motion.position) motions.push_back(motion);
     };
     const std::vector<JointColumns> all = layout.all_chosen();
-    for (const JointColumns& joint : all) add(joint.velocity, joint.position, true);
+    for (const JointColumns& joint : all) add(joint.joint, joint.velocity, joint.position, true);
     for (const JointGroup& group : groups) {
         const bool chosen = std::any_of(all.begin(), all.end(),
                                         [&](const JointColumns& joint) { return joint.joint == group.name; });
         if (!chosen)
-            add(only_column(known, group, Role::velocity), only_column(known, group, Role::position), false);
+            add(group.name, only_column(known, group, Role::velocity),
+                only_column(known, group, Role::position), false);
     }
     return motions;
 }

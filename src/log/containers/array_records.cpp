@@ -29,9 +29,9 @@ std::vector<std::size_t> sizes_of(const std::vector<ArrayColumn>& columns) {
 
 class ArrayRecords final : public RecordSource {
   public:
-    ArrayRecords(const std::string& name, std::vector<StoredArray> arrays,
+    ArrayRecords(std::shared_ptr<StoredBytes> file, std::vector<StoredArray> arrays,
                  const std::vector<ArrayColumn>& columns)
-        : RecordSource(Name{name}, sizes_of(columns)), arrays_(std::move(arrays)) {
+        : RecordSource(Name{file->name()}, sizes_of(columns)), file_(std::move(file)), arrays_(std::move(arrays)) {
         rows_left_ = columns.front().array->shape.rows;
         for (const ArrayColumn& column : columns)
             columns_.push_back({column.array->type.size, column.array->open(column.number)});
@@ -55,8 +55,10 @@ class ArrayRecords final : public RecordSource {
                 column_.copy(bytes.data() + r * record_size() + offset, size, r * size);
             offset += size;
         }
+        if (rows > 0 && rows_left_ == 0) file_->require_unchanged();
     }
 
+    std::shared_ptr<StoredBytes> file_;
     std::vector<StoredArray> arrays_;  ///< what the cursors are made of
     std::vector<Open> columns_;
     std::size_t rows_left_ = 0;
@@ -192,7 +194,7 @@ void add_fields(const std::vector<ArrayColumn>& columns, RecordTable& table) {
 
 }  // namespace
 
-Records records_of_arrays(const std::string& source, const std::string& format, PathStyle style,
+Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format, PathStyle style,
                           std::vector<StoredArray> arrays, std::vector<ContentEntry> extra,
                           const ReadOptions& options) {
     RecordTable table;
@@ -200,19 +202,19 @@ Records records_of_arrays(const std::string& source, const std::string& format, 
     Groups groups;
     for (const StoredArray& array : arrays)
         if (array.shape.rows >= 2) groups[array.shape.rows].push_back(&array);
-    const auto* const chosen = choose_group(groups, asked_rows(source, groups, style, options), style);
+    const auto* const chosen = choose_group(groups, asked_rows(file->name(), groups, style, options), style);
     table.contents = contents_of(arrays, chosen);
     table.contents.insert(table.contents.end(), extra.begin(), extra.end());
     if (chosen == nullptr) {
         raise<DataError>(
             "{}: read {}, expected arrays of numbers, two rows or more, of time, velocity and torque; save "
             "them as vectors of one length",
-            source, listed(table.contents));
+            file->name(), listed(table.contents));
     }
     const std::vector<ArrayColumn> columns = columns_of(*chosen, style);
     add_fields(columns, table);
     table.rows = chosen->front()->shape.rows;
-    auto bytes = std::make_unique<ArrayRecords>(source, std::move(arrays), columns);
+    auto bytes = std::make_unique<ArrayRecords>(file, std::move(arrays), columns);
     return {std::move(bytes), std::move(table)};
 }
 

@@ -25,12 +25,12 @@ constexpr std::size_t piece_size = std::size_t{1} << 16;
 class FileBytes final : public StoredBytes {
   public:
     explicit FileBytes(std::unique_ptr<ByteSource> source)
-        : StoredBytes(source->name()), source_(std::move(source)) {}
+        : StoredBytes(source->name()), source_(std::move(source)), descriptor_(source_->descriptor_by_place()) {}
     [[nodiscard]] std::uint64_t size() const override { return source_->size(); }
     void read_at(std::uint64_t offset, char* into, std::size_t size) override {
         if (offset > this->size()) complain_of_end(name(), offset, this->size());
         while (size > 0) {
-            const ssize_t got = ::pread(source_->file_descriptor(), into, size, static_cast<off_t>(offset));
+            const ssize_t got = ::pread(descriptor_, into, size, static_cast<off_t>(offset));
             if (got < 0 && errno == EINTR) continue;
             if (got < 0) raise<FileError>("{}: cannot read: {}", name(), std::strerror(errno));
             if (got == 0) complain_of_end(name(), offset, this->size());
@@ -40,12 +40,14 @@ class FileBytes final : public StoredBytes {
         }
     }
     [[nodiscard]] std::string openable() const override {
-        return fmt::format("/dev/fd/{}", source_->file_descriptor());
+        return fmt::format("/dev/fd/{}", descriptor_);
     }
     [[nodiscard]] std::string file_on_disk() const override { return openable(); }
+    void require_unchanged() const override { source_->require_unchanged(); }
 
   private:
     std::unique_ptr<ByteSource> source_;
+    int descriptor_;
 };
 
 class KeptBytes final : public StoredBytes {
@@ -89,6 +91,7 @@ class UnpackedPart final : public StoredBytes {
         while (have_ < offset + size) unpack_piece();
         bytes_.read_at(offset, into, size);
     }
+    void require_unchanged() const override { packed_->require_unchanged(); }
 
   private:
     void unpack_piece() {
@@ -127,7 +130,7 @@ class UnpackedPart final : public StoredBytes {
 }  // namespace
 
 std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source, std::string first_bytes) {
-    if (source->file_descriptor() >= 0) return std::make_shared<FileBytes>(std::move(source));
+    if (source->by_place()) return std::make_shared<FileBytes>(std::move(source));
     return std::make_shared<KeptBytes>(*source, std::move(first_bytes));
 }
 

@@ -28,6 +28,8 @@ class StoredBytes {
     [[nodiscard]] virtual std::string openable() const { return {}; }
     /// The same of a file that has a name of its own.
     [[nodiscard]] virtual std::string file_on_disk() const { return {}; }
+    /// When all has been read: throws FileError where somebody wrote to the file meanwhile.
+    virtual void require_unchanged() const {}
     /// As messages name it.
     [[nodiscard]] const std::string& name() const { return name_; }
 

@@ -27,7 +27,7 @@ Records make_mat(std::unique_ptr<ByteSource> source, std::string first_bytes, co
         raise<DataError>("{}: read no head of a MAT file, expected one; leave out --format", source->name());
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
     MatContents found = find_mat_arrays(file);
-    return records_of_arrays(file->name(), "mat", PathStyle::matlab, std::move(found.arrays),
+    return records_of_arrays(file, "mat", PathStyle::matlab, std::move(found.arrays),
                              std::move(found.others), options);
 }
 

@@ -41,6 +41,7 @@ class McapMessages final : public MessageSource {
                 records_.fail(error.what());
             }
         }
+        records_.require_unchanged();
         return false;
     }
 

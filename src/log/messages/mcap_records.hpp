@@ -51,6 +51,7 @@ class McapRecords {
     /// The whole summary section behind the data; empty where there is none.
     [[nodiscard]] std::string summary();
     [[nodiscard]] const std::string& name() const { return file_->name(); }
+    void require_unchanged() const { file_->require_unchanged(); }
     /// What is wrong, with the place in the file.
     [[noreturn]] void fail(const std::string& what) const;
 

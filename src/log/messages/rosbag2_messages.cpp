@@ -91,6 +91,7 @@ class Rosbag2Messages final : public MessageSource {
             message.number = static_cast<std::uint64_t>(messages_->number(3));
             return true;
         }
+        file_->require_unchanged();
         return false;
     }
 

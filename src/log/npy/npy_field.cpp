@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "log/clock/stamp.hpp"
+#include "ripplenotch/core/reading.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -41,7 +42,7 @@ bool load_native(const char* at, std::size_t record_size, std::span<double> into
         std::memcpy(&word, at, sizeof(Word));
         at += record_size;
         value = static_cast<double>(word);
-        finite &= std::isfinite(value);
+        finite &= is_reading(value);
     }
     return finite;
 }
@@ -121,7 +122,7 @@ bool load_column(const char* records, std::size_t record_size, const NpyField& f
     bool finite = true;
     for (double& value : into) {
         value = load_field(records, field);
-        finite &= std::isfinite(value);
+        finite &= is_reading(value);
         records += record_size;
     }
     return finite;

@@ -9,6 +9,7 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/reading.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -212,13 +213,14 @@ double NpyReader::read_value(RowBlock& block, const char* record, const WantedCo
                         "say --sample-rate if the clock is of no use",
                         shortest(value), shortest(before_[time_slot])));
     }
-    if (std::isfinite(value)) return value;
+    if (is_reading(value)) return value;
     if (std::isnan(value) && hold_bad_values_ && !time && rows_ > 0) {
         ++block.held_bad_values;
         return before_[wanted.slot];
     }
     complain(wanted.column,
-             fmt::format("read {}, expected a finite number; {}", shortest(value),
+             fmt::format("read {}, expected a {}; {}", shortest(value),
+                         std::isfinite(value) ? "number from -1e30 to 1e30" : "finite number",
                          std::isnan(value) && !time && !hold_bad_values_
                              ? "remove the row, or say --hold-bad-values to repeat the value before"
                              : "remove the row"));

@@ -8,6 +8,7 @@
 
 #include "log/npy/npy_reader.hpp"
 #include "log/npy/npy_rows.hpp"
+#include "ripplenotch/core/reading.hpp"
 
 namespace ripplenotch {
 
@@ -61,7 +62,7 @@ bool NpyReader::read_column(const char* records, const WantedColumn& wanted,
     bool finite = true;
     for (double& number : numbers) {
         number = time_at(records, layout_);
-        finite &= std::isfinite(number);
+        finite &= is_reading(number);
         records += header_.record_size;
     }
     return finite;

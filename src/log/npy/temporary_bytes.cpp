@@ -4,13 +4,20 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <optional>
 
+#include "core/temporary_file.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 
-TemporaryBytes::TemporaryBytes() : file_(std::tmpfile()) {
-    if (!file_) raise<FileError>("cannot make a temporary file for an array; check the temporary folder");
+TemporaryBytes::TemporaryBytes() {
+    TemporaryFile file(temporary_folder() + "/ripplenotch-rows", std::nullopt);
+    const int descriptor = file.release_without_name();
+    file_.reset(::fdopen(descriptor, "w+b"));
+    if (file_) return;
+    ::close(descriptor);
+    raise<FileError>("cannot make a temporary file for an array; check the temporary folder");
 }
 
 void TemporaryBytes::put(std::string_view bytes) {

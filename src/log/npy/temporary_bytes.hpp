@@ -9,7 +9,7 @@
 
 namespace ripplenotch {
 
-/// A file without a name in the folder for temporary files. Throws FileError where there is no room.
+/// A file without a name in the folder for temporary files (TMPDIR). Throws FileError where there is no room.
 class TemporaryBytes {
   public:
     TemporaryBytes();

@@ -10,6 +10,7 @@
 #include "log/text/csv_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/reading.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -20,6 +21,14 @@ std::string shown(std::string_view text) {
 
 }  // namespace
 
+void CsvReader::refuse_controls(std::string_view line) const {
+    const auto* const found = std::find_if(line.begin(), line.end(), is_control);
+    if (found == line.end()) return;
+    complain(static_cast<std::size_t>(found - line.begin()) + 1,
+             fmt::format("read the byte 0x{:02x}, expected text; the file is damaged here, remove the line",
+                         static_cast<unsigned>(static_cast<unsigned char>(*found))));
+}
+
 void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row) {
     split_cells(line, dialect_.rules.delimiter, split_);
     const auto& cells = split_.cells;
@@ -27,14 +36,7 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
         complain(cells.back().begin,
                  "read a quote that is not closed on its line, expected its end; mend or remove the line");
     }
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (static_cast<unsigned char>(line[i]) < 0x20 && line[i] != '\t' && line[i] != '\f') {
-            complain(i + 1,
-                     fmt::format(
-                         "read the byte 0x{:02x}, expected text; the file is damaged here, remove the line",
-                         static_cast<unsigned>(static_cast<unsigned char>(line[i]))));
-        }
-    }
+    refuse_controls(line);
     if (cells.size() != dialect_.columns) {
         const bool cut = !last_line_complete_ && cells.size() < dialect_.columns;
         complain(cells.empty() ? 1 : cells.back().end + 1,
@@ -65,7 +67,7 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
     const std::size_t slot = wanted.slot;
     const bool stamp = slot == time_slot && stamp_.careful && !wanted.fraction;
     const auto number = stamp ? read_stamp(text, stamp_) : parse_number(text, dialect_.rules.decimal_mark);
-    if (number && std::isfinite(*number)) return *number;
+    if (number && is_reading(*number)) return *number;
     const std::string name = column_label(dialect_.names, wanted.column);
     // "NA", "null" and the like are texts; only what is empty or a nan of arithmetic counts as a missing
     // value.
@@ -87,9 +89,10 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
     complain(cell.begin + 1,
              fmt::format("read {} in {}, expected a {}; {}",
                          text.empty() ? std::string("nothing") : "'" + shown(text) + "'", name,
-                         stamp && stamp_.text ? "time of day or a date and time"
-                         : number             ? "finite number"
-                                              : "number",
+                         stamp && stamp_.text               ? "time of day or a date and time"
+                         : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
+                         : number                           ? "finite number"
+                                                            : "number",
                          remedy));
 }
 

@@ -223,9 +223,9 @@ bool CsvReader::accept_line(RowBlock& block, std::size_t begin, std::size_t end)
     const std::string_view line(base + begin, end - begin);
     plain_row_ = quick_->parse(line, row_);
     if (!plain_row_) {
-        if (is_blank_line(line) || is_comment_line(line)) return false;
-        if (line == "EOF") {
-            end_mark_seen_ = true;
+        if (is_no_row(line)) {
+            refuse_controls(line);
+            end_mark_seen_ |= line == "EOF";
             return false;
         }
         parse_carefully(line, block, row_);

@@ -36,6 +36,7 @@ class CsvReader : public LogReader {
     [[nodiscard]] bool continues(const RowBlock& block) const;
     std::size_t accept_from(RowBlock& block, std::size_t begin);
     bool accept_line(RowBlock& block, std::size_t begin, std::size_t end);
+    void refuse_controls(std::string_view line) const;
     void parse_carefully(std::string_view line, RowBlock& block, ParsedRow& row);
     double read_cell(std::string_view line, const Cell& cell, const WantedColumn& wanted, RowBlock& block);
     void append_row(RowBlock& block, ParsedRow& row);

@@ -23,6 +23,7 @@ class EdgeFinder {
         return {low.any | high.any << 32, low.line_ends | high.line_ends << 32};
     }
     [[nodiscard]] RIPPLENOTCH_WIDE bool quotes() const { return bits_of(quotes_) != 0; }
+    [[nodiscard]] RIPPLENOTCH_WIDE bool controls() const { return bits_of(controls_) != 0; }
     [[nodiscard]] RIPPLENOTCH_WIDE bool returns() const { return bits_of(returns_) != 0; }
 
   private:
@@ -33,12 +34,14 @@ class EdgeFinder {
         const Bytes quote = as<std::uint8_t>(bytes == all(byte('"')));
         const Bytes line_end = as<std::uint8_t>(bytes == line_ends_);
         const Bytes delimiter = as<std::uint8_t>(bytes == delimiters_);
+        const Bytes carriage_return = as<std::uint8_t>(bytes == all(byte('\r')));
         quotes_ |= quote;
-        returns_ |= as<std::uint8_t>(bytes == all(byte('\r')));
+        returns_ |= carriage_return;
+        controls_ |= as<std::uint8_t>(bytes < all(byte(' '))) & ~(line_end | delimiter | carriage_return);
         return {bits_of(quote | delimiter | line_end), bits_of(line_end)};
     }
 
-    Bytes delimiters_, line_ends_, quotes_{}, returns_{};
+    Bytes delimiters_, line_ends_, quotes_{}, returns_{}, controls_{};
 };
 
 }  // namespace
@@ -65,6 +68,7 @@ RIPPLENOTCH_WIDE void find_edges(const char* text, std::size_t size, Separators 
     found.line_ends = static_cast<std::size_t>(line_ends);
     found.quotes = finder.quotes();
     found.returns = finder.returns();
+    found.controls = finder.controls();
     find_last_edges(text, at, size, separators, found);
 }
 

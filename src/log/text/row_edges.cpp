@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "log/text/text_cells.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -26,6 +28,7 @@ void find_last_edges(const char* text, std::size_t at, std::size_t size, Separat
             found.place[++found.count] = static_cast<std::int32_t>(at);
         found.quotes |= quote;
         found.returns |= text[at] == '\r';
+        found.controls |= is_control(text[at]);
         found.line_ends += line_end ? 1 : 0;
     }
     found.returns &= separators.line_end != '\r';
@@ -40,12 +43,14 @@ std::int32_t longest_cell(const std::int32_t* place, std::size_t count) {
 std::size_t regular_rows(const char* text, const Edges& edges, Separators separators, std::size_t columns) {
     const std::size_t ended = ended_rows(text, edges, separators.line_end, columns);
     // Then there is no line end but the last of each row.
-    if (!edges.quotes && ended == edges.line_ends) return ended;
+    if (!edges.quotes && !edges.controls && ended == edges.line_ends) return ended;
     const std::int32_t* edge = edges.place.data() + 1;
     for (std::size_t row = 0; row < ended; ++row, edge += columns) {
         for (std::size_t c = 0; c + 1 < columns; ++c) {
             if (text[edge[c]] != separators.delimiter) return row;
         }
+        if (edges.controls && std::any_of(text + edge[-1] + 1, text + edge[columns - 1], is_control))
+            return row;
     }
     return ended;
 }

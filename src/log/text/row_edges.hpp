@@ -20,7 +20,9 @@ struct Edges {
     alignas(64) std::array<std::int32_t, stretch_bytes + 64> place;
     std::size_t count = 0;  ///< without the first
     std::size_t line_ends = 0;
-    bool quotes = false, returns = false;  ///< there are some: quotes, carriage returns that end no line
+    /// There are some: quotes, carriage returns that end no line, control characters beside these (or a form
+    /// feed, or a tab).
+    bool quotes = false, returns = false, controls = false;
 };
 
 /// Fills `found` from the first `size` (at most stretch_bytes) bytes of `text`.

@@ -2,12 +2,12 @@
 #include "log/text/row_parser.hpp"
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
 
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/reading.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -43,16 +43,21 @@ const char* read_short_decimal(const char* at, const char* end, char decimal_mar
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
+// A cell that nobody reads is passed on as it is, but for what no text has.
+bool needs_care(char c) { return c == '"' || is_control(c); }
+
 }  // namespace
 
 bool RowParser::add_stamp(std::string_view text, bool fraction, double& time) const {
     const auto number = fraction ? parse_number(text, rules_.decimal_mark) : read_stamp(text, stamp_);
-    if (!number || !std::isfinite(*number)) return false;
+    if (!number || !is_reading(*number)) return false;
     time += fraction ? seconds_per_nanosecond * *number : *number;
     return true;
 }
 
 bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
+    const bool first_is_read = !wanted_.empty() && wanted_.front().column == 0;
+    if (!first_is_read && is_no_row({at, static_cast<std::size_t>(end - at)})) return false;
     const char delimiter = rules_.delimiter;
     const bool runs = delimiter == ' ';
     if (runs) {
@@ -81,7 +86,7 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
                     if (!add_stamp(text, wanted->fraction, value)) return false;
                 } else {
                     const auto number = parse_number(text, rules_.decimal_mark);
-                    if (!number || !std::isfinite(*number)) return false;
+                    if (!number || !is_reading(*number)) return false;
                     value = *number;
                 }
                 place.end = content;
@@ -93,7 +98,7 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
             ++wanted;
         } else {
             while (!at_cell_end(at)) {
-                if (*at == '"') return false;
+                if (needs_care(*at)) return false;
                 ++at;
             }
         }

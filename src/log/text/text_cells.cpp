@@ -79,4 +79,8 @@ bool is_comment_line(std::string_view line) {
     return !rest.empty() && (rest[0] == '#' || rest[0] == '%' || rest.substr(0, 2) == "//");
 }
 
+bool is_no_row(std::string_view line) {
+    return is_blank_line(line) || is_comment_line(line) || line == "EOF";
+}
+
 }  // namespace ripplenotch

@@ -36,5 +36,11 @@ void split_cells(std::string_view line, char delimiter, CellSplit& into);
 /// Blank, or begins with # % or // after blanks.
 [[nodiscard]] bool is_blank_line(std::string_view line);
 [[nodiscard]] bool is_comment_line(std::string_view line);
+/// Blank, a comment, or the end mark.
+[[nodiscard]] bool is_no_row(std::string_view line);
+/// What stands in no text, wherever it is: any byte below 0x20 but tabs, form feeds and line ends.
+[[nodiscard]] inline bool is_control(char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r' && c != '\f';
+}
 
 }  // namespace ripplenotch

@@ -24,8 +24,8 @@ void refuse_binary(std::string_view bytes, const ByteSource& source) {
             source.name());
     }
     for (std::size_t i = 0; i < bytes.size(); ++i) {
+        if (!is_control(bytes[i])) continue;
         const auto byte = static_cast<unsigned char>(bytes[i]);
-        if (byte >= 0x20 || byte == '\t' || byte == '\n' || byte == '\r' || byte == '\f') continue;
         const TextPlace place = place_of(bytes, i, '\n');
         raise<DataError>(
             "{}:{}:{}: read the byte 0x{:02x}, expected text; this is not a text log, say which format it "

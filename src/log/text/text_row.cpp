@@ -2,9 +2,9 @@
 #include "log/text/text_row.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/reading.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -42,7 +42,7 @@ bool TextRow::parse_carefully(std::string_view line) {
         const std::string_view text = split_.cells[wanted.column].of(line);
         const bool stamp = stamp_.careful && wanted.slot == time_slot && !wanted.fraction;
         const auto number = stamp ? read_stamp(text, stamp_) : parse_number(text, rules_.decimal_mark);
-        if (!number || !std::isfinite(*number)) return false;
+        if (!number || !is_reading(*number)) return false;
         if (wanted.fraction)
             row_.values[time_slot] += seconds_per_nanosecond * *number;
         else if (wanted.slot == time_slot)

@@ -76,6 +76,7 @@ class Stretch {
         }
         const bool lanes_hold_all =
             longest_cell(edges_.place.data(), rows * plan_.columns) <= static_cast<std::int32_t>(lane_bytes);
+        if (plan_.wanted.empty() || plan_.wanted.front().column != 0) doubt_unread_openings(unread, rows);
         for (const WantedColumn& wanted : plan_.wanted) {
             const bool apart = edges_.returns && wanted.column + 1 == plan_.columns;
             const std::int32_t* const before = edges_.place.data() + unread * plan_.columns + wanted.column;
@@ -89,6 +90,16 @@ class Stretch {
                                    lanes_hold_all && !apart};
             double* const numbers = sink_.numbers(wanted.slot) + unread;
             if (read_cells(cells, numbers, odd_.data() + unread)) any_odd_ = true;
+        }
+    }
+
+    /// Comments, blank lines and the end mark have as many cells as they like where the first is not read.
+    void doubt_unread_openings(std::size_t from, std::size_t rows) {
+        for (std::size_t row = from; row < rows; ++row) {
+            const char first = text_[row_begin(row)];
+            const bool sure = static_cast<unsigned char>(first - '0') < 10 || first == '-';
+            odd_[row] |= sure ? 0 : 1;
+            any_odd_ |= !sure;
         }
     }
 

@@ -154,7 +154,7 @@ class ReadAhead : public ByteSource {
 
 std::unique_ptr<ByteSource> unpack(std::unique_ptr<ByteSource> packed, std::string first_bytes,
                                    const Packing& packing) {
-    const bool is_file = packed->file_descriptor() >= 0;
+    const bool is_file = packed->by_place();
     auto bytes = std::make_unique<UnpackedBytes>(std::move(packed), std::move(first_bytes), packing);
     if (!is_file) return bytes;
     return std::make_unique<ReadAhead>(std::move(bytes));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "core/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -33,9 +33,10 @@ constexpr LookAlike look_alikes[] = {
 };
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        torque_nm[k] += values[0] * portable::tanh(situation.motion.velocity_deg_s[k] / values[1]);
-    }
+    const auto& velocity_deg_s = situation.motion.velocity_deg_s;
+    with_values(
+        torque_nm.size(), [&](std::size_t k) { return velocity_deg_s[k] / values[1]; }, portable::many_tanh,
+        [&](std::size_t k, double step) { torque_nm[k] += values[0] * step; });
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "core/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -37,11 +37,11 @@ constexpr LookAlike look_alikes[] = {
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     const auto& time_s = situation.motion.time_s;
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        const double elapsed_s = time_s[k] - time_s.front();
-        torque_nm[k] +=
-            values[0] * values[1] * (1.0 - portable::exp(-std::min(elapsed_s / values[1], 700.0)));
-    }
+    const auto exponent = [&](std::size_t k) {
+        return -std::min((time_s[k] - time_s.front()) / values[1], 700.0);
+    };
+    with_values(torque_nm.size(), exponent, portable::many_exp,
+                [&](std::size_t k, double left) { torque_nm[k] += values[0] * values[1] * (1.0 - left); });
 }
 
 }  // namespace

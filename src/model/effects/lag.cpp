@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "model/between_samples.hpp"
 #include "model/effects.hpp"
+#include "model/lost_rows.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -27,7 +28,9 @@ constexpr LookAlike look_alikes[] = {
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     if (values[0] == 0.0) return;
-    first_order_lag(torque_nm, values[0] * situation.motion.sample_rate.value());
+    on_whole_clock(
+        situation.motion.time_s, situation.motion.sample_rate.value(), torque_nm,
+        [&](std::span<double> whole, double rate_hz) { first_order_lag(whole, values[0] * rate_hz); });
 }
 
 }  // namespace

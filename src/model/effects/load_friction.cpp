@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include "core/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -36,10 +36,12 @@ constexpr LookAlike look_alikes[] = {
 };
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        const double load = portable::pow(std::abs(situation.load_nm[k]), values[1]);
-        torque_nm[k] += values[0] * load * portable::tanh(situation.motion.velocity_deg_s[k] / values[2]);
-    }
+    const auto& velocity_deg_s = situation.motion.velocity_deg_s;
+    const auto raise = [&](std::span<double> loads) { portable::pow(loads, values[1], loads); };
+    with_two_values(
+        torque_nm.size(), [&](std::size_t k) { return std::abs(situation.load_nm[k]); }, raise,
+        [&](std::size_t k) { return velocity_deg_s[k] / values[2]; }, portable::many_tanh,
+        [&](std::size_t k, double load, double step) { torque_nm[k] += values[0] * load * step; });
 }
 
 }  // namespace

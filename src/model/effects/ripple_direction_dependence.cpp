@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include <vector>
+
+#include "core/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
+#include "model/many_cosines.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -33,15 +36,20 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
                    std::span<std::complex<double>> gain) {
     if (!concerns(order, values[3])) return;
     if (values[0] == 0.0 && values[1] == 0.0) return;
-    for (std::size_t k = 0; k < gain.size(); ++k) {
-        const double direction = portable::tanh(situation.motion.velocity_deg_s[k] / values[2]);
-        const double size = 1.0 + 0.01 * values[0] * direction, turn_deg = values[1] * direction;
-        const auto before = gain[k];
-        const double cosine = size * portable::cos_degrees(turn_deg),
-                     sine = size * portable::sin_degrees(turn_deg);
-        gain[k] = {before.real() * cosine - before.imag() * sine,
-                   before.real() * sine + before.imag() * cosine};
-    }
+    std::vector<double> direction(gain.size());
+    const auto& velocity_deg_s = situation.motion.velocity_deg_s;
+    with_values(
+        gain.size(), [&](std::size_t k) { return velocity_deg_s[k] / values[2]; }, portable::many_tanh,
+        [&](std::size_t k, double step) { direction[k] = step; });
+    with_cosines_and_sines(
+        gain.size(), [&](std::size_t k) { return values[1] * direction[k]; },
+        [&](std::size_t k, double of_turn, double sine_of_turn) {
+            const double size = 1.0 + 0.01 * values[0] * direction[k];
+            const auto before = gain[k];
+            const double cosine = size * of_turn, sine = size * sine_of_turn;
+            gain[k] = {before.real() * cosine - before.imag() * sine,
+                       before.real() * sine + before.imag() * cosine};
+        });
 }
 
 }  // namespace

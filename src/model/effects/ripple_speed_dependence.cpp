@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include "core/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -41,10 +41,10 @@ constexpr LookAlike look_alikes[] = {
 void change_ripple(const Situation& situation, Order order, std::span<const double> values,
                    std::span<std::complex<double>> gain) {
     if (!concerns(order, values[2])) return;
-    for (std::size_t k = 0; k < gain.size(); ++k) {
-        const double speed = std::abs(situation.motion.velocity_deg_s[k]) / 100.0;
-        gain[k] *= 1.0 + 0.01 * values[0] * portable::pow(speed, values[1]);
-    }
+    const auto speed = [&](std::size_t k) { return std::abs(situation.motion.velocity_deg_s[k]) / 100.0; };
+    const auto raise = [&](std::span<double> speeds) { portable::pow(speeds, values[1], speeds); };
+    with_values(gain.size(), speed, raise,
+                [&](std::size_t k, double growth) { gain[k] *= 1.0 + 0.01 * values[0] * growth; });
 }
 
 }  // namespace

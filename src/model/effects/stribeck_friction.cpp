@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/many_numbers.hpp"
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -38,11 +38,15 @@ constexpr LookAlike look_alikes[] = {
 };
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
-    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        const double v = situation.motion.velocity_deg_s[k];
-        const double relative = std::min(std::abs(v) / values[1], 26.0);
-        torque_nm[k] += values[0] * portable::tanh(v / values[2]) * portable::exp(-relative * relative);
-    }
+    const auto& velocity_deg_s = situation.motion.velocity_deg_s;
+    const auto exponent = [&](std::size_t k) {
+        const double relative = std::min(std::abs(velocity_deg_s[k]) / values[1], 26.0);
+        return -relative * relative;
+    };
+    with_two_values(
+        torque_nm.size(), [&](std::size_t k) { return velocity_deg_s[k] / values[2]; }, portable::many_tanh,
+        exponent, portable::many_exp,
+        [&](std::size_t k, double step, double left) { torque_nm[k] += values[0] * step * left; });
 }
 
 }  // namespace

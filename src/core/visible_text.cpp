@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 
 #include <fmt/format.h>
 
@@ -47,9 +47,43 @@ std::size_t bytes_of(std::string_view text, std::size_t characters) {
     return at;
 }
 
+// Most texts: nothing to look at twice.
+bool is_plain(std::string_view text) {
+    return std::all_of(text.begin(), text.end(), [](char c) { return c >= 0x20 && c < 0x7F; });
+}
+
+// Without an escape there is no other way to write a line feed between values of JSON.
+bool is_space(char c) { return c == '\n' || c == '\t' || c == '\r'; }
+
+std::string json_escape(std::uint32_t value) {
+    if (value < 0x10000) return fmt::format("\\u{:04x}", value);
+    const std::uint32_t rest = value - 0x10000;
+    return fmt::format("\\u{:04x}\\u{:04x}", 0xD800 + (rest >> 10U), 0xDC00 + (rest & 0x3FFU));
+}
+
 }  // namespace
 
+std::string visible_json(std::string_view json) {
+    if (std::all_of(json.begin(), json.end(), [](char c) { return (c >= 0x20 && c < 0x7F) || is_space(c); }))
+        return std::string(json);
+    std::string shown;
+    shown.reserve(json.size());
+    for (std::size_t at = 0; at < json.size();) {
+        const auto [value, length] = code_point_at(json, at);
+        const bool silent = (value < 0x20 && !is_space(json[at])) || value == 0x7F || acts(value);
+        const std::size_t taken = std::max<std::size_t>(length, 1);
+        if (length > 0 && silent) {
+            shown += json_escape(value);
+        } else {
+            shown += json.substr(at, taken);
+        }
+        at += taken;
+    }
+    return shown;
+}
+
 std::string visible_text(std::string_view text) {
+    if (is_plain(text)) return std::string(text);
     std::string shown;
     for (std::size_t at = 0; at < text.size();) {
         const auto [value, length] = code_point_at(text, at);
@@ -79,14 +113,15 @@ std::size_t text_width(std::string_view visible) {
 }
 
 std::string cut_to(std::string_view visible, std::size_t width) {
-    if (text_width(visible) <= width) return std::string(visible);
+    if (bytes_of(visible, width) == visible.size()) return std::string(visible);
     return std::string(visible.substr(0, bytes_of(visible, width > 0 ? width - 1 : 0))) + "…";
 }
 
 std::vector<std::string> wrapped(std::string_view visible, std::size_t width) {
     std::vector<std::string> lines;
-    while (text_width(visible) > width) {
-        const std::size_t most = bytes_of(visible, width + 1);
+    while (true) {
+        const std::size_t most = bytes_of(visible, width + 1);  // looking no further keeps long texts linear
+        if (most == visible.size() && text_width(visible) <= width) break;
         const std::size_t blank = visible.substr(0, most).rfind(' ');
         const bool at_blank = blank != std::string_view::npos && blank > 0;
         const std::size_t end = at_blank ? blank : bytes_of(visible, std::max<std::size_t>(width, 1));

@@ -13,6 +13,9 @@ namespace ripplenotch {
 /// the direction of writing as \n, \x1b, \u202e, bytes that are not UTF-8 as \xff. Anything else stays.
 [[nodiscard]] std::string visible_text(std::string_view text);
 
+/// JSON of the same value whose texts hold nothing that acts: these characters as \u001b. `json` is UTF-8.
+[[nodiscard]] std::string visible_json(std::string_view json);
+
 /// Characters, as far as a column each is what they take: code points.
 [[nodiscard]] std::size_t text_width(std::string_view visible);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/figure/visible_text.hpp"
+#include "ripplenotch/core/visible_text.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -39,4 +39,10 @@ TEST_CASE("lines are broken at blanks, and within a word only when it is too lon
     CHECK(wrapped("eleventwelve x", 6) == std::vector<std::string>{"eleven", "twelve", "x"});
     CHECK(wrapped("", 6) == std::vector<std::string>{""});
     CHECK(wrapped("ääääää", 3) == std::vector<std::string>{"äää", "äää"});
+}
+
+TEST_CASE("JSON keeps its value and loses what acts") {
+    CHECK(visible_json("{\n  \"a\": \"größer 🦾\"\n}\n") == "{\n  \"a\": \"größer 🦾\"\n}\n");
+    CHECK(visible_json("[\"\x7f\xc2\x9b\xe2\x80\xae\xef\xbb\xbf\"]") == "[\"\\u007f\\u009b\\u202e\\ufeff\"]");
+    CHECK(visible_json("[\"\xf0\x9f\xbf\xbf\"]") == "[\"\\ud83f\\udfff\"]");  // no character, beyond 16 bits
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/beside/dot.hpp"
+#include "core/vectors/dot.hpp"
 
 #include "core/vectors/lanes.hpp"
 
@@ -43,12 +43,47 @@ struct AddScaled {
     }
 };
 
+struct AddDots {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(const double* a0, const double* a1, const double* b0,
+                                        const double* b1, std::size_t count, double* sums) {
+        Lanes sum00{}, sum01{}, sum10{}, sum11{}, x0, x1, y0, y1;
+        std::size_t k = 0;
+        for (; k + lane_count <= count; k += lane_count) {
+            load(x0, a0 + k);
+            load(x1, a1 + k);
+            load(y0, b0 + k);
+            load(y1, b1 + k);
+            sum00 += x0 * y0;
+            sum01 += x0 * y1;
+            sum10 += x1 * y0;
+            sum11 += x1 * y1;
+        }
+        double rest[4] = {};
+        for (; k < count; ++k) {
+            rest[0] += a0[k] * b0[k];
+            rest[1] += a0[k] * b1[k];
+            rest[2] += a1[k] * b0[k];
+            rest[3] += a1[k] * b1[k];
+        }
+        sums[0] += sum(sum00) + rest[0];
+        sums[1] += sum(sum01) + rest[1];
+        sums[2] += sum(sum10) + rest[2];
+        sums[3] += sum(sum11) + rest[3];
+    }
+};
+
 }  // namespace
 
 double dot(const double* a, const double* b, std::size_t count) { return in_lanes<Dot>(a, b, count); }
 
 void add_scaled(double factor, const double* from, double* to, std::size_t count) {
     in_lanes<AddScaled>(factor, from, to, count);
+}
+
+void add_dots(const double* const (&a)[2], const double* const (&b)[2], std::size_t count,
+              double (&sums)[4]) {
+    in_lanes<AddDots>(a[0], a[1], b[0], b[1], count, static_cast<double*>(sums));
 }
 
 }  // namespace ripplenotch

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""What was asked of names beside a real leftover against what was measured, and the tables of it."""
+
+from .. import bars, table
+from . import cases
+
+ENOUGH = 1.5  # times the leftover's rms
+
+
+def hides(row):
+    return bool(row["sizes"])
+
+
+def held(rows):
+    return [p["beyond"] <= 1.0 for row in rows for p in row["parameters"] if p["beyond"] is not None]
+
+
+def line(text, asked, answers, low=0.0, high=1.0):
+    answers = [bool(answer) for answer in answers]
+    if not answers:
+        return [text, asked, "no logs", "-", "-"]
+    right, count = sum(answers), len(answers)
+    least, most = bars.wilson(right, count)
+    met = low <= right / count <= high
+    return [text, asked, f"{right}/{count} = {100 * right / count:.1f} %", f"{100 * least:.1f} to {100 * most:.1f} %",
+            "yes" if met else "**no**"]
+
+
+def bar_lines(rows):
+    hidden = [row for row in rows if hides(row)]
+    large = [row for row in hidden if row["least"] >= ENOUGH]
+    stribeck = [row for row in hidden if row["label"] == "coulomb-friction+stribeck-friction"]
+    nothing = [row for row in rows if not hides(row)]
+    return [
+        line("names exactly right, each hidden effect 0.7 times the leftover or more", "at least 95 %",
+             [r["exact"] for r in hidden], 0.95),
+        line("the same, each 1.5 times or more", "at least 97 %", [r["exact"] for r in large], 0.97),
+        line("Coulomb with Stribeck friction", "at least 90 %", [r["exact"] for r in stribeck], 0.9),
+        line("a false name, of all logs", "at most 0.5 %", [r["false"] for r in rows], 0.0, 0.005),
+        line("nothing hidden, or a disturbance outside the catalogue: no name", "each", [not r["named"] for r in nothing], 1.0),
+        line("offered: named, or a side of a tie", "at least 98 %", [r["offered"] for r in hidden], 0.98),
+        line("95 % interval holds the truth", "90 to 98 %", held(hidden), 0.9, 0.98),
+    ]
+
+
+def by_kind(rows):
+    lines = []
+    for kind in (*cases.KINDS, *cases.DISTURBANCES):
+        group = [row for row in rows if row["label"] == kind]
+        if not group:
+            continue
+        of = [p for row in group for p in row["parameters"]]
+        sizes = [p["relative"] for p in of]
+        lines.append([kind, str(len(group)), table.share(group, lambda r: r["exact"]),
+                      table.share(group, lambda r: r["offered"] if hides(r) else None), table.share(group, lambda r: r["false"]),
+                      table.median_percent(sizes), table.share(of, lambda p: None if p["beyond"] is None else p["beyond"] <= 1.0),
+                      table.median([r["seconds"] for r in group], "{:.1f} s")])
+    head = ["hidden", "logs", "exactly right", "offered", "false name", "parameter error", "interval holds", "time"]
+    return table.markdown(head, lines)
+
+
+def size(least):
+    return f"{least:.1f}" if least is not None else "-"
+
+
+def wrong(rows):
+    lines = [f"* {row['case']} ({row['joint']}, {size(row['least'])} times the leftover): named "
+             f"{', '.join(row['named']) or 'nothing'}{', and the rest offered' if row['offered'] and not row['exact'] else ''}"
+             for row in rows if not row["exact"]]
+    return "\n".join(lines) or "Nothing."
+
+
+def blocks(abouts, rows):
+    """The tables by the name of their mark."""
+    rows = sorted(rows, key=lambda r: r["case"])
+    first = abouts[0] if abouts else {}
+    numbers = sorted({int(row["case"].rpartition("-")[2]) for row in rows}) or [0]
+    options = f", options {' '.join(first['options'])}" if first.get("options") else ""
+    said = (f"{len(rows)} logs, numbers from {numbers[0]} to {numbers[-1]}, `diagnose` of commit `{first.get('commit', 'unknown')}`"
+            f"{options}.")
+    head = table.markdown(bars.HEAD, bar_lines(rows))
+    return {"semi": f"{said}\n\n{head}\n\n{by_kind(rows)}\n\nWrong:\n\n{wrong(rows)}"}

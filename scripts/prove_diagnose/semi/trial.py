@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""One semi-synthetic log from its making to its scores."""
+
+import pathlib
+import tempfile
+
+import numpy as np
+
+from .. import score, tool
+from . import cases, robots
+
+# Widths of a friction's step are those of the smoothed motion.
+UNCOUNTED = ("exponent",)
+
+
+def write(log, folder):
+    rows = np.empty(len(log.columns["time_s"]), [(name, "<f8") for name in log.columns])
+    for name, values in log.columns.items():
+        rows[name] = values
+    np.save(folder / "log.npy", rows)
+    robot = robots.ROBOTS[log.case.robot]
+    (folder / "arm.csv").write_text(robot.table_text())
+    return [folder / "log.npy", "--joint", robot.joints[log.joint], "--arm", f"{robot.kind},file={folder / 'arm.csv'}",
+            "--gear-ratio", robot.ratios[log.joint]]
+
+
+def scored(log, found):
+    """Names right, false, offered; values and their intervals; sizes told of what was rightly named."""
+    names = score.names(None, (), log.hidden, found)
+    values = [p for p in score.parameters(log.hidden, found, log.seconds)
+              if p["parameter"].partition(".")[2] not in UNCOUNTED]
+    offered = {k[0] for k in score.named_keys(found)} | score.undecided_names(found)
+    return {**names, "parameters": values, "least": log.least, "offered": all(e["effect"] in offered for e in log.hidden),
+            "verdict": found["verdict"], "joint": robots.ROBOTS[log.case.robot].joints[log.joint],
+            "statuses": [f"{entry['effect']} {entry['status']}" for entry in found["rounds"]]}
+
+
+NO_ANSWER = {"exact": False, "in_set": False, "false": [], "named": ["no answer"], "parameters": [], "offered": False,
+             "verdict": "no answer", "statuses": [], "joint": "-"}
+
+
+def trial(program, case, logs, options=()):
+    """Scores of a case; logs: folder of the real logs."""
+    about = {"study": "semi", "robot": case.robot, "label": case.kind, "case": case.name}
+    try:
+        log = cases.made(case, logs)
+    except ValueError as failure:
+        return {**about, **NO_ANSWER, "error": str(failure), "least": None, "sizes": [], "seconds": 0.0}
+    about |= {"sizes": log.sizes, "least": log.least}
+    with tempfile.TemporaryDirectory(prefix="prove-diagnose-") as name:
+        folder = pathlib.Path(name)
+        before = tool.cpu_seconds()
+        try:
+            found = tool.run(program, "diagnose", *write(log, folder), "--json", *options)
+            row = scored(log, found)
+        except (tool.ToolFailed, KeyError, TypeError, ValueError) as failure:
+            row = {**NO_ANSWER, "error": f"{type(failure).__name__}: {failure}"}
+        return {**about, **row, "seconds": tool.cpu_seconds() - before}

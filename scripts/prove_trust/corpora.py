@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""What the fuzz targets start from: a folder of files for each, made from the repository and by the tool itself."""
+
+import pathlib
+import tempfile
+
+from . import documents
+
+QUANTITIES = ["10Nm", "1kHz", "18deg/s", "1.5e3", "-0.25rad", "2 N m", "5ms", "rpm", "1e308kNm", "12rad/s", "100ns", "0.1kg m^2", "1e-320mHz"]
+SPECS = ["switching,table=table.json", "fixed,centers=25Hz:50Hz,q=0.25", "lowpass,cutoff=13Hz,order=2", "tracking,bandwidth=2Hz",
+         "oscillator,gain=0.1", "subtract", "none", "ripple,order=1,amplitude_nm=0.8"]
+ARMS = {
+    0: "<robot name='r'><link name='a'/><link name='b'/><link name='tool'/><joint name='j' type='revolute'><parent link='a'/><child link='b'/>"
+       "<origin xyz='0 0 0.3' rpy='0 1.57 0'/><axis xyz='0 0 1'/><limit lower='-1' upper='1'/></joint><joint name='k' type='fixed'>"
+       "<parent link='b'/><child link='tool'/></joint></robot>",
+    1: "<mujoco><compiler angle='radian' eulerseq='xyz'/><option gravity='0 0 -9.81'/><default><joint axis='0 1 0'/></default><worldbody>"
+       "<body name='a' pos='0 0 1' quat='1 0 0 0'><joint name='j' range='-1 1' ref='0.1'/><body name='b' euler='0 1 0'><joint name='k'/></body>"
+       "</body></worldbody></mujoco>",
+    2: "a_m,alpha_deg,d_m,theta_deg\n0,0,0.333,0\n0.0825,-90,0,0\n",
+    3: "joint,a_m,alpha_deg,d_m,theta_deg\na,0,0,0.333,0\nb,0.0825,-90,0,0\n",
+    5: "zyyzyz",
+}
+
+
+def put(folder, number, bytes_):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"seed-{number:03d}").write_bytes(bytes_)
+
+
+def logs(source):
+    """Openings of the logs in the repository, and dialects that they have not."""
+    for path in [*sorted(source.glob("data/*.csv")), *sorted(source.glob("tests/log/data/*"))]:
+        yield path.read_bytes()[:3000]
+    head, row = "time_s{d}velocity_deg_s{d}torque_nm{d}note\n", "{t}{d}60{m}5{d}-0{m}25{d}x\n"
+    for delimiter, mark in ((",", "."), (";", ","), ("\t", "."), (" ", ".")):
+        for line_end in ("\n", "\r\n", "\r"):
+            text = head.format(d=delimiter) + "".join(row.format(t=f"0{mark}{k:03d}", d=delimiter, m=mark) for k in range(40))
+            yield text.replace("\n", line_end).encode()
+    rows = "".join(f"0.{k:03d},60,{k % 7}.25\n" for k in range(40))
+    yield ("# time velocity torque\n" + rows).encode()
+    yield ("\ufefftime;velocity\n" + rows).encode()
+    yield ('"time_s","velocity_deg_s","torque_nm"\n' + rows.replace(",60,", ',"60",')).encode()
+    yield ("2026-11-22T10:00:00.{:03d}Z,60,1\n" * 3).format(1, 2, 3).encode()
+    yield ("index,velocity_deg_s,torque_nm\n" + rows + "# 1,2,3\n\nEOF\n").encode()
+
+
+def make(tool, source, folder):
+    """A folder of seeds for each target in `folder`."""
+    source, folder = pathlib.Path(source), pathlib.Path(folder)
+    for number, bytes_ in enumerate(logs(source)):
+        put(folder / "logs", number, bytes([number % 12, number % 50]) + bytes_)
+    for number, (reader, text) in enumerate(ARMS.items()):
+        put(folder / "arms", number, bytes([reader]) + text.encode())
+    for number, text in enumerate([*QUANTITIES, *SPECS]):
+        put(folder / "texts", number, bytes([number % 11]) + text.encode())
+    with tempfile.TemporaryDirectory() as scratch:
+        for number, text in enumerate(documents.make(tool, source, scratch).values()):
+            if len(text) < 20000:
+                put(folder / "documents", number, text.encode())

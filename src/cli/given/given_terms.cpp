@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "cli/given/given_terms.hpp"
+
+#include <algorithm>
+
+#include "cli/gear/joint_methods.hpp"
+#include "cli/given/nuisance.hpp"
+#include "cli/options/simulated_option.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::string_view arm_name = "arm",
+                           once = "arm: standard input cannot be read twice; give the log as a file";
+
+// The term's rows that the log still has; both are in order of time and come from one file.
+GivenTerm at_rows_of(const Log& log, const Log& whole, GivenTerm term) {
+    const std::vector<double>& kept_s = log.trace.time_s;
+    std::vector<std::size_t> rows;
+    for (std::size_t k = 0; k < whole.trace.size() && rows.size() < kept_s.size(); ++k) {
+        if (whole.trace.time_s[k] == kept_s[rows.size()]) rows.push_back(k);
+    }
+    if (rows.size() != kept_s.size())
+        raise<DataError>("arm: {} of {} rows of {} are not among those of all joints",
+                         kept_s.size() - rows.size(), kept_s.size(), log.layout.source);
+    for (std::vector<double>& column : term.torque_nm) {
+        std::vector<double> kept;
+        kept.reserve(rows.size());
+        for (const std::size_t row : rows) kept.push_back(column[row]);
+        column = std::move(kept);
+    }
+    return term;
+}
+
+GivenTerm stated_term(std::string_view name, std::vector<double> torque_nm, bool bears_load) {
+    return {std::string(name), {std::move(torque_nm)}, {1.0}, {stated_deviation}, bears_load};
+}
+
+// The terms of an arm along one log: its torque, and what is stated beside it.
+void add_arm_terms(std::vector<GivenTerm>& terms, GivenArm& arm, const StatedArm& stated,
+                   const ArmReading& reading, const Log& log, std::size_t joint) {
+    const Log& whole = reading.logs[joint];
+    GivenTerm term =
+        stated.values
+            ? stated_term(
+                  arm_name,
+                  stated_torque(arm.chain(), *stated.values, *stated.smoothing, reading.view(), joint), true)
+            : arm.term(joint, reading);
+    terms.push_back(at_rows_of(log, whole, std::move(term)));
+    if (!stated.nuisance.any()) return;
+    auto beside_nm = nuisance_torque(arm.chain(), stated.nuisance, whole.trace.view(), joint);
+    terms.push_back(at_rows_of(log, whole, stated_term(nuisance_name, std::move(beside_nm), false)));
+}
+
+ArmOption option_of(const StatedArm& arm) { return {arm.chain, arm.stated_joints(), "of the model"}; }
+
+}  // namespace
+
+void attach_given(Options& options, GivenOptions& given) {
+    options.text("--simulated", given.simulated, "SPEC", simulated_option_help);
+    options.text("--arm", given.arm, "SPEC", std::string(arm_option_help));
+}
+
+std::vector<std::string> GivenTerms::open() const {
+    std::vector<std::string> names;
+    if (simulated && !simulated->scale) names.emplace_back("simulated.scale");
+    if (simulated && simulated->fit_delay) names.emplace_back("simulated.delay_s");
+    if (fitted_arm) names.emplace_back("arm.links");
+    return names;
+}
+
+std::shared_ptr<GivenArm> GivenSource::arm(const ReadOptions& reading, const std::string& path) {
+    if (path == "-") raise<UsageError>("{}", once);
+    if (!arm_) arm_ = std::make_shared<GivenArm>(read_arm_option(*options_.arm), path, reading);
+    return arm_;
+}
+
+GivenTerms GivenSource::read(const ModelWithGiven& stated, const ReadOptions& reading, const GivenLog& log,
+                             const GivenLog* validation) {
+    if (options_.arm && stated.arm) raise<UsageError>("--arm: the model states it already; change it there");
+    GivenTerms terms;
+    if (options_.simulated || stated.simulated) add_simulated(terms, stated, reading, log, validation);
+    if (options_.arm || stated.arm) add_arm(terms, stated, reading, log, validation);
+    return terms;
+}
+
+void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
+                                const GivenLog& log, const GivenLog* validation) const {
+    const SimulatedOption simulated =
+        options_.simulated
+            ? SimulatedOption(with_joint(*options_.simulated, log.log.trace.joint), stated.simulated)
+            : SimulatedOption(*stated.simulated);
+    terms.simulated = simulated.term();
+    if (simulated.file()) terms.files.push_back(*simulated.file());
+    terms.log.push_back(simulated.read(reading, log.path, log.log));
+    add_nuisance(terms.log, *terms.simulated, log.log, smoothing_);
+    if (validation == nullptr) return;
+    terms.validation.push_back(simulated.read_validation(reading, validation->path, validation->log));
+    add_nuisance(terms.validation, *terms.simulated, validation->log, smoothing_);
+}
+
+void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
+                          const GivenLog& log, const GivenLog* validation) {
+    if (log.path == "-") raise<UsageError>("{}", once);
+    const auto given = options_.arm ? arm(reading, log.path)
+                                    : std::make_shared<GivenArm>(option_of(*stated.arm), log.path, reading,
+                                                                 stated.arm->smoothing);
+    const std::size_t joint = given->find(log.log.trace.joint);
+    terms.arm = stated.arm ? *stated.arm : StatedArm{given->chain(), {}, {}};
+    if (stated.arm && given->chain().joints[joint].name != stated.arm->joint)
+        raise<UsageError>("--joint {}: the arm of the model is for its joint '{}'", log.log.trace.joint,
+                          stated.arm->joint);
+    terms.arm->joint = given->chain().joints[joint].name;
+    terms.arm->log_joints = given->reading().names;
+    if (!terms.arm->values) terms.fitted_arm = given;
+    if (given->file()) terms.files.push_back(*given->file());
+    if (terms.arm->values && !terms.arm->smoothing) terms.arm->smoothing = default_smoothing;
+    terms.account =
+        terms.arm->values ? given->stated_account(joint, *terms.arm->smoothing) : given->account(joint);
+    add_arm_terms(terms.log, *given, *terms.arm, given->reading(), log.log, joint);
+    if (validation == nullptr) return;
+    add_arm_terms(terms.validation, *given, *terms.arm, given->other(validation->path, reading),
+                  validation->log, joint);
+}
+
+GivenTorque given_torque(const std::vector<GivenTerm>& terms, std::size_t rows) {
+    GivenTorque sum{std::vector<double>(rows, 0.0), std::vector<double>(rows, 0.0)};
+    for (const GivenTerm& term : terms) {
+        for (std::size_t c = 0; c < term.torque_nm.size(); ++c) {
+            for (std::size_t k = 0; k < rows; ++k) {
+                const double torque_nm = term.mean[c] * term.torque_nm[c][k];
+                sum.torque_nm[k] += torque_nm;
+                if (term.bears_load) sum.carried_nm[k] += torque_nm;
+            }
+        }
+    }
+    return sum;
+}
+
+void take_joint_of(const ModelWithGiven& model, std::optional<std::string>& joint) {
+    if (!model.arm || joint) return;
+    const auto place = model.arm->chain.find(model.arm->joint);
+    joint = model.arm->log_joints[*place];
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Where the terms that a model is given come together, for every command that knows them: those that options
+// state, those that a model.json states, and the values that a diagnosis finds for them.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/arm/given_arm.hpp"
+#include "cli/options/options.hpp"
+#include "ripplenotch/arm/arm_account.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/document/model_json.hpp"
+#include "ripplenotch/log/log.hpp"
+#include "ripplenotch/model/given_term.hpp"
+
+namespace ripplenotch {
+
+/// Options that state a given term.
+struct GivenOptions {
+    std::optional<std::string> simulated;  ///< "column,name=tau_model,scale=1"
+    std::optional<std::string> arm;        ///< "urdf,file=robot.urdf"
+
+    [[nodiscard]] bool any() const { return simulated || arm; }
+};
+inline constexpr std::string_view simulated_option_help =
+    "torque of your own simulation, beside which is searched: a column of the log, column,name=tau_model, or "
+    "of another file, log,file=sim.csv,column=torque; scale=1 keeps it as it is, delay=2ms or delay=fit says "
+    "how much later it is";
+void attach_given(Options& options, GivenOptions& given);
+
+/// A log of one joint as a command reads it.
+struct GivenLog {
+    std::string path;
+    Log& log;  ///< rows that a given term does not span are taken out
+};
+
+/// What is given of one joint. In the same order in both lists; `validation` is empty without a validation
+/// log.
+struct GivenTerms {
+    std::vector<GivenTerm> log, validation;
+    std::optional<SimulatedTerm> simulated;  ///< as stated
+    std::optional<StatedArm> arm;            ///< as stated, or as --arm has it
+    std::optional<ArmAccount> account;       ///< of the arm
+    std::vector<std::string> files;          ///< that were read beside the logs
+    std::shared_ptr<GivenArm> fitted_arm;    ///< whose values are found with the rest; null: all are stated
+
+    /// "simulated.scale", "arm.links": values that nobody states yet; empty: none.
+    [[nodiscard]] std::vector<std::string> open() const;
+};
+
+/// One for a command; the arm of --arm is read and fitted once for all joints.
+class GivenSource {
+  public:
+    /// `smoothing`: of the motion that the model moves along.
+    GivenSource(GivenOptions options, Seconds smoothing)
+        : options_(std::move(options)), smoothing_(smoothing) {}
+
+    /// `reading`: how the log is read, so that its further columns are read alike. Throws UsageError,
+    /// DataError, FileError.
+    [[nodiscard]] GivenTerms read(const ModelWithGiven& stated, const ReadOptions& reading,
+                                  const GivenLog& log, const GivenLog* validation);
+    [[nodiscard]] const GivenOptions& options() const { return options_; }
+    /// The arm of --arm; read when it is first asked for.
+    [[nodiscard]] std::shared_ptr<GivenArm> arm(const ReadOptions& reading, const std::string& path);
+
+  private:
+    void add_simulated(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
+                       const GivenLog& log, const GivenLog* validation) const;
+    void add_arm(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
+                 const GivenLog& log, const GivenLog* validation);
+
+    GivenOptions options_;
+    Seconds smoothing_;
+    std::shared_ptr<GivenArm> arm_;
+};
+
+/// The sum of terms whose values are all stated, an entry a row.
+struct GivenTorque {
+    std::vector<double> torque_nm, carried_nm;  ///< all of it; what gear and bearings carry
+};
+[[nodiscard]] GivenTorque given_torque(const std::vector<GivenTerm>& terms, std::size_t rows);
+
+/// What was stated of a nuisance is told with what was found beside it.
+void add_stated_nuisance(const GivenTerms& given, Diagnosis& diagnosis);
+
+/// The improved model with the values of what is given. The diagnosis tells whole nuisances.
+[[nodiscard]] ModelWithGiven improved_model(const GivenTerms& given, const Diagnosis& diagnosis);
+
+/// The joint whose log a model needs, where it says so and the user does not.
+void take_joint_of(const ModelWithGiven& model, std::optional<std::string>& joint);
+
+}  // namespace ripplenotch

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "cli/given/residual.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cli/gear/joint_methods.hpp"
+#include "cli/given/stated_along.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/model_json.hpp"
+#include "ripplenotch/model/measured_motion.hpp"
+
+namespace ripplenotch {
+namespace {
+
+double rms(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value * value;
+    return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+ModelWithGiven model_of(const ResidualOptions& residual, const std::string& joint) {
+    // Without a model nothing depends on its ratio.
+    if (!residual.model) return {{GearRatio(1.0), {}}};
+    const std::string path = with_joint(*residual.model, joint);
+    return read_model_with_given(read_all(path), path == "-" ? "standard input" : path);
+}
+
+std::vector<double> predicted_nm(const ResidualOptions& residual, const ModelWithGiven& model,
+                                 const ReadOptions& reading, const GivenLog& log) {
+    GivenOptions options;
+    if (residual.simulated) options.simulated = with_joint(*residual.simulated, log.log.trace.joint);
+    std::vector<GivenTerm> terms;
+    if (options.any() || model.any_given()) {
+        GivenTerms given = GivenSource(options, default_smoothing).read(model, reading, log, nullptr);
+        if (given.fitted_arm)
+            raise<UsageError>("--residual {}: the model does not state arm.links; diagnose -o writes them",
+                              *residual.model);
+        settle_simulation(given.log, log.log.trace);
+        terms = std::move(given.log);
+    }
+    GivenTorque given = given_torque(terms, log.log.trace.size());
+    Motion motion = motion_along(log.log.trace.view(), default_smoothing);
+    motion.carried_nm = std::move(given.carried_nm);
+    std::vector<double> sum = predict_nm(model.model, motion);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += given.torque_nm[k];
+    return sum;
+}
+
+}  // namespace
+
+void attach_residual(Options& options, ResidualOptions& residual) {
+    options.text("--residual", residual.model, "FILE",
+                 "look into measured less predicted torque: of this model.json, along the log");
+    options.text("--simulated", residual.simulated, "SPEC",
+                 "the same of your own simulation: column,name=tau_model or log,file=sim.csv,column=torque; "
+                 "its scale is fitted unless scale=1 keeps it");
+}
+
+void take_residual(const ResidualOptions& residual, ReadOptions reading, std::size_t logs,
+                   const GivenLog& log, const CommonOptions& common, Provenance& provenance) {
+    if (!residual.any()) return;
+    if (logs > 1 && residual.simulated && residual.simulated->starts_with("log"))
+        raise<UsageError>("--simulated log,...: it is the simulation of one log, and there are {}", logs);
+    if (!log.log.trace.joint.empty()) reading.joint = log.log.trace.joint;
+    const ModelWithGiven model = model_of(residual, log.log.trace.joint);
+    if (residual.model && *residual.model != "-")
+        provenance.inputs.push_back(input_record(with_joint(*residual.model, log.log.trace.joint)));
+    const std::vector<double> predicted = predicted_nm(residual, model, reading, log);
+    std::vector<double>& torque_nm = log.log.trace.torque_nm;
+    const double before_nm = rms(torque_nm);
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];
+    say(common, fmt::format("{}: {:.4g} Nm rms of torque, {:.4g} less what is predicted", log.path, before_nm,
+                            rms(torque_nm)));
+}
+
+void take_joint_of(const ResidualOptions& residual, std::optional<std::string>& joint) {
+    if (!residual.model || joint || *residual.model == "-" || names_joint(*residual.model)) return;
+    take_joint_of(read_model_with_given(read_all(*residual.model), *residual.model), joint);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What is given of a log's torque where nothing is left to be fitted: for commands that predict a torque.
+
+#include "cli/given/given_terms.hpp"
+
+namespace ripplenotch {
+
+/// The sum of what the model and the options state; rows of the log that it does not span are taken out.
+/// Nothing given: empty. Throws UsageError for a value that is still to be fitted, and what GivenSource
+/// throws.
+[[nodiscard]] GivenTorque stated_torque_along(const GivenOptions& options, const ModelWithGiven& model,
+                                              const ReadOptions& reading, const GivenLog& log,
+                                              Seconds smoothing);
+
+/// The scale, and the delay if it is open, that leave least of the log's torque beside an offset, as if they
+/// had been stated. What is in the torque besides may move them a little.
+void settle_simulation(std::vector<GivenTerm>& terms, const Trace& log);
+
+}  // namespace ripplenotch

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal: every file that the tool makes begins here, under no name, or under a random one where the file
+// system has no files without names.
+
+#include <sys/stat.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/unfinished_files.hpp"
+
+namespace ripplenotch {
+
+class TemporaryFile {
+  public:
+    /// For reading and writing, in the folder of `path`. With the rights, the owner and the group of
+    /// `replaced`, if there is one: as far as the system lets the user give them, and no right to anybody who
+    /// had none. Throws FileError.
+    TemporaryFile(const std::string& path, const std::optional<struct stat>& replaced);
+    ~TemporaryFile();
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    [[nodiscard]] int descriptor() const { return descriptor_; }
+    /// A name that surely nobody sees keeps: the file goes with its last descriptor.
+    [[nodiscard]] int release_without_name();
+    /// Closes the file and gives it its name, in the folder that it was made in. `synced`: not before its
+    /// bytes are on the disk, and its name is when this returns. Throws FileError; nothing is left then.
+    void take_place(const std::string& path, bool overwrite, bool synced);
+
+  private:
+    [[nodiscard]] bool open_without_name(const std::string& folder, mode_t mode);
+    void open_with_name(const std::string& path, mode_t mode);
+    void keep_rights(const struct stat& replaced);
+    void close(const std::string& path);
+    [[nodiscard]] std::string linked(const std::string& to) const;
+    [[nodiscard]] std::string named_beside(const std::string& path);
+    [[nodiscard]] std::string in_free_place(const std::string& path);
+    [[nodiscard]] std::string over(const std::string& path);
+
+    int descriptor_ = -1;
+    std::string name_;  ///< empty while it has none
+    std::unique_ptr<UnfinishedFile> unfinished_;
+};
+
+/// The folder that a path is in: "." where it names none.
+[[nodiscard]] std::string folder_of(const std::string& path);
+/// Where temporary files go: TMPDIR, else the system's. Throws FileError.
+[[nodiscard]] std::string temporary_folder();
+
+}  // namespace ripplenotch

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include "document/angle_fields.hpp"
+
+#include <fmt/format.h>
+
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+Json six(double value) { return *parse_number(fmt::format("{:.6g}", value)) + 0.0; }
+
+}  // namespace
+
+void put_angle(Json& json, const Diagnosis& diagnosis) {
+    if (!diagnosis.angle) return;
+    const auto& start = diagnosis.angle->validation_start_deg;
+    json["angle"] = {{"walk_deg", six(diagnosis.angle->walk_deg)},
+                     {"validation_start_deg", start ? six(*start) : Json(nullptr)}};
+}
+
+void read_angle(Fields& fields, Diagnosis& diagnosis) {
+    if (!fields.has("angle")) return;
+    Fields angle = fields.object("angle");
+    AngleAccount& account = diagnosis.angle.emplace();
+    account.walk_deg = angle.number("walk_deg");
+    account.validation_start_deg = angle.number_if_any("validation_start_deg");
+    angle.finish();
+}
+
+}  // namespace ripplenotch

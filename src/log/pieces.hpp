@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the log room: evenly spread pieces of a log that is too long to be held.
+
+#include <cstddef>
+#include <memory>
+
+#include "ripplenotch/core/spool.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+
+/// Of a log with more than `most_rows`; read twice. See read_log_in_part.
+[[nodiscard]] Log read_pieces(const std::shared_ptr<const Spool>& log, const ReadOptions& options,
+                              std::size_t most_rows);
+
+}  // namespace ripplenotch

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""What diagnose leaves to its user: --accept, and what to do next."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+MODEL = {"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [
+    {"effect": "inertia"}, {"effect": "ripple", "order": 1}, {"effect": "ripple", "order": 2}]}
+TRUTH = ["--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg", "--ripple", "2:0.4Nm:-60deg",
+         "--effect", "coulomb-friction,torque_nm=0.5,width_deg_s=0.2"]
+THERE_AND_BACK = ["rest,duration=0.5s", "poly6,to=120deg,duration=2s", "rest,duration=0.5s", "poly6,to=-60deg,duration=3s",
+                  "rest,duration=0.5s", "poly6,to=30deg,duration=1.5s", "rest,duration=0.5s"]
+BLIND = ["--without", "coulomb-friction", "--without", "stribeck-friction", "--without", "hysteresis"]
+
+
+class Accept(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        (self.folder / "model.json").write_text(json.dumps(MODEL))
+
+    def tool(self, *words):
+        return subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=300)
+
+    def json_of(self, *words):
+        done = self.tool(*words, "--json", "-q", "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def log(self, name, motions):
+        words = [word for motion in motions for word in ("--motion", motion)]
+        done = self.tool("simulate", *TRUTH, *words, "--sample-rate", "1kHz", "--noise", "0.05Nm", "--velocity-noise",
+                         "0.1deg/s", "--seed", "1", "-o", name)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_tentative_finding_is_taken_and_told_as_accepted(self):
+        self.log("log.csv", THERE_AND_BACK)
+        words = ["diagnose", "log.csv", "--model", "model.json", *BLIND]
+        before = self.json_of(*words)
+        tentative = [one["effect"] for one in before["rounds"] if one["status"] == "tentative"]
+        self.assertIn("load-friction", tentative)
+        self.assertTrue(any("--accept load-friction" in step for step in before["next"]), before["next"])
+        after = self.json_of(*words, "--accept", "load-friction", "-o", "improved.json")
+        self.assertEqual([(one["effect"], one["status"]) for one in after["accepted"]], [("load-friction", "tentative")])
+        self.assertNotIn("load-friction", after["named"])
+        self.assertEqual(after["gap"]["before_nm"], before["gap"]["before_nm"])
+        self.assertLess(after["gap"]["after_nm"], 0.6 * before["gap"]["after_nm"])
+        effects = [one["effect"] for one in json.loads((self.folder / "improved.json").read_text())["effects"]]
+        self.assertEqual(effects[:4], ["inertia", "ripple", "ripple", "load-friction"])
+        left = self.json_of("simulate", "--model", "improved.json", "log.csv", "-o", "again.csv")["along_log"]["residual_rms_nm"]
+        self.assertAlmostEqual(left / after["gap"]["after_nm"], 1.0, delta=1e-4)
+        # It is what a user gets who writes the line into the model.
+        stated = dict(MODEL, effects=[*MODEL["effects"], {"effect": "load-friction"}])
+        (self.folder / "stated.json").write_text(json.dumps(stated))
+        by_hand = self.json_of("diagnose", "log.csv", "--model", "stated.json", *BLIND)
+        self.assertEqual(by_hand["gap"]["after_nm"], after["gap"]["after_nm"])
+        self.assertEqual(by_hand["rounds"], after["rounds"])
+        story = self.tool(*words, "--accept", "load-friction").stdout
+        self.assertRegex(story, r"accepted by you and not confirmed by this log \(tentative\): load-friction, torque_nm = ")
+
+    def test_what_is_not_in_doubt_is_refused_with_what_is(self):
+        self.log("log.csv", THERE_AND_BACK)
+        for words, part in (((*BLIND, "--accept", "gravity"), "no finding of that name; in doubt is viscous-friction"),
+                            (("--accept", "coulomb-friction"), "it is confirmed, and in the model already; in doubt is nothing"),
+                            (("--accept", "coulomb"), "there is no effect 'coulomb'")):
+            done = self.tool("diagnose", "log.csv", "--model", "model.json", *words)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(part, done.stderr)
+
+    def test_nothing_in_doubt_nothing_to_do(self):
+        self.log("log.csv", THERE_AND_BACK)
+        self.assertNotIn("next", self.json_of("diagnose", "log.csv", "--model", "model.json"))
+
+    def test_a_log_of_one_direction_asks_for_the_other_and_a_side_can_be_taken(self):
+        self.log("log.csv", [f"constant,speed={speed}deg/s,duration=3s" for speed in (40, 80, 20)])
+        found = self.json_of("diagnose", "log.csv", "--model", "model.json")
+        self.assertTrue(found["ambiguous"], found["rounds"])
+        sides = found["ambiguous"][0]["effects"]
+        self.assertTrue(found["next"][0].startswith(" or ".join(sides)), found["next"])
+        self.assertIn("the other direction of motion", found["next"][-1])
+        taken = self.json_of("diagnose", "log.csv", "--model", "model.json", "--accept", sides[1])
+        self.assertEqual([one["effect"] for one in taken["accepted"]], [sides[1]])
+        # What a user accepts is no verdict.
+        self.assertEqual(taken["verdict"], "partly-explained")
+        words = ["diagnose", "log.csv", "--model", "model.json", "--accept", sides[1]]
+        self.assertEqual(self.tool(*words, "--require-conclusive").returncode, 5)
+        self.assertIn("this log does not confirm what you accepted", self.tool(*words).stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()

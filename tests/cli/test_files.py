@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""What becomes of files: docs/durability.md."""
+
+import hashlib
+import json
+import os
+import pathlib
+import resource
+import shutil
+import stat
+import subprocess
+import tempfile
+import threading
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
+LOWPASS = ("--method", "lowpass,cutoff=13rad/s,order=1")
+GEAR = ("--gear-ratio", "100", "--orders", "1,2")
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        shutil.copy(DATA / "paper_90deg_s.csv", self.folder / "log.csv")
+
+    def run_tool(self, *words, **more):
+        return subprocess.run([TOOL, *words], cwd=self.folder, capture_output=True, text=True, timeout=120,
+                              stdin=subprocess.DEVNULL, **more)
+
+    def hash_of(self, name):
+        return hashlib.sha256((self.folder / name).read_bytes()).hexdigest()
+
+    def entries(self):
+        return {path.name: path.read_bytes() for path in self.folder.iterdir() if path.is_file()}
+
+
+class Hashes(InFolder):
+    def test_metrics_name_the_log_that_was_read_though_its_name_is_taken(self):
+        raw = self.hash_of("log.csv")
+        done = self.run_tool("filter", "log.csv", *LOWPASS, *GEAR, "--in-place", "--metrics", "m.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotEqual(self.hash_of("log.csv"), raw)
+        self.assertEqual(json.loads((self.folder / "m.json").read_text())["inputs"][0]["sha256"], raw)
+
+    def test_every_command_that_names_a_hash_names_the_right_one(self):
+        raw = self.hash_of("log.csv")
+        for words in (("identify", "log.csv"), ("info", "log.csv"), ("spectrum", "log.csv"), ("track", "log.csv", *GEAR),
+                      ("spectrum", "log.csv", "--segment", "1s"), ("compare", "log.csv", *GEAR, *LOWPASS)):
+            with self.subTest(words[0]):
+                done = self.run_tool(*words, "--json")
+                self.assertEqual(json.loads(done.stdout)["inputs"][0]["sha256"], raw, done.stderr)
+
+    def test_of_a_named_pipe_the_hash_is_that_of_what_it_said(self):
+        os.mkfifo(self.folder / "pipe")
+        raw = (self.folder / "log.csv").read_bytes()
+        writer = threading.Thread(target=lambda: (self.folder / "pipe").write_bytes(raw), daemon=True)
+        writer.start()
+        done = self.run_tool("identify", "pipe", "--json")
+        writer.join()
+        self.assertEqual(json.loads(done.stdout)["inputs"][0]["sha256"], hashlib.sha256(raw).hexdigest(), done.stderr)
+
+
+class ChangingLogs(InFolder):
+    def test_a_log_that_is_cut_while_it_is_read_gives_no_result(self):
+        head, *lines = (self.folder / "log.csv").read_text().splitlines(keepends=True)
+        cells = [line.split(",", 1)[1] for line in lines]
+        with open(self.folder / "long.csv", "w", encoding="ascii") as log:
+            log.write(head)
+            for turn in range(40):
+                log.writelines(f"{turn * 4 + k / 1000:.3f},{cell}" for k, cell in enumerate(cells))
+        whole = (self.folder / "long.csv").read_bytes()
+        refused = 0
+        for run in range(30):
+            (self.folder / "long.csv").write_bytes(whole)
+            (self.folder / "out.csv").unlink(missing_ok=True)
+            running = subprocess.Popen([TOOL, "filter", "long.csv", *LOWPASS, "--no-sync", "-o", "out.csv"],
+                                       cwd=self.folder, stderr=subprocess.PIPE, text=True)
+            try:
+                running.wait(0.001 * run)
+            except subprocess.TimeoutExpired:
+                pass
+            os.truncate(self.folder / "long.csv", len(whole) // 3)
+            words = running.communicate()[1]
+            if running.returncode == 0:
+                self.assertEqual((self.folder / "out.csv").read_bytes().count(b"\n"), whole.count(b"\n"))
+                continue
+            # Cut before it was opened, it is a log like any other, if the cut is between two rows.
+            self.assertIn(running.returncode, (3, 4), words)
+            self.assertFalse((self.folder / "out.csv").exists())
+            if running.returncode == 4:
+                refused += 1
+                self.assertIn("changed while it was read", words)
+        self.assertGreater(refused, 0)
+
+
+class Collisions(InFolder):
+    """Refused with exit code 2 before anything is done, --force or not."""
+
+    def refuse(self, *words):
+        for force in ((), ("--force",)):
+            before = self.entries()
+            done = self.run_tool(*words, *force)
+            self.assertEqual(done.returncode, 2, f"{words}: {done.stderr}")
+            self.assertEqual(self.entries(), before, words)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+
+    def setUp(self):
+        super().setUp()
+        made = self.run_tool("design", *GEAR, "--sample-rate", "1kHz", "--speed", "18:180:18", "--json", "-o", "table.json")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        os.symlink("table.json", self.folder / "link.json")
+        os.link(self.folder / "log.csv", self.folder / "same.csv")
+
+    def test_two_outputs_of_one_name(self):
+        self.refuse("filter", "log.csv", *LOWPASS, "-o", "new.json", "--metrics", "./new.json")
+        self.refuse("filter", "log.csv", *LOWPASS, "-o", "out.csv", "--metrics", "new.json", "--plot", "new.json")
+        self.refuse("identify", "log.csv", "-o", "new.json", "--plot", "new.json")
+
+    def test_an_output_that_is_an_input(self):
+        for words in (("filter", "log.csv", "--table", "table.json", "-o", "table.json"),
+                      ("filter", "log.csv", "--table", "table.json", "-o", "link.json"),
+                      ("filter", "log.csv", "--method", "switching,table=table.json", "-o", "out.csv", "--metrics", "table.json"),
+                      ("filter", "log.csv", *LOWPASS, "-o", "log.csv"),
+                      ("filter", "log.csv", *LOWPASS, "-o", "same.csv"),
+                      ("filter", "log.csv", *LOWPASS, "-o", "out.csv", "--metrics", "log.csv"),
+                      ("filter", "log.csv", *LOWPASS, "--in-place", "--metrics", "log.csv"),
+                      ("spectrum", "log.csv", "-o", "log.csv"),
+                      ("track", "log.csv", *GEAR, "-o", "log.csv"),
+                      ("export", "table.json", "--to", "scipy", "-o", "table.json"),
+                      ("compare", "log.csv", *GEAR, "--json", "-o", "table.json", "--method", "switching,table=table.json"),
+                      ("report", "table.json", "-o", "table.json")):
+            self.refuse(*words)
+
+    def test_what_is_no_file_collides_with_nothing(self):
+        done = self.run_tool("filter", "log.csv", *LOWPASS, "-o", "/dev/null", "--metrics", "/dev/null")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Places(InFolder):
+    def test_rights_are_kept(self):
+        (self.folder / "out.csv").write_text("old")
+        os.chmod(self.folder / "out.csv", 0o600)
+        done = self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(stat.S_IMODE((self.folder / "out.csv").stat().st_mode), 0o600)
+
+    @unittest.skipUnless(os.geteuid() == 0, "only root may give files away")
+    def test_owner_and_group_are_kept(self):
+        (self.folder / "out.csv").write_text("old")
+        os.chown(self.folder / "out.csv", 1234, 2345)
+        done = self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        status = (self.folder / "out.csv").stat()
+        self.assertEqual((status.st_uid, status.st_gid), (1234, 2345))
+
+    def test_a_link_stays_a_link(self):
+        (self.folder / "there").mkdir()
+        (self.folder / "there/out.csv").write_text("old")
+        os.symlink("there/out.csv", self.folder / "out.csv")
+        done = self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "out.csv").is_symlink())
+        self.assertGreater((self.folder / "there/out.csv").stat().st_size, 10000)
+
+    def test_leftovers_of_a_killed_run_are_in_nobodys_way(self):
+        for number in range(50):
+            (self.folder / f"out.csv.part-{os.getpid() + number}-0").write_text("left")
+        for _ in range(3):
+            done = self.run_tool("filter", "log.csv", *LOWPASS, "--force", "-o", "out.csv")
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    @unittest.skipUnless(shutil.which("strace"), "no strace here, which counts the calls")
+    def test_a_result_is_on_the_disk_before_it_has_its_name(self):
+        for words, synced in (((), True), (("--no-sync",), False)):
+            traced = subprocess.run(["strace", "-f", "-e", "trace=fsync,linkat,rename", TOOL, "filter", "log.csv", *LOWPASS,
+                                     "--force", "-o", "out.csv", *words], cwd=self.folder, capture_output=True, text=True)
+            calls = [name for line in traced.stderr.splitlines() for name in ("fsync", "linkat", "rename") if name + "(" in line]
+            self.assertEqual(traced.returncode, 0, traced.stderr)
+            if synced:
+                self.assertEqual((calls[0], calls[-1]), ("fsync", "fsync"), calls)
+            else:
+                self.assertNotIn("fsync", calls)
+
+
+class Memory(InFolder):
+    @unittest.skipIf("san" in TOOL, "sanitizers need address space of their own")
+    def test_out_of_memory_is_said_once_with_size_and_remedy(self):
+        simulated = self.run_tool("simulate", *GEAR[:2], "--inertia", "0.4", "--motion",
+                                  "constant,speed=90deg/s,duration=400s", "--sample-rate", "1kHz", "-o", "long.npy")
+        self.assertEqual(simulated.returncode, 0, simulated.stderr)
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (24 << 20, 24 << 20))
+        for words in (("spectrum", "long.npy", "-o", "out.csv"), ("track", "long.npy", *GEAR, "-o", "out.csv")):
+            done = self.run_tool(*words, preexec_fn=limit)
+            self.assertEqual(done.returncode, 6, f"{words}: {done.returncode} {done.stderr}")
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+            self.assertIn("MiB", done.stderr)
+            self.assertIn("--from", done.stderr)
+            self.assertFalse((self.folder / "out.csv").exists())
+
+    def test_numbers_beyond_reason_are_a_mistake_in_the_command(self):
+        for ratio in ("1e308", "1e30", "0", "-1"):
+            done = self.run_tool("track", "log.csv", "--gear-ratio", ratio)
+            self.assertEqual(done.returncode, 2, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

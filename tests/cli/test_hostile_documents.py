@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""JSON that no command writes: refused with its place, exit code 3, within two seconds, whatever it is."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+sys.path.insert(0, str(SOURCE / "scripts"))
+sys.dont_write_bytecode = True
+
+from prove_trust import documents  # noqa: E402
+
+LONGEST_S = 2.0
+
+KINDS = ("comparison", "diagnosis", "effects", "export", "figure", "frontier", "info", "joint", "joints", "metrics", "model",
+         "simulation", "spectrum", "table", "track")
+
+
+def head(kind):
+    return {"schema": f"ripplenotch/{kind}/1"}
+
+
+def table():
+    done = subprocess.run([TOOL, "design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "18:180:54",
+                           "--q", "0.25", "--json"], capture_output=True, check=True)
+    return json.loads(done.stdout)
+
+
+class Documents(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        pathlib.Path(self.folder.name, "log.csv").write_text(
+            "time_s,velocity_deg_s,torque_nm\n" + "".join(f"{k / 1000},60,{k % 7}\n" for k in range(500)))
+
+    def read(self, text, *words):
+        pathlib.Path(self.folder.name, "x.json").write_text(text)
+        before = documents.processor_s()
+        done = subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, text=True, timeout=60)
+        self.assertLess(documents.processor_s() - before, LONGEST_S, words)
+        return done
+
+    def refused(self, text, *parts, words=("report", "x.json")):
+        done = self.read(text, *words)
+        self.assertEqual(done.returncode, 3, done.stderr[-300:])
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr.count("\n"), 1)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+
+    READERS = (("report", "x.json"), ("export", "x.json", "--to", "c-header"), ("design", "x.json", "--speed", "18:180:54"),
+               ("filter", "log.csv", "--method", "switching,table=x.json"),
+               ("simulate", "--model", "x.json", "--motion", "constant,speed=60deg/s,duration=1s", "--sample-rate", "1kHz"),
+               ("diagnose", "log.csv", "--model", "x.json"))
+
+    def test_deep_lists_and_objects_are_refused_by_every_reader(self):
+        for opening, closing in (("[", "]"), ('{"a":', "}")):
+            for depth in (25, 10000, 200000):
+                for words in self.READERS:
+                    self.refused(opening * depth + "1" + closing * depth, "x.json:1:", "more than 24 deep", words=words)
+        self.refused('{"schema": "ripplenotch/metrics/1",\n "a": ' + "[" * 10000 + "]" * 10000 + "}", "x.json:2:", "deep")
+
+    def test_numbers_that_overflow_are_named_with_their_place(self):
+        for words in self.READERS:
+            self.refused('{"schema": "x",\n  "gear_ratio": 1e400}', "x.json:2:17", "1e400", words=words)
+        self.refused('{"schema": "ripplenotch/metrics/1", "a": -1.797e308}', "-1.797e308", "from -1e+100 to 1e+100")
+
+    def test_a_name_twice_is_refused(self):
+        for words in self.READERS:
+            self.refused('{"schema": "x",\n "width": 1, "width": 1}', "x.json:2:", '"width" for a second time', words=words)
+        many = ", ".join(f'"a{i}": 1' for i in range(900))
+        self.refused('{"schema": "ripplenotch/metrics/1", ' + many + ', "a450": 2}', '"a450" for a second time')
+
+    def test_size_and_count_are_bounded_before_any_work(self):
+        self.refused('{"schema": "ripplenotch/metrics/1", "a": [' + "1," * 1100000 + "1]}", "more than 1000000 values")
+        self.refused('{"schema": "ripplenotch/metrics/1", ' + ", ".join(f'"a{i}": 1' for i in range(1001)) + "}", "1000 members")
+        self.refused('"' + "x" * (33 << 20) + '"', "bytes of JSON")
+
+    def test_cut_and_foreign_texts_are_named_with_their_place(self):
+        for text in ("", "[1, 2", '{"a" 1}', "NaN", "\x00", '"\x01"', "{}{}", '{"a": "\\ud800"}', "time_s,velocity_deg_s\n1,2\n"):
+            self.refused(text, "x.json:1:", "expected")
+
+    def test_a_report_takes_the_kinds_that_commands_write(self):
+        for kind in KINDS:
+            done = self.read(json.dumps({**head(kind), "a": 1}), "report", "x.json", "-o", "page.html", "--force")
+            if kind not in ("joint", "table", "figure", "diagnosis"):
+                self.assertEqual(done.returncode, 0, kind + done.stderr)
+        for schema in ("ripplenotch/nonsense/1", "ripplenotch/table/2", "", "x", 5, None, [], {}):
+            self.refused(json.dumps({"schema": schema}), "x.json", "expected a result of ripplenotch")
+        self.refused("[]", "expected a result of ripplenotch")
+
+    def test_a_report_refuses_wrong_types_in_the_head(self):
+        for name, value in (("inputs", 1), ("inputs", [1]), ("inputs", {"a": {}}), ("inputs", [{"name": 5}]), ("inputs", [{"sha256": "x"}]),
+                            ("inputs", [{"name": "a", "x": 1}]), ("command", 5), ("tool", []), ("version", {})):
+            self.refused(json.dumps({**head("metrics"), name: value}), f"x.json: {name}")
+
+    def test_a_report_shows_values_of_any_type(self):
+        for value in (None, True, 1, -0.0, 1e99, "x", [], {}, [[]], [{}], [[1, 2], [3, "a"]], [{"a": {"b": [1]}}, {"a": None}],
+                      {"value": "x", "ci95": ["a", 1]}, {"value": 1, "stderr": "x", "ci95": [1]}, {"parameters": {"a": 1, "b": {"value": None}}},
+                      [{"parameters": {"a": [], "b": {"value": {}, "ci95": [1, 2]}}, "where": {"x": 0, "y": []}}], [1, [2, [3]]]):
+            for name in ("verdict", "gear_ratio", "lines", "value", "parameters", "where", "recording"):
+                done = self.read(json.dumps({**head("metrics"), name: value}), "report", "x.json", "-o", "page.html", "--force")
+                self.assertEqual(done.returncode, 0, f"{name}: {value}: {done.stderr}")
+
+    def test_tables_are_bounded_before_they_are_measured(self):
+        good = table()
+        notch = good["bands"][0]["notches"][0]
+        band = good["bands"][0]
+        for count in (65, 800, 4000):
+            many = {**good, "bands": [{**band, "notches": [{**notch, "order": i + 1} for i in range(count)]}]}
+            self.refused(json.dumps(many), "expected at most 64", words=("export", "x.json", "--to", "c-header"))
+        for count in (10001, 20000):
+            self.refused(json.dumps({**good, "bands": [band] * count}), "expected at most 10000", words=("export", "x.json", "--to", "c-header"))
+        wide = {**good, "orders": list(range(1, 65)), "bands": [
+            {**band, "number": i + 1, "notches": [{**notch, "order": n + 1} for n in range(64)]} for i in range(100)]}
+        self.refused(json.dumps(wide), words=("export", "x.json", "--to", "c-header"))
+
+    def test_what_design_can_make_can_be_read(self):
+        path = pathlib.Path(self.folder.name, "x.json")
+        done = subprocess.run([TOOL, "design", "--gear-ratio", "100", "--orders", "1,2", "--sample-rate", "1kHz", "--speed", "20:200:0.2",
+                               "--json", "-o", path], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.read(path.read_text(), "export", "x.json", "--to", "json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_models_and_figures_are_bounded(self):
+        model = {**head("model"), "gear_ratio": 100, "effects": [{"effect": "inertia", "inertia_kgm2": 1}] * 257}
+        self.refused(json.dumps(model), "effects has 257 entries", words=self.READERS[4])
+        figure = {**head("figure"), "name": "x", "title": "x", "sentence": "", "columns": 1, "panels": [{}] * 17}
+        self.refused(json.dumps(figure), "panels has 17 entries")
+
+
+class Mutated(unittest.TestCase):
+    def test_no_mutant_ends_in_a_fault_a_signal_or_in_two_seconds(self):
+        with tempfile.TemporaryDirectory() as folder:
+            count, findings = documents.round_of(TOOL, SOURCE, folder, seed=7, runs=250)
+        self.assertGreaterEqual(count, 250)
+        self.assertEqual(findings, [])
+
+
+if __name__ == "__main__":
+    unittest.main()

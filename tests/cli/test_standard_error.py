@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: MIT
+"""Standard error may be full, closed or gone: no exit code changes, no result is lost. Nothing said acts on a terminal."""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+ESCAPE = "\x1b]0;x\x07"
+ACTING = [chr(c) for c in (*range(0x20), 0x7F, *range(0x80, 0xA0), 0x202E, 0x2028) if c != 0x0A]
+
+
+class Streams(unittest.TestCase):
+    # Words, and what they end with; the second warns before it works, the last talks all the time.
+    RUNS = (
+        (("nonsense",), 2),
+        ((), 2),
+        (("info", "missing.csv"), 4),
+        (("info", "broken.csv"), 3),
+        (("track", "log.csv", "--gear-ratio", "100", "--orders", "1", "-o", "-"), 0),
+        (("filter", "log.csv", "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "-"), 0),
+        (("export", "--method", "lowpass,cutoff=13Hz,order=1", "--sample-rate", "1kHz", "--to", "c-header", "--verify", "-o", "-"), 0),
+    )
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        rows = "".join(f"{k / 1000},60,{(k % 7) / 7}\n" for k in range(2000))
+        pathlib.Path(self.folder.name, "log.csv").write_text("time_s,velocity_deg_s,torque_nm\n" + rows)
+        pathlib.Path(self.folder.name, "broken.csv").write_text("time_s,velocity_deg_s,torque_nm\n1,2\n")
+
+    def run_tool(self, words, **streams):
+        return subprocess.run([TOOL, *words], cwd=self.folder.name, stdin=subprocess.DEVNULL, timeout=60, **streams)
+
+    def each(self, name, **streams):
+        for words, code in self.RUNS:
+            with self.subTest(name, words=words):
+                usual = self.run_tool(words, capture_output=True)
+                self.assertEqual(usual.returncode, code, usual.stderr)
+                then = self.run_tool(words, stdout=subprocess.PIPE, **streams)
+                self.assertEqual((then.returncode, then.stdout), (code, usual.stdout))
+
+    def test_full(self):
+        with open("/dev/full", "w") as full:
+            self.each("full", stderr=full)
+
+    def test_closed(self):
+        self.each("closed", preexec_fn=lambda: os.close(2))
+
+    def test_a_reader_that_has_gone(self):
+        read, write = os.pipe()
+        os.close(read)
+        with os.fdopen(write, "wb") as gone:
+            self.each("gone", stderr=gone)
+
+    def test_a_file_never_becomes_standard_error(self):
+        for words in (("filter", "log.csv", "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "out.csv", "--force"),):
+            self.run_tool(words, capture_output=True)
+            usual = pathlib.Path(self.folder.name, "out.csv").read_bytes()
+            then = self.run_tool(words, preexec_fn=lambda: [os.close(stream) for stream in (0, 1, 2)])
+            self.assertEqual(then.returncode, 0)
+            self.assertEqual(pathlib.Path(self.folder.name, "out.csv").read_bytes(), usual)
+
+    def test_closed_input_and_output_are_errors_with_a_name(self):
+        done = self.run_tool(("info", "log.csv"), stderr=subprocess.PIPE, preexec_fn=lambda: os.close(1))
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(b"standard output: cannot write", done.stderr)
+        done = subprocess.run([TOOL, "info", "-"], cwd=self.folder.name, capture_output=True, preexec_fn=lambda: os.close(0))
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(b"standard input: cannot read", done.stderr)
+
+    def test_help_that_cannot_be_written_is_an_error(self):
+        for words in (("--help",), ("--version",), ("info", "--help")):
+            with open("/dev/full", "w") as full:
+                self.assertEqual(self.run_tool(words, stdout=full, stderr=subprocess.PIPE).returncode, 4, words)
+
+
+class Visible(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def write(self, name, text):
+        path = os.path.join(self.folder.name.encode(), name if isinstance(name, bytes) else name.encode())
+        with open(path, "wb") as file:
+            file.write(text if isinstance(text, bytes) else text.encode())
+
+    def shown(self, *words):
+        done = subprocess.run([TOOL, *words], cwd=self.folder.name, capture_output=True, timeout=60, stdin=subprocess.DEVNULL)
+        self.assertNotIn(done.returncode, (70, -6, -11))
+        for stream in (done.stdout, done.stderr):
+            text = stream.decode("utf-8")  # whatever came in, what goes out is UTF-8
+            for character in ACTING:
+                self.assertNotIn(character, text, f"{words}: {text[:300]!r}")
+        return done
+
+    def test_contents_of_documents(self):
+        for text in ('{"schema":"\\u001b]0;x\\u0007"}', '{"schema":"\\u009b31m"}', '{"schema":"\\u202eabc\\nripplenotch: all is well"}',
+                     '{"\\u001b[2J": 1, "\\u001b[2J": 1}', '{"schema": "ripplenotch/table/1", "\\u001b[2J": 1}',
+                     '{"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "\\u001b[2J"}]}',
+                     '{"schema": "ripplenotch/model/1", "gear_ratio": "\\u001b[2J\\u202e", "effects": []}', "\x1b[2J", "\u009b31m"):
+            self.write("x.json", text)
+            for words in (("report", "x.json", "--no-plotly"), ("export", "x.json", "--to", "c-header"), ("design", "x.json"),
+                          ("simulate", "--model", "x.json", "--motion", "constant,speed=60deg/s,duration=1s", "--sample-rate", "1kHz")):
+                done = self.shown(*words)
+                # One line where it is refused; a document that report can show is no reason for a word.
+                self.assertEqual(done.stderr.count(b"\n"), 1 if done.returncode else 0, done.stderr)
+
+    def test_names_of_files(self):
+        log = "time_s,velocity_deg_s,torque_nm\n" + "".join(f"{k / 1000},60,{(k % 7) / 7}\n" for k in range(2000))
+        for name in ("a\x1b[31mb.csv", "a\u009b31mb.csv", "a\u202eb.csv", "a\nripplenotch: all is well.csv", b"a\xff\xfeb.csv", "a\x7f.csv"):
+            self.write(name, log)
+            for words in (("info", name), ("info", name, "--json"), ("info", name, "-v"), ("identify", name), ("identify", name, "--json"),
+                          ("spectrum", name, "--peaks"), ("filter", name, "--method", "lowpass,cutoff=13Hz,order=1", "-v", "-o", "out.csv", "--force"),
+                          ("compare", name, "--method", "lowpass,cutoff=13Hz,order=1", "--gear-ratio", "100", "--orders", "1"),
+                          ("track", name, "--gear-ratio", "100", "--orders", "1", "--json"), ("filter", name, "--method", "switching,table=" + str(name)),
+                          ("info", str(name) + ".missing")):
+                self.shown(*words)
+        for words in (("info", "x.csv", "--columns", "a\x1b[31m"), ("filtre\x1b[2J",), ("info", "--\x1b[2J"), ("info", "x", "--format", "\x1b[2J"),
+                      ("filter", "x.csv", "--method", "\x1b[2J,a=b"), ("design", "--gear-ratio", "\u009b5")):
+            self.assertEqual(self.shown(*words).stderr.count(b"\n"), 1)
+
+    def test_names_of_columns(self):
+        rows = "".join(f"{k / 1000},60,{(k % 7) / 7},1\n" for k in range(2000))
+        self.write("log.csv", "time_s,velocity_deg_s,torque_nm,a\u009b31m\u202eb\n" + rows)
+        for words in (("info", "log.csv"), ("info", "log.csv", "--json"), ("info", "log.csv", "-v"),
+                      ("info", "log.csv", "--columns", "torque=a\u009b31m\u202eb")):
+            self.shown(*words)
+
+    def test_an_escape_in_a_figure_cannot_reach_a_page(self):
+        figure = ('{"schema": "ripplenotch/metrics/1", "command": "\\u001b[2J", "verdict": "\\u001b[2J\u202e", "\\u001b[2J": "\u009b"}')
+        self.write("x.json", figure)
+        self.assertEqual(self.shown("report", "x.json", "--no-plotly").returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Documents: tables, models, joints, figures, diagnoses, each by its own reader, and any result as a page.
+// Bytes are changed by libFuzzer, the structure by tests/fuzz/mutate_json.cpp.
+#include "fuzz/fuzz.hpp"
+#include "fuzz/mutate_json.hpp"
+#include "ripplenotch/document/diagnosis_json.hpp"
+#include "ripplenotch/document/figure_json.hpp"
+#include "ripplenotch/document/identification_json.hpp"
+#include "ripplenotch/document/model_json.hpp"
+#include "ripplenotch/document/table_json.hpp"
+#include "ripplenotch/page/html_page.hpp"
+#include "ripplenotch/page/result_section.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::fuzz;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string text(reinterpret_cast<const char*>(data), size);
+    static_cast<void>(answer_of([&] {
+        const CandidateTable table = table_from_json(text, "x");
+        static_cast<void>(table_from_json(table_to_json(table, {}, {}), "again"));
+    }));
+    static_cast<void>(answer_of([&] { static_cast<void>(read_model_with_given(text, "x")); }));
+    static_cast<void>(answer_of([&] {
+        const Identification found = identification_from_json(text, "x");
+        static_cast<void>(identification_from_json(identification_text(found, {}), "again"));
+    }));
+    static_cast<void>(answer_of([&] {
+        Page page{"title", {section_of_result(text, "x")}};
+        const std::string html = html_page(page, "// no plotly.js");
+        if (html.find('\x1b') != std::string::npos) fail("a page with an escape", text, html);
+    }));
+    return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
+                                               unsigned seed) {
+    if (seed % 4 != 0) {
+        const std::string text = mutated_json({reinterpret_cast<const char*>(data), size}, seed);
+        if (!text.empty() && text.size() <= most) {
+            text.copy(reinterpret_cast<char*>(data), text.size());
+            return text.size();
+        }
+    }
+    return LLVMFuzzerMutate(data, size, most);
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Logs of every dialect with a few bytes changed: vectors, the plain parser, the careful way and small pieces
+// give the same rows or the same words. The fuzz targets do the same for hours.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+
+#include "core/vectors/dispatch.hpp"
+#include "fuzz/reading.hpp"
+#include "log/text/quick_rows.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+
+namespace {
+
+std::string log_of(std::mt19937& random) {
+    const auto below = [&](std::size_t most) { return random() % most; };
+    const char delimiter = std::array{',', ';', '\t', ' '}[below(4)];
+    const char mark = delimiter == ';' && below(2) == 0 ? ',' : '.';
+    const std::string end = std::array{"\n", "\r\n", "\r"}[below(3)];
+    std::string text = below(5) == 0 ? "" : "time_s,velocity_deg_s,torque_nm,note" + end;
+    const std::size_t rows = 20 + below(150);
+    for (std::size_t k = 0; k < rows; ++k) {
+        text += fmt::format("0.{:03d},{}.5,{}{}.25,n{}{}", k, below(100), below(2) == 0 ? "-" : "", below(10),
+                            k, end);
+    }
+    for (char& c : text)
+        if (c == ',') c = delimiter;
+    for (std::size_t i = 1; i + 1 < text.size(); ++i)
+        if (text[i] == '.') text[i] = mark;
+    return text;
+}
+
+void mutate(std::string& text, std::mt19937& random) {
+    constexpr std::string_view pieces[] = {
+        "\"",   "#", "\n", "\r\n",  ",",         ";",    "\t", " ",  "\x1b", std::string_view("\0", 1), "nan",
+        "1e31", "-", "1e", "EOF\n", "# 1,2,3\n", "\n\n", "%",  "//", "\xff", "12345678901234567890",    "é"};
+    for (std::size_t changes = 1 + random() % 3; changes > 0; --changes) {
+        const std::size_t at = random() % text.size();
+        const std::string_view piece = pieces[random() % std::size(pieces)];
+        switch (random() % 3) {
+            case 0:
+                text.replace(at, std::min(piece.size(), text.size() - at), piece);
+                break;
+            case 1:
+                text.insert(at, piece);
+                break;
+            default:
+                text.erase(at, 1 + random() % 12);
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("mutated logs read the same way by vectors, plainly, carefully and in pieces", "[log]") {
+    constexpr std::size_t whole = std::string::npos;
+    std::mt19937 random(20261122);
+    std::size_t read = 0;
+    for (int i = 0; i < 1500; ++i) {
+        std::string text = log_of(random);
+        mutate(text, random);
+        const ReadOptions options = fuzz::options_of(static_cast<unsigned>(random() % 24));
+        const std::string usual = fuzz::reading(text, options, whole);
+        read += usual.back() == '|' ? 1U : 0U;
+        INFO(text);
+        {
+            const NarrowVectors narrow;
+            REQUIRE(fuzz::reading(text, options, whole) == usual);
+        }
+        const std::string rows = fuzz::reading(text, options, text.size() + 1);
+        {
+            const CarefulRows careful;
+            REQUIRE(fuzz::reading(text, options, text.size() + 1) == rows);
+        }
+        REQUIRE(fuzz::reading(text, options, 1 + random() % 100) == rows);
+    }
+    CHECK(read > 150);  // the others are refused
+}
