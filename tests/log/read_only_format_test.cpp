@@ -79,7 +79,8 @@ TEST_CASE("a log in a format that is only read is converted to one that is writt
 
 TEST_CASE("nothing is written in a format that is only read, in one line that says what can be", "[log]") {
     CHECK_FALSE(trial.is_written());
-    const std::string refusal = "format trial is read and not written; formats that are written: csv, npy";
+    const std::string refusal =
+        "format trial is read and not written; formats that are written: csv, npy, mat";
     CHECK_THROWS_WITH(output_format("-", std::nullopt, trial), Contains("standard output: " + refusal));
     CHECK_THROWS_WITH(output_format("run.xyz", std::nullopt, trial), Contains("run.xyz: " + refusal));
     CHECK(output_format("-", "npy", trial).name == "npy");

@@ -163,6 +163,8 @@ struct LogFormat {
 
 /// All formats, in the order of formats.def.
 [[nodiscard]] std::span<const LogFormat* const> log_formats();
+/// What this build cannot read for want of a library: "hdf5 (libhdf5)", "xz (liblzma)". Mostly none.
+[[nodiscard]] std::vector<std::string> formats_not_built();
 /// Throws UsageError that lists the known names.
 [[nodiscard]] const LogFormat& find_log_format(std::string_view name);
 /// The names of those that are written, as people read them: "csv, npy".

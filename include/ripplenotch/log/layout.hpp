@@ -71,8 +71,8 @@ struct ReadOptions {
     std::uint64_t skip_bytes = 0;         ///< at the start of a raw dump
     std::optional<std::string> clock;     ///< of messages: "log" when they were recorded, "header" their own
     std::optional<std::string> join;   ///< of signals with clocks of their own: "nearest", "hold", "linear"
-    std::map<Role, Shaft> sides;          ///< of velocity and position (--side)
-    std::optional<double> gear_ratio;     ///< for what is measured before the gear
+    std::map<Role, Shaft> sides;       ///< of velocity and position (--side)
+    std::optional<double> gear_ratio;  ///< for what is measured before the gear
     /// Where the joints' gears differ: of a joint by its name. Asked for the joints that are read only.
     std::function<std::optional<double>(const std::string& joint)> gear_ratio_of;
     bool takes_motor_units = false;              ///< motion before a gear of unknown ratio is not refused

@@ -31,7 +31,9 @@ class ArrayRecords final : public RecordSource {
   public:
     ArrayRecords(std::shared_ptr<StoredBytes> file, std::vector<StoredArray> arrays,
                  const std::vector<ArrayColumn>& columns)
-        : RecordSource(Name{file->name()}, sizes_of(columns)), file_(std::move(file)), arrays_(std::move(arrays)) {
+        : RecordSource(Name{file->name()}, sizes_of(columns)),
+          file_(std::move(file)),
+          arrays_(std::move(arrays)) {
         rows_left_ = columns.front().array->shape.rows;
         for (const ArrayColumn& column : columns)
             columns_.push_back({column.array->type.size, column.array->open(column.number)});
@@ -194,8 +196,8 @@ void add_fields(const std::vector<ArrayColumn>& columns, RecordTable& table) {
 
 }  // namespace
 
-Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format, PathStyle style,
-                          std::vector<StoredArray> arrays, std::vector<ContentEntry> extra,
+Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format,
+                          PathStyle style, std::vector<StoredArray> arrays, std::vector<ContentEntry> extra,
                           const ReadOptions& options) {
     RecordTable table;
     table.format = format;

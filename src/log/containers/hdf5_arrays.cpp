@@ -47,8 +47,9 @@ class Hdf5Walk {
         ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
         ::H5PLset_loading_state(0);  // a file must not say which code is run
         file_->bytes = bytes;
+        const Hdf5Handle access = hdf5_access();
         file_->file =
-            Hdf5Handle(::H5Fopen(bytes->openable().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), ::H5Fclose);
+            Hdf5Handle(::H5Fopen(bytes->openable().c_str(), H5F_ACC_RDONLY, access.id()), ::H5Fclose);
         if (!file_->file.good())
             raise<DataError>(
                 "{}: read an HDF5 file that libhdf5 cannot open, expected a whole one; the file is cut off, "

@@ -55,9 +55,9 @@ enum class PathStyle {
 /// The records of a log made of arrays of one length: of those that --columns names, else of those whose
 /// names say most. `extra` goes to the list of contents only. Throws DataError where there is nothing to
 /// take, UsageError where --columns names what is not there.
-[[nodiscard]] Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format, PathStyle style,
-                                        std::vector<StoredArray> arrays, std::vector<ContentEntry> extra,
-                                        const ReadOptions& options);
+[[nodiscard]] Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format,
+                                        PathStyle style, std::vector<StoredArray> arrays,
+                                        std::vector<ContentEntry> extra, const ReadOptions& options);
 
 /// How many of time, velocity, torque and position the names speak of, torque counting thrice; by which the
 /// part of a container is chosen that is read.

@@ -25,7 +25,9 @@ constexpr std::size_t piece_size = std::size_t{1} << 16;
 class FileBytes final : public StoredBytes {
   public:
     explicit FileBytes(std::unique_ptr<ByteSource> source)
-        : StoredBytes(source->name()), source_(std::move(source)), descriptor_(source_->descriptor_by_place()) {}
+        : StoredBytes(source->name()),
+          source_(std::move(source)),
+          descriptor_(source_->descriptor_by_place()) {}
     [[nodiscard]] std::uint64_t size() const override { return source_->size(); }
     void read_at(std::uint64_t offset, char* into, std::size_t size) override {
         if (offset > this->size()) complain_of_end(name(), offset, this->size());
@@ -39,9 +41,7 @@ class FileBytes final : public StoredBytes {
             offset += static_cast<std::uint64_t>(got);
         }
     }
-    [[nodiscard]] std::string openable() const override {
-        return fmt::format("/dev/fd/{}", descriptor_);
-    }
+    [[nodiscard]] std::string openable() const override { return fmt::format("/dev/fd/{}", descriptor_); }
     [[nodiscard]] std::string file_on_disk() const override { return openable(); }
     void require_unchanged() const override { source_->require_unchanged(); }
 

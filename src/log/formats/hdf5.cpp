@@ -4,6 +4,7 @@
 #include <array>
 
 #include "log/containers/hdf5_arrays.hpp"
+#include "log/containers/hdf5_writer.hpp"
 #include "log/formats.hpp"
 #include "log/records/open_records.hpp"
 
@@ -24,6 +25,17 @@ Records make_hdf5(std::unique_ptr<ByteSource> source, std::string first_bytes, c
                              std::move(found.arrays), std::move(found.others), options);
 }
 
+#if defined(RIPPLENOTCH_HAS_HDF5)
+std::unique_ptr<LogWriter> convert(std::unique_ptr<ByteSink> sink, const LogReader& reader,
+                                   const WriteOptions& options) {
+    return convert_rows(std::move(sink), reader, options, make_hdf5_table);
+}
+
+void write_columns(ByteSink& sink, std::span<const NumberColumn> columns) {
+    write_table(sink, columns, make_hdf5_table);
+}
+#endif
+
 }  // namespace
 
 const LogFormat formats::hdf5 {
@@ -36,6 +48,9 @@ const LogFormat formats::hdf5 {
         "libhdf5",
 #endif
     .sniff = sniff, .open = open_as_records<make_hdf5>, .cut = cut_as_records<make_hdf5>,
+#if defined(RIPPLENOTCH_HAS_HDF5)
+    .convert = convert, .write_columns = write_columns,
+#endif
 };
 
 }  // namespace ripplenotch

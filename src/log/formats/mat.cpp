@@ -4,6 +4,7 @@
 #include <array>
 
 #include "log/containers/mat_elements.hpp"
+#include "log/containers/mat_writer.hpp"
 #include "log/formats.hpp"
 #include "log/records/open_records.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -27,8 +28,8 @@ Records make_mat(std::unique_ptr<ByteSource> source, std::string first_bytes, co
         raise<DataError>("{}: read no head of a MAT file, expected one; leave out --format", source->name());
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
     MatContents found = find_mat_arrays(file);
-    return records_of_arrays(file, "mat", PathStyle::matlab, std::move(found.arrays),
-                             std::move(found.others), options);
+    return records_of_arrays(file, "mat", PathStyle::matlab, std::move(found.arrays), std::move(found.others),
+                             options);
 }
 
 }  // namespace
@@ -41,6 +42,8 @@ const LogFormat formats::mat{
     .sniff = sniff,
     .open = open_as_records<make_mat>,
     .cut = cut_as_records<make_mat>,
+    .convert = convert_with<MatTableWriter>,
+    .write_columns = write_columns_with<MatTableWriter>,
 };
 
 }  // namespace ripplenotch

@@ -7,9 +7,13 @@
 
 namespace ripplenotch {
 
-const Packing* packing_of(std::string_view first_bytes) {
+std::span<const Packing* const> all_packings() {
     static constexpr std::array all = {&packings::gzip, &packings::zstd, &packings::lz4, &packings::xz};
-    for (const Packing* packing : all) {
+    return all;
+}
+
+const Packing* packing_of(std::string_view first_bytes) {
+    for (const Packing* packing : all_packings()) {
         if (first_bytes.starts_with(packing->magic)) return packing;
     }
     return nullptr;

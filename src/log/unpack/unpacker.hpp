@@ -48,6 +48,9 @@ namespace packings {
 extern const Packing gzip, zstd, lz4, xz;
 }
 
+/// All kinds.
+[[nodiscard]] std::span<const Packing* const> all_packings();
+
 /// The kind that begins with these bytes; null where it is none.
 [[nodiscard]] const Packing* packing_of(std::string_view first_bytes);
 

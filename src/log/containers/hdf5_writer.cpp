@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "log/containers/hdf5_writer.hpp"
+
+#include "ripplenotch/core/error.hpp"
+
+#if defined(RIPPLENOTCH_HAS_HDF5)
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "log/containers/hdf5_handles.hpp"
+#include "log/npy/temporary_bytes.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t smallest_chunk = 64, largest_chunk = 16384;  // rows
+
+class Hdf5TableWriter final : public TableWriter {
+  public:
+    explicit Hdf5TableWriter(ByteSink& sink) : sink_(sink) {}
+    void begin(std::span<const std::string> names) override {
+        ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+        names_.assign(names.begin(), names.end());
+        const Hdf5Handle access = hdf5_access();
+        const std::string path = fmt::format("/dev/fd/{}", bytes_.descriptor());
+        file_ = Hdf5Handle(::H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), ::H5Fclose);
+        require(file_.good());
+    }
+    void rows(std::span<const std::span<const double>> columns) override {
+        const hsize_t count = columns.empty() ? 0 : columns[0].size(), first = rows_;
+        if (count == 0) return;
+        if (datasets_.empty()) make_datasets(count);
+        rows_ += count;
+        const Hdf5Handle memory(::H5Screate_simple(1, &count, nullptr), ::H5Sclose);
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            require(::H5Dset_extent(datasets_[c].id(), &rows_) >= 0);
+            const Hdf5Handle place(::H5Dget_space(datasets_[c].id()), ::H5Sclose);
+            ::H5Sselect_hyperslab(place.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr);
+            require(::H5Dwrite(datasets_[c].id(), H5T_NATIVE_DOUBLE, memory.id(), place.id(), H5P_DEFAULT,
+                               columns[c].data()) >= 0);
+        }
+    }
+    void end() override {
+        if (datasets_.empty()) make_datasets(smallest_chunk);
+        datasets_.clear();
+        require(::H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
+        file_ = {};
+        std::vector<char> piece(std::size_t{1} << 20);
+        bytes_.rewind();
+        while (const std::size_t got = bytes_.read(piece.data(), piece.size()))
+            sink_.write({piece.data(), got});
+    }
+
+  private:
+    static void require(bool written) {
+        if (!written)
+            raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
+    }
+    // Without the hour, so that the same numbers are the same bytes.
+    void make_datasets(hsize_t first_rows) {
+        const hsize_t none = 0, unlimited = H5S_UNLIMITED;
+        const hsize_t chunk = std::clamp<hsize_t>(first_rows, smallest_chunk, largest_chunk);
+        const Hdf5Handle creation(::H5Pcreate(H5P_DATASET_CREATE), ::H5Pclose),
+            space(::H5Screate_simple(1, &none, &unlimited), ::H5Sclose);
+        ::H5Pset_chunk(creation.id(), 1, &chunk);
+        ::H5Pset_obj_track_times(creation.id(), false);
+        for (std::string name : names_) {
+            std::replace(name.begin(), name.end(), '/', '_');
+            datasets_.emplace_back(::H5Dcreate2(file_.id(), name.c_str(), H5T_IEEE_F64LE, space.id(),
+                                                H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+                                   ::H5Dclose);
+            require(datasets_.back().good());
+        }
+    }
+
+    ByteSink& sink_;
+    TemporaryBytes bytes_;
+    std::vector<std::string> names_;
+    Hdf5Handle file_;
+    std::vector<Hdf5Handle> datasets_;  ///< closed before the file
+    hsize_t rows_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<TableWriter> make_hdf5_table(ByteSink& sink, const WriteOptions& /*options*/) {
+    return std::make_unique<Hdf5TableWriter>(sink);
+}
+
+}  // namespace ripplenotch
+#else
+namespace ripplenotch {
+
+std::unique_ptr<TableWriter> make_hdf5_table(ByteSink& /*sink*/, const WriteOptions& /*options*/) {
+    raise<UsageError>("this build was made without libhdf5; install it and build again, or write .npy");
+}
+
+}  // namespace ripplenotch
+#endif
