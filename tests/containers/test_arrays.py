@@ -6,7 +6,7 @@ import struct
 import subprocess
 import unittest
 
-from container_case import Case, needs
+from container_case import LOG, Case, needs
 
 
 @needs("numpy")
@@ -99,6 +99,18 @@ class Mat(Case):
         said = self.run_tool("identify", path, "--columns", "torque=tauu", code=2).stderr.decode()
         self.assertIn("torque_nm", said)
 
+    def test_what_is_written_is_read_by_scipy(self):
+        import scipy.io
+        for how in (("-o", "out.mat"), ("-o", "-", "--output-format", "mat")):
+            done = self.run_tool("filter", LOG, "--method", "none", "-q", *how)
+            path = self.folder / "out.mat" if done.stdout == b"" else self.write("piped.mat", done.stdout)
+            found = scipy.io.loadmat(path)
+            for name, values in self.columns.items():
+                self.assertEqual(found[name].shape, (len(values), 1))
+                self.assertEqual(found[name][:, 0].tolist(), values)
+            self.assert_same(path)
+        self.assertEqual((self.folder / "out.mat").read_bytes(), (self.folder / "piped.mat").read_bytes())
+
     @unittest.skipUnless(shutil.which("octave-cli"), "no Octave here")
     def test_octave_writes_the_same(self):
         (self.folder / "run.csv").write_bytes(b"\n".join(",".join(map(repr, row)).encode() for row in self.rows))
@@ -118,6 +130,8 @@ def json_of(done):
 
 @needs("h5py")
 class Hdf5(Case):
+    libraries = ("HDF5",)
+
     def file(self, name="run.h5", **options):
         import h5py
         file = h5py.File(self.folder / name, "w", **options)
@@ -187,6 +201,17 @@ class Hdf5(Case):
         said = self.run_tool("info", path, "--columns", "torque=log.torque_nm(:,2)").stdout.decode()
         self.assertIn("torque -0.7879 to 1.393 Nm", said)
         self.assertRegex(said, r"log.torque_nm +read +4000 x 2")
+
+    def test_what_is_written_is_read_by_h5py(self):
+        import h5py
+        self.run_tool("filter", LOG, "--method", "none", "-q", "-o", "out.h5")
+        with h5py.File(self.folder / "out.h5") as found:
+            for name, values in self.columns.items():
+                self.assertEqual(found[name][:].tolist(), values)
+        self.assert_same(self.folder / "out.h5")
+        first = (self.folder / "out.h5").read_bytes()
+        self.run_tool("filter", "out.h5", "--method", "none", "-q", "-o", "again.h5")
+        self.assertEqual((self.folder / "again.h5").read_bytes(), first)
 
     def test_damage(self):
         file = self.file()

@@ -34,13 +34,13 @@ class Raw(Case):
     def test_scaled_integers(self):
         data = b"".join(struct.pack("<Iihh", k, 90000, round(1000 * row[2]) - 5, -7) for k, row in enumerate(self.rows))
         path = self.write("run.bin", data)
-        said = self.run_tool("filter", path, "--method", "none", "--format", "raw", "-q", "--layout",
+        said = self.run_tool("filter", path, "--method", "none", "--format", "raw", "--output-format", "csv", "-q", "--layout",
                              "u4*1e-3:time_s,i4*1e-3:velocity_deg_s,i2*0.001+0.005:torque_nm,i2:spare").stdout.decode().split()
         for line, row in list(zip(said[1:], self.rows))[::400]:
             time, velocity, torque = map(float, line.split(","))
             self.assertAlmostEqual(time, row[0], 12)
             self.assertAlmostEqual(velocity, 90.0, 9)
-            self.assertAlmostEqual(torque, row[2], 3)
+            self.assertAlmostEqual(torque, row[2], delta=0.000501)
 
     def test_a_size_that_does_not_fit_names_layouts_that_do(self):
         data = self.dump("<4d", self.names)

@@ -13,6 +13,7 @@
 #include <bit>
 #include <exception>
 
+#include "log/containers/hdf5_files.hpp"
 #include "log/containers/hdf5_numbers.hpp"
 
 namespace ripplenotch {
@@ -47,9 +48,7 @@ class Hdf5Walk {
         ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
         ::H5PLset_loading_state(0);  // a file must not say which code is run
         file_->bytes = bytes;
-        const Hdf5Handle access = hdf5_access();
-        file_->file =
-            Hdf5Handle(::H5Fopen(bytes->openable().c_str(), H5F_ACC_RDONLY, access.id()), ::H5Fclose);
+        file_->file = open_hdf5(*bytes);
         if (!file_->file.good())
             raise<DataError>(
                 "{}: read an HDF5 file that libhdf5 cannot open, expected a whole one; the file is cut off, "

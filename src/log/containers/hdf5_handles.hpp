@@ -36,14 +36,4 @@ class Hdf5Handle {
     Close close_ = nullptr;
 };
 
-/// How files are opened: without locks, which many network file systems refuse. A file that changes while it
-/// is read is noticed without them.
-[[nodiscard]] inline Hdf5Handle hdf5_access() {
-    Hdf5Handle access(::H5Pcreate(H5P_FILE_ACCESS), ::H5Pclose);
-#if H5_VERSION_GE(1, 10, 7)
-    ::H5Pset_file_locking(access.id(), false, true);
-#endif
-    return access;
-}
-
 }  // namespace ripplenotch

@@ -5,14 +5,15 @@
 
 #if defined(RIPPLENOTCH_HAS_HDF5)
 
-#include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <string>
 #include <vector>
 
-#include "log/containers/hdf5_handles.hpp"
-#include "log/npy/temporary_bytes.hpp"
+#include "core/open_file.hpp"
+#include "log/containers/hdf5_files.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -25,10 +26,7 @@ class Hdf5TableWriter final : public TableWriter {
     void begin(std::span<const std::string> names) override {
         ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
         names_.assign(names.begin(), names.end());
-        const Hdf5Handle access = hdf5_access();
-        const std::string path = fmt::format("/dev/fd/{}", bytes_.descriptor());
-        file_ = Hdf5Handle(::H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), ::H5Fclose);
-        require(file_.good());
+        scratch_ = create_hdf5();
     }
     void rows(std::span<const std::span<const double>> columns) override {
         const hsize_t count = columns.empty() ? 0 : columns[0].size(), first = rows_;
@@ -47,12 +45,17 @@ class Hdf5TableWriter final : public TableWriter {
     void end() override {
         if (datasets_.empty()) make_datasets(smallest_chunk);
         datasets_.clear();
-        require(::H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0);
-        file_ = {};
+        require(::H5Fflush(scratch_.file.id(), H5F_SCOPE_LOCAL) >= 0);
+        scratch_.file = {};
         std::vector<char> piece(std::size_t{1} << 20);
-        bytes_.rewind();
-        while (const std::size_t got = bytes_.read(piece.data(), piece.size()))
-            sink_.write({piece.data(), got});
+        for (off_t at = 0;;) {
+            const ssize_t got = ::pread(scratch_.bytes->descriptor(), piece.data(), piece.size(), at);
+            if (got < 0 && errno == EINTR) continue;
+            if (got < 0) raise<FileError>("cannot read a temporary file back: {}", system_reason());
+            if (got == 0) break;
+            sink_.write({piece.data(), static_cast<std::size_t>(got)});
+            at += got;
+        }
     }
 
   private:
@@ -70,7 +73,7 @@ class Hdf5TableWriter final : public TableWriter {
         ::H5Pset_obj_track_times(creation.id(), false);
         for (std::string name : names_) {
             std::replace(name.begin(), name.end(), '/', '_');
-            datasets_.emplace_back(::H5Dcreate2(file_.id(), name.c_str(), H5T_IEEE_F64LE, space.id(),
+            datasets_.emplace_back(::H5Dcreate2(scratch_.file.id(), name.c_str(), H5T_IEEE_F64LE, space.id(),
                                                 H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                                    ::H5Dclose);
             require(datasets_.back().good());
@@ -78,9 +81,8 @@ class Hdf5TableWriter final : public TableWriter {
     }
 
     ByteSink& sink_;
-    TemporaryBytes bytes_;
     std::vector<std::string> names_;
-    Hdf5Handle file_;
+    Hdf5Scratch scratch_;
     std::vector<Hdf5Handle> datasets_;  ///< closed before the file
     hsize_t rows_ = 0;
 };

@@ -2,6 +2,7 @@
 #include "log/containers/stored_bytes.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -41,8 +42,11 @@ class FileBytes final : public StoredBytes {
             offset += static_cast<std::uint64_t>(got);
         }
     }
-    [[nodiscard]] std::string openable() const override { return fmt::format("/dev/fd/{}", descriptor_); }
-    [[nodiscard]] std::string file_on_disk() const override { return openable(); }
+    [[nodiscard]] std::string openable() const override {
+        struct stat status {};
+        const bool named = ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0;
+        return named ? fmt::format("/dev/fd/{}", descriptor_) : "";
+    }
     void require_unchanged() const override { source_->require_unchanged(); }
 
   private:
@@ -65,9 +69,6 @@ class KeptBytes final : public StoredBytes {
     void read_at(std::uint64_t offset, char* into, std::size_t size) override {
         if (offset > size_ || size > size_ - offset) complain_of_end(name(), offset, size_);
         bytes_.read_at(offset, into, size);
-    }
-    [[nodiscard]] std::string openable() const override {
-        return fmt::format("/dev/fd/{}", bytes_.descriptor());
     }
 
   private:

@@ -23,11 +23,9 @@ class StoredBytes {
         read_at(offset, text.data(), size);
         return text;
     }
-    /// The name of an open file that holds them, for libraries that open it themselves; empty where there is
-    /// none.
+    /// A name of the open file that holds them, for libraries that open it themselves; empty where it has no
+    /// name of its own, by which they might look for it.
     [[nodiscard]] virtual std::string openable() const { return {}; }
-    /// The same of a file that has a name of its own.
-    [[nodiscard]] virtual std::string file_on_disk() const { return {}; }
     /// When all has been read: throws FileError where somebody wrote to the file meanwhile.
     virtual void require_unchanged() const {}
     /// As messages name it.

@@ -75,7 +75,9 @@ class MessageRecords final : public RecordSource {
     void refill(std::string& bytes) override {
         RecordedMessage message;
         const auto steps = std::span(layout_.steps).first(steps_);
-        while (bytes.size() < buffered_rows && source_->next(message)) {
+        while (!ended_ && bytes.size() < buffered_rows) {
+            ended_ = !source_->next(message);
+            if (ended_) return;
             const std::size_t at = bytes.size();
             bytes.resize(at + record_size());
             try {
@@ -94,6 +96,7 @@ class MessageRecords final : public RecordSource {
     std::vector<std::ptrdiff_t> offsets_;  ///< of each leaf in a record; -1: left out
     std::ptrdiff_t clock_offset_ = -1;
     std::size_t steps_ = 0;
+    bool ended_ = false;  ///< behind it some sources would begin again
 };
 
 }  // namespace ripplenotch

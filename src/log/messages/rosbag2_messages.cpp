@@ -99,7 +99,7 @@ class Rosbag2Messages final : public MessageSource {
     // A file where it lies; bytes from elsewhere in memory, since SQLite opens names only.
     void open() {
         sqlite3* database = nullptr;
-        const std::string path = file_->file_on_disk();
+        const std::string path = file_->openable();
         const std::string uri = path.empty() ? ":memory:" : fmt::format("file:{}?immutable=1", path);
         const int result = ::sqlite3_open_v2(
             uri.c_str(), &database,

@@ -20,7 +20,6 @@ class TemporaryBytes {
     std::size_t read(char* into, std::size_t size);
     /// Exactly `size` bytes that have been put, anywhere; putting goes on behind the last.
     void read_at(std::uint64_t offset, char* into, std::size_t size);
-    [[nodiscard]] int descriptor() const { return ::fileno(file_.get()); }
 
   private:
     struct Close {
