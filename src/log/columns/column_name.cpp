@@ -142,7 +142,12 @@ bool is_clock_name(const std::vector<Word>& left) {
 
 ColumnName read_column_name(std::string_view name) {
     ColumnName column;
-    const NameAndUnit parts = split_unit(name);
+    // Of an element of a list, "tau_nm[2]", the unit stands in front of the number.
+    const std::size_t bracket = name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
+    const bool element =
+        bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));
+    NameAndUnit parts = split_unit(element ? name.substr(0, bracket) : name);
+    if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;
 

@@ -23,7 +23,7 @@ std::string joint_of_forced(const KnownColumns& known) {
 
 // Torque and motion are named by --columns: the other columns of these roles tell nothing, nor do joints that
 // have nothing else.
-void drop_unasked(const KnownColumns& known, std::vector<JointGroup>& groups) {
+void drop_unasked(const KnownColumns& known, bool joint_asked, std::vector<JointGroup>& groups) {
     const auto& forced = known.forced;
     const auto torque = forced.column_of(Role::torque);
     const bool moves = forced.column_of(Role::velocity) || forced.column_of(Role::position);
@@ -34,6 +34,10 @@ void drop_unasked(const KnownColumns& known, std::vector<JointGroup>& groups) {
                std::all_of(motion_roles.begin(), motion_roles.end(),
                            [&](Role role) { return forced.column_of(role) || !group.has(role); });
     };
+    if (joint_asked && std::all_of(groups.begin(), groups.end(), is_unasked) &&
+        !joint_of_forced(known).empty())
+        groups.clear();
+    if (joint_asked) return;
     groups.erase(std::remove_if(groups.begin(), groups.end(), is_unasked), groups.end());
     const bool told = std::any_of(groups.begin(), groups.end(),
                                   [&](const JointGroup& group) { return group.key == of_torque; });
@@ -78,7 +82,7 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
 
 std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked, bool needs_torque) {
     std::vector<JointGroup> groups = collect_groups(known, false);
-    if (!joint_asked) drop_unasked(known, groups);
+    drop_unasked(known, joint_asked, groups);
     const auto complete = [&](const JointGroup& group) {
         const auto has = [&](Role role) { return group.has(role) || known.forced.column_of(role); };
         return (has(Role::torque) || !needs_torque) && (has(Role::velocity) || has(Role::position));

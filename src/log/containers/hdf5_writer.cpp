@@ -18,7 +18,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t smallest_chunk = 64, largest_chunk = 16384;  // rows
+constexpr std::size_t largest_chunk = 16384;  // rows
 
 class Hdf5TableWriter final : public TableWriter {
   public:
@@ -26,24 +26,17 @@ class Hdf5TableWriter final : public TableWriter {
     void begin(std::span<const std::string> names) override {
         ::H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
         names_.assign(names.begin(), names.end());
+        waiting_.resize(names_.size());
         scratch_ = create_hdf5();
     }
+    // A chunk at a time, wherever the caller cuts: so the bytes are alike.
     void rows(std::span<const std::span<const double>> columns) override {
-        const hsize_t count = columns.empty() ? 0 : columns[0].size(), first = rows_;
-        if (count == 0) return;
-        if (datasets_.empty()) make_datasets(count);
-        rows_ += count;
-        const Hdf5Handle memory(::H5Screate_simple(1, &count, nullptr), ::H5Sclose);
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-            require(::H5Dset_extent(datasets_[c].id(), &rows_) >= 0);
-            const Hdf5Handle place(::H5Dget_space(datasets_[c].id()), ::H5Sclose);
-            ::H5Sselect_hyperslab(place.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr);
-            require(::H5Dwrite(datasets_[c].id(), H5T_NATIVE_DOUBLE, memory.id(), place.id(), H5P_DEFAULT,
-                               columns[c].data()) >= 0);
-        }
+        for (std::size_t c = 0; c < columns.size(); ++c)
+            waiting_[c].insert(waiting_[c].end(), columns[c].begin(), columns[c].end());
+        while (waiting_.front().size() >= largest_chunk) write(largest_chunk);
     }
     void end() override {
-        if (datasets_.empty()) make_datasets(smallest_chunk);
+        write(waiting_.front().size());
         datasets_.clear();
         require(::H5Fflush(scratch_.file.id(), H5F_SCOPE_LOCAL) >= 0);
         scratch_.file = {};
@@ -63,10 +56,24 @@ class Hdf5TableWriter final : public TableWriter {
         if (!written)
             raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
     }
+    void write(hsize_t count) {
+        if (datasets_.empty()) make_datasets(std::max<hsize_t>(1, count));
+        if (count == 0) return;
+        const hsize_t first = rows_;
+        rows_ += count;
+        const Hdf5Handle memory(::H5Screate_simple(1, &count, nullptr), ::H5Sclose);
+        for (std::size_t c = 0; c < datasets_.size(); ++c) {
+            require(::H5Dset_extent(datasets_[c].id(), &rows_) >= 0);
+            const Hdf5Handle place(::H5Dget_space(datasets_[c].id()), ::H5Sclose);
+            ::H5Sselect_hyperslab(place.id(), H5S_SELECT_SET, &first, nullptr, &count, nullptr);
+            require(::H5Dwrite(datasets_[c].id(), H5T_NATIVE_DOUBLE, memory.id(), place.id(), H5P_DEFAULT,
+                               waiting_[c].data()) >= 0);
+            waiting_[c].erase(waiting_[c].begin(), waiting_[c].begin() + static_cast<std::ptrdiff_t>(count));
+        }
+    }
     // Without the hour, so that the same numbers are the same bytes.
-    void make_datasets(hsize_t first_rows) {
+    void make_datasets(hsize_t chunk) {
         const hsize_t none = 0, unlimited = H5S_UNLIMITED;
-        const hsize_t chunk = std::clamp<hsize_t>(first_rows, smallest_chunk, largest_chunk);
         const Hdf5Handle creation(::H5Pcreate(H5P_DATASET_CREATE), ::H5Pclose),
             space(::H5Screate_simple(1, &none, &unlimited), ::H5Sclose);
         ::H5Pset_chunk(creation.id(), 1, &chunk);
@@ -82,6 +89,7 @@ class Hdf5TableWriter final : public TableWriter {
 
     ByteSink& sink_;
     std::vector<std::string> names_;
+    std::vector<std::vector<double>> waiting_;  ///< by column: rows of a chunk that is not full
     Hdf5Scratch scratch_;
     std::vector<Hdf5Handle> datasets_;  ///< closed before the file
     hsize_t rows_ = 0;

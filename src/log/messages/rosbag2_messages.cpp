@@ -53,6 +53,7 @@ class Rosbag2Messages final : public MessageSource {
   public:
     explicit Rosbag2Messages(std::shared_ptr<StoredBytes> file)
         : file_(std::move(file)), database_(nullptr, ::sqlite3_close) {
+        require_all_pages();
         open();
         // What lies in a stranger's schema is not run.
         ::sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
@@ -96,6 +97,24 @@ class Rosbag2Messages final : public MessageSource {
     }
 
   private:
+    // What is cut off would read as zeros. The head (SQLite's file format) says the size of a page, and how
+    // many.
+    void require_all_pages() const {
+        constexpr std::uint64_t head_size = 100, largest_page = 65536;
+        const std::string head = file_->text_at(0, head_size);
+        const auto number = [&](std::size_t at, std::size_t size) {
+            std::uint64_t value = 0;
+            for (std::size_t i = 0; i < size; ++i)
+                value = value << 8U | static_cast<unsigned char>(head[at + i]);
+            return value;
+        };
+        const std::uint64_t page = number(16, 2) == 1 ? largest_page : number(16, 2), pages = number(28, 4);
+        const bool counted = pages > 0 && number(24, 4) == number(92, 4);
+        if (page > 0 && file_->size() % page == 0 && (!counted || file_->size() / page >= pages)) return;
+        raise<DataError>(
+            "{}: read an SQLite file of {} bytes, expected {} pages of {}; it is cut off, copy it again",
+            name(), file_->size(), counted ? std::to_string(pages) : "whole", page);
+    }
     // A file where it lies; bytes from elsewhere in memory, since SQLite opens names only.
     void open() {
         sqlite3* database = nullptr;
