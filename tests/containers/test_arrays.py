@@ -111,6 +111,27 @@ class Mat(Case):
             self.assert_same(path)
         self.assertEqual((self.folder / "out.mat").read_bytes(), (self.folder / "piped.mat").read_bytes())
 
+    def test_function_handles_and_objects_are_listed(self):
+        def element(kind, data):
+            return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
+
+        def head(code, *rest):
+            return element(6, struct.pack("<II", code, 0)) + b"".join(rest)
+        plain = self.savemat("run.mat", self.columns, oned_as="column").read_bytes()
+        handle = element(14, head(16, element(5, struct.pack("<ii", 1, 1)), element(1, b"fun"), element(14, b"")))
+        table = element(14, head(17, element(1, b"runs"), element(1, b"MCOS"), element(1, b"table"), element(14, b"")))
+        path = self.write("odd.mat", plain[:128] + handle + table + plain[128:])
+        self.assert_same(path)
+        said = self.run_tool("info", path).stdout.decode()
+        self.assertRegex(said, r"fun +1 x 1 +a function handle")
+        self.assertRegex(said, r"runs +an object")
+        self.assertIn("expected arrays of numbers", self.refusal(self.write("none.mat", plain[:128] + handle + table)))
+        deep = element(14, b"")
+        for _ in range(20):
+            deep = element(14, head(2, element(5, struct.pack("<ii", 1, 1)), element(1, b""), element(5, struct.pack("<i", 2)),
+                                    element(1, b"a\0"), deep))
+        self.assertIn("nested deeper", self.refusal(self.write("deep.mat", plain[:128] + deep)))
+
     @unittest.skipUnless(shutil.which("octave-cli"), "no Octave here")
     def test_octave_writes_the_same(self):
         (self.folder / "run.csv").write_bytes(b"\n".join(",".join(map(repr, row)).encode() for row in self.rows))
