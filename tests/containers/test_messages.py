@@ -100,6 +100,49 @@ class Mcap(Messages):
         said = self.run_tool("info", path, "--columns", columns).stdout.decode()
         self.assertIn("torque -0.7879 to 1.393 Nm", said)
 
+    def two_topics(self, every, skip=(), late_ns=0, value=lambda row: row[1]):
+        """Torque at every row, velocity and position at each `every`th."""
+        channels = [("/torque", "std_msgs/msg/Float64", "float64 data\n"),
+                    ("/motion", "my_msgs/msg/Motion", "float64 velocity_deg_s\nfloat64 position_deg\n")]
+        messages = []
+        for k, row in enumerate(self.rows):
+            messages.append((0, EPOCH + 1_000_000 * k, bags.Cdr().number("d", row[2]).bytes()))
+            if k % every == 0 and k not in skip:
+                messages.append((1, EPOCH + 1_000_000 * k + late_ns, bags.Cdr().number("d", value(row), row[3]).bytes()))
+        return self.write("two.mcap", bags.mcap(channels, messages, chunk_bytes=1000))
+
+    def test_topics_with_clocks_of_their_own_are_joined(self):
+        columns = ("--columns", "torque=/torque.data,velocity=/motion.velocity_deg_s,position=/motion.position_deg", "--unit", "torque=Nm")
+
+        def rows(path, *options):
+            text = self.run_tool("filter", path, *columns, *options, "--method", "none", "-q", "--output-format", "csv").stdout.decode()
+            return [[float(cell) for cell in line.split(",")] for line in text.splitlines()[1:]]
+        for how in ("linear", "hold", "nearest"):  # at the same moments all are one
+            for found, row in zip(rows(self.two_topics(1), "--join", how), self.rows, strict=True):
+                self.assertEqual(found[1:], [row[1], row[2], row[3]])
+        # The position is a straight line, so that a third of its messages say all of it.
+        slow = self.two_topics(3, value=lambda row: row[3])
+        linear = rows(slow)
+        self.assertEqual(len(linear), 4000)  # 3999 is a multiple of 3
+        for found, row in zip(linear, self.rows):
+            self.assertAlmostEqual(found[1], row[3], 9)
+        for k, found in enumerate(rows(slow, "--join", "hold")):
+            self.assertEqual(found[1], self.rows[k - k % 3][3])
+        for k, found in enumerate(rows(slow, "--join", "nearest")):
+            self.assertEqual(found[1], self.rows[k + (0, -1, 1)[k % 3]][3])
+        late = rows(self.two_topics(1, late_ns=250_000), "--join", "hold")
+        self.assertEqual((len(late), late[0][3 - 1], late[0][1]), (3999, self.rows[1][2], self.rows[0][1]))
+        said = self.run_tool("info", slow, *columns).stderr.decode() + self.run_tool("info", slow, *columns).stdout.decode()
+        self.assertIn("by --join linear, from messages that are up to 9 ms away", said)
+
+    def test_what_cannot_be_joined(self):
+        columns = ("--columns", "torque=/torque.data,velocity=/motion.velocity_deg_s", "--unit", "torque=Nm")
+        gap = self.two_topics(1, skip=range(2000, 2050))
+        for how in ("linear", "hold", "nearest"):
+            said = self.refusal(gap, *columns, "--join", how, command="identify")
+            self.assertRegex(said, r"read no message of /motion.velocity_deg_s within 0\.003\d* s")
+        self.assertIn("none of nearest, hold, linear", self.run_tool("info", gap, "--join", "cubic", code=2).stderr.decode())
+
     def test_filtering_writes_text(self):
         text = self.run_tool("filter", self.bag(), "--joint", "elbow", "--method", "none", "--output-format", "csv").stdout.decode().split("\n")
         self.assertTrue(text[0].startswith("time_s,velocity_deg_s,torque_nm"))

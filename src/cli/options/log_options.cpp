@@ -48,6 +48,9 @@ void attach_log_columns(Options& options, LogOptions& log) {
     options.text("--clock", log.clock, "CLOCK",
                  "of recorded messages: header (their own stamps, the default where they have them) or log "
                  "(when they were recorded)");
+    options.text(
+        "--join", log.join, "HOW",
+        "of signals of several topics, which --columns names: linear (the default), hold or nearest");
     options.text("--kt", log.kt, "Nm/A", "torque constant, for logs of motor current");
     options.flag("--hold-bad-values", log.hold_bad_values,
                  "replace empty cells and nan by the value before, and count them");
@@ -129,6 +132,9 @@ ReadOptions LogOptions::resolve() const {
     if (clock && *clock != "log" && *clock != "header")
         raise<UsageError>("--clock: '{}' is none of header, log", *clock);
     read.clock = clock;
+    if (join && *join != "nearest" && *join != "hold" && *join != "linear")
+        raise<UsageError>("--join: '{}' is none of nearest, hold, linear", *join);
+    read.join = join;
     read.records = records;
     read.skip_bytes = static_cast<std::uint64_t>(skip_bytes);
     read.skip_lines = static_cast<std::size_t>(skip_lines);

@@ -13,8 +13,8 @@ namespace {
 constexpr std::array<std::string_view, 1> extensions = {".mcap"};
 
 Records make_mcap(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
-    return records_of_messages(open_mcap(store_bytes(std::move(source), std::move(first_bytes))), "mcap",
-                               options);
+    const auto file = store_bytes(std::move(source), std::move(first_bytes));
+    return records_of_messages([file] { return open_mcap(file); }, "mcap", options);
 }
 
 }  // namespace

@@ -89,8 +89,7 @@ Records make_npz(std::unique_ptr<ByteSource> source, std::string first_bytes, co
         else
             others.push_back({name, "", "no log", "", {}, false});
     }
-    return records_of_arrays(archive, "npz", PathStyle::numpy, std::move(arrays), std::move(others),
-                             options);
+    return records_of_arrays(archive, "npz", PathStyle::numpy, std::move(arrays), std::move(others), options);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ constexpr std::array<std::string_view, 1> extensions = {".db3"};
 
 Records make_rosbag2(std::unique_ptr<ByteSource> source, std::string first_bytes,
                      const ReadOptions& options) {
-    return records_of_messages(open_rosbag2(store_bytes(std::move(source), std::move(first_bytes))),
-                               "rosbag2", options);
+    const auto file = store_bytes(std::move(source), std::move(first_bytes));
+    return records_of_messages([file] { return open_rosbag2(file); }, "rosbag2", options);
 }
 
 }  // namespace

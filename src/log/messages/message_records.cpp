@@ -8,6 +8,7 @@
 
 #include "log/containers/stored_array.hpp"
 #include "log/messages/cdr_program.hpp"
+#include "log/messages/joined_records.hpp"
 #include "log/messages/message_rows.hpp"
 #include "log/messages/message_source.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -15,6 +16,8 @@
 namespace ripplenotch {
 namespace {
 
+constexpr int asked = 1000;                                  // more than any names tell
+constexpr double periods_apart = 3.0;                        // of a signal that is joined
 constexpr std::uint64_t looked_at = std::uint64_t{1} << 23;  // bytes of messages, before the topic is chosen
 
 /// What the first messages tell of a topic.
@@ -28,15 +31,18 @@ struct Topic {
 
 class TopicChoice {
   public:
-    TopicChoice(std::unique_ptr<MessageSource> source, const ReadOptions& options)
-        : source_(std::move(source)), options_(options) {
+    TopicChoice(const OpenMessages& open, const ReadOptions& options)
+        : open_(open), source_(open()), options_(options) {
         look();
         for (std::size_t c = 0; c < topics_.size(); ++c) lay_out(c);
     }
     Records records(const std::string& format) {
         const std::size_t chosen = choose();
         const MessageChannel channel = source_->channels()[chosen];
-        const bool header_clock = takes_header(chosen);
+        // One kind of clock for all that is joined.
+        bool header_clock = true;
+        for (std::size_t c = 0; c < topics_.size(); ++c)
+            if (c == chosen || is_asked(c)) header_clock = takes_header(c) && header_clock;
         RecordTable table;
         table.format = format;
         table.contents = contents(chosen);
@@ -45,15 +51,61 @@ class TopicChoice {
         clock.type.kind = 'i';
         clock.type.big_endian = std::endian::native == std::endian::big;
         add_field(channel.topic, clock, table);
-        CdrLayout& layout = topics_[chosen].layout;
+        const CdrLayout& layout = topics_[chosen].layout;
         for (const std::size_t leaf : leaves_beside_clock(layout, header_clock))
             add_field(channel.topic, layout.leaves[leaf], table);
-        auto bytes =
-            std::make_unique<MessageRecords>(std::move(source_), chosen, std::move(layout), header_clock);
-        return {std::move(bytes), std::move(table)};
+        auto bytes = std::make_unique<MessageRecords>(open_(), chosen, layout, header_clock);
+        std::vector<SideSignal> sides = sides_of(chosen, header_clock);
+        if (sides.empty()) return {std::move(bytes), std::move(table)};
+        return {joined(std::move(bytes), std::move(sides), table), std::move(table)};
     }
 
   private:
+    // What --columns names of other topics.
+    std::vector<SideSignal> sides_of(std::size_t chosen, bool header_clock) {
+        std::vector<SideSignal> sides;
+        for (std::size_t c = 0; c < topics_.size(); ++c) {
+            if (c == chosen) continue;
+            const Topic& topic = topics_[c];
+            const auto beside = leaves_beside_clock(topic.layout, header_clock);
+            for (std::size_t f = 0; f < beside.size(); ++f) {
+                const CdrLeaf& leaf = topic.layout.leaves[beside[f]];
+                const std::string path = fmt::format("{}.{}", source_->channels()[c].topic, leaf.path);
+                if (!is_named(path)) continue;
+                const double period_ns = static_cast<double>(topic.to_ns - topic.from_ns) /
+                                         std::max(1.0, static_cast<double>(topic.seen) - 1.0);
+                auto records = std::make_unique<MessageRecords>(open_(), c, topic.layout, header_clock);
+                records->keep({0, f + 1});
+                sides.push_back({path, leaf.read_as, std::move(records), leaf.type,
+                                 static_cast<std::int64_t>(periods_apart * std::max(period_ns, 1e6))});
+            }
+        }
+        return sides;
+    }
+    std::unique_ptr<RecordSource> joined(std::unique_ptr<MessageRecords> base, std::vector<SideSignal> sides,
+                                         RecordTable& table) const {
+        const std::string how = options_.join.value_or("linear");
+        std::vector<std::size_t> sizes;
+        for (const NpyField& field : table.fields) sizes.push_back(field.size);
+        for (const SideSignal& side : sides) {
+            NpyField field;
+            field.name = side.path;
+            field.big_endian = std::endian::native == std::endian::big;
+            field.offset = table.record_size;
+            table.record_size += field.size;
+            table.fields.push_back(field);
+            table.read_as.push_back(side.read_as);
+            table.units.emplace_back();
+            table.warnings.push_back(
+                {"joined by time",
+                 fmt::format("{} has a clock of its own: joined to the rows by --join {}, from messages that "
+                             "are up to {} ms away; nearest, hold and linear can be said",
+                             side.path, how, static_cast<double>(side.limit_ns) / 1e6),
+                 true});
+        }
+        table.options += fmt::format(" --join {}", how);
+        return join_records(std::move(base), std::move(sizes), std::move(sides), join_named(how));
+    }
     static void add_field(const std::string& topic, const CdrLeaf& leaf, RecordTable& table) {
         NpyField field = leaf.type;
         field.name = fmt::format("{}.{}", topic, leaf.path);
@@ -86,10 +138,16 @@ class TopicChoice {
             if (is_asked(c) && (c >= topics_.size() || topics_[c].seen == 0)) return false;
         return true;
     }
-    bool is_asked(std::size_t channel) const {
+    bool is_named(const std::string& path) const {
         return std::any_of(options_.columns.begin(), options_.columns.end(), [&](const std::string& entry) {
             const std::size_t equals = entry.find('=');
-            return equals != std::string::npos &&
+            return equals != std::string::npos && entry.substr(equals + 1) == path;
+        });
+    }
+    bool is_asked(std::size_t channel, std::string_view role = "") const {
+        return std::any_of(options_.columns.begin(), options_.columns.end(), [&](const std::string& entry) {
+            const std::size_t equals = entry.find('=');
+            return equals != std::string::npos && (role.empty() || entry.substr(0, equals) == role) &&
                    entry.substr(equals + 1).starts_with(source_->channels()[channel].topic + ".");
         });
     }
@@ -123,15 +181,11 @@ class TopicChoice {
                 if (!topics_[c].refusal.empty())
                     raise<UsageError>("--columns: {}: {} is {}", source_->name(),
                                       source_->channels()[c].topic, topics_[c].refusal);
-                if (best == 1000)
-                    raise<UsageError>(
-                        "--columns: names two topics of {}, {} and {}, whose clocks differ; name columns of "
-                        "one",
-                        source_->name(), source_->channels()[*chosen].topic, source_->channels()[c].topic);
-                best = 1000;
-                chosen = c;
+                // The rows are those of the torque; what else is asked for is joined to them.
+                if (best < asked || is_asked(c, "torque")) chosen = c;
+                best = asked;
             }
-            if (!topics_[c].refusal.empty() || best == 1000) continue;
+            if (!topics_[c].refusal.empty() || best == asked) continue;
             std::vector<std::string> names;
             for (const CdrLeaf& leaf : topics_[c].layout.leaves) names.push_back(leaf.read_as);
             if (const int tells = names_tell(names); tells > best) {
@@ -211,6 +265,7 @@ class TopicChoice {
         return entries;
     }
 
+    const OpenMessages& open_;
     std::unique_ptr<MessageSource> source_;
     const ReadOptions& options_;
     std::vector<Topic> topics_;
@@ -218,9 +273,8 @@ class TopicChoice {
 
 }  // namespace
 
-Records records_of_messages(std::unique_ptr<MessageSource> source, const std::string& format,
-                            const ReadOptions& options) {
-    return TopicChoice(std::move(source), options).records(format);
+Records records_of_messages(const OpenMessages& open, const std::string& format, const ReadOptions& options) {
+    return TopicChoice(open, options).records(format);
 }
 
 }  // namespace ripplenotch

@@ -3,6 +3,7 @@
 // Recorded messages, whatever they are recorded in.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,9 +49,13 @@ class MessageSource {
 [[nodiscard]] std::unique_ptr<MessageSource> open_mcap(std::shared_ptr<StoredBytes> file);
 [[nodiscard]] std::unique_ptr<MessageSource> open_rosbag2(std::shared_ptr<StoredBytes> file);
 
-/// The records of one topic: of that which --columns names, else of the one whose fields say most. Throws
-/// DataError where no topic has numbers, UsageError where --columns or --clock ask for what is not there.
-[[nodiscard]] Records records_of_messages(std::unique_ptr<MessageSource> source, const std::string& format,
+/// The same recording from its beginning, as often as it is asked for.
+using OpenMessages = std::function<std::unique_ptr<MessageSource>()>;
+
+/// The records of one topic: of that which --columns names, else of the one whose fields say most. What
+/// --columns names of other topics stands beside them, joined by time (ReadOptions::join). Throws DataError
+/// where no topic has numbers, UsageError where --columns or --clock ask for what is not there.
+[[nodiscard]] Records records_of_messages(const OpenMessages& open, const std::string& format,
                                           const ReadOptions& options);
 
 }  // namespace ripplenotch
