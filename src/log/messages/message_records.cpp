@@ -11,6 +11,7 @@
 #include "log/messages/joined_records.hpp"
 #include "log/messages/message_rows.hpp"
 #include "log/messages/message_source.hpp"
+#include "log/messages/topic_contents.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -19,15 +20,6 @@ namespace {
 constexpr int asked = 1000;                                  // more than any names tell
 constexpr double periods_apart = 3.0;                        // of a signal that is joined
 constexpr std::uint64_t looked_at = std::uint64_t{1} << 23;  // bytes of messages, before the topic is chosen
-
-/// What the first messages tell of a topic.
-struct Topic {
-    std::string first;  ///< its first message; empty where none was seen
-    std::uint64_t seen = 0;
-    std::int64_t from_ns = 0, to_ns = 0;
-    CdrLayout layout;
-    std::string refusal;  ///< why it has no numbers; empty where it has
-};
 
 class TopicChoice {
   public:
@@ -45,7 +37,9 @@ class TopicChoice {
             if (c == chosen || is_asked(c)) header_clock = takes_header(c) && header_clock;
         RecordTable table;
         table.format = format;
-        table.contents = contents(chosen);
+        table.contents = topic_contents(*source_, topics_, [&](std::size_t channel, const std::string& path) {
+            return channel == chosen || is_named(path);
+        });
         table.options = fmt::format("--clock {}", header_clock ? "header" : "log");
         CdrLeaf clock{header_clock ? "header.stamp" : "log_time", "time", {}, true, true};
         clock.type.kind = 'i';
@@ -54,13 +48,20 @@ class TopicChoice {
         const CdrLayout& layout = topics_[chosen].layout;
         for (const std::size_t leaf : leaves_beside_clock(layout, header_clock))
             add_field(channel.topic, layout.leaves[leaf], table);
-        auto bytes = std::make_unique<MessageRecords>(open_(), chosen, layout, header_clock);
         std::vector<SideSignal> sides = sides_of(chosen, header_clock);
+        auto bytes = std::make_unique<MessageRecords>(std::move(source_), chosen, layout, header_clock);
         if (sides.empty()) return {std::move(bytes), std::move(table)};
         return {joined(std::move(bytes), std::move(sides), table), std::move(table)};
     }
 
   private:
+    // Without a summary, a recording announces its channels on the way.
+    std::unique_ptr<MessageSource> opened_up_to(std::size_t channel) const {
+        auto source = open_();
+        RecordedMessage message;
+        while (source->channels().size() <= channel && source->next(message)) continue;
+        return source;
+    }
     // What --columns names of other topics.
     std::vector<SideSignal> sides_of(std::size_t chosen, bool header_clock) {
         std::vector<SideSignal> sides;
@@ -74,7 +75,8 @@ class TopicChoice {
                 if (!is_named(path)) continue;
                 const double period_ns = static_cast<double>(topic.to_ns - topic.from_ns) /
                                          std::max(1.0, static_cast<double>(topic.seen) - 1.0);
-                auto records = std::make_unique<MessageRecords>(open_(), c, topic.layout, header_clock);
+                auto records =
+                    std::make_unique<MessageRecords>(opened_up_to(c), c, topic.layout, header_clock);
                 records->keep({0, f + 1});
                 sides.push_back({path, leaf.read_as, std::move(records), leaf.type,
                                  static_cast<std::int64_t>(periods_apart * std::max(period_ns, 1e6))});
@@ -222,47 +224,6 @@ class TopicChoice {
         offsets[static_cast<std::size_t>(stamp - topic.layout.leaves.begin())] = 0;
         run_cdr(topic.layout.steps, topic.first, offsets, reinterpret_cast<char*>(&first));
         return first != 0;
-    }
-    // Elements of an array are one thing: position[0..6].
-    std::vector<ContentEntry> contents(std::size_t chosen) const {
-        std::vector<ContentEntry> entries;
-        for (std::size_t c = 0; c < topics_.size(); ++c) {
-            const Topic& topic = topics_[c];
-            const MessageChannel& channel = source_->channels()[c];
-            const auto count = source_->count_of(c);
-            const std::string shape =
-                count ? fmt::format("{} messages", *count) : fmt::format("{} messages and more", topic.seen);
-            std::optional<double> rate;
-            if (topic.seen > 1 && topic.to_ns > topic.from_ns)
-                rate = 1e9 * static_cast<double>(topic.seen - 1) /
-                       static_cast<double>(topic.to_ns - topic.from_ns);
-            if (!topic.refusal.empty()) {
-                entries.push_back({channel.topic, shape, fmt::format("{}, {}", channel.type, topic.refusal),
-                                   "", rate, false});
-                continue;
-            }
-            const auto& leaves = topic.layout.leaves;
-            for (std::size_t l = 0; l < leaves.size(); ++l) {
-                const std::string& path = leaves[l].path;
-                std::string shown = path;
-                if (path.ends_with("[0]")) {
-                    const std::string stem = path.substr(0, path.size() - 2);
-                    std::size_t last = l;
-                    while (last + 1 < leaves.size() &&
-                           leaves[last + 1].path == fmt::format("{}{}]", stem, last + 1 - l))
-                        ++last;
-                    if (last > l) shown = fmt::format("{}0..{}]", stem, last - l);
-                    entries.push_back({fmt::format("{}.{}", channel.topic, shown), shape,
-                                       type_name(leaves[l].type), "", rate, c == chosen});
-                    l = last;
-                    continue;
-                }
-                entries.push_back({fmt::format("{}.{}", channel.topic, shown), shape,
-                                   leaves[l].stamp ? "stamp" : type_name(leaves[l].type),
-                                   leaves[l].stamp ? "ns" : "", rate, c == chosen});
-            }
-        }
-        return entries;
     }
 
     const OpenMessages& open_;
