@@ -37,8 +37,8 @@ class TopicChoice {
             if (c == chosen || is_asked(c)) header_clock = takes_header(c) && header_clock;
         RecordTable table;
         table.format = format;
-        table.contents = topic_contents(*source_, topics_, [&](std::size_t channel, const std::string& path) {
-            return channel == chosen || is_named(path);
+        table.contents = topic_contents(*source_, topics_, [&](std::size_t number, const std::string& path) {
+            return number == chosen || is_named(path);
         });
         table.options = fmt::format("--clock {}", header_clock ? "header" : "log");
         CdrLeaf clock{header_clock ? "header.stamp" : "log_time", "time", {}, true, true};
