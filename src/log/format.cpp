@@ -54,6 +54,10 @@ std::string written_log_formats() {
 
 void require_written(const LogFormat& format, const std::string& output) {
     if (format.is_written()) return;
+    if (!format.lacks.empty()) {
+        raise<UsageError>("{}: this build was made without {}, which writes {}; install it and build again",
+                          output == "-" ? "standard output" : output, format.lacks, format.name);
+    }
     raise<UsageError>("{}: format {} is read and not written; formats that are written: {}",
                       output == "-" ? "standard output" : output, format.name, written_log_formats());
 }

@@ -4,6 +4,7 @@
 import bz2
 import gzip
 import lzma
+import struct
 import sys
 import unittest
 
@@ -47,6 +48,10 @@ class Compressed(Case):
         self.assertEqual(self.run_tool("filter", path, *method).stdout, self.run_tool("filter", LOG, *method).stdout)
         part = ("--from", "1s", "--to", "2s")
         self.assertEqual(self.run_tool("filter", path, *method, *part).stdout, self.run_tool("filter", LOG, *method, *part).stdout)
+
+    def test_dumps_may_be_packed_too(self):
+        data = b"".join(struct.pack("<4d", *row) for row in self.rows)
+        self.assert_same(self.write("run.bin.gz", gzip.compress(data)), "--format", "raw", "--layout", ",".join(f"f8:{name}" for name in self.names))
 
     def test_arrays_may_be_packed_too(self):
         self.run_tool("filter", LOG, "--method", "none", "-o", "run.npy", "-q")

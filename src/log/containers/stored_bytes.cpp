@@ -85,7 +85,7 @@ class UnpackedPart final : public StoredBytes {
           at_(offset),
           end_(offset + size),
           most_(most),
-          unpacker_(make_inflater(kind)) {}
+          unpacker_(make_inflater(kind, name())) {}
     [[nodiscard]] std::uint64_t size() const override { return 0; }
     void read_at(std::uint64_t offset, char* into, std::size_t size) override {
         if (size > most_ || offset > most_ - size) complain_of_end(name(), offset, most_);

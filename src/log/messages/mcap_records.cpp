@@ -23,7 +23,13 @@ std::uint64_t little_endian(std::string_view bytes) {
 
 void unpack_chunk(std::string_view packed, const Packing& packing, const std::string& source,
                   std::string& into) {
-    const auto unpacker = unpacker_of(packing, source);
+    if (packing.make == nullptr) {
+        raise<UsageError>(
+            "{}: chunks are packed by {}, and this build was made without {}; install it and build "
+            "again",
+            source, packing.name, packing.lacks);
+    }
+    const auto unpacker = packing.make();
     std::size_t have = 0;
     while (have < into.size()) {
         const Unpacker::Step step = unpacker->step(packed, std::span(into).subspan(have));

@@ -55,7 +55,7 @@ class GzipUnpacker final : public Unpacker {
 
 }  // namespace
 
-std::unique_ptr<Unpacker> make_inflater(Deflate kind) {
+std::unique_ptr<Unpacker> make_inflater(Deflate kind, const std::string& /*source*/) {
     return std::make_unique<GzipUnpacker>(kind == Deflate::wrapped ? MAX_WBITS : -MAX_WBITS);
 }
 
@@ -72,9 +72,10 @@ const Packing packings::gzip{"gzip", "\x1f\x8b\x08", "zcat", {}, []() -> std::un
 #else
 namespace ripplenotch {
 
-std::unique_ptr<Unpacker> make_inflater(Deflate /*kind*/) {
+std::unique_ptr<Unpacker> make_inflater(Deflate /*kind*/, const std::string& source) {
     raise<UsageError>(
-        "this build was made without zlib, which unpacks what is in there; install it and build again");
+        "{}: what is in there is packed, and this build was made without zlib; install it and build again",
+        source);
 }
 
 std::optional<std::uint32_t> crc32_of(std::string_view /*bytes*/) { return std::nullopt; }

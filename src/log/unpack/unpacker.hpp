@@ -29,8 +29,8 @@ class Unpacker {
 
 /// Of the deflate method, as containers have it inside: zlib's own wrapping (RFC 1950) or none (RFC 1951).
 enum class Deflate { wrapped, bare };
-/// Throws UsageError where this build lacks zlib.
-[[nodiscard]] std::unique_ptr<Unpacker> make_inflater(Deflate kind);
+/// Throws UsageError, beginning with `source`, where this build lacks zlib.
+[[nodiscard]] std::unique_ptr<Unpacker> make_inflater(Deflate kind, const std::string& source);
 
 /// CRC-32 as gzip and many others have it; none where this build lacks zlib.
 [[nodiscard]] std::optional<std::uint32_t> crc32_of(std::string_view bytes);
