@@ -34,6 +34,11 @@ if(NOT RIPPLENOTCH_HAS_STATIC_RUNTIME OR NOT RIPPLENOTCH_FFTW_ARCHIVE OR NOT RIP
     return()
 endif()
 
+ripplenotch_static_containers(RIPPLENOTCH_CONTAINERS_ARE_STATIC)
+if(NOT RIPPLENOTCH_CONTAINERS_ARE_STATIC)
+    return()
+endif()
+
 set(RIPPLENOTCH_PROGRAM_LINK_OPTIONS -static-pie)
 # 10,000 relocations in 2.6 kB instead of 250 kB, all of which is read at every start: 0.1 ms.
 check_linker_flag(CXX -Wl,-z,pack-relative-relocs RIPPLENOTCH_LINKER_PACKS_RELOCATIONS)

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What the fuzz targets start from: a folder of files for each, made from the repository and by the tool itself."""
 
+import gzip
+import lzma
 import pathlib
+import sys
 import tempfile
 
 from . import documents
@@ -44,11 +47,44 @@ def logs(source):
     yield ("index,velocity_deg_s,torque_nm\n" + rows + "# 1,2,3\n\nEOF\n").encode()
 
 
+def containers(source):
+    """(target, bytes): the examples of the laws, and recordings with what the laws' are without: topics, joints, stamps, texts."""
+    examples = source / "tests/log/data"
+    for target, name in (("npz", "law.npz"), ("mat", "law.mat"), ("hdf5", "law.h5"), ("mcap", "law.mcap"), ("rosbag2", "law.db3"), ("raw", "law.raw")):
+        if (examples / name).exists():
+            yield target, (examples / name).read_bytes()
+    csv = (examples / "law.csv").read_bytes()
+    yield "packed", gzip.compress(csv)
+    yield "packed", lzma.compress(csv)
+    yield "packed", gzip.compress(csv[:300]) + gzip.compress(csv[300:])
+    sys.path.insert(0, str(source / "tests/support"))
+    import bags
+    joints = ("/joint_states", "sensor_msgs/msg/JointState", bags.JOINT_STATE)
+    texts = ("/hello", "std_msgs/msg/String", "string[] data\nstring<=9 more\n")
+    states = [bags.joint_state(10**9 + k * 10**6, ["a", "b"], [0.1 * k, 0.2], [1.0, 2.0], [0.5, k % 3]) for k in range(30)]
+    messages = [(0, 10**9 + k * 10**6, state) for k, state in enumerate(states)]
+    messages.insert(3, (1, 10**9, bags.Cdr().texts(["x", "yy"]).text("z").bytes()))
+    # Without checksums: no mutation would get past one.
+    yield "mcap", bags.mcap([joints, texts], messages, crc=False)
+    yield "mcap", bags.mcap([joints, texts], messages, crc=False, chunked=False, summary=False)
+    points = "Point[2] points\nint32[<=5] codes\nbuiltin_interfaces/Time when\n" + "=" * 80 + "\nMSG: a/Point\nfloat64 tau # Nm\nfloat32 dq\n"
+    yield "mcap", bags.mcap([("/p", "a/msg/P", points)],
+                            [(0, k * 10**6, bags.Cdr().number("d", 1.0).number("f", 2.0).number("d", 1.0).number("f", 2.0)
+                              .numbers("i", [1, 2]).number("i", k).number("I", 5).bytes()) for k in range(20)], crc=False)
+    with tempfile.TemporaryDirectory() as scratch:
+        for definitions in (True, False):
+            path = pathlib.Path(scratch) / f"{definitions}.db3"
+            bags.db3(path, [joints], messages[:3], definitions)
+            yield "rosbag2", path.read_bytes()
+
+
 def make(tool, source, folder):
     """A folder of seeds for each target in `folder`."""
     source, folder = pathlib.Path(source), pathlib.Path(folder)
     for number, bytes_ in enumerate(logs(source)):
         put(folder / "logs", number, bytes([number % 12, number % 50]) + bytes_)
+    for number, (target, bytes_) in enumerate(containers(source)):
+        put(folder / target, number, bytes([0, number % 50]) + bytes_)
     for number, (reader, text) in enumerate(ARMS.items()):
         put(folder / "arms", number, bytes([reader]) + text.encode())
     for number, text in enumerate([*QUANTITIES, *SPECS]):

@@ -14,12 +14,20 @@ from . import corpora, documents, outcome
 
 TARGETS = {
     "logs": ("readers of text logs and arrays: vectors, plain, careful, pieces", "same rows or same words four ways; sanitizers"),
+    "npz": ("archives of arrays", "same rows or same words at once and in pieces; sanitizers"),
+    "mat": ("MAT files of versions 5 to 7", "the same"),
+    "hdf5": ("HDF5 files", "the same"),
+    "mcap": ("MCAP recordings", "the same"),
+    "rosbag2": ("recordings in SQLite", "the same"),
+    "raw": ("dumps told by --layout", "the same"),
+    "packed": ("gzip, zstd, lz4, xz", "the same"),
     "documents": ("tables, models, joints, figures, diagnoses, pages", "an answer or a page, read again; sanitizers"),
     "arms": ("URDF, MuJoCo, Denavit-Hartenberg, axes", "an answer; sanitizers"),
     "texts": ("quantities, methods, numbers, visible names", "bounds, written and read again; sanitizers"),
 }
 # Where most of the time goes: what is slowest, and what strangers write most.
-SHARES = {"logs": 0.4, "documents": 0.25, "arms": 0.1, "texts": 0.1, "program": 0.15}
+SHARES = {"logs": 0.25, "npz": 0.05, "mat": 0.05, "hdf5": 0.05, "mcap": 0.08, "rosbag2": 0.03, "raw": 0.02, "packed": 0.02,
+          "documents": 0.2, "arms": 0.07, "texts": 0.07, "program": 0.11}
 LONG_ROUND_S = 4 * 3600.0
 
 

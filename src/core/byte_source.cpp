@@ -78,6 +78,16 @@ void ByteSource::end() {
     if (hash_) note_hash(*file_, hash_->hex());
 }
 
+bool ByteSource::by_place() const { return file_ != nullptr && file_->by_place(); }
+
+int ByteSource::descriptor_by_place() {
+    if (hash_) note_hash(*file_, "");
+    hash_.reset();
+    return file_->descriptor();
+}
+
+void ByteSource::require_unchanged() const { file_->require_unchanged(file_->state().size, name_); }
+
 std::string read_all(const std::string& path) {
     ByteSource source(path);
     std::string bytes;

@@ -113,10 +113,21 @@ void TemporaryFile::keep_rights(const struct stat& replaced) {
     static_cast<void>(::fchmod(descriptor_, mode));
 }
 
-int TemporaryFile::release_without_name() {
+const std::string& TemporaryFile::name_for_a_moment(const std::string& path) {
+    static_cast<void>(::fchmod(descriptor_, of_owner));
+    if (const std::string why = named_beside(path); !why.empty())
+        raise<FileError>("{}: cannot name a temporary file: {}", folder_of(path), why);
+    return name_;
+}
+
+void TemporaryFile::forget_name() {
     if (!name_.empty()) ::unlink(name_.c_str());
     unfinished_.reset();
     name_.clear();
+}
+
+int TemporaryFile::release_without_name() {
+    forget_name();
     return std::exchange(descriptor_, -1);
 }
 

@@ -24,6 +24,10 @@ class TemporaryFile {
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 
     [[nodiscard]] int descriptor() const { return descriptor_; }
+    /// A random name in the folder of `path`, so that a library can open the file by it: nobody else may.
+    /// forget_name() and the destructor take it away again. Throws FileError.
+    [[nodiscard]] const std::string& name_for_a_moment(const std::string& path);
+    void forget_name();
     /// A name that surely nobody sees keeps: the file goes with its last descriptor.
     [[nodiscard]] int release_without_name();
     /// Closes the file and gives it its name, in the folder that it was made in. `synced`: not before its

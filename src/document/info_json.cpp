@@ -86,6 +86,20 @@ void add_clock(Json& json, const LogInfo& log) {
     json["gaps"] = gaps_json(clock);
 }
 
+// What is in a container, taken or not.
+Json contents_json(const Layout& layout) {
+    Json contents = Json::array();
+    for (const ContentEntry& entry : layout.contents) {
+        contents.push_back({{"path", entry.path},
+                            {"shape", entry.shape},
+                            {"type", entry.type},
+                            {"unit", entry.unit},
+                            {"rate_hz", optional_json(entry.rate_hz)},
+                            {"read", entry.read}});
+    }
+    return contents;
+}
+
 void add_log(Json& json, const LogInfo& log) {
     json["log"] = log.source;
     json["rows"] = log.rows;
@@ -98,6 +112,7 @@ void add_log(Json& json, const LogInfo& log) {
     json["clock_factor"] = optional_json(best_clock_factor(log.joints));
     json["format"] = log.layout.format;
     json["columns"] = columns_json(log.layout);
+    if (!log.layout.contents.empty()) json["contents"] = contents_json(log.layout);
     json["speed_deg_s"] = range_json(widest(log.joints));
     json["joints"] = Json::array();
     for (const JointInfo& joint : log.joints) json["joints"].push_back(joint_json(joint));

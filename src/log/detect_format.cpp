@@ -19,14 +19,17 @@ struct Stranger {
     std::string_view magic, what, remedy;
 };
 constexpr std::array strangers = {
-    Stranger{"\x89HDF", "an HDF5 file", "export the joint's columns as CSV or NPY"},
-    Stranger{"MATLAB 5.0", "a MATLAB file", "export the joint's columns as CSV or NPY"},
-    Stranger{"PK\x03\x04", "a ZIP archive (or .npz, .xlsx)", "unpack it, or export it as CSV"},
-    Stranger{"\x1f\x8b", "a gzip file", "unpack it, e.g. with zcat FILE | ripplenotch ... -"},
-    Stranger{"\x28\xb5\x2f\xfd", "a zstd file", "unpack it, e.g. with zstdcat FILE | ripplenotch ... -"},
-    Stranger{"SQLite format 3", "an SQLite file (a ROS 2 bag?)", "export the joint's topic as CSV"},
-    Stranger{"#ROSBAG", "a ROS 1 bag", "export the joint's topic as CSV"},
-    Stranger{"\x89MCAP", "an MCAP file", "export the joint's topic as CSV"},
+    Stranger{"MDF     ", "an MDF file",
+             "convert it: python3 -c \"import asammdf; asammdf.MDF('{}').export('csv', 'run.csv')\""},
+    Stranger{"TDSm", "a TDMS file",
+             "convert it: python3 -c \"import nptdms; "
+             "nptdms.TdmsFile.read('{}').as_dataframe().to_csv('run.csv')\""},
+    Stranger{"PAR1", "a Parquet file",
+             "convert it: duckdb -c \"copy (from '{}') to 'run.csv' (format csv)\""},
+    Stranger{"#ROSBAG", "a ROS 1 bag", "convert it: rosbags-convert --src {} --dst run"},
+    Stranger{"BZh", "a bzip2 file", "unpack it: bzcat {} | ripplenotch ... -"},
+    Stranger{"PK\x03\x04", "a ZIP archive (or .xlsx)",
+             "unpack it, or convert a workbook: libreoffice --headless --convert-to csv {}"},
 };
 
 }  // namespace
@@ -40,8 +43,10 @@ const LogFormat& detect_format(std::string_view first_bytes, const std::string& 
     }
     for (const Stranger& stranger : strangers) {
         if (!first_bytes.starts_with(stranger.magic)) continue;
+        std::string remedy(stranger.remedy);
+        remedy.replace(remedy.find("{}"), 2, source);
         raise<DataError>("{}: read {}, expected a log as {}; {}", source, stranger.what,
-                         fmt::join(names, " or "), stranger.remedy);
+                         fmt::join(names, " or "), remedy);
     }
     return formats::csv;
 }

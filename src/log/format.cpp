@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "log/formats.hpp"
+#include "log/unpack/unpacker.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/output_name.hpp"
 
@@ -24,6 +25,15 @@ constexpr const LogFormat* const list[] = {
 }  // namespace
 
 std::span<const LogFormat* const> log_formats() { return list; }
+
+std::vector<std::string> formats_not_built() {
+    std::vector<std::string> missing;
+    for (const LogFormat* format : log_formats())
+        if (!format->lacks.empty()) missing.push_back(fmt::format("{} ({})", format->name, format->lacks));
+    for (const Packing* packing : all_packings())
+        if (!packing->lacks.empty()) missing.push_back(fmt::format("{} ({})", packing->name, packing->lacks));
+    return missing;
+}
 
 const LogFormat& find_log_format(std::string_view name) {
     std::vector<std::string_view> names;
@@ -44,6 +54,10 @@ std::string written_log_formats() {
 
 void require_written(const LogFormat& format, const std::string& output) {
     if (format.is_written()) return;
+    if (!format.lacks.empty()) {
+        raise<UsageError>("{}: this build was made without {}, which writes {}; install it and build again",
+                          output == "-" ? "standard output" : output, format.lacks, format.name);
+    }
     raise<UsageError>("{}: format {} is read and not written; formats that are written: {}",
                       output == "-" ? "standard output" : output, format.name, written_log_formats());
 }

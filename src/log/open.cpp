@@ -8,6 +8,7 @@
 #include "log/clock/stamp.hpp"
 #include "log/columns/derived_velocity.hpp"
 #include "log/detect_format.hpp"
+#include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
 
@@ -50,17 +51,37 @@ std::unique_ptr<LogReader> open_cut(const LogFormat& format, std::unique_ptr<Byt
     return reader;
 }
 
+std::string first_bytes_of(ByteSource& source) {
+    std::string first_bytes(first_bytes_size, '\0');
+    std::size_t have = 0;
+    for (std::size_t got = 1; have < first_bytes.size() && got > 0; have += got)
+        got = source.read(first_bytes.data() + have, first_bytes.size() - have);
+    first_bytes.resize(have);
+    return first_bytes;
+}
+
+void require_built(const LogFormat& format, const std::string& source) {
+    if (format.lacks.empty()) return;
+    raise<UsageError>(
+        "{}: read a log in format {}, and this build was made without {}; install it and build again", source,
+        format.name, format.lacks);
+}
+
 }  // namespace
 
 std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {
-    std::string first_bytes(first_bytes_size, '\0');
-    std::size_t have = 0;
-    for (std::size_t got = 1; have < first_bytes.size() && got > 0; have += got) {
-        got = source->read(first_bytes.data() + have, first_bytes.size() - have);
+    std::string first_bytes = first_bytes_of(*source);
+    if (const Packing* const packing = packing_of(first_bytes)) {
+        source = unpack(std::move(source), std::move(first_bytes), *packing);
+        first_bytes = first_bytes_of(*source);
+        if (packing_of(first_bytes) != nullptr) {
+            raise<DataError>("{}: read a compressed file inside a {} file, expected a log; unpack it: {} {}",
+                             source->name(), packing->name, packing->program, source->name());
+        }
     }
-    first_bytes.resize(have);
     const LogFormat& format =
         options.format ? find_log_format(*options.format) : detect_format(first_bytes, source->name());
+    require_built(format, source->name());
     auto reader = options.range.given() ? open_cut(format, std::move(source), std::move(first_bytes), options)
                                         : format.open(std::move(source), std::move(first_bytes), options);
     if (reader->layout().velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));

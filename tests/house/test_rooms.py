@@ -41,6 +41,12 @@ DOORS = {
     r"(\w+mm|x86)intrin": {"src/core/vectors/bytes_avx2.hpp"},
     r"arm_neon": {"src/core/vectors/bytes_neon.hpp"},
     r"pugixml": {"src/arm/readers/xml_tree.cpp"},
+    r"zlib\.h": {"src/log/unpack/gzip_unpacker.cpp"},
+    r"zstd\.h": {"src/log/unpack/zstd_unpacker.cpp"},
+    r"lz4": {"src/log/unpack/lz4_unpacker.cpp"},
+    r"lzma\.h": {"src/log/unpack/xz_unpacker.cpp"},
+    r"hdf5\.h": {"src/log/containers/hdf5_handles.hpp"},
+    r"sqlite3": {"src/log/messages/rosbag2_messages.cpp"},
     r"Eigen/Sparse": {"src/analysis/kernels/envelope_kernel.cpp", "src/analysis/track/envelope_solver.cpp"},
     r"Eigen/(?!Sparse)": {"src/core/linear_algebra.hpp"},
 }

@@ -13,8 +13,8 @@ using Catch::Contains;
 namespace {
 
 // Its magic is that of files which are refused while no format knows them.
-constexpr std::string_view magic = "\x89MCAP";
-constexpr std::array<std::string_view, 1> extensions = {".mcap"};
+constexpr std::string_view magic = "TDSm";
+constexpr std::array<std::string_view, 1> extensions = {".tdms"};
 
 class TrialReader final : public LogReader {
   public:
@@ -55,13 +55,13 @@ std::string trial_bytes() {
 }  // namespace
 
 TEST_CASE("every listed format is asked before foreign bytes are refused", "[log]") {
-    CHECK_THROWS_WITH(detect_format(magic, "run.mcap"),
-                      Contains("run.mcap: read an MCAP file, expected a log as"));
+    CHECK_THROWS_WITH(detect_format(magic, "run.tdms"),
+                      Contains("run.tdms: read a TDMS file, expected a log as"));
     for (const LogFormat* format : log_formats())
-        CHECK_THROWS_WITH(detect_format(magic, "run.mcap"), Contains(std::string(format->name)));
+        CHECK_THROWS_WITH(detect_format(magic, "run.tdms"), Contains(std::string(format->name)));
     std::vector<const LogFormat*> formats(log_formats().begin(), log_formats().end());
     formats.push_back(&trial);
-    CHECK(&detect_format(magic, "run.mcap", formats) == &trial);
+    CHECK(&detect_format(magic, "run.tdms", formats) == &trial);
     CHECK(detect_format("time_s,velocity_deg_s", "run.csv", formats).name == "csv");
     CHECK(detect_format("", "empty", formats).name == "csv");
 }
@@ -79,7 +79,8 @@ TEST_CASE("a log in a format that is only read is converted to one that is writt
 
 TEST_CASE("nothing is written in a format that is only read, in one line that says what can be", "[log]") {
     CHECK_FALSE(trial.is_written());
-    const std::string refusal = "format trial is read and not written; formats that are written: csv, npy";
+    const std::string refusal =
+        "format trial is read and not written; formats that are written: csv, npy, mat";
     CHECK_THROWS_WITH(output_format("-", std::nullopt, trial), Contains("standard output: " + refusal));
     CHECK_THROWS_WITH(output_format("run.xyz", std::nullopt, trial), Contains("run.xyz: " + refusal));
     CHECK(output_format("-", "npy", trial).name == "npy");

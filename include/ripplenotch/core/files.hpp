@@ -44,6 +44,13 @@ class ByteSource {
     [[nodiscard]] const std::string& name() const { return name_; }
     /// Of a file in bytes when it was opened; 0 where nobody knows.
     [[nodiscard]] std::uint64_t size() const { return size_; }
+    /// A regular file, which can be read at any place; else bytes come once.
+    [[nodiscard]] bool by_place() const;
+    /// Of a file that is by_place(), for readers that go back and forth in it. They pass read() by, so the
+    /// file is hashed when its hash is asked for, and refused if it is another by then (inputs_read.hpp).
+    [[nodiscard]] int descriptor_by_place();
+    /// For such readers, at their end: throws FileError if the file was written to since it was opened.
+    void require_unchanged() const;
 
   protected:
     struct Name {

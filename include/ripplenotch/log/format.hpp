@@ -131,6 +131,11 @@ struct LogFormat {
     std::string_view name, summary;
     std::span<const std::string_view> extensions;  ///< ".csv", ".txt"
     bool binary = false;
+    /// Never found out from a file's bytes, which may be anything: it has to be said, with what is in a
+    /// record.
+    bool told = false;
+    /// The library without which this build cannot open such files; empty where it can.
+    std::string_view lacks = {};
     /// True when these first bytes of a file are surely this format. Null for CSV, which is what a file is
     /// that no other format knows.
     bool (*sniff)(std::string_view first_bytes) = nullptr;
@@ -158,6 +163,8 @@ struct LogFormat {
 
 /// All formats, in the order of formats.def.
 [[nodiscard]] std::span<const LogFormat* const> log_formats();
+/// What this build cannot read for want of a library: "hdf5 (libhdf5)", "xz (liblzma)". Mostly none.
+[[nodiscard]] std::vector<std::string> formats_not_built();
 /// Throws UsageError that lists the known names.
 [[nodiscard]] const LogFormat& find_log_format(std::string_view name);
 /// The names of those that are written, as people read them: "csv, npy".

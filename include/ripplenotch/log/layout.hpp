@@ -67,14 +67,28 @@ struct ReadOptions {
     std::optional<double> nm_per_ampere;  ///< torque constant for current columns (--kt)
     bool hold_bad_values = false;         ///< replace nan and empty cells by the sample before, and count
     std::size_t skip_lines = 0;           ///< at the top of a text log, passed on and not read
-    std::map<Role, Shaft> sides;          ///< of velocity and position (--side)
-    std::optional<double> gear_ratio;     ///< for what is measured before the gear
+    std::optional<std::string> records;   ///< fields of a raw dump: "f8,f4,f4" (--layout)
+    std::uint64_t skip_bytes = 0;         ///< at the start of a raw dump
+    std::optional<std::string> clock;     ///< of messages: "log" when they were recorded, "header" their own
+    std::optional<std::string> join;   ///< of signals with clocks of their own: "nearest", "hold", "linear"
+    std::map<Role, Shaft> sides;       ///< of velocity and position (--side)
+    std::optional<double> gear_ratio;  ///< for what is measured before the gear
     /// Where the joints' gears differ: of a joint by its name. Asked for the joints that are read only.
     std::function<std::optional<double>(const std::string& joint)> gear_ratio_of;
     bool takes_motor_units = false;              ///< motion before a gear of unknown ratio is not refused
     bool needs_torque = true;                    ///< false for info
     TimeRange range;                             ///< rows outside are as if they were not there
     std::shared_ptr<const RowsOutside> outside;  ///< what open_log left out of the bytes, by `range`
+};
+
+/// One numeric thing in a container, as `info` lists it.
+struct ContentEntry {
+    std::string path;   ///< as --columns takes it
+    std::string shape;  ///< "4000", "4000 x 7", "4000 messages"
+    std::string type;   ///< "float64", "sensor_msgs/msg/JointState"
+    std::string unit;   ///< as the file states it
+    std::optional<double> rate_hz;
+    bool read = false;  ///< it is among the columns
 };
 
 /// The columns of the joint chosen, by index into Layout::columns.
@@ -87,6 +101,7 @@ struct Layout {
     std::string source;  ///< for messages: path or "standard input"
     std::string format;  ///< "csv", "npy"
     std::vector<Column> columns;
+    std::vector<ContentEntry> contents;        ///< of a container: all numeric things in it
     std::vector<std::string> joints;           ///< all joints in the file, in file order
     JointColumns chosen;                       ///< the joint that is read; the first of them
     std::vector<JointColumns> others;          ///< that are read with it, when every joint is

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // ripplenotch info: what is in a log, and what can be done with it.
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <memory>
 
 #include "cli/command.hpp"
@@ -8,6 +11,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/document/info_json.hpp"
+#include "ripplenotch/log/format.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -35,6 +39,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
         text = info_to_json(logs, provenance);
     } else {
         for (const LogInfo& log : logs) text += (text.empty() ? "" : "\n") + info_to_text(log);
+        if (const auto missing = formats_not_built(); !missing.empty())
+            text += fmt::format("\nnot in this build: {}\n", fmt::join(missing, ", "));
     }
     write_text(request.common.output, text, request.common.overwrite());
     return ExitCode::done;

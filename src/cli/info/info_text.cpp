@@ -104,6 +104,22 @@ std::string columns_table(const LogInfo& log) {
     return text;
 }
 
+// What is in a container beside the columns that were read.
+std::string contents_table(const LogInfo& log) {
+    constexpr std::size_t most_listed = 40;
+    std::vector<std::vector<std::string>> rows = {{"in the file", "", "shape", "type", "unit", "Hz"}};
+    const auto& contents = log.layout.contents;
+    for (std::size_t i = 0; i < std::min(contents.size(), most_listed); ++i) {
+        const ContentEntry& entry = contents[i];
+        rows.push_back({entry.path, entry.read ? "read" : "", entry.shape, entry.type, entry.unit,
+                        entry.rate_hz ? figure(*entry.rate_hz) : ""});
+    }
+    std::string text = '\n' + text_table(rows, "llllll");
+    if (contents.size() > most_listed)
+        text += fmt::format("and {} others; --json lists all\n", contents.size() - most_listed);
+    return text;
+}
+
 }  // namespace
 
 std::string info_to_text(const LogInfo& log) {
@@ -120,6 +136,7 @@ std::string info_to_text(const LogInfo& log) {
         text += fmt::format("held      {} bad values replaced by the value before\n", log.bad_values_held);
     text += '\n' + joints_table(log);
     text += '\n' + columns_table(log);
+    if (!log.layout.contents.empty()) text += contents_table(log);
     text += "\ngood for\n";
     for (const Use& use : log.uses) {
         text += fmt::format("  {:12} {}  {}\n", use.name, use.possible ? "yes" : "no ", use.reason);

@@ -41,12 +41,36 @@ void attach_log_columns(Options& options, LogOptions& log) {
     options.flag("--no-header", log.no_header, "the first row of a text log is data");
     options.count("--skip-lines", log.skip_lines, 0, 1000000,
                   "lines at the top of a text log that are not read");
+    options.text(
+        "--layout", log.records, "FIELDS",
+        "of a record of a raw dump (--format raw): 'f8:time_s,f4:velocity_deg_s,<i2*0.01:torque_nm'");
+    options.count("--skip-bytes", log.skip_bytes, 0, 1 << 30, "bytes before the first record of a raw dump");
+    options.text("--clock", log.clock, "CLOCK",
+                 "of recorded messages: header (their own stamps, the default where they have them) or log "
+                 "(when they were recorded)");
+    options.text(
+        "--join", log.join, "HOW",
+        "of signals of several topics, which --columns names: linear (the default), hold or nearest");
     options.text("--kt", log.kt, "Nm/A", "torque constant, for logs of motor current");
     options.flag("--hold-bad-values", log.hold_bad_values,
                  "replace empty cells and nan by the value before, and count them");
 }
 
 namespace {
+
+// A path into a container may hold commas: "torque=log.tau(:,3)".
+std::vector<std::string> split_outside_brackets(const std::string& text) {
+    std::vector<std::string> pieces;
+    int depth = 0;
+    for (const std::string& piece : split_commas(text)) {
+        if (depth > 0)
+            pieces.back() += "," + piece;
+        else
+            pieces.push_back(piece);
+        for (const char c : piece) depth += c == '(' || c == '[' ? 1 : c == ')' || c == ']' ? -1 : 0;
+    }
+    return pieces;
+}
 
 // "motor", "velocity=motor,position=joint"
 std::map<Role, Shaft> read_sides(const std::string& text) {
@@ -71,7 +95,7 @@ ReadOptions LogOptions::resolve() const {
     ReadOptions read;
     read.format = format;
     read.joint = joint;
-    if (columns) read.columns = split_commas(*columns);
+    if (columns) read.columns = split_outside_brackets(*columns);
     for (const std::string& entry : units) {
         for (const std::string& piece : split_commas(entry)) {
             const std::size_t equals = piece.find('=');
@@ -105,6 +129,14 @@ ReadOptions LogOptions::resolve() const {
         read.nm_per_ampere = parse_quantity(text, Dimension::none, "--kt");
     }
     read.hold_bad_values = hold_bad_values;
+    if (clock && *clock != "log" && *clock != "header")
+        raise<UsageError>("--clock: '{}' is none of header, log", *clock);
+    read.clock = clock;
+    if (join && *join != "nearest" && *join != "hold" && *join != "linear")
+        raise<UsageError>("--join: '{}' is none of nearest, hold, linear", *join);
+    read.join = join;
+    read.records = records;
+    read.skip_bytes = static_cast<std::uint64_t>(skip_bytes);
     read.skip_lines = static_cast<std::size_t>(skip_lines);
     if (side) read.sides = read_sides(*side);
     return read;

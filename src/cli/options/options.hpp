@@ -95,14 +95,15 @@ void attach_common(Options& options, CommonOptions& common, const OutputNames& n
 [[nodiscard]] bool ends_with_json(std::string_view path);
 
 /// How to read a log: --format, --joint, --columns, --unit, --sample-rate, --delimiter, --decimal,
-/// --no-header, --skip-lines, --side, --kt, --hold-bad-values, and which rows of it: --from, --to. Call
-/// resolve() after parsing.
+/// --no-header, --skip-lines, --layout, --skip-bytes, --clock, --join, --side, --kt, --hold-bad-values, and
+/// which rows of it: --from, --to. Call resolve() after parsing.
 struct LogOptions {
     std::optional<std::string> from, to;
     std::optional<std::string> format, joint, columns, delimiter, decimal, kt;
     std::vector<std::string> units;
     std::optional<std::string> side;
-    int skip_lines = 0;
+    int skip_lines = 0, skip_bytes = 0;
+    std::optional<std::string> records, clock, join;
     std::optional<Hertz> sample_rate;
     bool no_header = false, hold_bad_values = false;
     [[nodiscard]] ReadOptions resolve() const;

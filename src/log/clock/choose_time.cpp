@@ -100,8 +100,8 @@ Clocks find_clocks(const ColumnFacts& facts, const Forced& forced, const ReadOpt
     Clocks found;
     int best_rank = 1000;
     for (std::size_t c = 0; !forced.by_place && c < facts.names.size(); ++c) {
-        const ColumnName name = read_column_name(facts.names[c]);
-        const Convention* const known = convention_of(facts.names[c], Role::time, facts.names);
+        const ColumnName name = read_column_name(facts.meanings()[c]);
+        const Convention* const known = convention_of(facts.meanings()[c], Role::time, facts.meanings());
         if ((name.role != Role::time && known == nullptr) || name.reference || forced.roles[c]) continue;
         const auto values = finite_values(facts, c);
         if (!facts.clock_texts.empty() && facts.clock_texts[c]) {

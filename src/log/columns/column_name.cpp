@@ -48,12 +48,12 @@ constexpr std::array<std::string_view, 19> reference_words = {
     "command",   "commanded",   "commands", "goal",      "setpoint", "model", "sim",
     "simulated", "feedforward", "ff",       "soll",      "planned"};
 // Quantities of something else: of the tool, of the mains, or derived from the one that is wanted.
-constexpr std::array<std::string_view, 34> foreign_words = {
-    "tcp",     "tool",      "pose",     "twist",    "cartesian",   "wrench",        "force",
-    "linear",  "scaling",   "fraction", "error",    "err",         "ext",           "external",
-    "hat",     "limit",     "limits",   "max",      "min",         "robot",         "main",
-    "voltage", "execution", "cycle",    "delay",    "temperature", "accelerations", "acceleration",
-    "acc",     "ddq",       "qdd",      "override", "deviation",   "derivative"};
+constexpr std::array<std::string_view, 35> foreign_words = {
+    "tcp",     "tool",      "pose",     "twist", "cartesian",   "wrench",        "force",
+    "linear",  "scaling",   "fraction", "error", "err",         "ext",           "external",
+    "hat",     "limit",     "limits",   "max",   "min",         "robot",         "main",
+    "voltage", "execution", "cycle",    "delay", "temperature", "accelerations", "acceleration",
+    "acc",     "ddq",       "ddot",     "qdd",   "override",    "deviation",     "derivative"};
 // Words that say how or where, not which joint.
 constexpr std::array<std::string_view, 25> general_words = {
     "state",  "states", "actual",   "act",   "measured", "meas", "msr",    "measurement", "value",
@@ -72,6 +72,16 @@ struct Word {
 bool is_digits(std::string_view text) {
     return !text.empty() &&
            std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+// q_dot and theta_dot are one symbol each.
+void join_dots(std::vector<Word>& words) {
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+        const bool angle = words[i].text == "q" || words[i].text == "theta";
+        if (!angle || words[i + 1].text != "dot") continue;
+        words[i].text = words[i].text == "q" ? "qdot" : "dtheta";
+        words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
 }
 
 // "actualVelocity_3" -> actual, Velocity (glued), 3
@@ -93,6 +103,7 @@ std::vector<Word> split_words(std::string_view name) {
         words.back().text += static_cast<char>(std::tolower(byte));
         before = now;
     }
+    join_dots(words);
     return words;
 }
 
@@ -131,7 +142,12 @@ bool is_clock_name(const std::vector<Word>& left) {
 
 ColumnName read_column_name(std::string_view name) {
     ColumnName column;
-    const NameAndUnit parts = split_unit(name);
+    // Of an element of a list, "tau_nm[2]", the unit stands in front of the number.
+    const std::size_t bracket = name.ends_with(']') ? name.rfind('[') : std::string_view::npos;
+    const bool element =
+        bracket != std::string_view::npos && is_digits(name.substr(bracket + 1, name.size() - bracket - 2));
+    NameAndUnit parts = split_unit(element ? name.substr(0, bracket) : name);
+    if (element) parts.name += name.substr(bracket);
     column.unit = parts.unit;
     column.unit_is_sure = parts.bracketed;
 

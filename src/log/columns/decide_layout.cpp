@@ -61,7 +61,7 @@ class Decision {
             Column column;
             column.name = facts_.names.empty() ? fmt::format("column {}", c + 1) : facts_.names[c];
             layout_.columns.push_back(column);
-            names_.push_back(facts_.names.empty() ? ColumnName{} : read_column_name(facts_.names[c]));
+            names_.push_back(facts_.names.empty() ? ColumnName{} : read_column_name(facts_.meanings()[c]));
             if (names_[c].unit.empty() && !facts_.units.empty()) {
                 names_[c].unit = facts_.units[c];
                 names_[c].unit_is_sure = !facts_.units[c].empty();
@@ -206,7 +206,7 @@ class Decision {
         }
         if (written.empty()) {
             const Convention* const known =
-                facts_.names.empty() ? nullptr : convention_of(facts_.names[c], role, facts_.names);
+                facts_.names.empty() ? nullptr : convention_of(facts_.meanings()[c], role, facts_.meanings());
             column.unit_assumed = known == nullptr;
             written = known != nullptr ? std::string(known->unit)
                       : role == Role::torque && names_[c].current

@@ -28,8 +28,12 @@ struct MotionPlaces {
 
 /// What a format knows of its columns before any decision.
 struct ColumnFacts {
-    std::vector<std::string> names;  ///< one a column; empty when the file names none
-    std::vector<std::string> units;  ///< from a unit row; empty when there is none
+    std::vector<std::string> names;    ///< one a column; empty when the file names none
+    std::vector<std::string> read_as;  ///< what paths mean beside each other; empty where names say it
+    std::vector<std::string> units;    ///< from a unit row; empty when there is none
+    [[nodiscard]] const std::vector<std::string>& meanings() const {
+        return read_as.empty() ? names : read_as;
+    }
     std::size_t columns = 0;
     std::vector<std::vector<double>>
         sample;  ///< the first rows by column; not-a-number where a cell is no number

@@ -21,6 +21,29 @@ std::string joint_of_forced(const KnownColumns& known) {
     return joint_key(joint) == joint_key(known.names[*motion].joint) ? joint : "";
 }
 
+// Torque and motion are named by --columns: the other columns of these roles tell nothing, nor do joints that
+// have nothing else.
+void drop_unasked(const KnownColumns& known, bool joint_asked, std::vector<JointGroup>& groups) {
+    const auto& forced = known.forced;
+    const auto torque = forced.column_of(Role::torque);
+    const bool moves = forced.column_of(Role::velocity) || forced.column_of(Role::position);
+    if (forced.by_place || !torque || !moves) return;
+    const std::string of_torque = joint_key(known.names[*torque].joint);
+    const auto is_unasked = [&](const JointGroup& group) {
+        return group.key != of_torque &&
+               std::all_of(motion_roles.begin(), motion_roles.end(),
+                           [&](Role role) { return forced.column_of(role) || !group.has(role); });
+    };
+    if (joint_asked && std::all_of(groups.begin(), groups.end(), is_unasked) &&
+        !joint_of_forced(known).empty())
+        groups.clear();
+    if (joint_asked) return;
+    groups.erase(std::remove_if(groups.begin(), groups.end(), is_unasked), groups.end());
+    const bool told = std::any_of(groups.begin(), groups.end(),
+                                  [&](const JointGroup& group) { return group.key == of_torque; });
+    if (groups.size() > 1 && !told) groups.clear();
+}
+
 std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
     std::vector<JointGroup> groups;
     for (const bool reference : {false, true}) {
@@ -59,6 +82,7 @@ std::vector<JointGroup> collect_groups(const KnownColumns& known, bool merge) {
 
 std::vector<JointGroup> group_joints(const KnownColumns& known, bool joint_asked, bool needs_torque) {
     std::vector<JointGroup> groups = collect_groups(known, false);
+    drop_unasked(known, joint_asked, groups);
     const auto complete = [&](const JointGroup& group) {
         const auto has = [&](Role role) { return group.has(role) || known.forced.column_of(role); };
         return (has(Role::torque) || !needs_torque) && (has(Role::velocity) || has(Role::position));

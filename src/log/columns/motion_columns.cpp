@@ -30,7 +30,7 @@ std::vector<MotionColumns> motions_of(const KnownColumns& known, const std::vect
     const auto column = [&](std::optional<std::size_t> c, Role role) -> std::optional<MotionColumn> {
         if (!c || layout.columns[*c].role != role) return std::nullopt;
         const auto side = options.sides.find(role);
-        const auto& names = known.facts.names;
+        const auto& names = known.facts.meanings();
         return MotionColumn{*c, unit_is_stated[*c], known.names[*c].motor_side,
                             names.empty() ? nullptr : convention_of(names[*c], role, names),
                             side == options.sides.end() ? std::nullopt : std::optional<Shaft>(side->second)};

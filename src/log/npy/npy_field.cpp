@@ -49,7 +49,9 @@ bool load_native(const char* at, std::size_t record_size, std::span<double> into
 
 }  // namespace
 
-double load_field(const char* record, const NpyField& field) {
+namespace {
+
+double load_unscaled(const char* record, const NpyField& field) {
     const char* const at = record + field.offset;
     const bool big = field.big_endian;
     switch (field.kind) {
@@ -83,15 +85,22 @@ double load_field(const char* record, const NpyField& field) {
     }
 }
 
+}  // namespace
+
+double load_field(const char* record, const NpyField& field) {
+    const double number = load_unscaled(record, field);
+    return field.scaled() ? number * field.scale + field.shift : number;
+}
+
 std::int64_t load_count(const char* record, const NpyField& field) {
-    if ((field.kind == 'i' || field.kind == 'u') && field.size == 8)
+    if ((field.kind == 'i' || field.kind == 'u') && field.size == 8 && !field.scaled())
         return load_word<std::int64_t>(record + field.offset, field.big_endian);
     const double value = load_field(record, field);
     return std::abs(value) < 9e18 ? static_cast<std::int64_t>(value) : 0;
 }
 
 double load_since(const char* record, const NpyField& field, std::int64_t origin) {
-    if (field.kind == 'f') return load_field(record, field) - static_cast<double>(origin);
+    if (field.kind == 'f' || field.scaled()) return load_field(record, field) - static_cast<double>(origin);
     return since(load_count(record, field), origin);
 }
 
@@ -105,7 +114,7 @@ void store_float(char* record, const NpyField& field, double value) {
 
 bool load_column(const char* records, std::size_t record_size, const NpyField& field,
                  std::span<double> into) {
-    if (field.kind == 'f' && is_native(field)) {
+    if (field.kind == 'f' && is_native(field) && !field.scaled()) {
         const char* const first = records + field.offset;
         return field.size == 4 ? load_native<float>(first, record_size, into)
                                : load_native<double>(first, record_size, into);

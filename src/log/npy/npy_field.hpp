@@ -15,7 +15,9 @@ struct NpyField {
     char kind = 'f';       ///< 'f' float, 'i' signed, 'u' unsigned, 0 anything that is no number
     std::size_t size = 8;  ///< bytes
     bool big_endian = false;
-    std::size_t offset = 0;  ///< in the record
+    std::size_t offset = 0;           ///< in the record
+    double scale = 1.0, shift = 0.0;  ///< the number is what stands there times `scale` plus `shift`
+    [[nodiscard]] bool scaled() const { return scale != 1.0 || shift != 0.0; }
 };
 
 /// A number of a record, and back; `record` points at its first byte.

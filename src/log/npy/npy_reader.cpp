@@ -23,6 +23,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options)
     : source_(std::move(source)), hold_bad_values_(options.hold_bad_values) {
+    table_.format = "npy";
     read_up_to(first_bytes, 12);
     if (first_bytes.substr(0, npy_magic.size()) != npy_magic) {
         raise<DataError>(
@@ -55,19 +56,7 @@ std::size_t NpyReader::read_behind(std::string& bytes, std::size_t have, std::si
 }
 
 void NpyReader::decide(const ReadOptions& options) {
-    ColumnFacts facts;
-    facts.columns = header_.fields.size();
-    facts.sample.resize(facts.columns);
-    const std::size_t rows = std::min(header_.rows, carry_.size() / header_.record_size);
-    for (std::size_t c = 0; c < facts.columns; ++c) {
-        if (header_.structured) facts.names.push_back(header_.fields[c].name);
-        for (std::size_t r = 0; r < rows; ++r) {
-            const bool number = header_.fields[c].kind != '\0';
-            facts.sample[c].push_back(
-                number ? load_field(carry_.data() + r * header_.record_size, header_.fields[c])
-                       : not_a_number);
-        }
-    }
+    const ColumnFacts facts = column_facts();
     ReadOptions with_default = options;
     const bool by_place =
         !header_.structured && options.columns.empty() && (facts.columns == 3 || facts.columns == 4);
@@ -76,18 +65,15 @@ void NpyReader::decide(const ReadOptions& options) {
         with_default.every_joint = false;  // there is one
         if (facts.columns == 4) with_default.columns.emplace_back("position");
     }
-    for (std::size_t c = 0; c < facts.columns; ++c)
-        facts.first_counts.push_back(rows > 0 ? load_count(carry_.data(), header_.fields[c]) : 0);
-    facts.motion_sample = [this](const MotionPlaces& places, std::size_t bytes) {
-        read_up_to(carry_, std::max(carry_.size(), std::min(bytes, header_.rows * header_.record_size)));
-        return motion_sample(places);
-    };
-    layout_ = decide_layout(source_->name(), "npy", facts, with_default);
+    layout_ = decide_layout(source_->name(), table_.format, facts, with_default);
+    layout_.contents = table_.contents;
+    layout_.warnings.insert(layout_.warnings.begin(), table_.warnings.begin(), table_.warnings.end());
     if (by_place) {
         layout_.warnings.insert(
             layout_.warnings.begin(),
-            LogWarning{"columns by place", fmt::format("the array names no columns: took time, velocity, "
+            LogWarning{"columns by place", fmt::format("the {} names no columns: took time, velocity, "
                                                        "torque{} by place; --columns settles it",
+                                                       table_.format == "npy" ? "array" : "layout",
                                                        facts.columns == 4 ? ", position" : "")});
     }
     plan_columns(facts.names);
@@ -141,6 +127,11 @@ bool NpyReader::fetch(RowBlock& block) {
     const std::size_t wanted = std::min(left, std::max<std::size_t>(1, piece_size / size));
     if (have < size) have = read_behind(bytes, have, wanted * size);
     const std::size_t rows = std::min(left, have / size);
+    if (rows == 0 && endless_) {
+        if (have > 0) complain_of_end(have);
+        block.clear();
+        return false;
+    }
     if (rows == 0) {
         raise<DataError>(
             "{}: read {} rows and a part of one, expected {} rows; the file is cut off, save the array again",

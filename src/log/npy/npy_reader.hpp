@@ -8,6 +8,7 @@
 
 #include "log/columns/decide_layout.hpp"
 #include "log/npy/npy_header.hpp"
+#include "log/records/record_table.hpp"
 #include "log/text/row_parser.hpp"
 #include "ripplenotch/log/format.hpp"
 
@@ -16,6 +17,11 @@ namespace ripplenotch {
 class NpyReader : public LogReader {
   public:
     NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options);
+
+    /// Records of a dump or a container: bytes without a head, that fields say how to read.
+    /// Only those that are wanted are asked for, unless `keep_all`.
+    NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, const ReadOptions& options,
+              bool keep_all = false);
 
     [[nodiscard]] const Layout& layout() const override { return layout_; }
     [[nodiscard]] std::string_view head() const override { return head_; }
@@ -27,12 +33,17 @@ class NpyReader : public LogReader {
     void accept(RowBlock& block) override;
 
     [[nodiscard]] const NpyHeader& header() const { return header_; }
+    [[nodiscard]] const RecordTable& table() const { return table_; }
     /// What a record says, in the unit of its column, less the origin; only where there is a time column.
     [[nodiscard]] double time_of(const char* record) const { return time_at(record, layout_); }
 
   private:
     void read_whole(std::string& first_bytes);
     void decide(const ReadOptions& options);
+    [[nodiscard]] ColumnFacts column_facts();
+    void keep_wanted(RecordSource& records);
+    [[nodiscard]] std::size_t sample_rows() const;
+    [[noreturn]] void complain_of_end(std::size_t left_over) const;
     [[nodiscard]] double time_at(const char* record, const Layout& layout) const;
     [[nodiscard]] double value_at(const char* record, const WantedColumn& wanted) const;
     [[nodiscard]] MotionSample motion_sample(const MotionPlaces& places) const;
@@ -49,9 +60,11 @@ class NpyReader : public LogReader {
 
     std::unique_ptr<ByteSource> source_;
     NpyHeader header_;
+    RecordTable table_;  ///< of records without a head
     Layout layout_;
     std::string head_, carry_;
     bool hold_bad_values_ = false;
+    bool endless_ = false;  ///< the end of the bytes is the end of the rows
     std::size_t fetched_ = 0, rows_ = 0;
     std::vector<WantedColumn> wanted_;
     std::vector<double> factors_, before_;  ///< by slot; before: the row before, as in the file

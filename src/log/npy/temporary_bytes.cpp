@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <optional>
 
 #include "core/temporary_file.hpp"
@@ -20,8 +21,23 @@ TemporaryBytes::TemporaryBytes() {
 }
 
 void TemporaryBytes::put(std::string_view bytes) {
+    flushed_ = false;
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
         raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
+}
+
+void TemporaryBytes::read_at(std::uint64_t offset, char* into, std::size_t size) {
+    if (!flushed_ && std::fflush(file_.get()) != 0)
+        raise<FileError>("cannot write to a temporary file; check the space in the temporary folder");
+    flushed_ = true;
+    while (size > 0) {
+        const ssize_t got = ::pread(::fileno(file_.get()), into, size, static_cast<off_t>(offset));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) raise<FileError>("cannot read a temporary file back");
+        into += got;
+        size -= static_cast<std::size_t>(got);
+        offset += static_cast<std::uint64_t>(got);
+    }
 }
 
 void TemporaryBytes::rewind() { std::rewind(file_.get()); }

@@ -2,6 +2,7 @@
 #pragma once
 // Internal to the log room: bytes that have to wait until something is known that goes before them.
 
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string_view>
@@ -17,12 +18,15 @@ class TemporaryBytes {
     void rewind();
     /// Up to `size` bytes; 0 at the end.
     std::size_t read(char* into, std::size_t size);
+    /// Exactly `size` bytes that have been put, anywhere; putting goes on behind the last.
+    void read_at(std::uint64_t offset, char* into, std::size_t size);
 
   private:
     struct Close {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
     std::unique_ptr<std::FILE, Close> file_;
+    bool flushed_ = true;
 };
 
 }  // namespace ripplenotch

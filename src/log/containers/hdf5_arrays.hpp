@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The arrays of numbers in an HDF5 file, of MATLAB's version 7.3 too, by libhdf5.
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "log/containers/stored_array.hpp"
+
+namespace ripplenotch {
+
+struct Hdf5Contents {
+    std::vector<StoredArray> arrays;  ///< datasets of one dimension or two, members of compound types
+    std::vector<ContentEntry>
+        others;  ///< "outside of the file, not followed", "packed by a filter that is not here"
+};
+
+/// Links and numbers that lie in other files are never followed, and no filter is loaded. With `matlab`,
+/// paths are as MATLAB writes them ("log.q_dot") and text, cells and objects are left out. Throws DataError,
+/// beginning with the file's name, where the library cannot read it.
+[[nodiscard]] Hdf5Contents find_hdf5_arrays(const std::shared_ptr<StoredBytes>& file, bool matlab);
+
+}  // namespace ripplenotch

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "log/containers/stored_bytes.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "log/npy/temporary_bytes.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t piece_size = std::size_t{1} << 16;
+
+[[noreturn]] void complain_of_end(const std::string& name, std::uint64_t offset, std::uint64_t size) {
+    raise<DataError>(
+        "{}: read {} bytes, expected more behind byte {}; the file is cut off or damaged, copy it again",
+        name, size, offset);
+}
+
+class FileBytes final : public StoredBytes {
+  public:
+    explicit FileBytes(std::unique_ptr<ByteSource> source)
+        : StoredBytes(source->name()),
+          source_(std::move(source)),
+          descriptor_(source_->descriptor_by_place()) {}
+    [[nodiscard]] std::uint64_t size() const override { return source_->size(); }
+    void read_at(std::uint64_t offset, char* into, std::size_t size) override {
+        if (offset > this->size()) complain_of_end(name(), offset, this->size());
+        while (size > 0) {
+            const ssize_t got = ::pread(descriptor_, into, size, static_cast<off_t>(offset));
+            if (got < 0 && errno == EINTR) continue;
+            if (got < 0) raise<FileError>("{}: cannot read: {}", name(), std::strerror(errno));
+            if (got == 0) complain_of_end(name(), offset, this->size());
+            into += got;
+            size -= static_cast<std::size_t>(got);
+            offset += static_cast<std::uint64_t>(got);
+        }
+    }
+    [[nodiscard]] std::string openable() const override {
+        struct stat status {};
+        const bool named = ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0;
+        return named ? fmt::format("/dev/fd/{}", descriptor_) : "";
+    }
+    void require_unchanged() const override { source_->require_unchanged(); }
+
+  private:
+    std::unique_ptr<ByteSource> source_;
+    int descriptor_;
+};
+
+class KeptBytes final : public StoredBytes {
+  public:
+    KeptBytes(ByteSource& source, std::string piece) : StoredBytes(source.name()) {
+        for (; !piece.empty(); piece.resize(source.read(piece.data(), piece.size()))) {
+            bytes_.put(piece);
+            size_ += piece.size();
+            piece.resize(piece_size);
+        }
+        char first = 0;
+        if (size_ > 0) bytes_.read_at(0, &first, 1);  // all is in the file
+    }
+    [[nodiscard]] std::uint64_t size() const override { return size_; }
+    void read_at(std::uint64_t offset, char* into, std::size_t size) override {
+        if (offset > size_ || size > size_ - offset) complain_of_end(name(), offset, size_);
+        bytes_.read_at(offset, into, size);
+    }
+
+  private:
+    TemporaryBytes bytes_;
+    std::uint64_t size_ = 0;
+};
+
+class UnpackedPart final : public StoredBytes {
+  public:
+    UnpackedPart(std::shared_ptr<StoredBytes> packed, std::uint64_t offset, std::uint64_t size, Deflate kind,
+                 std::uint64_t most)
+        : StoredBytes(packed->name()),
+          packed_(std::move(packed)),
+          at_(offset),
+          end_(offset + size),
+          most_(most),
+          unpacker_(make_inflater(kind, name())) {}
+    [[nodiscard]] std::uint64_t size() const override { return 0; }
+    void read_at(std::uint64_t offset, char* into, std::size_t size) override {
+        if (size > most_ || offset > most_ - size) complain_of_end(name(), offset, most_);
+        while (have_ < offset + size) unpack_piece();
+        bytes_.read_at(offset, into, size);
+    }
+    void require_unchanged() const override { packed_->require_unchanged(); }
+
+  private:
+    void unpack_piece() {
+        std::string unpacked(4 * piece_size, '\0');
+        if (left_.empty() && at_ < end_) {
+            piece_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(piece_size, end_ - at_)));
+            packed_->read_at(at_, piece_.data(), piece_.size());
+            at_ += piece_.size();
+            left_ = piece_;
+        }
+        Unpacker::Step step;
+        try {
+            step = unpacker_->step(left_, unpacked);
+        } catch (const DataError& error) {
+            raise<DataError>("{}: read up to byte {}, expected packed numbers: {}", name(), at_,
+                             error.what());
+        }
+        left_.remove_prefix(step.taken);
+        have_ += step.given;
+        if (step.given == 0 && (unpacker_->complete() || (step.taken == 0 && at_ == end_)))
+            complain_of_end(name(), at_, packed_->size());
+        if (have_ > most_)
+            raise<DataError>("{}: read more than {} bytes packed into one array, expected no more", name(),
+                             most_);
+        bytes_.put(std::string_view(unpacked).substr(0, step.given));
+    }
+
+    std::shared_ptr<StoredBytes> packed_;
+    std::uint64_t at_, end_, most_, have_ = 0;
+    std::unique_ptr<Unpacker> unpacker_;
+    std::string piece_;
+    std::string_view left_;  ///< of the piece
+    TemporaryBytes bytes_;
+};
+
+}  // namespace
+
+std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source, std::string first_bytes) {
+    if (source->by_place()) return std::make_shared<FileBytes>(std::move(source));
+    return std::make_shared<KeptBytes>(*source, std::move(first_bytes));
+}
+
+std::shared_ptr<StoredBytes> unpack_part(std::shared_ptr<StoredBytes> packed, std::uint64_t offset,
+                                         std::uint64_t size, Deflate kind, std::uint64_t most) {
+    return std::make_shared<UnpackedPart>(std::move(packed), offset, size, kind, most);
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// MCAP recordings: the messages of a topic, by path.
+
+#include <array>
+
+#include "log/formats.hpp"
+#include "log/messages/message_source.hpp"
+#include "log/records/open_records.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 1> extensions = {".mcap"};
+
+Records make_mcap(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
+    const auto file = store_bytes(std::move(source), std::move(first_bytes));
+    return records_of_messages([file] { return open_mcap(file); }, "mcap", options);
+}
+
+}  // namespace
+
+const LogFormat formats::mcap{
+    .name = "mcap",
+    .summary = "MCAP recordings of ROS 2: JointState, and every message of numbers by path",
+    .extensions = extensions,
+    .binary = true,
+    .sniff = [](std::string_view bytes) { return bytes.starts_with("\x89MCAP"); },
+    .open = open_as_records<make_mcap>,
+    .cut = cut_as_records<make_mcap>,
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "log/messages/joined_records.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t clock_size = sizeof(std::int64_t), buffered = std::size_t{1} << 18;
+
+std::int64_t clock_of(const char* record) {
+    std::int64_t clock = 0;
+    std::memcpy(&clock, record, clock_size);
+    return clock;
+}
+
+/// A signal as its last message and the next.
+class Side {
+  public:
+    Side(SideSignal signal, Join how) : signal_(std::move(signal)), how_(how) {
+        signal_.type.offset = clock_size;
+        record_.resize(clock_size + signal_.type.size);
+        advance();
+        advance();
+    }
+    /// At a time that is not before those asked for until now; none before the first message and behind the
+    /// last.
+    std::optional<double> at(std::int64_t time_ns) {
+        while (after_ && after_->time_ns <= time_ns) advance();
+        if (!before_ || before_->time_ns > time_ns) return std::nullopt;
+        if (before_->time_ns == time_ns) return before_->value;
+        if (!after_) return std::nullopt;
+        const std::int64_t since = time_ns - before_->time_ns, until = after_->time_ns - time_ns;
+        const std::int64_t away = how_ == Join::hold      ? since
+                                  : how_ == Join::nearest ? std::min(since, until)
+                                                          : std::max(since, until);
+        if (away > signal_.limit_ns) {
+            raise<DataError>(
+                "{}: read no message of {} within {} s of the row at {} s, expected one; leave the gap out "
+                "with --from and --to, or read "
+                "one topic",
+                signal_.records->name(), signal_.path, shortest(1e-9 * static_cast<double>(signal_.limit_ns)),
+                shortest(1e-9 * static_cast<double>(time_ns)));
+        }
+        if (how_ == Join::hold) return before_->value;
+        if (how_ == Join::nearest) return since <= until ? before_->value : after_->value;
+        const double part = static_cast<double>(since) / static_cast<double>(since + until);
+        return before_->value + part * (after_->value - before_->value);
+    }
+
+  private:
+    struct Point {
+        std::int64_t time_ns = 0;
+        double value = 0.0;
+    };
+    void advance() {
+        before_ = after_;
+        after_.reset();
+        std::size_t have = 0;
+        while (have < record_.size()) {
+            const std::size_t got = signal_.records->read(record_.data() + have, record_.size() - have);
+            if (got == 0) return;
+            have += got;
+        }
+        after_ = Point{clock_of(record_.data()), load_field(record_.data(), signal_.type)};
+        if (before_ && after_->time_ns < before_->time_ns)
+            raise<DataError>(
+                "{}: read a message of {} that is older than the one before, expected time to run forward",
+                signal_.records->name(), signal_.path);
+    }
+
+    SideSignal signal_;
+    Join how_;
+    std::string record_;
+    std::optional<Point> before_, after_;
+};
+
+class JoinedRecords final : public RecordSource {
+  public:
+    JoinedRecords(std::unique_ptr<MessageRecords> base, const std::vector<std::size_t>& base_sizes,
+                  std::vector<SideSignal> sides, Join how)
+        : RecordSource(Name{base->name()}, with_sides(base_sizes, sides.size())), base_(std::move(base)) {
+        for (const std::size_t size : base_sizes) {
+            offsets_.push_back(base_record_);
+            sizes_.push_back(size);
+            base_record_ += size;
+        }
+        for (SideSignal& side : sides) sides_.emplace_back(std::move(side), how);
+    }
+
+  private:
+    static std::vector<std::size_t> with_sides(std::vector<std::size_t> sizes, std::size_t sides) {
+        sizes.insert(sizes.end(), sides, sizeof(double));
+        return sizes;
+    }
+    void refill(std::string& bytes) override {
+        std::vector<double> values(sides_.size());
+        while (bytes.size() < buffered && next_base()) {
+            bool all = true;
+            for (std::size_t s = 0; s < sides_.size(); ++s) {
+                const auto value = sides_[s].at(clock_of(record_.data()));
+                all = all && value.has_value();
+                values[s] = value.value_or(0.0);
+            }
+            if (!all) continue;
+            for (const std::size_t field : kept()) {
+                if (field < sizes_.size()) {
+                    bytes.append(record_, offsets_[field], sizes_[field]);
+                } else {
+                    std::array<char, sizeof(double)> raw{};
+                    std::memcpy(raw.data(), &values[field - sizes_.size()], raw.size());
+                    bytes.append(raw.data(), raw.size());
+                }
+            }
+        }
+    }
+    bool next_base() {
+        record_.resize(base_record_);
+        std::size_t have = 0;
+        while (have < record_.size()) {
+            const std::size_t got = base_->read(record_.data() + have, record_.size() - have);
+            if (got == 0) return false;
+            have += got;
+        }
+        return true;
+    }
+
+    std::unique_ptr<MessageRecords> base_;
+    std::vector<std::size_t> offsets_, sizes_;  ///< of its fields
+    std::size_t base_record_ = 0;
+    std::vector<Side> sides_;
+    std::string record_;
+};
+
+}  // namespace
+
+Join join_named(std::string_view word) {
+    if (word == "nearest") return Join::nearest;
+    if (word == "hold") return Join::hold;
+    if (word == "linear") return Join::linear;
+    raise<UsageError>("--join: '{}' is none of nearest, hold, linear", word);
+}
+
+std::unique_ptr<RecordSource> join_records(std::unique_ptr<MessageRecords> base,
+                                           std::vector<std::size_t> base_sizes, std::vector<SideSignal> sides,
+                                           Join how) {
+    return std::make_unique<JoinedRecords>(std::move(base), base_sizes, std::move(sides), how);
+}
+
+}  // namespace ripplenotch

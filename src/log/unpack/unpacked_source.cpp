@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "log/unpack/unpacked_source.hpp"
+
+#include <array>
+#include <condition_variable>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t packed_piece = std::size_t{1} << 16;
+constexpr std::size_t unpacked_piece = std::size_t{1} << 18;
+constexpr std::size_t pieces_ahead = 4;
+
+/// In the thread of who reads.
+class UnpackedBytes : public ByteSource {
+  public:
+    UnpackedBytes(std::unique_ptr<ByteSource> packed, std::string first_bytes, const Packing& packing)
+        : ByteSource(Name{packed->name()}),
+          packed_(std::move(packed)),
+          packing_(packing),
+          unpacker_(unpacker_of(packing, packed_->name())),
+          piece_(std::move(first_bytes)),
+          left_(piece_) {}
+
+    std::size_t read(char* into, std::size_t size) override {
+        try {
+            return unpack_some({into, size});
+        } catch (const DataError& error) {
+            raise<DataError>("{}: read {} bytes out of {} of {}, expected more of the log: {}", name(),
+                             given_, taken_, packing_.name, error.what());
+        }
+    }
+
+  private:
+    std::size_t unpack_some(std::span<char> into) {
+        while (!into.empty()) {
+            if (left_.empty() && !source_ended_) refill();
+            const Unpacker::Step step = unpacker_->step(left_, into);
+            left_.remove_prefix(step.taken);
+            taken_ += step.taken;
+            given_ += step.given;
+            refuse_bomb();
+            if (step.given > 0) return step.given;
+            if (step.taken > 0 || !source_ended_) continue;
+            if (!left_.empty()) raise<DataError>("what follows is no {}; cut it off", packing_.name);
+            if (unpacker_->complete()) return 0;
+            raise<DataError>(
+                "the file is cut off; copy it again, or use what is there: {} FILE | ripplenotch ... -",
+                packing_.program);
+        }
+        return 0;
+    }
+    void refill() {
+        piece_.resize(packed_piece);
+        piece_.resize(packed_->read(piece_.data(), piece_.size()));
+        source_ended_ = piece_.empty();
+        left_ = piece_;
+    }
+    void refuse_bomb() const {
+        if (given_ < unpacked_unasked || given_ / most_unpacked_for_one < taken_) return;
+        raise<DataError>(
+            "no log is {} times smaller when packed; if you trust it: {} FILE | ripplenotch ... -",
+            most_unpacked_for_one, packing_.program);
+    }
+
+    std::unique_ptr<ByteSource> packed_;
+    const Packing& packing_;
+    std::unique_ptr<Unpacker> unpacker_;
+    std::string piece_;
+    std::string_view left_;  ///< of the piece
+    bool source_ended_ = false;
+    std::uint64_t taken_ = 0, given_ = 0;
+};
+
+/// What another source gives, read ahead by a thread.
+class ReadAhead : public ByteSource {
+  public:
+    explicit ReadAhead(std::unique_ptr<ByteSource> source)
+        : ByteSource(Name{source->name()}),
+          source_(std::move(source)),
+          thread_([this](const std::stop_token& stop) { fill(stop); }) {}
+
+    std::size_t read(char* into, std::size_t size) override {
+        if (given_ == current_.size()) take_piece();
+        const std::size_t count = std::min(size, current_.size() - given_);
+        std::memcpy(into, current_.data() + given_, count);
+        given_ += count;
+        return count;
+    }
+
+  private:
+    struct Piece {
+        std::vector<char> bytes;
+        std::exception_ptr failure;
+    };
+    void fill(const std::stop_token& stop) {
+        bool ended = false;
+        while (!ended) {
+            std::vector<char> bytes = spare();
+            Piece piece;
+            try {
+                bytes.resize(unpacked_piece);
+                std::size_t have = 0;
+                for (std::size_t got = 1; have < bytes.size() && got > 0; have += got)
+                    got = source_->read(bytes.data() + have, bytes.size() - have);
+                bytes.resize(have);
+            } catch (...) {
+                piece.failure = std::current_exception();
+                bytes.clear();
+            }
+            ended = bytes.empty();
+            piece.bytes = std::move(bytes);
+            std::unique_lock lock(mutex_);
+            if (!changed_.wait(lock, stop, [this] { return ready_.size() < pieces_ahead; })) return;
+            ready_.push_back(std::move(piece));
+            changed_.notify_all();
+        }
+    }
+    std::vector<char> spare() {
+        const std::lock_guard lock(mutex_);
+        return std::exchange(spare_, {});
+    }
+    void take_piece() {
+        if (ended_) return;
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return !ready_.empty(); });
+        Piece piece = std::move(ready_.front());
+        ready_.erase(ready_.begin());
+        spare_ = std::exchange(current_, std::move(piece.bytes));
+        given_ = 0;
+        changed_.notify_all();
+        ended_ = current_.empty();
+        if (piece.failure) std::rethrow_exception(piece.failure);
+    }
+
+    std::unique_ptr<ByteSource> source_;
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::vector<Piece> ready_;
+    std::vector<char> spare_, current_;
+    std::size_t given_ = 0;  ///< of the current piece
+    bool ended_ = false;
+    std::jthread thread_;  ///< last: what it uses is there before it and behind it
+};
+
+}  // namespace
+
+std::unique_ptr<ByteSource> unpack(std::unique_ptr<ByteSource> packed, std::string first_bytes,
+                                   const Packing& packing) {
+    const bool is_file = packed->by_place();
+    auto bytes = std::make_unique<UnpackedBytes>(std::move(packed), std::move(first_bytes), packing);
+    if (!is_file) return bytes;
+    return std::make_unique<ReadAhead>(std::move(bytes));
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Compressed bytes, unpacked a piece at a time: what the four kinds of compressed files have in common.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace ripplenotch {
+
+/// Unpacks one stream of bytes; streams that follow each other are one, as their own programs have it.
+class Unpacker {
+  public:
+    virtual ~Unpacker() = default;
+    struct Step {
+        std::size_t taken = 0;  ///< of the packed bytes
+        std::size_t given = 0;  ///< put into the room
+    };
+    /// Takes from `packed`, gives into `into`. Neither for want of bytes. Throws DataError, without a
+    /// source's name, where the bytes are damaged or ask for more than 128 MiB to be unpacked.
+    virtual Step step(std::string_view packed, std::span<char> into) = 0;
+    /// Whether what was taken so far is whole.
+    [[nodiscard]] virtual bool complete() const = 0;
+};
+
+/// Of the deflate method, as containers have it inside: zlib's own wrapping (RFC 1950) or none (RFC 1951).
+enum class Deflate { wrapped, bare };
+/// Throws UsageError, beginning with `source`, where this build lacks zlib.
+[[nodiscard]] std::unique_ptr<Unpacker> make_inflater(Deflate kind, const std::string& source);
+
+/// CRC-32 as gzip and many others have it; none where this build lacks zlib.
+[[nodiscard]] std::optional<std::uint32_t> crc32_of(std::string_view bytes);
+
+/// One kind of compressed file.
+struct Packing {
+    std::string_view name;     ///< "gzip"
+    std::string_view magic;    ///< the first bytes of such a file
+    std::string_view program;  ///< that unpacks it to a pipe: "zcat"
+    std::string_view lacks;    ///< the library that this build lacks; empty where it has it
+    std::unique_ptr<Unpacker> (*make)() = nullptr;  ///< null where it lacks it
+};
+
+namespace packings {
+extern const Packing gzip, zstd, lz4, xz;
+}
+
+/// All kinds.
+[[nodiscard]] std::span<const Packing* const> all_packings();
+
+/// The kind that begins with these bytes; null where it is none.
+[[nodiscard]] const Packing* packing_of(std::string_view first_bytes);
+
+/// Throws UsageError, beginning with `source`, where this build cannot unpack it.
+[[nodiscard]] std::unique_ptr<Unpacker> unpacker_of(const Packing& packing, const std::string& source);
+
+}  // namespace ripplenotch

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""Logs in compressed files and containers, written by others than the tool. The law: any of them gives the same
+`identify --json` as the CSV with the same numbers."""
+
+import csv
+import importlib.util
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+sys.path.insert(0, str(SOURCE / "tests/support"))
+
+LOG = SOURCE / "data/paper_90deg_s.csv"
+
+
+def there(module):
+    return importlib.util.find_spec(module) is not None
+
+
+def needs(module):
+    return unittest.skipUnless(there(module), f"no {module} here to write the file")
+
+
+class Case(unittest.TestCase):
+    # Of the build, by their names in cmake/containers.cmake.
+    libraries = ("ZLIB", "ZSTD", "LZ4", "LZMA")
+
+    def setUp(self):
+        missing = set(self.libraries) & set(os.environ["RIPPLENOTCH_LACKS"].split(","))
+        if missing:
+            self.skipTest(f"this build was made without {', '.join(sorted(missing))}")
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        with open(LOG, newline="") as file:
+            rows = list(csv.reader(file))
+        self.names, self.rows = rows[0], [[float(cell) for cell in row] for row in rows[1:]]
+        self.columns = {name: [row[c] for row in self.rows] for c, name in enumerate(self.names)}
+
+    def run_tool(self, *words, stdin=None, code=0):
+        done = subprocess.run([TOOL, *map(str, words)], input=stdin, stdin=None if stdin is not None else subprocess.DEVNULL,
+                              capture_output=True, timeout=60, cwd=self.folder)
+        self.assertEqual(done.returncode, code, done.stderr.decode()[-2000:])
+        return done
+
+    def identified(self, *words, stdin=None):
+        found = json.loads(self.run_tool("identify", "--json", *words, stdin=stdin).stdout)
+        for field in ("inputs", "command"):
+            found.pop(field)
+        # The name of the log stands in sentences about it.
+        text = json.dumps(found).replace("standard input" if words[0] == "-" else str(words[0]), "LOG")
+        # So do the names of columns, which are paths in a container.
+        return re.sub(r"'[^']*' \(column \d+\)", "COLUMN", text)
+
+    def assert_same(self, path, *options, twin=LOG, twin_options=()):
+        self.assertEqual(self.identified(path, *options), self.identified(twin, *twin_options))
+
+    def refusal(self, path, *options, command="info", code=3):
+        said = self.run_tool(command, path, *options, code=code).stderr.decode().strip()
+        self.assertEqual(len(said.split("\n")), 1, said)
+        self.assertIn(str(path), said)
+        return said
+
+    def write(self, name, data):
+        path = self.folder / name
+        path.write_bytes(data)
+        return path

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+"""Logs that are compressed, and files that are no logs."""
+
+import bz2
+import gzip
+import lzma
+import struct
+import sys
+import unittest
+
+from container_case import LOG, Case, there
+
+
+def zstd(data):
+    import zstandard
+    return zstandard.ZstdCompressor(level=3, write_checksum=True).compress(data)
+
+
+def lz4(data):
+    import lz4.frame
+    return lz4.frame.compress(data, content_checksum=True)
+
+
+PACKED = {"gz": gzip.compress, "xz": lzma.compress, "zst": zstd, "lz4": lz4}
+MODULES = {"zst": "zstandard", "lz4": "lz4"}
+
+
+class Compressed(Case):
+    def packings(self):
+        for ending, pack in PACKED.items():
+            if ending in MODULES and not there(MODULES[ending]):
+                print(f"skipped: no {MODULES[ending]} here to write .{ending}", file=sys.stderr)
+                continue
+            yield ending, pack
+
+    def test_a_packed_log_is_the_log(self):
+        whole = LOG.read_bytes()
+        for ending, pack in self.packings():
+            path = self.write(f"run.csv.{ending}", pack(whole))
+            self.assert_same(path)
+            self.assertEqual(self.identified("-", stdin=path.read_bytes()), self.identified(LOG))
+            half = len(whole) // 2
+            self.assert_same(self.write(f"two.csv.{ending}", pack(whole[:half]) + pack(whole[half:])))
+
+    def test_filtered_text_is_that_of_the_plain_log(self):
+        path = self.write("run.csv.gz", gzip.compress(LOG.read_bytes()))
+        method = ("--method", "lowpass,cutoff=13Hz,order=1")
+        self.assertEqual(self.run_tool("filter", path, *method).stdout, self.run_tool("filter", LOG, *method).stdout)
+        part = ("--from", "1s", "--to", "2s")
+        self.assertEqual(self.run_tool("filter", path, *method, *part).stdout, self.run_tool("filter", LOG, *method, *part).stdout)
+
+    def test_dumps_may_be_packed_too(self):
+        data = b"".join(struct.pack("<4d", *row) for row in self.rows)
+        self.assert_same(self.write("run.bin.gz", gzip.compress(data)), "--format", "raw", "--layout", ",".join(f"f8:{name}" for name in self.names))
+
+    def test_arrays_may_be_packed_too(self):
+        self.run_tool("filter", LOG, "--method", "none", "-o", "run.npy", "-q")
+        plain = self.folder / "run.npy"
+        self.assert_same(self.write("run.npy.gz", gzip.compress(plain.read_bytes())))
+
+    def test_what_is_cut_off_or_damaged_is_said(self):
+        for ending, pack in self.packings():
+            data = pack(LOG.read_bytes())
+            self.assertIn("cut off", self.refusal(self.write(f"cut.{ending}", data[:len(data) * 2 // 3])))
+            damaged = bytearray(data)
+            damaged[len(data) // 2] ^= 0xff
+            self.assertRegex(self.refusal(self.write(f"bad.{ending}", bytes(damaged))), "damaged|cut off|expected")
+
+    def test_what_is_packed_twice_or_otherwise_names_the_program(self):
+        self.assertIn("zcat", self.refusal(self.write("two.gz", gzip.compress(gzip.compress(LOG.read_bytes())))))
+        self.assertIn("bzcat", self.refusal(self.write("run.bz2", bz2.compress(LOG.read_bytes()))))
+
+    def test_a_bomb_stays_small(self):
+        path = self.write("bomb.csv.xz", lzma.compress(b"velocity_deg_s,torque_nm\n" + b"90,1.5\n" * 12_000_000, preset=0))
+        self.assertLess(path.stat().st_size, 100_000)
+        said = self.refusal(path, "--sample-rate", "1kHz", "--method", "none", "-q", "-o", "out.csv", command="filter")
+        self.assertIn("times smaller", said)
+        self.assertFalse((self.folder / "out.csv").exists())
+
+
+class Strangers(Case):
+    def test_each_names_the_line_that_converts_it(self):
+        for name, magic, word in (("run.mf4", b"MDF     4.10", "asammdf"), ("run.tdms", b"TDSm\x0e\0\0\0", "nptdms"),
+                                  ("run.parquet", b"PAR1\x15\0", "duckdb"), ("run.xlsx", b"PK\x03\x04\x14\0", "libreoffice"),
+                                  ("run.bag", b"#ROSBAG V2.0\n", "rosbags-convert")):
+            self.assertIn(word, self.refusal(self.write(name, magic + bytes(600))))
+
+if __name__ == "__main__":
+    unittest.main()
