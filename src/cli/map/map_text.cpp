@@ -29,7 +29,7 @@ Rows scores_of(const MapFit& fit) {
         rows.push_back({shortest(score.order), fmt::format("{:.3f}", score.ripple_nm),
                         fmt::format("{:.3f}", score.left_nm), decibels(score.ripple_nm, score.left_nm),
                         decibels(score.ripple_nm, score.noise_nm), whole(100.0 * score.predicted_share),
-                        score.in_map ? "" : "not in the map"});
+                        score.in_map ? "" : "follows no map"});
     }
     return rows;
 }

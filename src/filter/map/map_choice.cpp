@@ -5,16 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <random>
 
+#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double worth_it = 1.05, not_worth_it = 0.01;  // of what is left; of the ripple's energy
-constexpr double ripple_beyond = 3.0;                   ///< errors of the mean contrast of a block
-constexpr double least_gain = 12.0;                     ///< in squares over the noise
+constexpr double worth_it = 1.05, not_worth_it = 0.01;            // of what is left; of the ripple's energy
+constexpr double spreads_beyond = 3.0, spreads_beyond_too = 2.0;  // of logs without: one order, others
+constexpr double least_gain = 12.0;                               ///< in squares over the noise
+constexpr int surrogates = 40;
 constexpr std::size_t most_harmonics = 3;
 
 std::vector<double> spread_speeds(const MapRange& range, std::size_t count) {
@@ -34,29 +38,21 @@ std::vector<HeldOut> held_out(const MapData& data, const MapForm& form) {
     return scores;
 }
 
-/// What a form gains over another, or over no map: the sum, and how many errors the mean contrast of a
-/// block's squares is above nothing. Contrasts count, from -1 to 1, because a few blocks may hold most of the
-/// ripple, or what no map can know.
-struct Gain {
-    double sum = 0.0, beyond = 0.0;
-};
+// What the map takes off the blocks left out, in squares over the noise.
+double gain(const HeldOut& score) {
+    return std::accumulate(score.there.begin(), score.there.end(), 0.0) -
+           std::accumulate(score.left.begin(), score.left.end(), 0.0);
+}
 
-Gain gain(const std::vector<double>& before, const std::vector<double>& after) {
-    Gain found;
-    double mean = 0.0, square = 0.0, blocks = 0.0;
-    for (std::size_t b = 0; b < before.size(); ++b) {
-        if (!(before[b] > 0.0)) continue;
-        const double share = (before[b] - after[b]) / (before[b] + after[b]);
-        found.sum += before[b] - after[b];
-        mean += share;
-        square += share * share;
-        blocks += 1.0;
+// The same log if nothing turned with the motor: each block's amplitudes from an angle of its own.
+void turn_blocks(MapData& data, std::mt19937_64& engine) {
+    std::vector<std::complex<double>> by_block;
+    for (std::size_t b = 0; b < data.blocks; ++b) {
+        const double share = static_cast<double>(engine() >> 11U) * 0x1p-53;
+        by_block.push_back(portable::phasor(2.0 * std::numbers::pi * share));
     }
-    if (blocks < 3.0) return {found.sum, 0.0};
-    mean /= blocks;
-    const double variance = std::max(square / blocks - mean * mean, 1e-12) / (blocks - 1.0);
-    found.beyond = mean / std::sqrt(variance);
-    return found;
+    for (MapWindow& window : data.windows)
+        for (std::complex<double>& value : window.value) value *= by_block[window.block];
 }
 
 /// A form and what it leaves.
@@ -101,14 +97,27 @@ const Trial& smallest_good(const std::vector<Trial>& trials, double energy) {
                          [enough](const Trial& trial) { return trial.left <= enough; });
 }
 
-std::vector<std::size_t> ripple_of(const std::vector<HeldOut>& scores,
-                                   const std::vector<std::size_t>& orders) {
-    std::vector<std::size_t> found;
-    for (const std::size_t i : orders) {
-        const Gain by = gain(scores[i].there, scores[i].left);
-        if (by.sum > least_gain && by.beyond > ripple_beyond) found.push_back(i);
+// By how many of its own deviations each order's gain is beyond that of logs without ripple under the same
+// form.
+std::vector<double> beyond_chance(const MapData& data, const Trial& trial) {
+    std::vector<double> sum(data.orders), squares(data.orders), beyond;
+    std::mt19937_64 engine(20);
+    const RippleMap frame = frame_of(data, trial.form, 0.0);
+    for (int k = 0; k < surrogates; ++k) {
+        MapData turned = data;
+        turn_blocks(turned, engine);
+        for (std::size_t i = 0; i < data.orders; ++i) {
+            const double one = gain(MapRegression(turned, frame, i).held_out());
+            sum[i] += one;
+            squares[i] += one * one;
+        }
     }
-    return found;
+    for (std::size_t i = 0; i < data.orders; ++i) {
+        const double mean = sum[i] / surrogates, own = gain(trial.scores[i]);
+        const double spread = std::sqrt(std::max(squares[i] / surrogates - mean * mean, 1e-12));
+        beyond.push_back(own > least_gain ? (own - mean) / spread : 0.0);
+    }
+    return beyond;
 }
 
 std::vector<std::string> notes_on(const std::vector<Trial>& trials, const Trial& chosen, double there) {
@@ -136,9 +145,14 @@ MapChoice choose_map(const MapData& data, bool tied) {
         double noise = 0.0;
         for (const std::size_t i : orders) noise += trials.front().scores[i].noise;
         const Trial& chosen = smallest_good(trials, std::max(there - noise, 0.0));
-        const std::vector<std::size_t> ripple = ripple_of(chosen.scores, orders);
+        const std::vector<double> beyond = beyond_chance(data, chosen);
+        std::vector<std::size_t> ripple;
+        const bool any = std::any_of(orders.begin(), orders.end(),
+                                     [&](std::size_t i) { return beyond[i] > spreads_beyond; });
+        for (const std::size_t i : orders)
+            if (any && beyond[i] > spreads_beyond_too) ripple.push_back(i);
         if (ripple.empty() || ripple.size() == orders.size())
-            return {chosen.form, chosen.scores, ripple, notes_on(trials, chosen, there)};
+            return {chosen.form, chosen.scores, ripple, beyond, notes_on(trials, chosen, there)};
         orders = ripple;
     }
 }

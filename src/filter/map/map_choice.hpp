@@ -14,6 +14,7 @@ struct MapChoice {
     MapForm form;
     std::vector<HeldOut> scores;      ///< by order of the data
     std::vector<std::size_t> in_map;  ///< orders of the data whose ripple is more than chance
+    std::vector<double> beyond;       ///< chance, in deviations; by order of the data
     std::vector<std::string> notes;   ///< what the simplest, the best and the chosen form leave
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/filter/map_fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,13 +10,15 @@
 
 #include "filter/map/map_choice.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr double errors_apart = 3.0;
-constexpr double share_apart = 0.15;  ///< less is no reason to doubt a map
+constexpr double ripple_over_noise = 2.0;  ///< squares of an order that is there
+constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
 
 double mean_of(const std::vector<double>& blocks, double unit_nm2) {
     return unit_nm2 * std::accumulate(blocks.begin(), blocks.end(), 0.0);
@@ -80,20 +84,23 @@ void hold_logs_together(const MapData& data, const MapChoice& choice, const Gear
     }
 }
 
+// An order whose ripple is there and follows no form stays in the map with no amplitude, for who follows it.
 void fill_map(const MapData& data, const MapChoice& choice, const GearAccount& gear, double zero_deg,
               MapFit& fit) {
-    // The regression's columns count the joint's angle from where they are; the values are then moved.
     fit.map = frame_of(data, choice.form, zero_deg);
     fit.map.gear_ratio = gear.ratio;
-    for (const std::size_t i : choice.in_map) {
+    for (std::size_t i = 0; i < data.orders; ++i) {
+        MapOrderScore& score = fit.scores[i];
+        score.in_map = std::find(choice.in_map.begin(), choice.in_map.end(), i) != choice.in_map.end();
+        const double noise = score.noise_nm * score.noise_nm;
+        const double left = score.in_map ? score.left_nm * score.left_nm : score.ripple_nm * score.ripple_nm;
+        if (!score.in_map && left < ripple_over_noise * noise) continue;
         const MapRegression regression(data, fit.map, i);
         fit.map.orders.push_back(gear.orders[i]);
-        fit.map.values.push_back(regression.values());
+        fit.map.spread_nm.push_back(std::sqrt(std::max(left - noise, 0.01 * left)));
         fit.errors.push_back(regression.errors());
-        const MapOrderScore& score = fit.scores[i];
-        const double beyond = score.left_nm * score.left_nm - score.noise_nm * score.noise_nm;
-        fit.map.spread_nm.push_back(std::sqrt(std::max(beyond, 0.01 * score.left_nm * score.left_nm)));
-        fit.scores[i].in_map = true;
+        fit.map.values.push_back(regression.values());
+        if (!score.in_map) fit.map.values.back().assign(choice.form.columns(), 0.0);
     }
 }
 
@@ -126,6 +133,10 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
     fit.notes = choice.notes;
     for (std::size_t i = 0; i < data.orders; ++i)
         fit.scores.push_back(score_of(gear.orders[i].value(), choice.scores[i]));
+    for (std::size_t i = 0; i < data.orders; ++i) {
+        fit.notes.push_back(fmt::format("order {}: {:.1f} deviations beyond what logs without ripple show",
+                                        shortest(gear.orders[i].value()), choice.beyond[i]));
+    }
     fit.finding = choice.in_map.empty() ? MapFinding::nothing : MapFinding::mapped;
     if (fit.finding == MapFinding::mapped) fill_map(data, choice, gear, zero_deg, fit);
     hold_logs_together(data, choice, gear, logs.size(), fit);
