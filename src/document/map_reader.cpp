@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "document/fields.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -137,6 +138,13 @@ MapFit map_from_json(std::string_view text, const std::string& source) {
 
 MapFit load_map(const std::string& path) {
     return map_from_json(read_all(path), path == "-" ? "standard input" : path);
+}
+
+bool is_map(const std::string& path) {
+    constexpr std::size_t head = 200;
+    std::error_code failed;
+    if (!std::filesystem::is_regular_file(path, failed)) return false;
+    return read_all(path).substr(0, head).find("ripplenotch/map/1") != std::string::npos;
 }
 
 }  // namespace ripplenotch
