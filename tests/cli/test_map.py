@@ -6,6 +6,7 @@ import math
 import os
 import pathlib
 import random
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -161,6 +162,57 @@ class Compensators(Case):
         done = run("report", self.map, "-o", page, "--no-plotly")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("On blocks left out the map takes", page.read_text())
+
+
+HARNESS = """#include <stdio.h>
+#include "ripple_map.h"
+int main(void) {
+    double speed, turns, position;
+    while (scanf("%lf %lf %lf", &speed, &turns, &position) == 3)
+        printf("%.17g\\n", (double)ripple_map_torque(speed, turns, position, 0));
+    return 0;
+}
+"""
+
+
+class Exports(Case):
+    def setUp(self):
+        super().setUp()
+        write_log(self.log, 1)
+        self.made(self.log)
+
+    def exported(self, to, name):
+        path = self.folder / name
+        done = run("export", self.map, "--to", to, "-o", path, "--verify")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return path, done
+
+    def test_every_target_is_read_back_and_says_how_far_off_it_is(self):
+        for to, name in (("fourier", "a.csv"), ("c-header", "a.h"), ("beckhoff-ax8000", "b.csv"), ("lut", "c.csv"),
+                         ("moteus,kt=0.1", "d.txt"), ("mjcf", "e.xml")):
+            text = self.exported(to, name)[1].stdout
+            self.assertIn("largest error", text)
+            self.assertLess(float(text.split("largest error")[1].split()[0]), 0.01, to)
+
+    @unittest.skipUnless(shutil.which("cc"), "there is no C compiler")
+    def test_the_exported_c_is_the_method(self):
+        still = self.folder / "still.csv"
+        rows = [line.split(",") for line in self.log.read_text().split("\n")[1:] if line]
+        still.write_text("time_s,velocity_deg_s,torque_nm,position_deg\n" + "".join(f"{t},{v},0,{q}\n" for t, v, _, q in rows))
+        out = self.folder / "still_out.csv"
+        self.assertEqual(run("filter", still, "--method", f"map,map={self.map}", "-o", out).returncode, 0)
+        expected = [-float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
+        states = "".join(f"{v} {(100 * float(q) / 360) % 1.0!r} {q}\n" for _, v, _, q in rows)
+        (self.folder / "main.c").write_text(HARNESS)
+        for precision, most in ("double", 1e-11), ("float", 1e-5):
+            self.exported(f"c-header,precision={precision}", "ripple_map.h")
+            done = subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-ffp-contract=off", "main.c", "-lm", "-o", "main"],
+                                  cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found = subprocess.run(["./main"], cwd=self.folder, input=states, capture_output=True, text=True).stdout.split()
+            self.assertEqual(len(found), len(expected))
+            self.assertLess(max(abs(float(a) - b) for a, b in zip(found, expected)), most, precision)
+            (self.folder / "ripple_map.h").unlink()
 
 
 if __name__ == "__main__":

@@ -83,6 +83,17 @@ void use_map(Spec& spec, const Method& method, std::vector<std::string>& files) 
     files.push_back(path);
 }
 
+// The method with a map that says 0 everywhere.
+std::shared_ptr<const Contender> without_ripple(Spec spec) {
+    for (auto& [key, value] : spec.values) {
+        if (key != "cosines" && key != "sines") continue;
+        std::string zeros = "0";
+        for (const char c : value) zeros += c == ':' ? ":0" : "";
+        value = std::move(zeros);
+    }
+    return std::make_shared<const Contender>(make_contender(spec));
+}
+
 // What the text says about the gear, checked in the words in which all of it will be; joint=FILE goes.
 MethodGear stated_gear(Spec& spec, const Method& method, const GearChoice& choice) {
     MethodGear stated;
@@ -142,7 +153,10 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
     Contender chosen = make_contender(spec, std::move(loaded));
     chosen.gear = std::move(gear);
     chosen.files = files_of(stated, choice);
-    if (!maps.empty()) chosen.text = typed;  // all the values of a map are no name
+    if (!maps.empty()) {
+        chosen.text = typed;  // all the values of a map are no name
+        chosen.without_ripple = without_ripple(spec);
+    }
     chosen.files.insert(chosen.files.begin(), maps.begin(), maps.end());
     if (chosen.gear) refuse_other_gear(chosen, *chosen.gear);
     return chosen;
