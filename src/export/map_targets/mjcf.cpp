@@ -38,12 +38,13 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
     const RippleMap flat = flat_map(map, settings);
     std::string text;
     if (!heading.empty()) text += "<!--\n" + comment_lines(heading, "  ") + "-->\n";
-    // The compiler asks for a motor constant above 0.
+    // The compiler asks for a motor constant and a resistance above 0.
     text += "<mujoco>\n  <actuator>\n";
     for (std::size_t i = 0; i < flat.orders.size(); ++i) {
         const Cogging one = cogging_of(flat, i);
         text += fmt::format(
             "    <dcmotor name=\"ripple_{}\" joint=\"{}\" input=\"none\" motorconst=\"1e-9\" "
+            "resistance=\"1\" "
             "cogging=\"{} {} {}\"/>\n",
             shortest(flat.orders[i].value()), settings.text("joint"), shortest(one.amplitude),
             shortest(one.poles), shortest(one.phase));
