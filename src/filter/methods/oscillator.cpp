@@ -26,7 +26,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr double slowest_corrected_turns = 1e-5;  ///< of the motor in a sample
-constexpr double standing_deg_s = 1.0;            ///< a log that begins slower than this begins at standstill
+constexpr double usual_memory_turns = 0.5, memory_turns_beside_map = 0.15;
+constexpr double standing_deg_s = 1.0;  ///< a log that begins slower than this begins at standstill
 
 struct Plan {
     RippleOrders ripple;
@@ -75,6 +76,7 @@ void plan_map(Plan& p, const Settings& settings) {
     if (!p.map) return;
     p.zero_unknown = settings.text("zero") == "unknown";
     p.model.return_turns = settings.number("return");
+    if (!settings.has("memory")) p.model.memory_turns = memory_turns_beside_map;
     p.largest_offset_deg_s = p.largest_slip = 0.0;
     for (std::size_t i = 0; i < p.map->orders.size(); ++i) {
         const double size_nm = largest_amplitude(*p.map, i);
@@ -96,7 +98,8 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
             shortest(bandwidth_hz), shortest(0.25 * p.sample_rate_hz));
     }
     p.model = {p.ripple.orders, 1.0 / p.sample_rate_hz, 2.0 * std::numbers::pi * bandwidth_hz,
-               settings.number("memory"), settings.number("jump")};
+               usual_memory_turns, settings.number("jump")};
+    if (settings.has("memory")) p.model.memory_turns = settings.number("memory");
     p.has_start = settings.has("start");
     if (settings.has("rest")) p.rest_nm = settings.number("rest");
     p.scheduled = settings.text("gain") == "scheduled";
