@@ -147,6 +147,22 @@ class Compensators(Case):
             self.assertEqual(done.returncode, 2)
             self.assertIn("map.json is the map of a joint of gear ratio 100, not of 101", done.stderr)
 
+    def test_a_map_of_a_joint_of_another_name_and_a_faster_log_are_told(self):
+        write_log(self.log, 1)
+        found, _ = self.made(self.log)
+        found["joint"] = "j4"
+        self.map.write_text(json.dumps(found))
+        named = self.folder / "named.csv"
+        named.write_text(self.log.read_text().replace("velocity_deg_s,torque_nm,position_deg", "j3_velocity_deg_s,j3_torque_nm,j3_position_deg", 1))
+        done = run("filter", named, "--method", f"map,map={self.map}", "-o", self.folder / "z.csv")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("the map is of joint j4, and the log is of joint j3", done.stderr)
+        found["joint"], found["range"]["speed_deg_s"] = "", [1.0, 40.0]
+        self.map.write_text(json.dumps(found))
+        done = run("filter", self.log, "--method", f"map,map={self.map}", "-o", self.folder / "z.csv", "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("its map was made at 1 to 40 deg/s", done.stderr)
+
     def test_compare_takes_maps_beside_others(self):
         write_log(self.log, 1)
         self.made(self.log)

@@ -10,6 +10,7 @@
 
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
 #include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
@@ -21,6 +22,7 @@ struct Contender {
     std::shared_ptr<const CandidateTable> table = nullptr;  ///< null unless the method needs one
     std::optional<GearAccount> gear = std::nullopt;         ///< empty when nobody says it
     std::vector<std::string> files = {};                    ///< that table and gear were read from, each once
+    std::shared_ptr<const RippleMap> map = nullptr;         ///< that it was given, if any
     /// The same method that knows no ripple, where it knows one from a map.
     std::shared_ptr<const Contender> without_ripple = nullptr;
 

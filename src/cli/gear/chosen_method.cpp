@@ -65,12 +65,13 @@ void use_table(Spec& spec, const Method& method, const std::optional<std::string
 }
 
 // map=FILE goes, and the keys that it stands for come; those that are given must be those of the map.
-void use_map(Spec& spec, const Method& method, std::vector<std::string>& files) {
-    if (!has_key(method, "map") || !given(spec, "map")) return;
+std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, std::vector<std::string>& files) {
+    if (!has_key(method, "map") || !given(spec, "map")) return nullptr;
     const auto entry = entry_of(spec, "map");
     const std::string path = entry->second;
     spec.values.erase(entry);
-    for (auto& [key, value] : map_as_keys(load_map(path).map)) {
+    auto map = std::make_shared<const RippleMap>(load_map(path).map);
+    for (auto& [key, value] : map_as_keys(*map)) {
         if (!given(spec, key)) {
             spec.values.emplace_back(key, std::move(value));
         } else if (key == "gear-ratio") {
@@ -81,6 +82,7 @@ void use_map(Spec& spec, const Method& method, std::vector<std::string>& files) 
         }
     }
     files.push_back(path);
+    return map;
 }
 
 // The method with a map that says 0 everywhere.
@@ -136,7 +138,7 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
     use_table(spec, method, table);
     const std::string typed = spec.text();
     std::vector<std::string> maps;
-    use_map(spec, method, maps);
+    const auto map = use_map(spec, method, maps);
     MethodGear stated = stated_gear(spec, method, choice);
     std::shared_ptr<const CandidateTable> loaded;
     if (method.needs_table && given(spec, "table")) {
@@ -155,6 +157,7 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
     chosen.files = files_of(stated, choice);
     if (!maps.empty()) {
         chosen.text = typed;  // all the values of a map are no name
+        chosen.map = map;
         chosen.without_ripple = without_ripple(spec);
     }
     chosen.files.insert(chosen.files.begin(), maps.begin(), maps.end());
