@@ -178,6 +178,7 @@ class Compensators(Case):
         done = run("report", self.map, "-o", page, "--no-plotly")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("On blocks left out the map takes", page.read_text())
+        self.assertIn("Ripple over speed", page.read_text())
 
 
 HARNESS = """#include <stdio.h>
