@@ -48,7 +48,7 @@ Curve run(const Contender& contender, const std::string& name, const Comparison&
         torque[k] = k < before ? 0.0 : signal(t);
         position[k] = comparison.speed.value() * t;
     }
-    const auto filter = contender.start(comparison.sample_rate);
+    const auto filter = contender.start_on_bench(comparison.sample_rate);
     filter->process({velocity, torque, position}, out);
     for (std::size_t k = 0; k < count; ++k)
         course.add(1e3 * (static_cast<double>(k) - static_cast<double>(before)) / rate, out[k]);

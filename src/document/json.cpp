@@ -65,10 +65,11 @@ namespace {
 
 // Where a file of this kind comes from.
 std::string_view written_by(std::string_view kind) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 5> writers = {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 6> writers = {
         {{"joint", "identify --json"},
          {"joints", "identify --joint all --json"},
          {"table", "design --json"},
+         {"map", "map -o map.json"},
          {"model", "diagnose -o model.json"},
          {"figure", "--plot FILE.json of any command"}}};
     for (const auto& [name, writer] : writers) {
@@ -99,9 +100,9 @@ Json parse_document(std::string_view text, const std::string& source, std::strin
 }
 
 AnyDocument parse_any_document(std::string_view text, const std::string& source) {
-    constexpr std::array kinds = {"comparison", "diagnoses", "diagnosis", "effects", "export",  "figure",
-                                  "frontier",   "info",      "joint",     "joints",  "metrics", "model",
-                                  "simulation", "spectrum",  "table",     "track"};
+    constexpr std::array kinds = {"comparison", "diagnoses",  "diagnosis", "effects", "export", "figure",
+                                  "frontier",   "info",       "joint",     "joints",  "map",    "metrics",
+                                  "model",      "simulation", "spectrum",  "table",   "track"};
     constexpr std::string_view wanted_of_any =
         "a result of ripplenotch such as joint.json or what --json prints";
     Json json = read_json(text, source, wanted_of_any);

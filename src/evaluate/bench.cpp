@@ -21,7 +21,7 @@ constexpr std::size_t block = 16384;
 class Run {
   public:
     Run(const Contender& contender, Hertz sample_rate, DegPerSec speed)
-        : filter_(contender.start(sample_rate)),
+        : filter_(contender.start_on_bench(sample_rate)),
           method_(contender.text),
           rate_hz_(sample_rate.value()),
           speed_deg_s_(speed.value()) {}

@@ -9,6 +9,10 @@ std::unique_ptr<CausalFilter> Contender::start(Hertz sample_rate) const {
     return method->start(settings, sample_rate, table.get());
 }
 
+std::unique_ptr<CausalFilter> Contender::start_on_bench(Hertz sample_rate) const {
+    return without_ripple ? without_ripple->start(sample_rate) : start(sample_rate);
+}
+
 std::unique_ptr<Learner> Contender::learner(Hertz sample_rate) const {
     return method->learner == nullptr ? nullptr : method->learner(settings, sample_rate);
 }

@@ -95,6 +95,26 @@ void RippleKalman::start_unloaded(double motor_turns, double measured) {
     update(measured);
 }
 
+AmplitudePrior RippleKalman::amplitude(std::size_t order) const noexcept {
+    const std::size_t i = 2 + 2 * order;
+    return {x_[i], x_[i + 1], std::sqrt(p_[i * m_ + i] + p_[(i + 1) * m_ + i + 1])};
+}
+
+void RippleKalman::count_from(std::size_t order, double cosine, double sine) noexcept {
+    x_[2 + 2 * order] -= cosine;
+    x_[3 + 2 * order] -= sine;
+}
+
+// Amplitudes shrink by the same share, and with them what is known of them.
+void RippleKalman::forget(double step_turns) noexcept {
+    const double kept = std::max(1.0 - std::abs(step_turns) / model_.return_turns, 0.0);
+    for (std::size_t i = 2; i < m_; ++i) {
+        x_[i] *= kept;
+        for (std::size_t j = 0; j < m_; ++j) p_[i * m_ + j] *= kept;
+        for (std::size_t j = 0; j < m_; ++j) p_[j * m_ + i] *= kept;
+    }
+}
+
 void RippleKalman::predict(double step_turns) noexcept {
     const double dt = model_.step_s;
     x_[0] += dt * x_[1];
@@ -112,6 +132,7 @@ void RippleKalman::predict(double step_turns) noexcept {
 }
 
 double RippleKalman::next(double measured, double motor_turns, double step_turns) {
+    if (model_.return_turns > 0.0) forget(step_turns);
     if (schedule_ != nullptr) {
         x_[0] += model_.step_s * x_[1];
         look(motor_turns, step_turns);

@@ -15,7 +15,8 @@ struct RippleModel {
     double step_s = 0.0;
     double bandwidth_rad_s = 0.0;  ///< of the torque: where its spectrum sinks below the noise
     double memory_turns = 0.0;     ///< of the motor, over which an amplitude may change
-    double jump = 0.0;  ///< surprise, in its own deviations, beyond which the torque jumped; 0: never
+    double jump = 0.0;          ///< surprise, in its own deviations, beyond which the torque jumped; 0: never
+    double return_turns = 0.0;  ///< of the motor, over which amplitudes are forgotten towards 0; 0: never
 
     [[nodiscard]] std::size_t states() const { return 2 + 2 * orders.size(); }
     /// What the torque's second derivative adds in one step: variances of torque and rate, and their
@@ -56,6 +57,10 @@ class RippleKalman {
     double next(double measured, double motor_turns, double step_turns);
 
     [[nodiscard]] double torque() const noexcept { return x_[0]; }
+    /// Of an order: cosine and sine amplitude, and the variance of both together.
+    [[nodiscard]] AmplitudePrior amplitude(std::size_t order) const noexcept;
+    /// From now on the amplitudes are what they are beyond these, and the caller subtracts them.
+    void count_from(std::size_t order, double cosine, double sine) noexcept;
     [[nodiscard]] double ripple() const noexcept;  ///< at the last sample
     /// By how much the ripple's phase ran ahead of the angle in the last sample, in motor turns: mean over
     /// the orders whose amplitude is known to a third, 0 when none is.
@@ -64,6 +69,7 @@ class RippleKalman {
   private:
     void look(double motor_turns, double step_turns) noexcept;
     void predict(double step_turns) noexcept;
+    void forget(double step_turns) noexcept;
     void update(double measured) noexcept;
     void update_by_schedule(double measured, double step_turns) noexcept;
 

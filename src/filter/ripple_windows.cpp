@@ -145,6 +145,9 @@ void RippleWindows::close() {
     window.length = std::abs(furthest_);
     window.speed_turns_s = furthest_ * rate_hz_ / static_cast<double>(rows);
     window.variance = 2.0 * variance * weight.squaredNorm() / portable::pow(weight.sum(), 2);
+    window.middle_turns =
+        first_turns_ + weight.dot(Eigen::Map<const Eigen::VectorXd>(turns_.data(), rows)) / weight.sum();
+    window.torque_nm = weight.dot(torque) / weight.sum();
     const auto count = static_cast<std::size_t>(rows);
     for (std::size_t i = 0; i < orders_.size(); ++i) {
         const auto at = trend_terms + static_cast<Eigen::Index>(2 * i);

@@ -36,6 +36,8 @@ struct RippleWindow {
     std::vector<std::complex<double>> amplitudes;
     /// Per order: mean square of what the same fit finds half an order to its sides, where no ripple is.
     std::vector<double> background;
+    double middle_turns = 0.0;  ///< mean motor angle
+    double torque_nm = 0.0;     ///< mean
 };
 
 struct RippleWindowRule {

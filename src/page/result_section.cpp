@@ -9,11 +9,13 @@
 #include "page/json_words.hpp"
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/chart/identification_figure.hpp"
+#include "ripplenotch/chart/map_figure.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/document/identification_json.hpp"
+#include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
 
 namespace ripplenotch {
@@ -91,6 +93,9 @@ PageSection section_of_result(const std::string& text, const std::string& source
     if (kind == "joint") {
         section.figures.push_back(identification_figure(source, identification_from_json(text, source)));
         section.figures.back().sentence.clear();  // it is the verdict above
+    } else if (kind == "map") {
+        if (const MapFit fit = map_from_json(text, source); !fit.map.orders.empty())
+            section.figures.push_back(map_figure(source, fit));
     } else if (kind == "table") {
         section.figures.push_back(table_figure(table_from_json(text, source)));
     } else if (diagnosis) {

@@ -46,6 +46,8 @@ std::string some_number(const Key& key, std::mt19937& engine) {
 }
 
 std::string some_pair(const Key& key, std::mt19937& engine) {
+    // A map has a value for each speed and order; the other lists have one for each order.
+    if (key.name == "speeds") return some_number(key, engine);
     return some_number(key, engine) + ":" + some_number(key, engine);
 }
 
@@ -85,7 +87,9 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 // A filter that is told of a ripple takes it out of a constant as well, as it should.
-bool knows_ripple(const std::string& text) { return text.find("phases=") != std::string::npos; }
+bool knows_ripple(const std::string& text) {
+    return text.find("phases=") != std::string::npos || text.find("cosines=") != std::string::npos;
+}
 
 // The same samples in pieces of up to 400.
 std::vector<double> in_pieces(CausalFilter& filter, const Signals& s) {

@@ -10,6 +10,7 @@
 
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
 #include "ripplenotch/filter/method.hpp"
 
 namespace ripplenotch {
@@ -21,9 +22,14 @@ struct Contender {
     std::shared_ptr<const CandidateTable> table = nullptr;  ///< null unless the method needs one
     std::optional<GearAccount> gear = std::nullopt;         ///< empty when nobody says it
     std::vector<std::string> files = {};                    ///< that table and gear were read from, each once
+    std::shared_ptr<const RippleMap> map = nullptr;         ///< that it was given, if any
+    /// The same method that knows no ripple, where it knows one from a map.
+    std::shared_ptr<const Contender> without_ripple = nullptr;
 
     /// A filter without a past. Throws UsageError on what cannot be designed at this sample rate.
     [[nodiscard]] std::unique_ptr<CausalFilter> start(Hertz sample_rate) const;
+    /// The same for signals that have no ripple: what is known of it from a map is no part of them.
+    [[nodiscard]] std::unique_ptr<CausalFilter> start_on_bench(Hertz sample_rate) const;
     /// Null for methods that need no first pass over the log.
     [[nodiscard]] std::unique_ptr<Learner> learner(Hertz sample_rate) const;
     /// The linear filter in force at a constant speed; empty for methods that have none.

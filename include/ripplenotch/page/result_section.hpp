@@ -9,7 +9,7 @@
 
 namespace ripplenotch {
 
-/// `text` is a JSON document with schema ripplenotch/<kind>/1. joint, table and figure are read with all
+/// `text` is a JSON document with schema ripplenotch/<kind>/1. joint, map, table and figure are read with all
 /// their checks; of diagnosis the rounds become the figure of the gap; whatever else a kind holds becomes
 /// facts (single values), and tables (lists of objects), units taken from the names. Throws DataError for
 /// what is no such document.

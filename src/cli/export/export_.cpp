@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "cli/command.hpp"
+#include "cli/export/export_map.hpp"
 #include "cli/export/export_text.hpp"
 #include "cli/gear/chosen_method.hpp"
 #include "cli/gear/joint_facts.hpp"
@@ -19,7 +20,9 @@
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/document/export_json.hpp"
+#include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
+#include "ripplenotch/export/map_target.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -121,6 +124,8 @@ void say_violations(const ExportReport& report) {
 
 ExitCode run(const Request& request, const std::string& command_line) {
     check(request);
+    if (is_map(request.table))
+        return export_map({request.table, request.to, request.verify, request.common}, command_line);
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
     if (ends_with_json(request.common.output) && target.name != "json")
@@ -171,9 +176,11 @@ ExitCode run(const Request& request, const std::string& command_line) {
 
 std::function<ExitCode()> attach(Options& options) {
     auto request = std::make_shared<Request>();
-    options.argument("TABLE", request->table, false, "table.json from design; - is standard input");
+    options.argument("TABLE", request->table, false,
+                     "table.json from design, or map.json from map; - is standard input");
     options.text("--to", request->to, "TARGET[,KEY=VALUE...]",
-                 fmt::format("{}; see docs/export", name_list(export_targets())));
+                 fmt::format("{}; of a map {}; see docs/export", name_list(export_targets()),
+                             name_list(map_targets())));
     options.text("--method", request->method, "SPEC",
                  fmt::format("instead of a table: {} with its keys, for example fixed,centers=25Hz:50Hz,q=1",
                              steady_methods("{}")));

@@ -7,11 +7,14 @@
 
 #include "cli/filter/filter_summary.hpp"
 #include "cli/gear/joint_facts.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/metrics_json.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 namespace {
+
+constexpr double faster_than_seen = 1.2;  ///< than any window of a map's logs, to be worth a word
 
 /// Whether something about the ripple is told, and whether it is measured.
 bool tells(const FilterRequest& request, const FilterJob& job) {
@@ -57,6 +60,10 @@ JointWork start_work(const FilterRequest& request, const FilterJob& job, const L
         metrics.table_rate = method.table->spec().sample_rate;
         refuse_table_rate(*metrics.table_rate, stream.design_rate(), metrics.source);
     }
+    if (method.map != nullptr && !method.map->joint.empty() && !joint.empty() && method.map->joint != joint) {
+        raise<UsageError>("method {}: the map is of joint {}, and the log is of joint {}", method.text,
+                          method.map->joint, joint);
+    }
     metrics.joint = joint;
     metrics.method = method.text;
     metrics.sample_rate = stream.design_rate();
@@ -91,6 +98,18 @@ void learn(const FilterRequest& request, const JointMethods& methods, const Spoo
         for (const std::string& note : learners[j]->notes())
             say(request.common, fmt::format("{}: {}", works[j].metrics.source, about(works[j], note)));
     }
+}
+
+// A map says nothing of speeds that it never saw.
+std::vector<std::string> beyond_map(const JointWork& work) {
+    const RippleMap* map = work.method->map.get();
+    const double fastest = work.metrics.stream.fastest_deg_s;
+    if (map == nullptr || map->orders.empty() || !(fastest > faster_than_seen * map->speeds_deg_s.to))
+        return {};
+    return {
+        fmt::format("the log moves at up to {:.3g} deg/s, and its map was made at {:.3g} to {:.3g} deg/s: "
+                    "beyond, the map's edge holds",
+                    fastest, map->speeds_deg_s.from, map->speeds_deg_s.to)};
 }
 
 void start_filter(const FilterRequest& request, JointWork& work) {
@@ -129,6 +148,7 @@ bool tell(const FilterRequest& request, const FilterJob& job, JointWork& work,
     FilterMetrics& metrics = work.metrics;
     if (work.meter) metrics.levels = work.meter->levels();
     std::vector<std::string> warnings = filter_warnings(metrics);
+    for (std::string& warning : beyond_map(work)) warnings.push_back(std::move(warning));
     if (measures(request, job) && !metrics.gear) {
         warnings.emplace_back(
             "no gear ratio is known, so no ripple was measured; give --gear-ratio or --joint-file");

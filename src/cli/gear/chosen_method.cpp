@@ -8,7 +8,9 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
+#include "ripplenotch/filter/map_keys.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -44,6 +46,14 @@ void fill_gear(Spec& spec, const Method& method, const GearAccount& gear) {
     fill(spec, method, "phases", gear.phase_deg);
 }
 
+void refuse_other_map(const std::string& method, const std::string& path, const std::string& of_map,
+                      const std::string& stated) {
+    const auto ratio = parse_number(stated), own = parse_number(of_map);
+    if (ratio && own && std::abs(*ratio / *own - 1.0) <= same_ratio_share) return;
+    raise<UsageError>("method {}: {} is the map of a joint of gear ratio {}, not of {}", method, path, of_map,
+                      stated);
+}
+
 void use_table(Spec& spec, const Method& method, const std::optional<std::string>& table) {
     if (!table) return;
     if (!method.needs_table) {
@@ -52,6 +62,38 @@ void use_table(Spec& spec, const Method& method, const std::optional<std::string
     }
     if (given(spec, "table")) raise<UsageError>("--table and table=... in --method: give one of them");
     spec.values.insert(spec.values.begin(), {"table", *table});
+}
+
+// map=FILE goes, and the keys that it stands for come; those that are given must be those of the map.
+std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, std::vector<std::string>& files) {
+    if (!has_key(method, "map") || !given(spec, "map")) return nullptr;
+    const auto entry = entry_of(spec, "map");
+    const std::string path = entry->second;
+    spec.values.erase(entry);
+    auto map = std::make_shared<const RippleMap>(load_map(path).map);
+    for (auto& [key, value] : map_as_keys(*map)) {
+        if (!given(spec, key)) {
+            spec.values.emplace_back(key, std::move(value));
+        } else if (key == "gear-ratio") {
+            refuse_other_map(spec.name, path, value, entry_of(spec, key)->second);
+        } else {
+            raise<UsageError>("method {}: {}=... and map={} both say it; leave one out", spec.name, key,
+                              path);
+        }
+    }
+    files.push_back(path);
+    return map;
+}
+
+// The method with a map that says 0 everywhere.
+std::shared_ptr<const Contender> without_ripple(Spec spec) {
+    for (auto& [key, value] : spec.values) {
+        if (key != "cosines" && key != "sines") continue;
+        std::string zeros = "0";
+        for (const char c : value) zeros += c == ':' ? ":0" : "";
+        value = std::move(zeros);
+    }
+    return std::make_shared<const Contender>(make_contender(spec));
 }
 
 // What the text says about the gear, checked in the words in which all of it will be; joint=FILE goes.
@@ -94,6 +136,9 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
     Spec spec = parse_spec(spec_text);
     const Method& method = find_method(spec.name);
     use_table(spec, method, table);
+    const std::string typed = spec.text();
+    std::vector<std::string> maps;
+    const auto map = use_map(spec, method, maps);
     MethodGear stated = stated_gear(spec, method, choice);
     std::shared_ptr<const CandidateTable> loaded;
     if (method.needs_table && given(spec, "table")) {
@@ -102,11 +147,20 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
         stated.table = &loaded->spec();
     }
     std::optional<GearAccount> gear = choice.of(stated);
+    if (gear && !maps.empty())
+        refuse_other_map(spec.name, maps.front(), entry_of(spec, "gear-ratio")->second,
+                         shortest(gear->ratio.value()));
     if (gear) fill_gear(spec, method, *gear);
     if (!gear && has_key(method, "gear-ratio")) raise_no_gear(stated.name);
     Contender chosen = make_contender(spec, std::move(loaded));
     chosen.gear = std::move(gear);
     chosen.files = files_of(stated, choice);
+    if (!maps.empty()) {
+        chosen.text = typed;  // all the values of a map are no name
+        chosen.map = map;
+        chosen.without_ripple = without_ripple(spec);
+    }
+    chosen.files.insert(chosen.files.begin(), maps.begin(), maps.end());
     if (chosen.gear) refuse_other_gear(chosen, *chosen.gear);
     return chosen;
 }

@@ -12,11 +12,12 @@
 #include <utility>
 
 #include "filter/gain_schedule.hpp"
+#include "filter/map/map_mean.hpp"
 #include "filter/methods/list.hpp"
 #include "filter/motor_angle.hpp"
 #include "filter/observer_cascade.hpp"
+#include "filter/oscillator_keys.hpp"
 #include "filter/ripple_kalman.hpp"
-#include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -25,90 +26,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr double slowest_corrected_turns = 1e-5;  ///< of the motor in a sample
-constexpr double standing_deg_s = 1.0;            ///< a log that begins slower than this begins at standstill
-
-constexpr std::array<std::string_view, 2> gains = {"exact", "scheduled"};
-constexpr std::array<std::string_view, 2> outputs = {"torque", "minus-ripple"};
-
-constexpr std::array keys = {
-    gear_ratio_key,
-    orders_key,
-    joint_key,
-    Key{.name = "bandwidth",
-        .dimension = Dimension::frequency,
-        .default_text = "15Hz",
-        .above = 0.0,
-        .help = "of the torque: what is faster and no ripple counts as noise"},
-    Key{.name = "memory",
-        .default_text = "0.5",
-        .above = 0.0,
-        .at_most = 1e6,
-        .help = "motor turns over which the ripple's amplitude may change"},
-    Key{.name = "amplitudes",
-        .kind = KeyKind::list,
-        .dimension = Dimension::torque,
-        .at_least = 0.0,
-        .help = "warm start: zero to peak, one per order, e.g. 0.8Nm:0.5Nm"},
-    Key{.name = "phases",
-        .kind = KeyKind::list,
-        .dimension = Dimension::angle,
-        .help =
-            "warm start: of cos(n motor angle + phase), one per order; the motor angle is gear ratio times "
-            "position"},
-    Key{.name = "trust",
-        .default_text = "0.1",
-        .above = 0.0,
-        .at_most = 10.0,
-        .help = "warm start: how far amplitudes and phases may be off, as a share of the amplitude"},
-    Key{.name = "noise",
-        .dimension = Dimension::torque,
-        .default_text = "0.05Nm",
-        .above = 0.0,
-        .help = "rms noise of the sensor"},
-    Key{.name = "largest",
-        .dimension = Dimension::torque,
-        .default_text = "1Nm",
-        .above = 0.0,
-        .help = "cold start: amplitude that an order may well have"},
-    Key{.name = "gain",
-        .kind = KeyKind::choice,
-        .default_text = "exact",
-        .choices = gains,
-        .help =
-            "exact: worked out at every sample; scheduled: the settled one of the present speed, cheaper, "
-            "slower to start"},
-    Key{.name = "rest",
-        .dimension = Dimension::torque,
-        .help =
-            "torque that the joint is known to bear where a log begins at standstill, 0Nm for an unloaded "
-            "arm: the rest is ripple"},
-    angle_key,
-    Key{.name = "start",
-        .dimension = Dimension::angle,
-        .help = "position at the first row of a log without one, so that phases mean something"},
-    Key{.name = "offset",
-        .dimension = Dimension::speed,
-        .default_text = "2deg/s",
-        .above = 0.0,
-        .help = "angle from velocity: largest offset of the velocity that the ripple may correct"},
-    Key{.name = "jump",
-        .default_text = "0",
-        .at_least = 0.0,
-        .at_most = 1e6,
-        .help = "a sample that is off by more than this many of its deviations is a jump of the torque, not "
-                "ripple; "
-                "0: none is"},
-    Key{.name = "slip",
-        .default_text = "0.03",
-        .at_least = 0.0,
-        .at_most = 0.2,
-        .help = "angle from position: largest share by which the ripple may correct the gear ratio"},
-    Key{.name = "output",
-        .kind = KeyKind::choice,
-        .default_text = "torque",
-        .choices = outputs,
-        .help = "torque: the estimate, smoothed; minus-ripple: the log's own torque less the ripple"},
-};
+constexpr double usual_memory_turns = 0.5, memory_turns_beside_map = 0.15;
+constexpr double standing_deg_s = 1.0;  ///< a log that begins slower than this begins at standstill
 
 struct Plan {
     RippleOrders ripple;
@@ -123,6 +42,8 @@ struct Plan {
     double largest_offset_deg_s = 0.0, largest_slip = 0.0;
     double sample_rate_hz = 0.0;
     double noise_nm = 0.0;
+    std::optional<RippleMap> map;  ///< mean of the amplitudes
+    bool zero_unknown = false;
 };
 
 void plan_priors(Plan& p, const Settings& settings) {
@@ -149,6 +70,22 @@ void plan_priors(Plan& p, const Settings& settings) {
     }
 }
 
+// What is followed is then what is beside the map; the map's own angle needs no correction.
+void plan_map(Plan& p, const Settings& settings) {
+    p.map = map_of("oscillator", settings, p.ripple);
+    if (!p.map) return;
+    p.zero_unknown = settings.text("zero") == "unknown";
+    p.model.return_turns = settings.number("return");
+    if (!settings.has("memory")) p.model.memory_turns = memory_turns_beside_map;
+    p.largest_offset_deg_s = p.largest_slip = 0.0;
+    for (std::size_t i = 0; i < p.map->orders.size(); ++i) {
+        const double size_nm = largest_amplitude(*p.map, i);
+        const double beside_nm = std::max(p.map->spread_nm[i], settings.number("trust") * size_nm);
+        p.warm[i] = {0.0, 0.0, std::max(beside_nm / p.noise_nm, 1.0)};
+        p.cold[i] = {0.0, 0.0, std::max(size_nm / p.noise_nm, 1.0)};
+    }
+}
+
 Plan plan(const Settings& settings, Hertz sample_rate) {
     Plan p;
     p.ripple = ripple_orders("oscillator", settings);
@@ -161,7 +98,8 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
             shortest(bandwidth_hz), shortest(0.25 * p.sample_rate_hz));
     }
     p.model = {p.ripple.orders, 1.0 / p.sample_rate_hz, 2.0 * std::numbers::pi * bandwidth_hz,
-               settings.number("memory"), settings.number("jump")};
+               usual_memory_turns, settings.number("jump")};
+    if (settings.has("memory")) p.model.memory_turns = settings.number("memory");
     p.has_start = settings.has("start");
     if (settings.has("rest")) p.rest_nm = settings.number("rest");
     p.scheduled = settings.text("gain") == "scheduled";
@@ -174,6 +112,7 @@ Plan plan(const Settings& settings, Hertz sample_rate) {
     p.largest_offset_deg_s = settings.number("offset");
     p.largest_slip = settings.number("slip");
     plan_priors(p, settings);
+    plan_map(p, settings);
     return p;
 }
 
@@ -184,18 +123,26 @@ class OscillatorFilter final : public CausalFilter {
           angle_(plan_.ripple.gear_ratio, plan_.sample_rate_hz, plan_.source, plan_.start_deg),
           schedule_(plan_.scheduled ? std::make_unique<GainSchedule>(plan_.model) : nullptr),
           cold_(plan_.model, plan_.cold, schedule_.get()),
-          warm_(plan_.model, plan_.warm, schedule_.get()) {}
+          warm_(plan_.model, plan_.warm, schedule_.get()) {
+        if (plan_.map) mean_.emplace(*plan_.map, plan_.noise_nm);
+    }
 
     void process(const Samples& in, std::span<double> out) override {
         for (std::size_t k = 0; k < out.size(); ++k) {
             const double* const position = in.position_deg.empty() ? nullptr : &in.position_deg[k];
             angle_.next(in.velocity_deg_s[k], position, correction_deg_s_);
+            const bool tied = position != nullptr || plan_.has_start;
+            if (mean_ && !started_) mean_->restart(plan_.zero_unknown || !tied);
+            const double mapped_nm =
+                mean_ ? mean_->ripple(in.velocity_deg_s[k], in.torque_nm[k], angle_) : 0.0;
+            const double beside_nm = in.torque_nm[k] - mapped_nm;
             if (!started_) {
-                begin(in.torque_nm[k], in.velocity_deg_s[k], position != nullptr);
+                begin(beside_nm, in.velocity_deg_s[k], tied && !(mean_ && mean_->seeks()));
             } else {
-                run((in.torque_nm[k] - origin_nm_) / plan_.noise_nm);
+                run((beside_nm - origin_nm_) / plan_.noise_nm);
+                if (mean_) mean_->seek(*filter_, angle_);
             }
-            const double clean = plan_.minus_ripple ? in.torque_nm[k] - plan_.noise_nm * filter_->ripple()
+            const double clean = plan_.minus_ripple ? beside_nm - plan_.noise_nm * filter_->ripple()
                                                     : origin_nm_ + plan_.noise_nm * filter_->torque();
             out[k] = clean;
         }
@@ -206,11 +153,11 @@ class OscillatorFilter final : public CausalFilter {
     }
 
   private:
-    void begin(double torque_nm, double velocity_deg_s, bool has_position) {
+    void begin(double torque_nm, double velocity_deg_s, bool tied) {
         started_ = true;
         correction_deg_s_ = slip_ = slipped_turns_ = 0.0;
         // Phases mean something only where it is known where the joint stands.
-        filter_ = has_position || plan_.has_start ? &warm_ : &cold_;
+        filter_ = tied ? &warm_ : &cold_;
         const bool known = plan_.rest_nm && std::abs(velocity_deg_s) < standing_deg_s;
         origin_nm_ = known ? *plan_.rest_nm : torque_nm;
         if (known) {
@@ -241,6 +188,7 @@ class OscillatorFilter final : public CausalFilter {
     MotorAngle angle_;
     std::unique_ptr<GainSchedule> schedule_;  ///< null for the exact gain
     RippleKalman cold_, warm_;
+    std::optional<MapMean> mean_;
     RippleKalman* filter_ = nullptr;
     double origin_nm_ = 0.0, correction_deg_s_ = 0.0;
     double slip_ = 0.0, slipped_turns_ = 0.0;  ///< correction of the gear ratio, as a share; what it came to
@@ -265,7 +213,7 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
                                                : "settled Kalman filter";
     return {settled_cascade(p.model, step_turns, step_turns == 0.0 ? std::vector<double>{} : gain,
                             p.minus_ripple),
-            note, p.source == MotorAngle::Source::velocity || p.largest_slip > 0.0};
+            note, p.source == MotorAngle::Source::velocity || p.largest_slip > 0.0 || p.map.has_value()};
 }
 
 }  // namespace
@@ -274,7 +222,7 @@ const Method filter_methods::oscillator = {
     .name = "oscillator",
     .summary = "Kalman filter of torque and ripple, the ripple locked to the motor angle: no delay",
     .source = "R. E. Kalman 1960; harmonic drive ripple so estimated: Taghirad and Belanger 1998",
-    .keys = keys,
+    .keys = oscillator_keys,
     .start = start,
     .frozen = frozen,
     .frozen_is_dear = true,  // the solution of a Riccati equation

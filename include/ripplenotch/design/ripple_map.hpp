@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A ripple map: what a joint's ripple is at every angle of its motor, speed and direction. A compensator
+// subtracts it; drives store it. Made from logs by filter/map_fit.hpp.
+
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+/// What the amplitudes of a map are functions of. Each direction has its own columns, in this order: the
+/// amplitude at each speed (linear between them), then a cosine and a sine of one, two, ... times the joint's
+/// angle, then one in proportion to the load.
+struct MapForm {
+    std::vector<double> speeds_deg_s = {0.0};  ///< of |v|, rising; a single one: alike at every speed
+    std::size_t directions = 1;                ///< 2: forward (v > 0) and backward have their own amplitudes
+    std::size_t turn_harmonics = 0;
+    bool by_load = false;
+
+    [[nodiscard]] std::size_t columns_a_direction() const {
+        return speeds_deg_s.size() + 2 * turn_harmonics + (by_load ? 1 : 0);
+    }
+    [[nodiscard]] std::size_t columns() const { return directions * columns_a_direction(); }
+};
+
+/// From the least to the greatest that the logs hold.
+struct MapRange {
+    double from = 0.0, to = 0.0;
+    [[nodiscard]] double middle() const { return 0.5 * (from + to); }
+};
+
+/// Where a joint is.
+struct MapState {
+    double speed_deg_s = 0.0;   ///< signed
+    double position_deg = 0.0;  ///< of the joint, as the log has it
+    double load_nm = 0.0;       ///< its torque
+};
+
+/// The ripple is the sum over the orders of Re(z exp(-i n theta)) = Re(z) cos(n theta) + Im(z) sin(n theta),
+/// theta being gear ratio times (position - zero), and z the sum of the form's columns times `values`.
+struct RippleMap {
+    std::string joint;  ///< empty for a joint without a name
+    GearRatio gear_ratio;
+    std::vector<Order> orders;  ///< lowest first; empty: nothing turns with the motor
+    MapForm form;
+    double zero_deg = 0.0;                           ///< joint position at which the motor's angle is 0
+    MapRange speeds_deg_s, positions_deg, loads_nm;  ///< seen by the logs; held at the edges beyond
+    std::vector<std::vector<std::complex<double>>> values;  ///< by order, then by column; Nm
+    std::vector<double> spread_nm;  ///< by order: rms by which amplitudes stray from the map in its logs
+};
+
+/// What each column counts at this state. Beyond the range of the map its edge counts; slower than the
+/// slowest speed seen, the two directions run into each other, half and half at standstill.
+/// weights.size() = map.form.columns().
+void map_weights(const RippleMap& map, const MapState& state, std::span<double> weights);
+
+/// The amplitude of one order under these weights: its cosine and sine part.
+[[nodiscard]] std::complex<double> map_amplitude(const RippleMap& map, std::size_t order,
+                                                 std::span<const double> weights);
+
+/// The ripple at this state, Nm.
+[[nodiscard]] double map_torque(const RippleMap& map, const MapState& state);
+
+/// The same ripple with angles counted from another position of the joint.
+[[nodiscard]] RippleMap with_zero(const RippleMap& map, double zero_deg);
+
+}  // namespace ripplenotch

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// An export target of a ripple map is a record: one file in src/export/map_targets, one line in
+// map_targets.def. Law tests run over the list.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ripplenotch/core/spec.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
+#include "ripplenotch/export/target.hpp"
+
+namespace ripplenotch {
+
+/// A map as it was read back.
+struct LoadedMap {
+    std::string arithmetic;  ///< "float32", "table of 1024 int8 values"
+    RippleMap held;          ///< what the target was given to hold, in full precision
+    /// The ripple there, computed as the target computes; in Nm at the joint.
+    std::function<double(const MapState&)> torque_nm;
+};
+
+struct MapTarget {
+    std::string_view name, summary, source;
+    std::string_view endings;  ///< of the names that fit its files, with blanks between them
+    std::span<const Key> keys = {};
+    /// `heading` says what made the file, one line each. Throws UsageError, naming value, limit and remedy,
+    /// when the target cannot hold the map; what it leaves out is a warning.
+    Written (*write)(const RippleMap& map, const Settings& settings,
+                     std::span<const std::string> heading) = nullptr;
+    /// Reads what write() wrote; `map` says the gear and what was to be held. Throws DataError that begins
+    /// with `source`.
+    LoadedMap (*read)(std::string_view bytes, const std::string& source, const RippleMap& map,
+                      const Settings& settings) = nullptr;
+};
+
+[[nodiscard]] std::span<const MapTarget* const> map_targets();
+/// Throws UsageError with the nearest name.
+[[nodiscard]] const MapTarget& find_map_target(std::string_view name);
+
+/// What came through, over states within the range of the map.
+struct MapCheck {
+    std::size_t states = 0;
+    double ripple_nm = 0.0;    ///< rms of the map
+    double not_held_nm = 0.0;  ///< rms of what the target has no place for: other speeds, the joint's turn
+    double largest_error_nm = 0.0;  ///< of the target's arithmetic, against what it was given to hold
+};
+[[nodiscard]] MapCheck verify_map_export(const RippleMap& map, const LoadedMap& loaded);
+
+}  // namespace ripplenotch

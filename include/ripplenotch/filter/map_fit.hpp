@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A ripple map from logs of one joint: the smallest form that pays on blocks that were left out, shrunk where
+// the logs say little, with the error of each value and what it leaves on what it was not fitted to.
+
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
+
+namespace ripplenotch {
+
+/// Of one order that was asked for, whether or not it came into the map. All of it is of blocks of the logs
+/// that the map was not fitted to.
+struct MapOrderScore {
+    double order = 0.0;
+    bool in_map = false;
+    double ripple_nm = 0.0;        ///< rms over windows of the amplitude (zero to peak), noise included
+    double noise_nm = 0.0;         ///< the same of what stands half an order beside it, where no ripple is
+    double left_nm = 0.0;          ///< the same of what is left beside the map
+    double predicted_share = 0.0;  ///< of the ripple's energy, that is beyond the noise; 0 to 1
+};
+
+/// By how much the ripple of one log is that of all the other logs, as a map of these alone has it.
+struct MapAgreement {
+    std::size_t log = 0;
+    double order = 0.0;
+    double amplitude_ratio = 1.0, amplitude_error = 0.0;
+    double phase_deg = 0.0, phase_error_deg = 0.0;  ///< by which its ripple is ahead
+    bool agrees = true;                             ///< within three of its errors, or 15 %
+};
+
+enum class MapFinding { mapped, nothing, too_little };
+[[nodiscard]] std::string_view map_finding_name(MapFinding finding);
+
+struct MapFit {
+    RippleMap map;  ///< empty unless `mapped`
+    /// By order of the map, then by column: standard errors of cosine (real) and sine part (imaginary), Nm.
+    std::vector<std::vector<std::complex<double>>> errors;
+    std::vector<MapOrderScore> scores;  ///< of every order asked for
+    std::vector<MapAgreement> agreement;
+    MapFinding finding = MapFinding::too_little;
+    std::size_t windows = 0, blocks = 0;
+    bool anchored = true;            ///< the angle is that of a position; else it counts from the first row
+    bool conclusive = false;         ///< mapped or nothing, anchored, and the logs agree
+    std::string doubt;               ///< said before the verdict by whoever read the logs; empty: none
+    std::vector<std::string> notes;  ///< one sentence each
+};
+
+/// Windows of fewer motor turns, or fewer windows, are not enough to leave some out.
+inline constexpr std::size_t fewest_map_windows = 12;
+
+/// Fits each order in windows of 2.5 motor turns beside a cubic (docs/methods/subtract.md), then the windows'
+/// amplitudes by ridge regression on the columns of the form. Forms are tried from the simplest on, each
+/// judged on the blocks that were left out of its fit; a richer one is taken where it leaves less there by
+/// more than chance. An order comes into the map where that leaves less than no map by more than chance.
+/// Angles count from `zero_deg`. Logs without a position have none to count from: throws DataError for
+/// several of them. Throws UsageError for no log.
+[[nodiscard]] MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear,
+                                    double zero_deg = 0.0);
+
+/// "by speed (3) and direction, with 2 harmonics of the joint's turn"
+[[nodiscard]] std::string map_form_words(const MapForm& form);
+/// What `column` is of: "forward, 10 deg/s", "backward, cosine of 2 joint angles", "per Nm of load".
+[[nodiscard]] std::string map_column_words(const MapForm& form, std::size_t column);
+
+/// One sentence with numbers.
+[[nodiscard]] std::string map_verdict(const MapFit& fit);
+
+}  // namespace ripplenotch

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/design/ripple_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double slowest_blend_deg_s = 0.1;  ///< the sign of a slower speed is noise
+
+double radians_of_turns(double turns) { return 2.0 * std::numbers::pi * (turns - std::floor(turns)); }
+
+// The position within the range seen, whole turns of the joint aside.
+double held_position(const MapRange& range, double position_deg) {
+    if (!(range.to > range.from)) return position_deg;
+    const double turns = std::round((position_deg - range.middle()) / 360.0);
+    return std::clamp(position_deg - 360.0 * turns, range.from, range.to);
+}
+
+// One direction's columns, times `share`.
+void add_direction(const RippleMap& map, const MapState& state, double share, std::span<double> weights) {
+    const std::vector<double>& knots = map.form.speeds_deg_s;
+    const double speed = std::clamp(std::abs(state.speed_deg_s), knots.front(), knots.back());
+    std::size_t above = 0;
+    while (above + 1 < knots.size() && knots[above] < speed) ++above;
+    if (above == 0) {
+        weights[0] += share;
+    } else {
+        const double along = (speed - knots[above - 1]) / (knots[above] - knots[above - 1]);
+        weights[above - 1] += share * (1.0 - along);
+        weights[above] += share * along;
+    }
+    std::size_t at = knots.size();
+    const double angle_deg = held_position(map.positions_deg, state.position_deg) - map.zero_deg;
+    for (std::size_t k = 1; k <= map.form.turn_harmonics; ++k, at += 2) {
+        weights[at] += share * portable::cos_degrees(static_cast<double>(k) * angle_deg);
+        weights[at + 1] += share * portable::sin_degrees(static_cast<double>(k) * angle_deg);
+    }
+    if (map.form.by_load)
+        weights[at] += share * std::clamp(state.load_nm, map.loads_nm.from, map.loads_nm.to);
+}
+
+}  // namespace
+
+void map_weights(const RippleMap& map, const MapState& state, std::span<double> weights) {
+    std::fill(weights.begin(), weights.end(), 0.0);
+    if (map.form.directions == 1) {
+        add_direction(map, state, 1.0, weights);
+        return;
+    }
+    const double full_at = std::max(map.speeds_deg_s.from, slowest_blend_deg_s);
+    const double forward = std::clamp(0.5 + 0.5 * state.speed_deg_s / full_at, 0.0, 1.0);
+    const std::size_t half = map.form.columns_a_direction();
+    if (forward > 0.0) add_direction(map, state, forward, weights.first(half));
+    if (forward < 1.0) add_direction(map, state, 1.0 - forward, weights.last(half));
+}
+
+std::complex<double> map_amplitude(const RippleMap& map, std::size_t order, std::span<const double> weights) {
+    std::complex<double> sum = 0.0;
+    for (std::size_t c = 0; c < weights.size(); ++c) sum += weights[c] * map.values[order][c];
+    return sum;
+}
+
+double map_torque(const RippleMap& map, const MapState& state) {
+    std::vector<double> weights(map.form.columns());
+    map_weights(map, state, weights);
+    const double motor_turns = map.gear_ratio.value() * (state.position_deg - map.zero_deg) / 360.0;
+    double torque = 0.0;
+    for (std::size_t i = 0; i < map.orders.size(); ++i) {
+        const std::complex<double> z = map_amplitude(map, i, weights);
+        const double phase = radians_of_turns(map.orders[i].value() * motor_turns);
+        torque += z.real() * portable::cos(phase) + z.imag() * portable::sin(phase);
+    }
+    return torque;
+}
+
+RippleMap with_zero(const RippleMap& map, double zero_deg) {
+    RippleMap moved = map;
+    moved.zero_deg = zero_deg;
+    const double by_deg = zero_deg - map.zero_deg;
+    const double motor_turns = map.gear_ratio.value() * by_deg / 360.0;
+    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
+    for (std::size_t i = 0; i < map.orders.size(); ++i) {
+        std::vector<std::complex<double>>& z = moved.values[i];
+        for (std::size_t d = 0; d < map.form.directions; ++d) {
+            for (std::size_t k = 1; k <= map.form.turn_harmonics; ++k) {
+                const std::size_t at = d * each + speeds + 2 * (k - 1);
+                const double angle = static_cast<double>(k) * by_deg;
+                const double c = portable::cos_degrees(angle), s = portable::sin_degrees(angle);
+                const std::complex<double> cosine = z[at], sine = z[at + 1];
+                z[at] = c * cosine + s * sine;
+                z[at + 1] = c * sine - s * cosine;
+            }
+        }
+        const auto turned = portable::polar(1.0, -radians_of_turns(map.orders[i].value() * motor_turns));
+        for (std::complex<double>& value : z) value *= turned;
+    }
+    return moved;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a map is fitted to: the amplitudes of every few motor turns of all logs, in blocks.
+
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
+
+namespace ripplenotch {
+
+/// Amplitudes of all orders in a window, in the form of RippleMap.
+struct MapWindow {
+    MapState state;  ///< means
+    std::vector<std::complex<double>> value;
+    std::vector<double> noise;  ///< by order: mean square of what is no ripple in `value`
+    std::size_t block = 0, log = 0;
+    bool scored = true;  ///< it shares no sample with another block
+};
+
+/// Blocks are windows in a row, of one log each.
+struct MapData {
+    std::vector<MapWindow> windows;
+    std::size_t orders = 0, blocks = 0;
+    std::vector<double> mean_noise, energy;  ///< by order: means over the windows of noise and |value|^2
+    MapRange speeds_deg_s, positions_deg, loads_nm;
+};
+
+/// Angles count from `zero_deg`.
+[[nodiscard]] MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg);
+
+/// The windows of `data` that are, or are not, of one log; blocks keep their numbers.
+[[nodiscard]] MapData of_log(const MapData& data, std::size_t log, bool is);
+
+/// A map without values over the range of the data.
+[[nodiscard]] RippleMap frame_of(const MapData& data, const MapForm& form, double zero_deg);
+
+}  // namespace ripplenotch

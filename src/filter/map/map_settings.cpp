@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "filter/map/map_settings.hpp"
+
+#include <algorithm>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/filter/map_keys.hpp"
+
+namespace ripplenotch {
+namespace {
+
+MapRange range_of(const Settings& settings, std::string_view key) {
+    if (!settings.has(key)) return {};
+    const std::vector<double> ends = settings.list(key);
+    return {*std::min_element(ends.begin(), ends.end()), *std::max_element(ends.begin(), ends.end())};
+}
+
+std::string list_text(const std::vector<double>& values) {
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : ":") + shortest(value);
+    return text;
+}
+
+std::string ends_text(const MapRange& range) { return list_text({range.from, range.to}); }
+
+std::size_t whole(const Settings& settings, std::string_view key) {
+    return static_cast<std::size_t>(settings.number(key));
+}
+
+}  // namespace
+
+std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
+                                const RippleOrders& ripple) {
+    if (!settings.has("cosines") && !settings.has("sines")) return std::nullopt;
+    RippleMap map;
+    map.gear_ratio = GearRatio(ripple.gear_ratio);
+    for (const double order : ripple.orders) map.orders.emplace_back(order);
+    MapForm& form = map.form;
+    if (settings.has("speeds")) form.speeds_deg_s = settings.list("speeds");
+    if (!std::is_sorted(form.speeds_deg_s.begin(), form.speeds_deg_s.end(), std::less_equal<>()))
+        raise<UsageError>("method {}, speeds: each has to be above the one before", method);
+    form.directions = whole(settings, "directions");
+    form.turn_harmonics = whole(settings, "turn-harmonics");
+    form.by_load = settings.number("by-load") > 0.0;
+    map.speeds_deg_s = {settings.number("slowest"), form.speeds_deg_s.back()};
+    map.positions_deg = range_of(settings, "positions");
+    map.loads_nm = range_of(settings, "loads");
+    const std::size_t columns = form.columns(), wanted = columns * ripple.orders.size();
+    for (const std::string_view key : {"cosines", "sines"}) {
+        const std::size_t given = settings.has(key) ? settings.list(key).size() : 0;
+        if (given == wanted) continue;
+        raise<UsageError>("method {}, {}: {} values, and {} orders of {} take {}", method, key, given,
+                          ripple.orders.size(), columns, wanted);
+    }
+    const std::vector<double> cosines = settings.list("cosines"), sines = settings.list("sines");
+    for (std::size_t i = 0; i < ripple.orders.size(); ++i) {
+        map.values.emplace_back();
+        for (std::size_t c = i * columns; c < (i + 1) * columns; ++c)
+            map.values.back().emplace_back(cosines[c], sines[c]);
+    }
+    map.spread_nm = per_order(method, settings, "spread", ripple, 0.0);
+    return map;
+}
+
+std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fitted) {
+    const RippleMap map = with_zero(fitted, 0.0);
+    std::vector<double> orders, cosines, sines;
+    for (const Order order : map.orders) orders.push_back(order.value());
+    for (const auto& values : map.values) {
+        for (const std::complex<double>& z : values) {
+            cosines.push_back(z.real());
+            sines.push_back(z.imag());
+        }
+    }
+    const std::string ratio = shortest(map.gear_ratio.value());
+    if (orders.empty()) return {{"gear-ratio", ratio}, {"orders", "1"}, {"cosines", "0"}, {"sines", "0"}};
+    return {{"gear-ratio", ratio},
+            {"orders", list_text(orders)},
+            {"cosines", list_text(cosines)},
+            {"sines", list_text(sines)},
+            {"speeds", list_text(map.form.speeds_deg_s)},
+            {"directions", std::to_string(map.form.directions)},
+            {"turn-harmonics", std::to_string(map.form.turn_harmonics)},
+            {"by-load", map.form.by_load ? "1" : "0"},
+            {"slowest", shortest(map.speeds_deg_s.from)},
+            {"positions", ends_text(map.positions_deg)},
+            {"loads", ends_text(map.loads_nm)},
+            {"spread", list_text(map.spread_nm)}};
+}
+
+}  // namespace ripplenotch

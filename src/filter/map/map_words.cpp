@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// A fitted map in words.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
+
+namespace ripplenotch {
+namespace {
+
+double decibels_down(double from_nm, double to_nm) {
+    return to_nm > 0.0 && from_nm > 0.0 ? 20.0 * portable::log10(from_nm / to_nm) : 0.0;
+}
+
+std::string orders_of(const std::vector<MapOrderScore>& scores) {
+    std::string text;
+    for (const MapOrderScore& score : scores) text += (text.empty() ? "" : ", ") + shortest(score.order);
+    return (scores.size() == 1 ? "order " : "orders ") + text;
+}
+
+std::string disagreements(const MapFit& fit) {
+    std::string text;
+    for (const MapAgreement& one : fit.agreement) {
+        if (one.agrees) continue;
+        text += fmt::format("{}in log {} order {} is {:.2f} times as large and {:.0f} deg ahead",
+                            text.empty() ? "" : ", ", one.log + 1, shortest(one.order), one.amplitude_ratio,
+                            std::round(one.phase_deg) + 0.0);
+    }
+    return text;
+}
+
+std::string mapped_sentence(const MapFit& fit) {
+    std::string text = "On blocks left out the map takes";
+    bool first = true;
+    for (const MapOrderScore& score : fit.scores) {
+        if (!score.in_map) continue;
+        text += fmt::format("{} order {} from {:.3g} to {:.3g} Nm ({:.1f} dB; noise allows {:.1f} dB)",
+                            first ? "" : ",", shortest(score.order), score.ripple_nm, score.left_nm,
+                            decibels_down(score.ripple_nm, score.left_nm),
+                            decibels_down(score.ripple_nm, score.noise_nm));
+        first = false;
+    }
+    return text + fmt::format(": amplitudes {}.", map_form_words(fit.map.form));
+}
+
+}  // namespace
+
+std::string_view map_finding_name(MapFinding finding) {
+    switch (finding) {
+        case MapFinding::mapped:
+            return "mapped";
+        case MapFinding::nothing:
+            return "nothing";
+        case MapFinding::too_little:
+            return "too-little";
+    }
+    return "";
+}
+
+std::string map_form_words(const MapForm& form) {
+    const bool by_speed = form.speeds_deg_s.size() > 1, by_direction = form.directions > 1;
+    std::string text = by_speed ? fmt::format("by speed ({} of them)", form.speeds_deg_s.size()) : "";
+    if (by_direction) text += by_speed ? " and direction" : "by direction";
+    if (text.empty()) text = "alike at every speed";
+    if (form.turn_harmonics > 0)
+        text += fmt::format(", with {} harmonic{} of the joint's turn", form.turn_harmonics,
+                            form.turn_harmonics == 1 ? "" : "s");
+    return text + (form.by_load ? ", and by load" : "");
+}
+
+std::string map_column_words(const MapForm& form, std::size_t column) {
+    const std::size_t each = form.columns_a_direction(), within = column % each;
+    const std::size_t speeds = form.speeds_deg_s.size();
+    std::string what;
+    if (within < speeds) {
+        what = speeds > 1 ? fmt::format("{:.4g} deg/s", form.speeds_deg_s[within]) : "any speed";
+    } else if (within < speeds + 2 * form.turn_harmonics) {
+        const std::size_t at = within - speeds;
+        what = fmt::format("{} of {} joint angle{}", at % 2 == 0 ? "cosine" : "sine", at / 2 + 1,
+                           at / 2 == 0 ? "" : "s");
+    } else {
+        what = "per Nm of load";
+    }
+    if (form.directions == 1) return what;
+    return (column < each ? "forward, " : "backward, ") + what;
+}
+
+std::string map_verdict(const MapFit& fit) {
+    std::string text = fit.doubt;
+    const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
+    switch (fit.finding) {
+        case MapFinding::too_little:
+            add(fmt::format(
+                "Cannot tell: the motor turns 2.5 times in one direction in {} windows, and {} are "
+                "needed to leave some out; the map is empty.",
+                fit.windows, fewest_map_windows));
+            break;
+        case MapFinding::nothing:
+            add(
+                fmt::format("Nothing turns with the motor at {} of gear ratio {:.6g}, by {} windows: the map "
+                            "is empty.",
+                            orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
+            break;
+        case MapFinding::mapped:
+            add(mapped_sentence(fit));
+            break;
+    }
+    if (!fit.anchored && fit.finding == MapFinding::mapped)
+        add("The log has no position: phases count from its first row.");
+    if (const std::string apart = disagreements(fit); !apart.empty())
+        add(fmt::format("The logs disagree: {}.", apart));
+    return text;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// The ripple that a map says, subtracted at the measured angle: no delay, no memory.
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "filter/map/map_runner.hpp"
+#include "filter/map/map_settings.hpp"
+#include "filter/methods/list.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr Key start_key{.name = "start",
+                        .dimension = Dimension::angle,
+                        .help = "position at the first row of a log without one, which otherwise passes"};
+
+constexpr Key required(Key key) {
+    key.required = true;
+    return key;
+}
+
+constexpr std::array keys = {gear_ratio_key,      orders_key,  map_key,        required(cosines_key),
+                             required(sines_key), speeds_key,  directions_key, turn_harmonics_key,
+                             by_load_key,         slowest_key, positions_key,  loads_key,
+                             spread_key,          angle_key,   start_key};
+
+class MapFilter final : public CausalFilter {
+  public:
+    MapFilter(RippleMap map, const MotorAngle& angle, bool has_start)
+        : runner_(std::move(map)), angle_(angle), has_start_(has_start) {}
+
+    void process(const Samples& in, std::span<double> out) override {
+        for (std::size_t k = 0; k < out.size(); ++k) {
+            angle_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
+            runner_.at(in.velocity_deg_s[k], angle_.turns(), in.torque_nm[k]);
+            // Without either, nobody knows where the motor stands.
+            const bool tied = has_start_ || !in.position_deg.empty();
+            const double ripple = tied ? runner_.ripple(angle_.turns(), angle_.step_turns()) : 0.0;
+            out[k] = in.torque_nm[k] - ripple;
+        }
+    }
+    void restart() override { angle_.restart(); }
+
+  private:
+    MapRunner runner_;
+    MotorAngle angle_;
+    bool has_start_;
+};
+
+RippleMap map_in(const Settings& settings) {
+    return *map_of("map", settings, ripple_orders("map", settings));  // its cosines are required
+}
+
+std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
+    RippleMap map = map_in(settings);
+    const MotorAngle angle(map.gear_ratio.value(), sample_rate.value(), angle_source(settings),
+                           settings.has("start") ? settings.number("start") : 0.0);
+    return std::make_unique<MapFilter>(std::move(map), angle, settings.has("start"));
+}
+
+FrozenFilter frozen(const Settings& settings, Hertz, const CandidateTable*, DegPerSec) {
+    static_cast<void>(map_in(settings));
+    return {{}, "subtracts the map; passes all else", true};
+}
+
+}  // namespace
+
+const Method filter_methods::map = {
+    .name = "map",
+    .summary = "the ripple of a map, subtracted at the measured angle: no delay, no memory",
+    .source = "cogging feed-forward by harmonics of the motor angle, as drives store it",
+    .keys = keys,
+    .start = start,
+    .frozen = frozen,
+    .frozen_is_dear = true,  // and says nothing of the ripple, which is no matter of a linear filter
+};
+
+}  // namespace ripplenotch

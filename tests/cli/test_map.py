@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch map as users meet it, from a log to a map to a filter without delay."""
+
+import json
+import math
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
+
+
+def run(*words):
+    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
+
+
+def write_log(path, seed, shift_deg=0.0, ripple=1.0, header="time_s,velocity_deg_s,torque_nm,position_deg", torque=True):
+    """Ripple of 0.8 Nm (order 1, phase 30 deg) and 0.5 Nm (order 2) at a gear ratio of 100; returns the slow torque."""
+    draw = random.Random(seed)
+    position, before, slow = 3.0, None, []
+    with open(path, "w") as file:
+        file.write(header + "\n")
+        for k in range(20000):
+            t = k / 1000.0
+            v = 80 * math.sin(0.9 * t + seed) + 30 * math.sin(0.37 * t)
+            position += 0.0 if before is None else (before + v) / 2000.0
+            before = v
+            theta = math.radians(100 * position)
+            slow.append(6 * math.sin(0.5 * t))
+            nm = slow[-1] + ripple * (0.8 * math.cos(theta + math.radians(30)) + 0.5 * math.cos(2 * theta)) + draw.gauss(0, 0.05)
+            cells = [t, v, nm, position + shift_deg]
+            file.write(",".join(f"{cell:.6f}" for cell in cells[:len(header.split(","))]) + "\n")
+    return slow
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.log, self.map = self.folder / "log.csv", self.folder / "map.json"
+
+    def made(self, *words):
+        done = run("map", *words, *GEAR, "-o", self.map, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(self.map.read_text()), done.stdout
+
+
+class Maps(Case):
+    def test_a_log_gives_the_ripple_that_it_was_made_with(self):
+        write_log(self.log, 1)
+        found, text = self.made(self.log)
+        self.assertEqual((found["finding"], found["conclusive"], found["orders"]), ("mapped", True, [1, 2]))
+        first, second = found["coefficients"]
+        for one, amplitude, phase in (first, 0.8, 30.0), (second, 0.5, 0.0):
+            for part, truth in ("cosine", amplitude * math.cos(math.radians(phase))), ("sine", -amplitude * math.sin(math.radians(phase))):
+                self.assertAlmostEqual(one[f"{part}_nm"], truth, delta=2 * one[f"{part}_ci95_nm"])
+        self.assertIn("On blocks left out the map takes order 1", text)
+        self.assertIn("noise allows", text)
+
+    def test_the_same_log_gives_the_same_bytes(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        before = self.map.read_bytes()
+        self.made(self.log)
+        self.assertEqual(self.map.read_bytes(), before)
+
+    def test_without_ripple_the_map_is_empty_and_subtracts_nothing(self):
+        write_log(self.log, 1, ripple=0.0)
+        found, text = self.made(self.log)
+        self.assertEqual((found["finding"], found["orders"], found["coefficients"]), ("nothing", [], []))
+        self.assertIn("the map is empty", text)
+        out = self.folder / "out.csv"
+        self.assertEqual(run("filter", self.log, "--method", f"map,map={self.map}", "-o", out).returncode, 0)
+        self.assertEqual(out.read_text(), self.log.read_text())
+
+    def test_a_log_that_does_not_agree_is_named(self):
+        logs = [self.folder / f"{i}.csv" for i in range(3)]
+        for i, log in enumerate(logs):
+            write_log(log, i + 1, shift_deg=0.6 if i == 1 else 0.0)
+        found, text = self.made(*logs)
+        self.assertFalse(found["conclusive"])
+        self.assertIn("The logs disagree", text)
+        done = run("map", *logs, *GEAR, "--require-conclusive")
+        self.assertEqual(done.returncode, 5)
+
+    def test_a_log_without_units_or_position_is_not_conclusive(self):
+        for header in ("time_s,velocity_deg_s,torque_nm", "time,velocity,torque,position"):
+            write_log(self.log, 1, header=header)
+            done = run("map", self.log, *GEAR, "--require-conclusive")
+            self.assertEqual(done.returncode, 5 if "position" not in header else done.returncode, done.stdout + done.stderr)
+            self.assertIn(done.returncode, (0, 5), done.stderr)
+
+    def test_who_states_no_gear_is_told_so(self):
+        write_log(self.log, 1)
+        done = run("map", self.log)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("map needs to know the gear", done.stderr)
+
+
+class Compensators(Case):
+    def filtered(self, method):
+        out = self.folder / "out.csv"
+        done = run("filter", self.log, "--method", method, "-o", out, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return [float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
+
+    def rms(self, method, slow, first=0):
+        out = self.filtered(method)
+        return math.sqrt(sum((a - b) ** 2 for a, b in zip(out[first:], slow[first:])) / (len(out) - first))
+
+    def test_a_map_of_one_log_takes_the_ripple_out_of_another_without_delay(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        slow = write_log(self.log, 2)
+        self.assertLess(self.rms(f"map,map={self.map}", slow), 0.055)  # the noise is 0.05 Nm
+        self.assertLess(self.rms(f"oscillator,map={self.map}", slow), 0.03)
+
+    def test_after_an_encoder_swap_the_zero_is_found(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        slow = write_log(self.log, 2, shift_deg=1.3)
+        self.assertGreater(self.rms(f"map,map={self.map}", slow), 0.3)
+        self.assertLess(self.rms(f"oscillator,map={self.map},zero=unknown", slow, 500), 0.03)
+
+    def test_the_method_is_told_by_its_file_and_the_file_is_among_the_inputs(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        metrics = self.folder / "metrics.json"
+        done = run("filter", self.log, "--method", f"map,map={self.map}", "-o", self.folder / "x.csv", "--metrics", metrics)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads(metrics.read_text())
+        self.assertEqual(told["method"], f"map,map={self.map}")
+        self.assertIn(str(self.map), [one["name"] for one in told["inputs"]])
+
+    def test_a_map_of_another_joint_is_refused_by_name(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        for words in ("--gear-ratio", "101"), ("--gear-ratio", "101", "--orders", "1,2"):
+            done = run("filter", self.log, "--method", f"oscillator,map={self.map}", *words, "-o", self.folder / "y.csv")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("map.json is the map of a joint of gear ratio 100, not of 101", done.stderr)
+
+    def test_a_map_of_a_joint_of_another_name_and_a_faster_log_are_told(self):
+        write_log(self.log, 1)
+        found, _ = self.made(self.log)
+        found["joint"] = "j4"
+        self.map.write_text(json.dumps(found))
+        named = self.folder / "named.csv"
+        named.write_text(self.log.read_text().replace("velocity_deg_s,torque_nm,position_deg", "j3_velocity_deg_s,j3_torque_nm,j3_position_deg", 1))
+        done = run("filter", named, "--method", f"map,map={self.map}", "-o", self.folder / "z.csv")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("the map is of joint j4, and the log is of joint j3", done.stderr)
+        found["joint"], found["range"]["speed_deg_s"] = "", [1.0, 40.0]
+        self.map.write_text(json.dumps(found))
+        done = run("filter", self.log, "--method", f"map,map={self.map}", "-o", self.folder / "z.csv", "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("its map was made at 1 to 40 deg/s", done.stderr)
+
+    def test_compare_takes_maps_beside_others(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        done = run("compare", self.log, "--method", f"map,map={self.map}", "--method", f"oscillator,map={self.map}",
+                   "--method", "tracking,gear-ratio=100,orders=1:2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("map.json", done.stdout)
+
+    def test_report_shows_a_map(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        page = self.folder / "page.html"
+        done = run("report", self.map, "-o", page, "--no-plotly")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("On blocks left out the map takes", page.read_text())
+        self.assertIn("Ripple over speed", page.read_text())
+
+
+HARNESS = """#include <stdio.h>
+#include "ripple_map.h"
+int main(void) {
+    double speed, turns, position;
+    while (scanf("%lf %lf %lf", &speed, &turns, &position) == 3)
+        printf("%.17g\\n", (double)ripple_map_torque(speed, turns, position, 0));
+    return 0;
+}
+"""
+
+
+class Exports(Case):
+    def setUp(self):
+        super().setUp()
+        write_log(self.log, 1)
+        self.made(self.log)
+
+    def exported(self, to, name):
+        path = self.folder / name
+        done = run("export", self.map, "--to", to, "-o", path, "--verify")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return path, done
+
+    def test_every_target_is_read_back_and_says_how_far_off_it_is(self):
+        for to, name in (("fourier", "a.csv"), ("c-header", "a.h"), ("beckhoff-ax8000", "b.csv"), ("lut", "c.csv"),
+                         ("moteus,kt=0.1", "d.txt"), ("mjcf", "e.xml")):
+            text = self.exported(to, name)[1].stdout
+            self.assertIn("largest error", text)
+            self.assertLess(float(text.split("largest error")[1].split()[0]), 0.01, to)
+
+    @unittest.skipUnless(shutil.which("cc"), "there is no C compiler")
+    def test_the_exported_c_is_the_method(self):
+        still = self.folder / "still.csv"
+        rows = [(k / 1000, 50, 3 + 0.05 * k) for k in range(2000)]
+        still.write_text("time_s,velocity_deg_s,torque_nm,position_deg\n" + "".join(f"{t!r},{v},0,{q!r}\n" for t, v, q in rows))
+        out = self.folder / "still_out.csv"
+        self.assertEqual(run("filter", still, "--method", f"map,map={self.map}", "-o", out).returncode, 0)
+        expected = [-float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
+        states = "".join(f"{v} {(100 * q / 360) % 1.0!r} {q!r}\n" for _, v, q in rows)
+        (self.folder / "main.c").write_text(HARNESS)
+        for precision, most in ("double", 1e-11), ("float", 1e-5):
+            self.exported(f"c-header,precision={precision}", "ripple_map.h")
+            done = subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-ffp-contract=off", "main.c", "-lm", "-o", "main"],
+                                  cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found = subprocess.run(["./main"], cwd=self.folder, input=states, capture_output=True, text=True).stdout.split()
+            self.assertEqual(len(found), len(expected))
+            self.assertLess(max(abs(float(a) - b) for a, b in zip(found, expected)), most, precision)
+            (self.folder / "ripple_map.h").unlink()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+// Maps fitted to logs whose ripple is known.
+
+#include "ripplenotch/filter/map_fit.hpp"
+#include "filter/mapped.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using namespace ripplenotch::testing;
+
+namespace {
+
+MapFit fit_of(const Trace& trace, const GearAccount& gear, double zero_deg = 0.0) {
+    const TraceView view = trace.view();
+    return fit_ripple_map({&view, 1}, gear, zero_deg);
+}
+
+double worst_difference(const RippleMap& one, const RippleMap& other) {
+    double worst = 0.0;
+    for (double speed = -100.0; speed <= 100.0; speed += 12.5) {
+        for (double position = -40.0; position <= 40.0; position += 0.17) {
+            const MapState state{speed, position, 0.0};
+            worst = std::max(worst, std::abs(map_torque(one, state) - map_torque(other, state)));
+        }
+    }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("a map of a ripple that is the same everywhere has the simplest form and its amplitudes") {
+    std::size_t within = 0, values = 0;
+    for (unsigned seed = 1; seed <= 8; ++seed) {
+        const MapFit fit = fit_of(mapped_log(plain_map(), 20.0, 0.05, seed), mapped_gear());
+        INFO(seed << ": " << map_verdict(fit));
+        REQUIRE(fit.finding == MapFinding::mapped);
+        CHECK(fit.conclusive);
+        REQUIRE(fit.map.form.columns() == 1);
+        REQUIRE(fit.map.orders == plain_map().orders);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto off = fit.map.values[i][0] - plain_map().values[i][0];
+            for (const auto& [error, allowed] : {std::pair(off.real(), fit.errors[i][0].real()),
+                                                 std::pair(off.imag(), fit.errors[i][0].imag())}) {
+                CHECK(std::abs(error) < 4.0 * allowed);
+                CHECK(allowed < 0.01);
+                within += std::abs(error) < 1.96 * allowed ? 1 : 0;
+                ++values;
+            }
+            CHECK(fit.scores[i].predicted_share > 0.99);
+        }
+    }
+    // 95 % intervals: of 32 values fewer than 27 within has a chance of 2 %.
+    CHECK(within >= 27 * values / 32);
+}
+
+TEST_CASE("a ripple that depends on speed, direction and the joint's turn is found again") {
+    const MapFit fit = fit_of(mapped_log(rich_map(), 40.0, 0.05, 3), mapped_gear({Order(2.0)}));
+    INFO(map_verdict(fit));
+    REQUIRE(fit.finding == MapFinding::mapped);
+    CHECK(fit.map.form.directions == 2);
+    CHECK(fit.map.form.speeds_deg_s.size() >= 2);
+    CHECK(fit.map.form.turn_harmonics >= 1);
+    CHECK(worst_difference(fit.map, rich_map()) < 0.1);
+    CHECK(fit.scores[0].predicted_share > 0.98);
+    CHECK(fit.scores[0].left_nm < 2.0 * fit.scores[0].noise_nm);
+}
+
+TEST_CASE("an encoder that counts from elsewhere turns the phases, and --zero turns them back") {
+    const double shift_deg = 1.234;
+    const RippleMap here = fit_of(mapped_log(plain_map(), 20.0, 0.02, 5), mapped_gear()).map;
+    const Trace shifted = mapped_log(plain_map(), 20.0, 0.02, 5, shift_deg);
+    const RippleMap there = fit_of(shifted, mapped_gear()).map;
+    REQUIRE(there.orders.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const double ahead =
+            2.0 * std::numbers::pi * static_cast<double>(i + 1) * mapped_ratio * shift_deg / 360.0;
+        // ripple = Re(z exp(-i n theta)), and theta is larger by the shift.
+        CHECK(std::abs(there.values[i][0] - here.values[i][0] * std::polar(1.0, ahead)) < 1e-3);
+    }
+    const RippleMap anchored = fit_of(shifted, mapped_gear(), shift_deg).map;
+    for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(anchored.values[i][0] - here.values[i][0]) < 1e-3);
+    CHECK(worst_difference(anchored, there) < 1e-6);
+}
+
+TEST_CASE("the same ripple is the same from any zero") {
+    for (const double zero : {-400.0, -3.3, 0.0, 17.0})
+        CHECK(worst_difference(with_zero(rich_map(), zero), rich_map()) < 1e-9);
+}
+
+TEST_CASE("where nothing turns with the motor the map is empty and says so, whatever the seed") {
+    RippleMap none = plain_map();
+    for (auto& values : none.values) values = {0.0};
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        Trace log = mapped_log(none, 20.0, 0.05, seed);
+        // A tone does not turn with the motor, however strong.
+        for (std::size_t k = 0; k < log.size(); ++k)
+            log.torque_nm[k] += 0.3 * std::sin(2.0 * std::numbers::pi * 31.0 * log.time_s[k]);
+        const MapFit fit = fit_of(log, mapped_gear());
+        INFO(seed << ": " << map_verdict(fit));
+        CHECK(fit.finding == MapFinding::nothing);
+        CHECK(fit.map.orders.empty());
+        CHECK_THAT(map_verdict(fit), Catch::Contains("the map is empty"));
+    }
+}
+
+TEST_CASE("too little motion is told, not mapped") {
+    const MapFit fit = fit_of(mapped_log(plain_map(), 0.5, 0.05, 1), mapped_gear());
+    CHECK(fit.finding == MapFinding::too_little);
+    CHECK_FALSE(fit.conclusive);
+    CHECK_THAT(map_verdict(fit), Catch::Contains("Cannot tell"));
+}
+
+TEST_CASE("of three logs the one that does not agree is named") {
+    std::vector<Trace> logs;
+    for (unsigned seed = 1; seed <= 3; ++seed)
+        logs.push_back(mapped_log(plain_map(), 20.0, 0.05, seed, seed == 2 ? 0.6 : 0.0));
+    const auto fit_all = [&] {
+        std::vector<TraceView> views;
+        for (const Trace& log : logs) views.push_back(log.view());
+        return fit_ripple_map(views, mapped_gear());
+    };
+    const MapFit apart = fit_all();
+    CHECK_FALSE(apart.conclusive);
+    double of_second = 0.0, of_others = 0.0;
+    for (const MapAgreement& one : apart.agreement) {
+        double& worst = one.log == 1 ? of_second : of_others;
+        worst = std::max(worst, std::abs(one.phase_deg));
+        if (one.log == 1) CHECK_FALSE(one.agrees);
+    }
+    CHECK(of_second > of_others);
+    logs[1] = mapped_log(plain_map(), 20.0, 0.05, 2);
+    const MapFit together = fit_all();
+    CHECK(together.conclusive);
+    REQUIRE(together.agreement.size() == 6);
+    for (const MapAgreement& one : together.agreement) CHECK(one.agrees);
+}
+
+TEST_CASE("a log without a position is mapped from its first row, and not with another") {
+    Trace log = mapped_log(plain_map(), 20.0, 0.02, 4);
+    log.position_deg.clear();
+    const MapFit fit = fit_of(log, mapped_gear());
+    CHECK_FALSE(fit.anchored);
+    CHECK_FALSE(fit.conclusive);
+    REQUIRE(fit.finding == MapFinding::mapped);
+    CHECK(fit.map.form.turn_harmonics == 0);
+    const std::vector<TraceView> two = {log.view(), log.view()};
+    CHECK_THROWS_AS(fit_ripple_map(two, mapped_gear()), DataError);
+}
+
+TEST_CASE("a map holds its edges, and its directions meet at standstill") {
+    const RippleMap map = rich_map();
+    const double at = 3.21;
+    CHECK(map_torque(map, {500.0, at, 0.0}) == map_torque(map, {110.0, at, 0.0}));
+    CHECK(map_torque(map, {0.0, at, 0.0}) ==
+          Approx(0.5 * (map_torque(map, {10.0, at, 0.0}) + map_torque(map, {-10.0, at, 0.0}))));
+}
