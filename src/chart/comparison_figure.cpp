@@ -17,6 +17,14 @@ Ink ink_of(const Contender& contender, std::size_t& taken) {
     return contender.method->part == MethodPart::control ? Ink::grey : series_ink(taken++);
 }
 
+// Short, as in the table; a contender that was not measured by its text.
+std::string name_of(const Comparison& comparison, const Contender& contender) {
+    for (const MethodFigures& figures : comparison.methods) {
+        if (figures.method == contender.text) return short_name(figures, comparison);
+    }
+    return contender.text;
+}
+
 // Half of the longest settling time before the signal and one and a half after it, within reason.
 double shown_s(const Comparison& comparison) {
     double longest_ms = 0.0;
@@ -27,8 +35,8 @@ double shown_s(const Comparison& comparison) {
 
 // Output of a filter that has seen no torque for ever, then `signal(t)` from t = 0 on.
 template <class Signal>
-Curve run(const Contender& contender, const Comparison& comparison, double duration_s, Ink ink,
-          const Signal& signal) {
+Curve run(const Contender& contender, const std::string& name, const Comparison& comparison,
+          double duration_s, Ink ink, const Signal& signal) {
     const double rate = comparison.sample_rate.value();
     const auto before = static_cast<std::size_t>(0.1 * duration_s * rate) + 1;
     const auto count = before + static_cast<std::size_t>(duration_s * rate) + 1;
@@ -44,7 +52,7 @@ Curve run(const Contender& contender, const Comparison& comparison, double durat
     filter->process({velocity, torque, position}, out);
     for (std::size_t k = 0; k < count; ++k)
         course.add(1e3 * (static_cast<double>(k) - static_cast<double>(before)) / rate, out[k]);
-    Curve curve = course.curve(contender.text, ink);
+    Curve curve = course.curve(name, ink);
     if (ink == Ink::grey) curve.style = CurveStyle::dashed;
     return curve;
 }
@@ -60,13 +68,13 @@ std::vector<Panel> course_panels(const Comparison& comparison, std::span<const C
         const Ink ink = ink_of(contender, taken);
         if (comparison.step_nm) {
             const double height = *comparison.step_nm;
-            step.curves.push_back(
-                run(contender, comparison, duration_s, ink, [height](double) { return height; }));
+            step.curves.push_back(run(contender, name_of(comparison, contender), comparison, duration_s, ink,
+                                      [height](double) { return height; }));
         }
         if (comparison.ramp_nm_s) {
             const double slope = *comparison.ramp_nm_s;
-            ramp.curves.push_back(
-                run(contender, comparison, duration_s, ink, [slope](double t) { return slope * t; }));
+            ramp.curves.push_back(run(contender, name_of(comparison, contender), comparison, duration_s, ink,
+                                      [slope](double t) { return slope * t; }));
         }
     }
     if (comparison.step_nm) {
@@ -118,9 +126,12 @@ std::vector<Panel> response_panels(const Comparison& comparison, std::span<const
         if (!frozen) continue;
         const FilterResponse response = filter_response(frozen->cascade, comparison.sample_rate, lines_hz);
         const CurveStyle style = ink == Ink::grey ? CurveStyle::dashed : CurveStyle::line;
-        panels.magnitude.curves.push_back({contender.text, ink, style, response.hz, response.magnitude_db});
-        panels.phase.curves.push_back({contender.text, ink, style, response.hz, response.phase_deg});
-        panels.delay.curves.push_back({contender.text, ink, style, response.hz, response.group_delay_ms});
+        panels.magnitude.curves.push_back(
+            {name_of(comparison, contender), ink, style, response.hz, response.magnitude_db});
+        panels.phase.curves.push_back(
+            {name_of(comparison, contender), ink, style, response.hz, response.phase_deg});
+        panels.delay.curves.push_back(
+            {name_of(comparison, contender), ink, style, response.hz, response.group_delay_ms});
         longest_dc_ms = std::max(longest_dc_ms, response.group_delay_ms.front());
         deepest_db = std::min(deepest_db,
                               *std::min_element(response.magnitude_db.begin(), response.magnitude_db.end()));

@@ -38,11 +38,9 @@ Figure gap_figure(const std::string& title, const Diagnosis& diagnosis) {
     panel.x.to = static_cast<double>(rounds.size()) + 0.5;
     panel.y.from = 0.0;
     Curve gap{"gap", Ink::blue, CurveStyle::line, {}, {}};
+    gap.x.push_back(0.0);
+    gap.y.push_back(rounds.empty() ? diagnosis.gap.before_nm : rounds.front().gap_before_nm);
     for (std::size_t i = 0; i < rounds.size(); ++i) {
-        if (i == 0) {
-            gap.x.push_back(0.0);
-            gap.y.push_back(rounds[i].gap_before_nm);
-        }
         gap.x.push_back(static_cast<double>(i + 1));
         gap.y.push_back(rounds[i].gap_after_nm);
         panel.lines.push_back({fmt::format("{}: {}", i + 1, round_name(rounds[i])), NamedLine::Run::at_x,
@@ -61,8 +59,9 @@ Figure diagnosis_figure(const std::string& source, const Diagnosis& diagnosis, c
     const bool given = !diagnosis.residual_after_nm.empty();
     const std::vector<double> before =
         given ? diagnosis.residual_before_nm : residual_of(diagnosis.baseline, log, smoothing);
-    const std::vector<double> after =
-        given ? diagnosis.residual_after_nm : residual_of(diagnosis.model, log, smoothing);
+    std::vector<double> after;  // none where nothing was added: the same picture twice
+    if (!diagnosis.rounds.empty())
+        after = given ? diagnosis.residual_after_nm : residual_of(diagnosis.model, log, smoothing);
     Figure figure = residual_figure(
         fmt::format("Model and log: {}", source), diagnosis_sentence(diagnosis) + ".",
         {log.time_s, log.velocity_deg_s, log.position_deg, before, after}, diagnosis.gap.noise_floor_nm);

@@ -18,6 +18,7 @@
 #include "cli/options/options_implementation.hpp"
 #include "cli/out_of_memory.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/reference/reference.hpp"
 #include "cli/talk.hpp"
 #include "core/unfinished_files.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
@@ -95,13 +96,46 @@ struct Declared {
     std::function<ExitCode()> work;
 };
 
-void declare(CLI::App& app, const Words& words, bool named_first, std::string& running, Declared& declared) {
+// "help identify" and "version", as people type them elsewhere.
+Words in_our_words(Words words) {
+    if (words.empty() || is_command(words.front())) return words;
+    if (words.front() == "version") words.front() = "--version";
+    if (words.front() != "help") return words;
+    words.erase(words.begin());
+    words.insert(words.empty() ? words.end() : words.begin() + 1, "--help");
+    return words;
+}
+
+// "--generate man": what is asked for; it needs the options of all commands.
+std::optional<std::string> kind_to_generate(const Words& words) {
+    constexpr std::string_view option = "--generate";
+    if (words.size() == 2 && words.front() == option) return words.back();
+    if (words.size() == 1 && words.front().starts_with(fmt::format("{}=", option)))
+        return words.front().substr(option.size() + 1);
+    return std::nullopt;
+}
+
+void declare_program(CLI::App& app) {
+    app.set_version_flag("-V,--version", fmt::format("{} {}", tool_name, version()),
+                         "print the version and end");
+    app.set_help_flag("-h,--help", "print this help and end");
+    app.add_option_function<std::string>(
+           "--generate", [](const std::string& /*kind*/) {},
+           fmt::format("print a man page or a shell's completion: {}", generated_kinds))
+        ->type_name("KIND");
+    app.footer("Each command explains itself: ripplenotch COMMAND --help. A LOG of - is standard input.");
+    app.require_subcommand(1);
+}
+
+// The options of all commands, or of those that the words name.
+void declare(CLI::App& app, const Words& words, bool all, std::string& running, Declared& declared) {
+    const bool named_first = !words.empty() && is_command(words.front());
     for (const Command* command : all_commands()) {
         // Declaring the options of every command takes longer than filtering ten thousand rows.
         if (named_first && words.front() != command->name) continue;
         CLI::App* sub = app.add_subcommand(std::string(command->name), std::string(command->summary));
         sub->footer(std::string(command->description));
-        if (std::find(words.begin(), words.end(), command->name) == words.end()) continue;
+        if (!all && std::find(words.begin(), words.end(), command->name) == words.end()) continue;
         declared.implementations.push_back(
             std::make_unique<Options::Implementation>(Options::Implementation{sub, words}));
         declared.options.push_back(std::make_unique<Options>(*declared.implementations.back()));
@@ -124,14 +158,17 @@ void check_environment() {
 
 // Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.
 ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
-    app.set_version_flag("--version", fmt::format("{} {}", tool_name, version()));
-    app.footer("Each command explains itself: ripplenotch COMMAND --help. A LOG of - is standard input.");
-    app.require_subcommand(1);
+    words = in_our_words(std::move(words));
+    declare_program(app);
+    const auto kind = kind_to_generate(words);
     const bool named_first = !words.empty() && is_command(words.front());
     if (named_first) running = words.front();
     Declared declared;
-    declare(app, words, named_first, running, declared);
-
+    declare(app, words, kind.has_value(), running, declared);
+    if (kind) {
+        write_text("-", generated(reference_of(app), *kind), ByteSink::Overwrite::no);
+        return ExitCode::done;
+    }
     if (words.empty()) {
         talk_lines(app.help());
         return ExitCode::usage;
@@ -173,8 +210,9 @@ ExitCode run(const Words& words) {
             return ExitCode::done;
         }
     } catch (const CLI::ParseError& error) {
+        const std::string command = running.empty() ? "" : running + " ";
         return complain(ExitCode::usage, running,
-                        fmt::format("{}; see {} {} --help", error.what(), tool_name, running));
+                        fmt::format("{}; see {} {}--help", error.what(), tool_name, command));
     } catch (const Error& error) {
         return complain(error.code(), running, error.what());
     } catch (const std::bad_alloc&) {

@@ -196,10 +196,4 @@ std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, c
     return errors;
 }
 
-double rms(const std::vector<double>& values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value * value;
-    return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
-}
-
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "core/rms.hpp"
 #include "model/weighing.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/rules.hpp"
@@ -32,9 +33,6 @@ struct Case {
     [[nodiscard]] std::size_t size() const { return torque_nm.size(); }
     [[nodiscard]] std::size_t used() const;
 };
-
-/// Root mean square; 0 of no values.
-[[nodiscard]] double rms(const std::vector<double>& values);
 
 [[nodiscard]] Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& rules);
 

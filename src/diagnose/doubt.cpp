@@ -41,8 +41,8 @@ bool touches(Domain domain, const Leftover& leftover) {
 }
 
 std::string uneven_words(const Unevenness& uneven) {
-    return fmt::format("what is there only looks like it: its size is not the same {} ({:.0f} % off)",
-                       uneven.where, 100.0 * std::min(uneven.part, 9.99));
+    return fmt::format("what is there only looks like it: its size differs by {:.0f} % {}",
+                       100.0 * std::min(uneven.part, 9.99), uneven.where);
 }
 
 bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }

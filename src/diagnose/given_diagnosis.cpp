@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/vectors/dot.hpp"
 #include "diagnose/beside/always_on.hpp"
-#include "diagnose/beside/dot.hpp"
 #include "diagnose/beside/sizes.hpp"
 #include "diagnose/beside/told.hpp"
 #include "diagnose/doubt.hpp"

@@ -64,7 +64,8 @@ std::vector<std::string> missing_motion(const Diagnosis& diagnosis, const Seen& 
     if (direction && seen.rest < rules.least_part)
         missing.emplace_back("rests of a second or more between moves");
     if (speed && seen.slowly < rules.least_part)
-        missing.emplace_back("slow motion, at a fifth of the fastest speed or less");
+        missing.push_back(
+            fmt::format("slow motion, at {:g} % of the fastest speed or less", 100.0 * rules.slow_part));
     if (position && diagnosis.has_position && seen.travel_deg < rules.turn_deg)
         missing.push_back(fmt::format("a travel of more than a turn (here {:.0f} deg)", seen.travel_deg));
     if (load) missing.emplace_back("the same motion with another load");

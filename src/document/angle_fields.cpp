@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "document/angle_fields.hpp"
 
-#include <fmt/format.h>
-
-#include "ripplenotch/core/number.hpp"
-
 namespace ripplenotch {
-namespace {
-
-Json six(double value) { return *parse_number(fmt::format("{:.6g}", value)) + 0.0; }
-
-}  // namespace
 
 void put_angle(Json& json, const Diagnosis& diagnosis) {
     if (!diagnosis.angle) return;
     const auto& start = diagnosis.angle->validation_start_deg;
-    json["angle"] = {{"walk_deg", six(diagnosis.angle->walk_deg)},
-                     {"validation_start_deg", start ? six(*start) : Json(nullptr)}};
+    json["angle"] = {{"walk_deg", six_digits(diagnosis.angle->walk_deg)},
+                     {"validation_start_deg", start ? six_digits(*start) : Json(nullptr)}};
 }
 
 void read_angle(Fields& fields, Diagnosis& diagnosis) {

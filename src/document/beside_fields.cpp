@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "document/beside_fields.hpp"
 
-#include <cmath>
-
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::string_view simulated = "simulated";
 
-Json six(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return *parse_number(fmt::format("{:.6g}", value)) + 0.0;
-}
-
 Json interval_json(const std::optional<Interval>& ci95) {
-    return ci95 ? Json{six(ci95->low), six(ci95->high)} : Json(nullptr);
+    return ci95 ? Json{six_digits(ci95->low), six_digits(ci95->high)} : Json(nullptr);
 }
 
 }  // namespace
@@ -26,13 +18,13 @@ Json interval_json(const std::optional<Interval>& ci95) {
 void put_out_of_fold(Json& evidence, const Finding& finding) {
     if (!finding.out_of_fold) return;
     const OutOfFold& outside = *finding.out_of_fold;
-    evidence["out_of_fold_gain"] = six(outside.gain);
-    evidence["t"] = six(outside.t);
+    evidence["out_of_fold_gain"] = six_digits(outside.gain);
+    evidence["t"] = six_digits(outside.t);
     evidence["blocks"] = outside.blocks;
     evidence["blocks_positive"] = outside.blocks_positive;
-    evidence["evenness"] = six(outside.evenness);
+    evidence["evenness"] = six_digits(outside.evenness);
     evidence["rival"] = outside.rival.empty() ? Json(nullptr) : Json(outside.rival);
-    evidence["rival_margin"] = outside.rival.empty() ? Json(nullptr) : six(outside.rival_margin);
+    evidence["rival_margin"] = outside.rival.empty() ? Json(nullptr) : six_digits(outside.rival_margin);
 }
 
 void read_out_of_fold(Fields& evidence, Finding& finding) {
@@ -54,21 +46,22 @@ void put_beside(Json& json, const Diagnosis& diagnosis) {
         // Values of no link, but of what the log tells of all; and what was stated.
         if (value.name == "arm" || value.name == "nuisance") continue;
         if (value.name != simulated) {
-            if (!given.empty()) given[value.name] = six(value.value);
+            if (!given.empty()) given[value.name] = six_digits(value.value);
         } else if (!given.contains("scale")) {
             scale = value.value;
-            given["scale"] = {{"value", six(value.value)}, {"ci95", interval_json(value.ci95)}};
+            given["scale"] = {{"value", six_digits(value.value)}, {"ci95", interval_json(value.ci95)}};
         } else {
             // The slope in time: its value is the scale times how much later the column is.
-            given["delay_s"] = six(scale != 0.0 ? value.value / scale : 0.0);
+            given["delay_s"] = six_digits(scale != 0.0 ? value.value / scale : 0.0);
         }
     }
     if (!given.empty()) json["simulated"] = given;
     if (diagnosis.leftover.empty()) return;
     json["leftover"] = Json::array();
     for (const BandLeft& band : diagnosis.leftover) {
-        Json to = band.to_hz > 0.0 ? six(band.to_hz) : Json(nullptr);
-        json["leftover"].push_back({{"hz", {six(band.from_hz), to}}, {"rms_nm", six(band.rms_nm)}});
+        Json to = band.to_hz > 0.0 ? six_digits(band.to_hz) : Json(nullptr);
+        json["leftover"].push_back(
+            {{"hz", {six_digits(band.from_hz), to}}, {"rms_nm", six_digits(band.rms_nm)}});
     }
 }
 

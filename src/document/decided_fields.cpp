@@ -3,22 +3,16 @@
 
 #include "document/diagnosis_fields.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
-Json six(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return *parse_number(fmt::format("{:.6g}", value)) + 0.0;
-}
-
 Json band_json(const BandGap& band) {
-    Json to = band.to_hz > 0.0 ? six(band.to_hz) : Json(nullptr);
-    return {{"hz", {six(band.from_hz), to}},
-            {"torque_nm", six(band.torque_nm)},
-            {"beside_given_nm", six(band.beside_given_nm)},
-            {"after_nm", six(band.after_nm)}};
+    Json to = band.to_hz > 0.0 ? six_digits(band.to_hz) : Json(nullptr);
+    return {{"hz", {six_digits(band.from_hz), to}},
+            {"torque_nm", six_digits(band.torque_nm)},
+            {"beside_given_nm", six_digits(band.beside_given_nm)},
+            {"after_nm", six_digits(band.after_nm)}};
 }
 
 }  // namespace

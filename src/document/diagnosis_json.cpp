@@ -16,29 +16,18 @@
 namespace ripplenotch {
 namespace {
 
-// Six significant digits: more is rounding noise of a fit. The model keeps all of them.
-Json six(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return *parse_number(fmt::format("{:.6g}", value)) + 0.0;
-}
-
 // A frequency is known to more digits than that.
-Json ten(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return *parse_number(fmt::format("{:.10g}", value)) + 0.0;
-}
-
-Json six(const std::optional<double>& value) { return value ? six(*value) : Json(nullptr); }
+Json ten(double value) { return finite_or_null(to_digits(value, 10) + 0.0); }
 
 Json spans_json(const std::vector<Span>& spans) {
     Json list = Json::array();
-    for (const Span& span : spans) list.push_back({six(span.from), six(span.to)});
+    for (const Span& span : spans) list.push_back({six_digits(span.from), six_digits(span.to)});
     return list;
 }
 
 Json numbers_json(const std::vector<double>& values) {
     Json list = Json::array();
-    for (const double value : values) list.push_back(six(value));
+    for (const double value : values) list.push_back(six_digits(value));
     return list;
 }
 
@@ -78,19 +67,21 @@ Json round_json(const Finding& finding) {
     if (!finding.reason.empty()) json["reason"] = finding.reason;
     json["parameters"] = parameters_json(term, finding.values);
     json["where"] = place_json(finding.where);
-    json["evidence"] = {
-        {"gain", six(finding.evidence.gain)},         {"price", six(finding.evidence.price)},
-        {"share_nm", six(finding.evidence.share_nm)}, {"share_of_noise", six(finding.evidence.share_sigma)},
-        {"own_nm", six(finding.evidence.own_nm)},     {"gain_elsewhere", six(finding.evidence.elsewhere)}};
+    json["evidence"] = {{"gain", six_digits(finding.evidence.gain)},
+                        {"price", six_digits(finding.evidence.price)},
+                        {"share_nm", six_digits(finding.evidence.share_nm)},
+                        {"share_of_noise", six_digits(finding.evidence.share_sigma)},
+                        {"own_nm", six_digits(finding.evidence.own_nm)},
+                        {"gain_elsewhere", six_digits(finding.evidence.elsewhere)}};
     put_out_of_fold(json["evidence"], finding);
     if (finding.size_uncertain) json["size_uncertain"] = true;
     json["alternatives"] = Json::array();
     for (const RivalFinding& rival : finding.alternatives)
-        json["alternatives"].push_back({{"effect", rival.effect}, {"margin", six(rival.margin)}});
-    json["validation_before_nm"] = six(finding.validation_before_nm);
-    json["validation_after_nm"] = six(finding.validation_after_nm);
-    json["gap_before_nm"] = six(finding.gap_before_nm);
-    json["gap_after_nm"] = six(finding.gap_after_nm);
+        json["alternatives"].push_back({{"effect", rival.effect}, {"margin", six_digits(rival.margin)}});
+    json["validation_before_nm"] = six_digits(finding.validation_before_nm);
+    json["validation_after_nm"] = six_digits(finding.validation_after_nm);
+    json["gap_before_nm"] = six_digits(finding.gap_before_nm);
+    json["gap_after_nm"] = six_digits(finding.gap_after_nm);
     return json;
 }
 
@@ -107,20 +98,20 @@ Json leftovers_json(const std::vector<Leftover>& leftovers) {
     for (const Leftover& leftover : leftovers) {
         list.push_back({{"kind", leftover_kind_name(leftover.kind)},
                         {"where", place_json(leftover.where)},
-                        {"rms_nm", six(leftover.rms_nm)},
-                        {"part_of_gap", six(leftover.part)}});
+                        {"rms_nm", six_digits(leftover.rms_nm)},
+                        {"part_of_gap", six_digits(leftover.part)}});
     }
     return list;
 }
 
 Json gap_json(const DiagnosisGap& gap) {
-    return {{"before_nm", six(gap.before_nm)},
-            {"after_nm", six(gap.after_nm)},
-            {"noise_floor_nm", six(gap.noise_floor_nm)},
-            {"closed_percent", six(gap.closed_percent)},
-            {"validation_before_nm", six(gap.validation_before_nm)},
-            {"validation_after_nm", six(gap.validation_after_nm)},
-            {"validation_closed_percent", six(gap.validation_closed_percent)}};
+    return {{"before_nm", six_digits(gap.before_nm)},
+            {"after_nm", six_digits(gap.after_nm)},
+            {"noise_floor_nm", six_digits(gap.noise_floor_nm)},
+            {"closed_percent", six_digits(gap.closed_percent)},
+            {"validation_before_nm", six_digits(gap.validation_before_nm)},
+            {"validation_after_nm", six_digits(gap.validation_after_nm)},
+            {"validation_closed_percent", six_digits(gap.validation_closed_percent)}};
 }
 
 Json baseline_json(const Diagnosis& diagnosis) {
@@ -141,8 +132,8 @@ Json decision_json(std::string_view effect, const Json& round, std::string_view 
     Json rules = Json::array();
     for (const Decision& decision : decisions) {
         rules.push_back({{"rule", decision.rule},
-                         {"number", six(decision.number)},
-                         {"limit", six(decision.limit)},
+                         {"number", six_digits(decision.number)},
+                         {"limit", six_digits(decision.limit)},
                          {"unit", decision.unit},
                          {"against", decision.against}});
     }
@@ -154,10 +145,10 @@ Json arm_json(const ArmAccount& arm) {
     json["joints"] = Json::array();
     for (const JointTravel& joint : arm.joints)
         json["joints"].push_back(
-            {{"name", joint.name}, {"log", joint.log}, {"travel_deg", six(joint.travel_deg)}});
+            {{"name", joint.name}, {"log", joint.log}, {"travel_deg", six_digits(joint.travel_deg)}});
     json["lengths_are_guessed"] = arm.lengths_are_guessed;
     json["smoothing_s"] = arm.smoothing.value();
-    json["gap_before_nm"] = six(arm.gap_before_nm);
+    json["gap_before_nm"] = six_digits(arm.gap_before_nm);
     if (arm.values_are_stated) {
         json["values_are_stated"] = true;
         return json;
@@ -166,7 +157,7 @@ Json arm_json(const ArmAccount& arm) {
     json["values_told"] = arm.values_told;
     json["all_joints_at_once"] = arm.all_joints_at_once;
     json["lambda"] = arm.pull;
-    json["gap_nm"] = six(arm.gap_nm);
+    json["gap_nm"] = six_digits(arm.gap_nm);
     return json;
 }
 
@@ -202,7 +193,7 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     for (const Undecidable& entry : diagnosis.undecidable)
         json["undecidable"].push_back({{"effect", entry.effect},
                                        {"reason", entry.reason},
-                                       {"would_explain_nm", six(entry.would_explain_nm)}});
+                                       {"would_explain_nm", six_digits(entry.would_explain_nm)}});
     json["gap"] = gap_json(diagnosis.gap);
     put_beside(json, diagnosis);
     put_decided(json, diagnosis);

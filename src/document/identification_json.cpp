@@ -6,6 +6,7 @@
 
 #include "document/gear_fields.hpp"
 #include "document/json.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -51,10 +52,11 @@ Json ratio_to_json(const GearRatioFit& fit) {
     }
     json["residuals"] = Json::array();
     for (const auto& r : fit.residuals) {
+        // As many decimals as the frequency has: below them is only how a processor rounds.
         json["residuals"].push_back({{"speed_deg_s", r.speed_deg_s},
                                      {"hz", r.hz},
                                      {"order", r.order},
-                                     {"residual_hz", r.residual_hz},
+                                     {"residual_hz", to_digits_of(r.hz, r.residual_hz)},
                                      {"weight", r.weight}});
     }
     return json;

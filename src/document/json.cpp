@@ -49,6 +49,8 @@ void round_fitted(Json& json) {
 
 }  // namespace
 
+Json six_digits(double value) { return finite_or_null(to_digits(value, 6) + 0.0); }
+
 std::string to_fitted_text(Json json) {
     round_fitted(json);
     return to_text(json);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -41,6 +42,13 @@ struct AnyDocument {
 /// Null for what is not finite: JSON has no nan.
 [[nodiscard]] inline Json finite_or_null(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// Six significant digits of what was fitted or measured, where more would be rounding noise; null for what
+/// is not finite.
+[[nodiscard]] Json six_digits(double value);
+[[nodiscard]] inline Json six_digits(const std::optional<double>& value) {
+    return value ? six_digits(*value) : Json(nullptr);
 }
 
 }  // namespace ripplenotch

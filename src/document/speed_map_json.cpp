@@ -2,16 +2,8 @@
 #include "ripplenotch/document/speed_map_json.hpp"
 
 #include "document/gear_fields.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
-namespace {
-
-/// Six significant digits: a map is large, and the rest is rounding.
-Json short_number(double value) { return *parse_number(fmt::format("{:.6g}", value)); }
-
-}  // namespace
-
 std::string speed_map_text(const std::string& joint, const SpeedMap& map, std::string_view axis_name,
                            const std::optional<GearAccount>& gear, const Provenance& provenance) {
     Json json = document_head("spectrum", provenance);
@@ -19,19 +11,19 @@ std::string speed_map_text(const std::string& joint, const SpeedMap& map, std::s
     json["domain"] = map.axis_kind == Axis::time ? "campbell" : "order-map";
     json["gear"] = gear_to_json(gear);
     json["window"] = "hann";
-    json["resolution"] = short_number(map.resolution);
+    json["resolution"] = six_digits(map.resolution);
     json["speed_step_deg_s"] = map.speed_step_deg_s;
     json["runs_too_short"] = map.runs_too_short;
     json["axis"] = axis_name;
     json["axis_values"] = Json::array();
-    for (const double value : map.axis) json["axis_values"].push_back(short_number(value));
+    for (const double value : map.axis) json["axis_values"].push_back(six_digits(value));
     json["rows"] = Json::array();
     for (std::size_t row = 0; row < map.speed_deg_s.size(); ++row) {
         Json one;
-        one["speed_deg_s"] = short_number(map.speed_deg_s[row]);
+        one["speed_deg_s"] = six_digits(map.speed_deg_s[row]);
         one["windows"] = map.windows[row];
         one["amplitude_nm"] = Json::array();
-        for (const double value : map.amplitude_nm[row]) one["amplitude_nm"].push_back(short_number(value));
+        for (const double value : map.amplitude_nm[row]) one["amplitude_nm"].push_back(six_digits(value));
         json["rows"].push_back(std::move(one));
     }
     return to_fitted_text(std::move(json));

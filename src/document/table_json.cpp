@@ -18,6 +18,11 @@ namespace {
 constexpr double section_tolerance = 1e-12;
 constexpr double figure_tolerance = 1e-6;  // dB, per cent, and a share of the delay
 
+std::vector<double> each_to_digits(std::vector<double> values) {
+    for (double& value : values) value = to_digits(value);
+    return values;
+}
+
 Json depth_to_json(double depth_db) { return depth_db >= infinite_depth_db ? Json(nullptr) : Json(depth_db); }
 
 Json band_to_json(const Band& band) {
@@ -37,13 +42,15 @@ Json band_to_json(const Band& band) {
     json["speed_from_deg_s"] = band.from.value();
     json["speed_to_deg_s"] = band.to.value();
     json["notches"] = std::move(notches);
-    json["dc_delay_ms"] = 1e3 * band.dc_delay.value();
-    json["settle_ms"] = 1e3 * band.settle.value();
+    // Figures for people: what follows from the notches, to the digits on which processors agree.
+    json["dc_delay_ms"] = to_digits(1e3 * band.dc_delay.value());
+    json["settle_ms"] = to_digits(1e3 * band.settle.value());
     json["settle_band_percent"] = band.settle_band_percent;
-    json["overshoot_percent"] = band.overshoot_percent;
-    json["worst_attenuation_db"] = band.worst_attenuation_db;
-    json["held_attenuation_db"] = band.held_attenuation_db;
-    if (!band.predicted_residual_nm.empty()) json["predicted_residual_nm"] = band.predicted_residual_nm;
+    json["overshoot_percent"] = to_digits(band.overshoot_percent);
+    json["worst_attenuation_db"] = each_to_digits(band.worst_attenuation_db);
+    json["held_attenuation_db"] = to_digits(band.held_attenuation_db);
+    if (!band.predicted_residual_nm.empty())
+        json["predicted_residual_nm"] = each_to_digits(band.predicted_residual_nm);
     return json;
 }
 

@@ -27,8 +27,8 @@ std::vector<std::string> parts_of(const std::string& method) {
 
 constexpr std::size_t short_enough = 36;  // letters of a method that is told as it was typed
 
-// A long method by its name where no other has it, else with the keys that tell it from those:
-// "switching,transition=reset". The table beside the verdict has it whole.
+}  // namespace
+
 std::string short_name(const MethodFigures& figures, const Comparison& comparison) {
     if (figures.method.size() <= short_enough) return figures.method;
     const std::vector<std::string> parts = parts_of(figures.method);
@@ -45,6 +45,8 @@ std::string short_name(const MethodFigures& figures, const Comparison& compariso
     }
     return name;
 }
+
+namespace {
 
 // "settles 2.8 times faster than B (147 against 408 ms to 0.5 %)"
 std::string settling(const MethodFigures& a, const MethodFigures& b, const std::string& rival) {

@@ -31,7 +31,10 @@ TEST_CASE("the gap falls from round to round in the figure as it did, each round
     CHECK(panel.lines[1].value == 2.0);
     CHECK(panel.lines[2].value == 0.25);
     diagnosis.rounds.clear();
-    check_figure(gap_figure("Nothing was added", diagnosis));
+    const Figure nothing = gap_figure("Nothing was added", diagnosis);
+    check_figure(nothing);
+    CHECK(nothing.panels.front().curves[1].y ==
+          std::vector<double>{diagnosis.gap.before_nm});  // and no empty panel
 }
 
 TEST_CASE("a residual's map is as high where the models disagree as the disagreement is, and nowhere else") {

@@ -63,7 +63,7 @@ TEST_CASE("the ripple tells how far an integrated position has walked") {
 TEST_CASE("a position that was measured stays as it is") {
     Case c = case_of(plain_log(joint(), 82));
     const std::vector<double> before = c.motion.position_deg;
-    CHECK(take_out_walk(c, joint(), joint(), WalkOf::log, standard.recording) == 0.0);
+    take_out_walk(c, joint(), joint(), WalkOf::log, standard.recording);
     CHECK(c.motion.position_deg == before);
 }
 
@@ -102,5 +102,5 @@ TEST_CASE("logs of torque and velocity that begin anywhere bear each other's nam
     CHECK(found.named == std::vector<std::string>{"gravity"});
     CHECK(found.undecidable.empty());
     REQUIRE(found.gap.validation_after_nm);
-    CHECK(*found.gap.validation_after_nm == Approx(noise_nm).epsilon(0.3));
+    CHECK(*found.gap.validation_after_nm == Approx(noise_nm).epsilon(0.25));
 }

@@ -161,7 +161,7 @@ TEST_CASE("on a short way without position, what depends on where the joint is c
     REQUIRE(found.undecidable.size() == 3);
     const auto gravity = std::find_if(found.undecidable.begin(), found.undecidable.end(),
                                       [](const Undecidable& entry) { return entry.effect == "gravity"; });
-    CHECK(gravity->would_explain_nm > 0.3);
+    CHECK(gravity->would_explain_nm > 0.45);
 }
 
 TEST_CASE("faults that may not be named are unexplained at their samples") {

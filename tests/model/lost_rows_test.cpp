@@ -86,6 +86,6 @@ TEST_CASE("a delay along a log that lost rows is that of the whole log") {
         model.terms.push_back(parse_term(late));
         const auto expected = predict_nm(model, whole), found = predict_nm(model, part);
         for (std::size_t k = 200; k + 200 < found.size(); ++k)
-            REQUIRE(std::abs(found[k] - expected[log.kept[k]]) < 1e-2);
+            REQUIRE(std::abs(found[k] - expected[log.kept[k]]) < 5e-3);
     }
 }

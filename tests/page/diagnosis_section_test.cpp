@@ -45,7 +45,7 @@ TEST_CASE("a diagnosis has its verdict in words, the gap as a figure and its par
 
 TEST_CASE("the rounds of a diagnosis are a table that fits a page") {
     const PageSection section = section_of(testing::full_diagnosis());
-    const PageTable& rounds = table_named(section, "rounds");
+    const PageTable rounds = table_named(section, "rounds");
     CHECK(rounds.header == std::vector<std::string>{"effect", "status", "parameters (95 % interval)", "where",
                                                     "explains, Nm", "gap, Nm", "validation, Nm", "rivals",
                                                     "reason"});

@@ -81,6 +81,11 @@ struct Comparison {
     [[nodiscard]] const MethodFigures* rival() const;
 };
 
+/// What a method is called beside the others of a comparison: as it was typed where that is short; a long one
+/// by its name where no other has it, else with the keys that tell it from those:
+/// "switching,transition=reset".
+[[nodiscard]] std::string short_name(const MethodFigures& figures, const Comparison& comparison);
+
 /// One sentence with numbers: how subject and rival differ in settling, delay and ripple.
 [[nodiscard]] std::string verdict(const Comparison& comparison);
 

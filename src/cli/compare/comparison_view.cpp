@@ -122,6 +122,24 @@ std::string conditions(const Comparison& comparison) {
     return text + notes_in_force(comparison);
 }
 
+// The same with short names for its methods.
+Comparison with_short_names(const Comparison& comparison) {
+    Comparison named = comparison;
+    for (std::size_t i = 0; i < named.methods.size(); ++i)
+        named.methods[i].method = short_name(comparison.methods[i], comparison);
+    return named;
+}
+
+// The methods with short names, as they would be typed.
+std::string legend(const Comparison& comparison) {
+    std::string text;
+    for (const MethodFigures& figures : comparison.methods) {
+        const std::string name = short_name(figures, comparison);
+        if (name != figures.method) text += fmt::format("{} is --method {}\n", name, figures.method);
+    }
+    return text.empty() ? text : "\n" + text;
+}
+
 // A sentence wrapped to lines that a terminal shows whole.
 std::string paragraph(const std::string& sentence) {
     std::string text;
@@ -132,14 +150,14 @@ std::string paragraph(const std::string& sentence) {
 }  // namespace
 
 std::string comparison_view(const Comparison& comparison) {
-    std::string text =
-        paragraph(verdict(comparison)) + "\n" + rows_of(comparison) + "\n" + conditions(comparison);
+    const Comparison named = with_short_names(comparison);
+    std::string text = paragraph(verdict(comparison)) + "\n" + rows_of(named) + "\n" + conditions(named);
     if (comparison.match && !comparison.match->low_pass) {
         std::string sentence = comparison.match->clause;
         sentence.front() = 'N';  // all of them begin with "no low-pass"
         text += sentence + ".\n";
     }
-    return text + ledger_text(comparison);
+    return text + legend(comparison) + ledger_text(named);
 }
 
 }  // namespace ripplenotch

@@ -136,15 +136,15 @@ ExitCode run(const DesignRequest& request, const std::string& command_line) {
     if (gear.joint()) provenance.inputs.push_back(input_record(gear.joint()->path));
     const TableSpec spec = design_spec(request, gear);
     if (request.frontier) return print_frontier(request, form, spec, gear, provenance);
-    const auto [table, note] = draw(request, spec, gear);
-    say(request.common, fmt::format("designed as if with {}", option_line(table.spec())));
-    say_warnings(request.common, alias_warnings(table));
-    const std::string text = form == "json"  ? table_to_json(table, provenance, note)
-                             : form == "csv" ? table_to_csv(table)
-                                             : table_to_text(table, note);
+    const Drawn drawn = draw(request, spec, gear);
+    say(request.common, fmt::format("designed as if with {}", option_line(drawn.table.spec())));
+    say_warnings(request.common, alias_warnings(drawn.table));
+    const std::string text = form == "json"  ? table_to_json(drawn.table, provenance, drawn.note)
+                             : form == "csv" ? table_to_csv(drawn.table)
+                                             : table_to_text(drawn.table, drawn.note);
     write_text(request.common.output, text, request.common.overwrite());
-    draw_plot(request.plot, request.common, provenance, [&] { return table_figure(table); });
-    const auto broken = violations(request, table);
+    draw_plot(request.plot, request.common, provenance, [&] { return table_figure(drawn.table); });
+    const auto broken = violations(request, drawn.table);
     say_warnings(request.common, broken);
     return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
 }

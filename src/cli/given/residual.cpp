@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "cli/gear/joint_methods.hpp"
 #include "cli/given/stated_along.hpp"
+#include "core/rms.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/model_json.hpp"
@@ -14,12 +13,6 @@
 
 namespace ripplenotch {
 namespace {
-
-double rms(const std::vector<double>& values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value * value;
-    return std::sqrt(sum / static_cast<double>(values.size()));
-}
 
 ModelWithGiven model_of(const ResidualOptions& residual, const std::string& joint) {
     // Without a model nothing depends on its ratio.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Shared by options.cpp and main.cpp only: the parsing library behind Options.
+// Shared by options.cpp, main.cpp and reference.cpp only: the parsing library behind Options.
 
 #include <CLI/CLI.hpp>
 #include <functional>

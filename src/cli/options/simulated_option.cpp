@@ -18,8 +18,8 @@ namespace {
 
 // Of a scale that is fitted; hardly ever is a simulation in other units by more.
 constexpr double usual_scale = 10.0;
-// Of a delay that is fitted: within 40 ms.
-constexpr double usual_delay_s = 0.02, largest_delay_s = 0.04;
+// Of a delay that is fitted.
+constexpr double usual_delay_s = 0.02;
 
 constexpr std::array<std::string_view, 1> aligns = {"start"};
 constexpr Key column_keys[] = {

@@ -13,6 +13,7 @@
 #include "cli/options/name_list.hpp"
 #include "cli/simulate/joint_model.hpp"
 #include "cli/talk.hpp"
+#include "core/rms.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/simulation_json.hpp"
@@ -65,12 +66,6 @@ void round_to(std::vector<double>& values, const std::optional<double>& decimals
     double scale = 1.0;
     for (int i = 0; i < static_cast<int>(*decimals); ++i) scale *= 10.0;
     for (double& value : values) value = std::round(value * scale) / scale + 0.0;
-}
-
-double rms(std::span<const double> values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value * value;
-    return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
@@ -223,8 +218,8 @@ ExitCode simulate(const SimulateOptions& options) {
     say(options.common, fmt::format("{} rows of {} columns at {} Hz as {}", columns[0].values.size(),
                                     columns.size(), shortest(sample_rate.value()), format.name));
     if (gap) {
-        say(options.common, fmt::format("measured less modelled torque: {} Nm rms of {} Nm rms",
-                                        shortest(gap->residual_rms_nm), shortest(gap->measured_rms_nm)));
+        say(options.common, fmt::format("measured less modelled torque: {:.4g} Nm rms of {:.4g} Nm rms",
+                                        gap->residual_rms_nm, gap->measured_rms_nm));
     }
     if (options.common.json)
         write_text("-", summary(options, model, sample_rate, std::move(recordings), gap, columns),

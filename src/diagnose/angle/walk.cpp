@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "diagnose/beside/dot.hpp"
+#include "core/vectors/dot.hpp"
 #include "diagnose/beside/ridge.hpp"
 #include "diagnose/lines.hpp"
 #include "diagnose/undecidable.hpp"
@@ -152,10 +152,10 @@ double best_place(const Case& other, const Model& stated, double step_deg, std::
 
 }  // namespace
 
-double take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
-                     const RecordingRules& rules) {
+void step_of_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
+                  const RecordingRules& rules) {
     Walk walk = walk_of(looked_at, stated, of, rules);
-    if (walk.position_deg.empty()) return 0.0;
+    if (walk.position_deg.empty()) return;
     if (of == WalkOf::log) add_slopes(walk, looked_at, open, stated);
     const double rate_hz = looked_at.motion.sample_rate.value();
     for (auto& torque : walk.torque_nm) torque = quick_part(torque, rate_hz, rules.angle_window_s);
@@ -166,18 +166,20 @@ double take_out_walk(Case& looked_at, const Model& open, const Model& stated, Wa
     for (std::size_t i = 0; i < walk.position_deg.size(); ++i)
         add_scaled(sizes[i], walk.position_deg[i].data(), change.data(), change.size());
     add_scaled(1.0, change.data(), looked_at.motion.position_deg.data(), change.size());
-    return rms(change);
+}
+
+void take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
+                   const RecordingRules& rules) {
+    for (int step = 0; step < walk_steps; ++step) step_of_walk(looked_at, open, stated, of, rules);
 }
 
 void put_in_place(Case& other, const Model& stated, const RecordingRules& rules) {
-    constexpr int steps = 3;
     const StatedRipple ripple = stated_ripple(stated);
     if (ripple.orders.empty() && !goes_with_output(stated)) return;
     const double turn_deg = 360.0 / ripple.ratio.value();
     const auto settle = [&](double place_deg) {
         other.motion = moved(std::move(other.motion), place_deg);
-        for (int step = 0; step < steps; ++step)
-            (void)take_out_walk(other, stated, stated, WalkOf::other_log, rules);
+        take_out_walk(other, stated, stated, WalkOf::other_log, rules);
     };
     settle(best_place(other, stated, grid_deg(stated), places_a_turn(ripple), rules.angle_window_s));
     if (!goes_with_output(stated)) return;

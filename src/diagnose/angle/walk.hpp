@@ -14,12 +14,18 @@ enum class WalkOf {
     other_log,  ///< of another one, which the model is held against with all its values
 };
 
-/// Moves the position of a case by what the torque says of its walk, beside the values that `open` leaves
-/// out and `stated` has: by the sines of motion_errors(), drawn to their usual sizes, and for another log by
-/// a constant. Returns the rms change of the position, deg. A case without a walk is moved by the constant
-/// alone, the log itself not at all.
-double take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
-                     const RecordingRules& rules);
+/// The steps in which a walk is told, each from where the one before has led.
+inline constexpr int walk_steps = 3;
+
+/// One step: moves the position of a case by what the torque says of its walk, beside the values that `open`
+/// leaves out and `stated` has: by the sines of motion_errors(), drawn to their usual sizes, and for another
+/// log by a constant. A case without a walk is moved by the constant alone, the log itself not at all.
+void step_of_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
+                  const RecordingRules& rules);
+
+/// All steps, with the same model.
+void take_out_walk(Case& looked_at, const Model& open, const Model& stated, WalkOf of,
+                   const RecordingRules& rules);
 
 /// Puts another log of the same joint, which began at an angle that nobody knows, where the model predicts
 /// its torque best: within a turn of the motor by the ripple, and at one of its turns by what goes with the

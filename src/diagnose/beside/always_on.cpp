@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "diagnose/beside/dot.hpp"
+#include "core/vectors/dot.hpp"
 #include "diagnose/beside/ridge.hpp"
 #include "model/fit_coordinates.hpp"
 #include "ripplenotch/model/prediction.hpp"

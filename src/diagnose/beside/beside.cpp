@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/beside/dot.hpp"
+#include "core/vectors/dot.hpp"
 #include "diagnose/beside/other_log.hpp"
 #include "diagnose/doubt.hpp"
 #include "diagnose/place.hpp"

@@ -98,14 +98,14 @@ void look_alone(const Sums& sums, const Names& names, std::size_t place, bool ev
         doubt(finding, "its shape ends at a bound: it stands in for something else");
     else if (hearing.asked("beside.same_sign", finding.same.same_sign,
                            finding.same.same_sign < rules.beside.same_sign))
-        doubt(finding, "its size has not the same sign all over the log");
+        doubt(finding, "its sign changes from part to part of the log");
     else if (hearing.asked("beside.most_uneven", finding.same.uneven,
                            finding.same.uneven > rules.beside.most_uneven))
-        doubt(finding, fmt::format("its size is not the same all over the log ({:.0f} % off)",
+        doubt(finding, fmt::format("its size differs by {:.0f} % from part to part of the log",
                                    100.0 * std::min(finding.same.uneven, 9.99)));
     else if (even_by_speed && hearing.asked("evenness.most_uneven", finding.same.uneven_by_speed,
                                             finding.same.uneven_by_speed > rules.evenness.most_uneven))
-        doubt(finding, fmt::format("its size is not the same slow and fast, forth and back ({:.0f} % off)",
+        doubt(finding, fmt::format("its size differs by {:.0f} % between slow and fast, forth and back",
                                    100.0 * std::min(finding.same.uneven_by_speed, 9.99)));
 }
 

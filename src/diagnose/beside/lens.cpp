@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vectors/dot.hpp"
 #include "diagnose/beside/color.hpp"
-#include "diagnose/beside/dot.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "diagnose/beside/dot.hpp"
+#include "core/vectors/dot.hpp"
 #include "diagnose/hearing.hpp"
 #include "diagnose/summary.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "diagnose/beside/dot.hpp"
+#include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
 

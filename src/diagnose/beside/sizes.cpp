@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/beside/dot.hpp"
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

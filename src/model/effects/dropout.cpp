@@ -127,8 +127,10 @@ std::optional<DetectedFault> detect(const LoggedTorque& log, const FaultRules& r
     for (const double length : lengths) mean += length / static_cast<double>(lengths.size());
     const double duration_s = static_cast<double>(n) / rate;
     fault.values = {static_cast<double>(lengths.size()) / duration_s, mean / rate, seed_parameter.start};
-    fault.words = fmt::format("{} stretches of {:.3g} ms on average repeat one value", lengths.size(),
-                              1e3 * mean / rate);
+    fault.words = lengths.size() == 1
+                      ? fmt::format("1 stretch of {:.3g} ms repeats one value", 1e3 * mean / rate)
+                      : fmt::format("{} stretches of {:.3g} ms on average repeat one value", lengths.size(),
+                                    1e3 * mean / rate);
     return fault;
 }
 

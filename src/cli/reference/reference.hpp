@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What every command and option is, as declared: the one source of --help, man pages and completions.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace ripplenotch {
+
+struct OptionEntry {
+    std::vector<std::string> names;  ///< "-o", "--output"; of an argument "LOG"
+    std::string type;                ///< "FILE", "deg/s"; empty: the option is a flag, or an argument
+    std::string default_text, help;
+    bool is_argument = false, required = false, repeats = false;
+
+    /// "automatic", "steady", ... of an option that takes one of them.
+    [[nodiscard]] std::vector<std::string> choices() const;
+    [[nodiscard]] bool names_file() const;
+    [[nodiscard]] bool takes_value() const { return !type.empty(); }
+    /// "--output"; of an argument its name.
+    [[nodiscard]] const std::string& longest_name() const;
+};
+
+struct CommandEntry {
+    std::string name, summary, description;
+    std::vector<OptionEntry> options;
+};
+
+struct Reference {
+    CommandEntry program;
+    std::vector<CommandEntry> commands;
+};
+
+/// Of an app whose commands have all declared their options.
+[[nodiscard]] Reference reference_of(const CLI::App& app);
+
+/// What --generate prints, for the ending of a message: "man, man-COMMAND, complete-bash, ...".
+inline constexpr std::string_view generated_kinds =
+    "man, man-COMMAND, complete-bash, complete-zsh, complete-fish";
+
+/// A man page ("man", "man-identify") or a shell's completion ("complete-bash"). Throws UsageError for a kind
+/// that there is not.
+[[nodiscard]] std::string generated(const Reference& reference, std::string_view kind);
+
+/// In the man macros of troff. `command`: null for the program's own page.
+[[nodiscard]] std::string man_page(const Reference& reference, const CommandEntry* command);
+[[nodiscard]] std::string bash_completion(const Reference& reference);
+[[nodiscard]] std::string zsh_completion(const Reference& reference);
+[[nodiscard]] std::string fish_completion(const Reference& reference);
+
+}  // namespace ripplenotch

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""Man pages and completions are made of what --help is made of: the same options, no more and no fewer; and the programs
+that read them take them."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+
+
+def tool(*words):
+    return subprocess.run([TOOL, *words], capture_output=True, text=True, timeout=60)
+
+
+def printed(kind):
+    done = tool("--generate", kind)
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    return done.stdout
+
+
+def commands():
+    listed = tool("--help").stdout.split("Subcommands:")[1].split("\n\n")[0]
+    return re.findall(r"^  (\S+)", listed, re.M)
+
+
+def options_of_help(command):
+    """Names of options, as --help has them: '-o', '--output'."""
+    lines = tool(command, "--help").stdout.split("\nOptions:\n")[1].split("\n\n")[0]
+    return {name for line in re.findall(r"^  (-\S+)", lines, re.M) for name in line.split(",")}
+
+
+class Reference(unittest.TestCase):
+    def test_a_man_page_has_the_options_of_the_help(self):
+        for command in commands():
+            with self.subTest(command):
+                section = printed(f"man-{command}").split(".SH OPTIONS\n")[1].split(".SH ")[0]
+                heads = "\n".join(re.findall(r"^\.TP\n(.*)$", section, re.M))
+                names = {name.replace("\\-", "-") for name in re.findall(r"\\fB(.*?)\\fR", heads)}
+                self.assertEqual(names, options_of_help(command))
+
+    def test_bash_has_the_options_of_the_help(self):
+        script = printed("complete-bash")
+        for command in commands():
+            with self.subTest(command):
+                branch = script.split(f"\n        {command})\n")[1].split("\n            ;;\n")[0]
+                self.assertEqual(set(re.search(r'options="(.*)"', branch)[1].split()), options_of_help(command))
+
+    def test_zsh_has_the_options_of_the_help(self):
+        script = printed("complete-zsh")
+        for command in commands():
+            with self.subTest(command):
+                branch = script.split(f"\n        {command})\n")[1].split("\n            ;;\n")[0]
+                names = re.findall(r"^ +'(?:\([^)]*\)|\*)(-[\w-]+)\[", branch, re.M)
+                self.assertEqual(set(names), options_of_help(command))
+
+    def test_fish_has_the_options_of_the_help(self):
+        lines = [line for line in printed("complete-fish").splitlines() if "__fish_seen_subcommand_from" in line]
+        for command in commands():
+            with self.subTest(command):
+                own = [line.split(f"from {command}'")[1].split(" -d ")[0] for line in lines if f"from {command}'" in line]
+                names = {("--" if kind == "l" else "-") + name for line in own for kind, name in re.findall(r" -([ls]) (\S+)", line)}
+                self.assertEqual(names, options_of_help(command))
+
+    def test_exit_codes_are_those_of_the_docs(self):
+        page = (SOURCE / "docs/commands/README.md").read_text().split("## Exit codes")[1]
+        documented = re.findall(r"^\| (\d+) \|", page, re.M)
+        told = re.findall(r"^\.TP\n\\fB(\d+)\\fR$", printed("man").split(".SH EXIT STATUS\n")[1], re.M)
+        self.assertEqual(told, documented)
+
+    def test_what_people_type_elsewhere(self):
+        self.assertEqual(tool("help", "identify").stdout, tool("identify", "--help").stdout)
+        self.assertEqual(tool("help").stdout, tool("--help").stdout)
+        for words in (["-V"], ["version"]):
+            self.assertEqual(tool(*words).stdout, tool("--version").stdout)
+        done = tool("help", "nonsense")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("there is no command 'nonsense'", done.stderr)
+        done = tool("--generate", "man-nonsense")
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("expected one of man, man-COMMAND, complete-bash", done.stderr)
+
+
+class Bash(unittest.TestCase):
+    def completed(self, *words):
+        script = printed("complete-bash") + (
+            f'COMP_WORDS=({" ".join(words)} "$1"); COMP_CWORD={len(words)}; _ripplenotch; printf "%s\\n" "${{COMPREPLY[@]}}"')
+        done = subprocess.run(["bash", "-c", script, "bash", self.last], capture_output=True, text=True, cwd=self.folder.name)
+        self.assertEqual(done.stderr, "")
+        return done.stdout.split()
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        (pathlib.Path(self.folder.name) / "log.csv").touch()
+
+    def test_commands_options_choices_and_files(self):
+        for words, last, expected in (
+                (["ripplenotch"], "id", ["identify"]),
+                (["ripplenotch", "identify"], "--evid", ["--evidence"]),
+                (["ripplenotch", "identify", "--evidence"], "s", ["steady"]),
+                (["ripplenotch", "identify", "--gear-ratio"], "", []),
+                (["ripplenotch", "identify"], "lo", ["log.csv"]),
+                (["ripplenotch", "nonsense"], "--", [])):
+            with self.subTest(" ".join(words)):
+                self.last = last
+                self.assertEqual(self.completed(*words), expected)
+
+
+def checked_by(program, *words):
+    @unittest.skipUnless(shutil.which(program), f"SKIPPED: there is no {program} here")
+    def check(self):
+        for kind in self.kinds():
+            with self.subTest(kind), tempfile.NamedTemporaryFile("w", suffix=".1") as file:
+                file.write(printed(kind))
+                file.flush()
+                done = subprocess.run([program, *words, file.name], capture_output=True, text=True)
+                self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+    return check
+
+
+class ManByGroff(unittest.TestCase):
+    def kinds(self):
+        return ["man"] + [f"man-{command}" for command in commands()]
+    test_it_finds_nothing_wrong = checked_by("groff", "-man", "-ww", "-z")
+
+
+class Zsh(unittest.TestCase):
+    def kinds(self):
+        return ["complete-zsh"]
+    test_it_reads_it = checked_by("zsh", "-n")
+
+
+class Fish(unittest.TestCase):
+    def kinds(self):
+        return ["complete-fish"]
+    test_it_reads_it = checked_by("fish", "-n")
+
+
+if __name__ == "__main__":
+    unittest.main()
