@@ -45,6 +45,10 @@ COMMANDS = {
     "filter by a table": ("filter", MOVE, "--table", "table.json"),
     "low-pass": ("filter", MOVE, "--method", "lowpass,cutoff=13rad/s,order=4", "--decimals", "6"),
     "export": ("export", "table.json", "--to", "c-header"),
+    "map": ("map", MOVE, *GEAR),
+    "a map as JSON": ("map", MOVE, *GEAR, "--json"),
+    "filter by a map": ("filter", MOVE, "--method", "oscillator,map=map.json"),
+    "export a map": ("export", "map.json", "--to", "c-header"),
     "report": ("report", "table.json", "--no-plotly"),
     "effects": ("effects",),
     "diagnose": ("diagnose", "--model", "model.json", "made.csv", "--json"),
@@ -61,6 +65,7 @@ class Processors(unittest.TestCase):
         (folder / "model.json").write_text(MODEL)
         (folder / "made.csv").write_bytes(cls.run_tool(*MADE))
         (folder / "table.json").write_bytes(cls.run_tool(*COMMANDS["design"]))
+        (folder / "map.json").write_bytes(cls.run_tool("map", MOVE, *GEAR, "--json"))
         cls.here = {name: cls.run_tool(*words) for name, words in COMMANDS.items()}
 
     @classmethod

@@ -36,7 +36,7 @@ class NamesOfJson(Told):
 
     def test_what_cannot_be_json_is_refused_under_such_a_name(self):
         self.refused(["filter", MOVE, *LOW, "-o", "x.csv", "--metrics", "x.npy"], "metrics", ".json")
-        self.refused(["filter", MOVE, *LOW, "-o", "x.json"], "a log is not written as JSON; name it .csv or .npy")
+        self.refused(["filter", MOVE, *LOW, "-o", "x.json"], "a log is not written as JSON; name it .csv, .npy, .mat or .h5")
         self.refused(["simulate", "--gear-ratio", 100, "--ripple", "1:1Nm", "--motion", "constant,speed=60deg/s,duration=1s",
                       "--sample-rate", "1kHz", "-o", "x.json"], "a log is not written as JSON")
         self.good("design", "--gear-ratio", 100, "--sample-rate", "1kHz", "--speed", "18:90:18", "-o", "t.json")
@@ -71,6 +71,10 @@ class NamesOfOtherKinds(Told):
         data = path.read_bytes()
         if data.startswith(b"\x93NUMPY"):
             return {"npy"}
+        if data.startswith(b"MATLAB 5.0 MAT-file"):
+            return {"mat"}
+        if data.startswith(b"\x89HDF\r\n\x1a\n"):
+            return {"h5", "hdf5"}
         text = data.decode()
         if text.startswith("<!"):
             return {"html"}
