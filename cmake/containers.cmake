@@ -39,6 +39,8 @@ function(ripplenotch_container_sources)
         log/containers/hdf5_files.cpp log/containers/hdf5_writer.cpp)
     set(sources_SQLITE log/formats/rosbag2.cpp log/messages/rosbag2_messages.cpp)
     foreach(name IN LISTS RIPPLENOTCH_CONTAINERS_FOUND)
+        # A folder that the compiler knows by itself must keep its place among the others: <cmath> looks behind its own.
+        list(REMOVE_ITEM ${name}_INCLUDE_DIRS ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})
         set_source_files_properties(${sources_${name}} PROPERTIES COMPILE_DEFINITIONS RIPPLENOTCH_HAS_${name}
             INCLUDE_DIRECTORIES "${${name}_INCLUDE_DIRS}" COMPILE_OPTIONS "${${name}_CFLAGS_OTHER}")
     endforeach()
