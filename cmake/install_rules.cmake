@@ -39,6 +39,7 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/ripplenotch-config.cmake
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/ripplenotch-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/ripplenotch-config.cmake ${PROJECT_BINARY_DIR}/ripplenotch-config-version.cmake
         DESTINATION ${config_dir} COMPONENT development)
+string(REPLACE ";" " " pc_containers "${RIPPLENOTCH_CONTAINER_MODULES}")
 configure_file(${CMAKE_CURRENT_LIST_DIR}/package/ripplenotch.pc.in ${PROJECT_BINARY_DIR}/ripplenotch.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/ripplenotch.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 include(packages)

@@ -2,13 +2,16 @@
 # (docs/packages.md). scripts/package makes all of them with their sums.
 set(CPACK_PACKAGE_NAME ripplenotch)
 set(CPACK_PACKAGE_VENDOR "the ripplenotch developers")
-set(RIPPLENOTCH_MAINTAINER "the ripplenotch developers <ripplenotch@localhost.localdomain>" CACHE STRING
+set(RIPPLENOTCH_MAINTAINER "the ripplenotch developers <ripplenotch@example.org>" CACHE STRING
     "Who is written to about the packages: Name <address>")
 set(CPACK_PACKAGE_CONTACT "${RIPPLENOTCH_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "torque ripple of harmonic drives: find, filter, explain")
-set(CPACK_PACKAGE_DESCRIPTION "Reads logs of joint torque and joint velocity, finds the ripple that a harmonic drive puts into
-the torque sensor, designs and applies the filters that take it out, and names
-the effect in which a simulation of the joint and the measured log disagree.")
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "Reads logs of joint torque and joint velocity, finds the ripple that a harmonic
+drive puts into the torque sensor, designs and applies the filters that take it
+out, and names the effect in which a simulation of the joint and the measured
+log disagree.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The library of the command ripplenotch: headers, a static archive, and the
+files by which CMake and pkg-config find them.")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
@@ -30,6 +33,15 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME ripplenotch-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libfmt-dev, libeigen3-dev, libfftw3-dev, libfast-float-dev, nlohmann-json3-dev, nettle-dev, libpugixml-dev")
+set(package_of_ZLIB zlib1g-dev)
+set(package_of_ZSTD libzstd-dev)
+set(package_of_LZ4 liblz4-dev)
+set(package_of_LZMA liblzma-dev)
+set(package_of_HDF5 libhdf5-dev)
+set(package_of_SQLITE libsqlite3-dev)
+foreach(name IN LISTS RIPPLENOTCH_CONTAINERS_FOUND)
+    string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", ${package_of_${name}}")
+endforeach()
 
 # Debian's own files, where a Debian package looks for them; not part of a plain installation.
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
