@@ -33,8 +33,8 @@ class UnpackedBytes : public ByteSource {
         try {
             return unpack_some({into, size});
         } catch (const DataError& error) {
-            raise<DataError>("{}: read {} bytes out of {} of {}, expected more of the log: {}", name(),
-                             given_, taken_, packing_.name, error.what());
+            raise<DataError>("{}: read {} bytes of {}, which unpack to {}, expected more of the log: {}",
+                             name(), taken_, packing_.name, given_, error.what());
         }
     }
 
