@@ -90,12 +90,17 @@ class Maps(Case):
         done = run("map", *logs, *GEAR, "--require-conclusive")
         self.assertEqual(done.returncode, 5)
 
-    def test_a_log_without_units_or_position_is_not_conclusive(self):
-        for header in ("time_s,velocity_deg_s,torque_nm", "time,velocity,torque,position"):
-            write_log(self.log, 1, header=header)
-            done = run("map", self.log, *GEAR, "--require-conclusive")
-            self.assertEqual(done.returncode, 5 if "position" not in header else done.returncode, done.stdout + done.stderr)
-            self.assertIn(done.returncode, (0, 5), done.stderr)
+    def test_a_log_without_a_position_is_not_conclusive(self):
+        write_log(self.log, 1, header="time_s,velocity_deg_s,torque_nm")
+        done = run("map", self.log, *GEAR, "--require-conclusive")
+        self.assertEqual(done.returncode, 5, done.stdout + done.stderr)
+
+    def test_a_log_without_units_is_read_by_what_turns_with_the_motor(self):
+        write_log(self.log, 1, header="time,velocity,torque,position")
+        done = run("map", self.log, *GEAR, "--require-conclusive", "--json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertAlmostEqual(json.loads(done.stdout)["left_out"][0]["ripple_nm"], 0.8, delta=0.02)
+        self.assertIn("no unit is stated", done.stderr)
 
     def test_who_states_no_gear_is_told_so(self):
         write_log(self.log, 1)
