@@ -1,17 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "document/angle_fields.hpp"
 
-#include <fmt/format.h>
-
-#include "ripplenotch/core/number.hpp"
-
 namespace ripplenotch {
-namespace {
-
-Json six(double value) { return *parse_number(fmt::format("{:.6g}", value)) + 0.0; }
-
-}  // namespace
-
 void put_angle(Json& json, const Diagnosis& diagnosis) {
     if (!diagnosis.angle) return;
     const auto& start = diagnosis.angle->validation_start_deg;

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "document/beside_fields.hpp"
 
-#include <cmath>
-
 #include "document/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::string_view simulated = "simulated";
-
-Json six(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return *parse_number(fmt::format("{:.6g}", value)) + 0.0;
-}
 
 Json interval_json(const std::optional<Interval>& ci95) {
     return ci95 ? Json{six(ci95->low), six(ci95->high)} : Json(nullptr);

@@ -3,15 +3,9 @@
 
 #include "document/diagnosis_fields.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
-
-Json six(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return *parse_number(fmt::format("{:.6g}", value)) + 0.0;
-}
 
 Json band_json(const BandGap& band) {
     Json to = band.to_hz > 0.0 ? six(band.to_hz) : Json(nullptr);

@@ -16,13 +16,7 @@
 namespace ripplenotch {
 namespace {
 
-// Six significant digits: more is rounding noise of a fit. The model keeps all of them.
-Json six(double value) {
-    if (!std::isfinite(value)) return nullptr;
-    return *parse_number(fmt::format("{:.6g}", value)) + 0.0;
-}
-
-// A frequency is known to more digits than that.
+// A frequency is known to more than six digits.
 Json ten(double value) {
     if (!std::isfinite(value)) return nullptr;
     return *parse_number(fmt::format("{:.10g}", value)) + 0.0;

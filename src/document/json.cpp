@@ -31,6 +31,11 @@ Json document_head(std::string_view kind, const Provenance& provenance) {
     return json;
 }
 
+Json six(double value) {
+    if (!std::isfinite(value)) return nullptr;
+    return *parse_number(fmt::format("{:.6g}", value)) + 0.0;
+}
+
 namespace {
 
 bool is_time(std::string_view name) { return name.ends_with("_s") && !name.ends_with("deg_s"); }

@@ -43,4 +43,7 @@ struct AnyDocument {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+/// Six significant digits of a fitted number, more is rounding noise; null for what is not finite.
+[[nodiscard]] Json six(double value);
+
 }  // namespace ripplenotch

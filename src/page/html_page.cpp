@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::string_view style = R"css(
+constexpr std::string_view style_sheet = R"css(
 :root { color-scheme: light; }
 body { font: 16px/1.45 system-ui, sans-serif; color: #1b1b1b; background: #fff; margin: 0 auto; max-width: 62rem;
   padding: 1rem; overflow-wrap: anywhere; }
@@ -121,7 +121,7 @@ class Writer {
             "'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n"
             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
             "<style>{}</style>\n</head>\n<body>\n",
-            scripts, shown(title), style);
+            scripts, shown(title), style_sheet);
     }
 
     void section(const PageSection& one) {
