@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Tests of a Python file, class by class, so that each is one ctest that fails, passes or is skipped by itself.
 
-usage: cases.py list FILE           names of the classes that have tests, a line each
+usage: cases.py list FILE...        the interpreter itself, whatever script started it; then "FILE CLASS", a line each
        cases.py run FILE CLASS      exit code 77 where all that was to run was skipped
 """
 
@@ -35,8 +35,10 @@ def run(path, name):
 
 
 if __name__ == "__main__":
-    file = pathlib.Path(sys.argv[2]).resolve()
     if sys.argv[1] == "list":
-        print("\n".join(classes_with_tests(file)))
+        print(sys.executable)
+        for file in sys.argv[2:]:
+            for name in classes_with_tests(pathlib.Path(file)):
+                print(file, name)
     else:
-        sys.exit(run(file, sys.argv[3]))
+        sys.exit(run(pathlib.Path(sys.argv[2]).resolve(), sys.argv[3]))
