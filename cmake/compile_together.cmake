@@ -1,7 +1,7 @@
 # Small files of one folder include the same headers and make the same templates again, each by itself. What lies in
 # unnamed namespaces meets where they are compiled together, so files that use one name for two things, kernels and entries
-# of registries stay alone. Off, a small change is compiled sooner.
-option(RIPPLENOTCH_COMPILE_TOGETHER "Compile files of a folder together" OFF)
+# of registries stay alone. Off, a small change is compiled sooner, and a file shows what it forgot to include.
+option(RIPPLENOTCH_COMPILE_TOGETHER "Compile files of a folder together" ON)
 set(RIPPLENOTCH_FILES_TOGETHER 8)
 
 # ripplenotch_compile_together(target file...): files of one folder, of which those named in ALONE are left out.
