@@ -33,7 +33,7 @@ class LayOut {
         }
         names_ = outer;
     }
-    std::vector<CdrLeaf> leaves;
+    std::vector<MessageLeaf> leaves;
 
   private:
     void take_names(const std::string& path, std::vector<std::string>& names, std::vector<CdrStep>& steps) {
@@ -82,7 +82,7 @@ class LayOut {
                 step.kind = stamp ? CdrStep::Kind::stamp : CdrStep::Kind::number;
                 step.size = type.size;
                 step.leaf = leaves.size();
-                CdrLeaf leaf{path, read_as, {}, stamp, path == "header.stamp"};
+                MessageLeaf leaf{path, read_as, {}, stamp, path == "header.stamp"};
                 leaf.type.kind = stamp ? 'i' : type.number;
                 leaf.type.size = stamp ? 8 : type.size;
                 leaf.type.big_endian = std::endian::native == std::endian::big;
@@ -166,12 +166,11 @@ class LayOut {
 
 }  // namespace
 
-CdrLayout lay_out_cdr(const RosType& type, std::string_view message) {
-    CdrLayout layout;
+MessageLayout lay_out_cdr(const RosType& type, std::string_view message) {
+    std::vector<CdrStep> steps;
     LayOut work(message);
-    work.record(type, "", layout.steps);
-    layout.leaves = std::move(work.leaves);
-    return layout;
+    work.record(type, "", steps);
+    return {std::move(work.leaves), cdr_program(std::move(steps))};
 }
 
 }  // namespace ripplenotch
