@@ -14,7 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_elements = 64, most_fields = 16384;
+constexpr std::size_t most_fields = 16384;
 constexpr std::int64_t largest_exact = std::int64_t{1} << 53;
 
 /// A field of the first message, or an element of a list in it. Node 0 is the message.
@@ -56,7 +56,7 @@ class Grow final : public FieldVisitor {
     void element() override {
         nodes[at_].holds = Node::Holds::list;
         const std::size_t number = nodes[at_].elements++;
-        if (number > most_elements) return enter(nodes[at_].inside.back());
+        if (number > most_listed_elements) return enter(nodes[at_].inside.back());
         enter(add(std::to_string(number)));
     }
     void leave() override { at_ = nodes[at_].above; }
@@ -112,7 +112,7 @@ class Choose {
     }
     void list(std::size_t at, const Names* names) {
         const Node& node = nodes_[at];
-        if (node.elements > most_elements) return;
+        if (node.elements > most_listed_elements) return;
         const bool named = names != nullptr && !names->empty() && names->size() == node.inside.size();
         for (std::size_t i = 0; i < node.inside.size(); ++i)
             go_on(node.inside[i], nullptr,
@@ -124,7 +124,7 @@ class Choose {
         for (const std::size_t inside : nodes_[at].inside) {
             const Node& list = nodes_[inside];
             const bool keyed = list.key == "name" || list.key == "joint_names" || list.key == "names";
-            if (!keyed || list.holds != Node::Holds::list || list.elements > most_elements) continue;
+            if (!keyed || list.holds != Node::Holds::list || list.elements > most_listed_elements) continue;
             for (const std::size_t element : list.inside) {
                 if (nodes_[element].holds != Node::Holds::text) return {};
                 nodes_[element].is_name = true;
@@ -213,7 +213,7 @@ class Reader final : public MessageReader, private FieldVisitor {
         const Node& list = program_->nodes[path_.back()];
         const std::size_t number = elements_[path_.back()]++;
         if (number < list.inside.size()) return path_.push_back(list.inside[number]);
-        if (list.elements <= most_elements && list.elements > 0)
+        if (list.elements <= most_listed_elements && list.elements > 0)
             raise<DataError>(
                 "{} elements of {} and more, expected {} as in the first message; record messages of one "
                 "shape on "

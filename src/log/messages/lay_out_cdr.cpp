@@ -10,7 +10,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_elements = 64, most_leaves = 4096, most_steps = 100000;
+constexpr std::size_t most_leaves = 4096, most_steps = 100000;
 
 /// Goes through the first message and writes down the way.
 class LayOut {
@@ -51,7 +51,8 @@ class LayOut {
         const bool any = field.count == RosField::Count::any;
         CdrCursor ahead = cursor_;
         const std::size_t count = any ? ahead.length() : field.fixed;
-        const bool listed = count > 0 && count <= most_elements && field.type.kind != RosType::Kind::text;
+        const bool listed =
+            count > 0 && count <= most_listed_elements && field.type.kind != RosType::Kind::text;
         if (!listed) return pass_over(field, count, steps);
         if (any) {
             cursor_.length();

@@ -14,6 +14,9 @@
 
 namespace ripplenotch {
 
+/// Longer lists of numbers are no columns.
+inline constexpr std::size_t most_listed_elements = 64;
+
 /// A number that every message of a topic has.
 struct MessageLeaf {
     std::string path;     ///< in the message: "effort[3]"
