@@ -14,7 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_fields = 16384;
+constexpr std::size_t most_named_fields = 16384;
 constexpr std::int64_t largest_exact = std::int64_t{1} << 53;
 
 /// A field of the first message, or an element of a list in it. Node 0 is the message.
@@ -71,7 +71,8 @@ class Grow final : public FieldVisitor {
 
   private:
     std::size_t add(std::string key) {
-        if (nodes.size() == most_fields) raise<DataError>("messages of more than {} fields", most_fields);
+        if (nodes.size() == most_named_fields)
+            raise<DataError>("messages of more than {} fields", most_named_fields);
         Node node;
         node.key = std::move(key);
         node.above = at_;

@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_types = 10000, most_fields = 10000, deepest_type = 32;
+constexpr std::size_t most_declared_types = 10000, most_declared_fields = 10000, deepest_type = 32;
 
 // Numbers of the fields of descriptor.proto.
 namespace set {
@@ -64,7 +64,8 @@ class Schema {
     }
     void add_message(std::string_view bytes, const std::string& outer, bool proto3, std::size_t depth) {
         if (depth > deepest_type) raise<DataError>("types that hold types deeper than {}", deepest_type);
-        if (declared_.size() == most_types) raise<DataError>("more than {} types", most_types);
+        if (declared_.size() == most_declared_types)
+            raise<DataError>("more than {} types", most_declared_types);
         std::string name = outer;
         std::vector<std::string_view> nested;
         for (WireCursor cursor(bytes); !cursor.at_end();) {
@@ -83,8 +84,8 @@ class Schema {
         for (WireCursor cursor(found->second.bytes); !cursor.at_end();) {
             const WireField one = cursor.next();
             if (one.number == message::field) type.push_back(field_of(one.bytes, found->second.proto3));
-            if (type.size() > most_fields)
-                raise<DataError>("the type {} has more than {} fields", name, most_fields);
+            if (type.size() > most_declared_fields)
+                raise<DataError>("the type {} has more than {} fields", name, most_declared_fields);
         }
         return type;
     }
