@@ -71,6 +71,13 @@ def containers(source):
     yield "mcap", bags.mcap([("/p", "a/msg/P", points)],
                             [(0, k * 10**6, bags.Cdr().number("d", 1.0).number("f", 2.0).number("d", 1.0).number("f", 2.0)
                               .numbers("i", [1, 2]).number("i", k).number("I", 5).bytes()) for k in range(20)], crc=False)
+    named = [(0, 10**9 + k * 10**6, b'{"timestamp": {"sec": 1, "nsec": %d}, "name": ["a"], "effort": [0.5], "x": {"y": -1e3}}' % k) for k in range(9)]
+    yield "mcap", bags.mcap([("/named", "a.N", "", "json", "")], named, crc=False)
+    types = {"N": [("timestamp", 1, "a.T"), ("effort", 2, "double", "repeated"), ("x", 3, "sint32"), ("y", 4, "float", "optional")],
+             "T": [("seconds", 1, "int64"), ("nanos", 2, "int32")]}
+    numbered = [(0, 10**9 + k * 10**6, bags.Protobuf().counted(1, bags.Protobuf().whole(1, 1).whole(2, k)).counted(2, b"\0" * 16).whole(3, k)
+                 .fixed(4, "f", 1.0).body) for k in range(9)]
+    yield "mcap", bags.mcap([("/numbered", "a.N", bags.protobuf_schema("a", types), "protobuf", "protobuf")], numbered, crc=False)
     with tempfile.TemporaryDirectory() as scratch:
         for definitions in (True, False):
             path = pathlib.Path(scratch) / f"{definitions}.db3"

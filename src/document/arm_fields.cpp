@@ -107,15 +107,16 @@ Json stated_arm_json(const StatedArm& arm) {
     json["gravity_m_s2"] = vector_json(arm.chain.gravity_m_s2);
     json["joints"] = Json::array();
     for (std::size_t j = 0; j < arm.chain.size(); ++j)
-        json["joints"].push_back(joint_json(arm.chain.joints[j], arm.log_joints[j]));
+        list_in(json, "joints").push_back(joint_json(arm.chain.joints[j], arm.log_joints[j]));
     if (arm.chain.lengths_are_guessed) json["lengths_are_guessed"] = true;
     if (arm.smoothing) json["smoothing_s"] = arm.smoothing->value();
     if (arm.values) {
         json["identified"] = "torque";
         json["links"] = Json::array();
         for (std::size_t j = 0; j < arm.chain.size(); ++j)
-            json["links"].push_back(
-                link_json(std::span(arm.values->links).subspan(j * values_of_a_link, values_of_a_link)));
+            list_in(json, "links")
+                .push_back(
+                    link_json(std::span(arm.values->links).subspan(j * values_of_a_link, values_of_a_link)));
         json["rotor_inertia_kgm2"] = arm.values->rotor_inertia_kgm2;
     }
     Json nuisance = Json::object();

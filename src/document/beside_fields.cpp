@@ -60,8 +60,8 @@ void put_beside(Json& json, const Diagnosis& diagnosis) {
     json["leftover"] = Json::array();
     for (const BandLeft& band : diagnosis.leftover) {
         Json to = band.to_hz > 0.0 ? six_digits(band.to_hz) : Json(nullptr);
-        json["leftover"].push_back(
-            {{"hz", {six_digits(band.from_hz), to}}, {"rms_nm", six_digits(band.rms_nm)}});
+        list_in(json, "leftover")
+            .push_back({{"hz", {six_digits(band.from_hz), to}}, {"rms_nm", six_digits(band.rms_nm)}});
     }
 }
 

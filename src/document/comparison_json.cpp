@@ -24,7 +24,7 @@ Json settling_to_json(const MethodFigures& figures) {
 }
 
 Json method_to_json(const MethodFigures& figures) {
-    Json json;
+    Json json = Json::object();
     json["method"] = figures.method;
     json["settle_ms"] = settling_to_json(figures);
     json["overshoot_percent"] = or_null(figures.overshoot_percent);
@@ -34,8 +34,8 @@ Json method_to_json(const MethodFigures& figures) {
     json["crossover_db"] = or_null(figures.crossover_db);
     json["attenuation_db"] = Json::array();
     for (const OrderAttenuation& entry : figures.attenuation) {
-        json["attenuation_db"].push_back(
-            {{"order", entry.order}, {"hz", entry.hz}, {"db", or_null(entry.db)}});
+        list_in(json, "attenuation_db")
+            .push_back({{"order", entry.order}, {"hz", entry.hz}, {"db", or_null(entry.db)}});
     }
     json["ripple_rms_nm"] = or_null(figures.ripple_rms_nm);
     json["residual_rms_nm"] = or_null(figures.residual_rms_nm);
@@ -47,15 +47,16 @@ Json method_to_json(const MethodFigures& figures) {
     json["within_max_delay_from_deg_s"] =
         figures.within_from ? Json(figures.within_from->value()) : Json(nullptr);
     json["ledger"] = Json::array();
-    for (const LedgerEntry& entry : figures.ledger) json["ledger"].push_back(ledger_entry_to_json(entry));
+    for (const LedgerEntry& entry : figures.ledger)
+        list_in(json, "ledger").push_back(ledger_entry_to_json(entry));
     json["switch_ledger"] = Json::array();
     for (const SwitchEntry& entry : figures.switch_ledger)
-        json["switch_ledger"].push_back(switch_entry_to_json(entry));
+        list_in(json, "switch_ledger").push_back(switch_entry_to_json(entry));
     return json;
 }
 
 Json match_to_json(const LowPassMatch& match) {
-    Json json;
+    Json json = Json::object();
     json["subject"] = match.subject;
     json["low_pass"] = or_null(match.low_pass);
     json["order"] = match.order;
@@ -82,7 +83,7 @@ std::string comparison_text(const Comparison& comparison, const Provenance& prov
     json["gear"] = gear_to_json(comparison.lines);
     json["orders"] = Json::array();
     if (comparison.lines) {
-        for (const Order order : comparison.lines->orders) json["orders"].push_back(order.value());
+        for (const Order order : comparison.lines->orders) list_in(json, "orders").push_back(order.value());
     }
     if (comparison.on_log) {
         json["rows"] = comparison.rows;
@@ -92,7 +93,7 @@ std::string comparison_text(const Comparison& comparison, const Provenance& prov
     json["match"] = comparison.match ? match_to_json(*comparison.match) : Json(nullptr);
     json["methods"] = Json::array();
     for (const MethodFigures& figures : comparison.methods)
-        json["methods"].push_back(method_to_json(figures));
+        list_in(json, "methods").push_back(method_to_json(figures));
     return to_fitted_text(std::move(json));
 }
 

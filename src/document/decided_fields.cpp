@@ -20,7 +20,7 @@ Json band_json(const BandGap& band) {
 void put_decided(Json& json, const Diagnosis& diagnosis) {
     if (!diagnosis.bands.empty()) {
         json["bands"] = Json::array();
-        for (const BandGap& band : diagnosis.bands) json["bands"].push_back(band_json(band));
+        for (const BandGap& band : diagnosis.bands) list_in(json, "bands").push_back(band_json(band));
     }
     if (!diagnosis.accepted.empty()) {
         json["accepted"] = Json::array();
@@ -28,7 +28,7 @@ void put_decided(Json& json, const Diagnosis& diagnosis) {
             Json entry{{"effect", one.term.effect->name}, {"status", status_name(one.status)}};
             if (!one.reason.empty()) entry["reason"] = one.reason;
             entry["parameters"] = parameters_json(one.term, one.values);
-            json["accepted"].push_back(std::move(entry));
+            list_in(json, "accepted").push_back(std::move(entry));
         }
     }
     if (!diagnosis.next.empty()) json["next"] = diagnosis.next;

@@ -77,7 +77,8 @@ Json round_json(const Finding& finding) {
     if (finding.size_uncertain) json["size_uncertain"] = true;
     json["alternatives"] = Json::array();
     for (const RivalFinding& rival : finding.alternatives)
-        json["alternatives"].push_back({{"effect", rival.effect}, {"margin", six_digits(rival.margin)}});
+        list_in(json, "alternatives")
+            .push_back({{"effect", rival.effect}, {"margin", six_digits(rival.margin)}});
     json["validation_before_nm"] = six_digits(finding.validation_before_nm);
     json["validation_after_nm"] = six_digits(finding.validation_after_nm);
     json["gap_before_nm"] = six_digits(finding.gap_before_nm);
@@ -144,8 +145,9 @@ Json arm_json(const ArmAccount& arm) {
     Json json{{"source", arm.source}, {"matched", arm.rule}, {"option", arm.option}};
     json["joints"] = Json::array();
     for (const JointTravel& joint : arm.joints)
-        json["joints"].push_back(
-            {{"name", joint.name}, {"log", joint.log}, {"travel_deg", six_digits(joint.travel_deg)}});
+        list_in(json, "joints")
+            .push_back(
+                {{"name", joint.name}, {"log", joint.log}, {"travel_deg", six_digits(joint.travel_deg)}});
     json["lengths_are_guessed"] = arm.lengths_are_guessed;
     json["smoothing_s"] = arm.smoothing.value();
     json["gap_before_nm"] = six_digits(arm.gap_before_nm);
@@ -180,20 +182,21 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     json["gear"] = gear_to_json(gear);
     json["named"] = diagnosis.named;
     json["rounds"] = Json::array();
-    for (const Finding& finding : diagnosis.rounds) json["rounds"].push_back(round_json(finding));
+    for (const Finding& finding : diagnosis.rounds) list_in(json, "rounds").push_back(round_json(finding));
     json["decisions"] = decisions_json(diagnosis);
     json["faults"] = Json::array();
-    for (const Fault& fault : diagnosis.faults) json["faults"].push_back(fault_json(fault));
+    for (const Fault& fault : diagnosis.faults) list_in(json, "faults").push_back(fault_json(fault));
     json["ambiguous"] = Json::array();
     for (const Tie& tie : diagnosis.ambiguous)
-        json["ambiguous"].push_back({{"effects", tie.effects}, {"advice", tie.advice}});
+        list_in(json, "ambiguous").push_back({{"effects", tie.effects}, {"advice", tie.advice}});
     json["unexplained"] = leftovers_json(diagnosis.unexplained);
     json["disagreement"] = leftovers_json(diagnosis.disagreement);
     json["undecidable"] = Json::array();
     for (const Undecidable& entry : diagnosis.undecidable)
-        json["undecidable"].push_back({{"effect", entry.effect},
-                                       {"reason", entry.reason},
-                                       {"would_explain_nm", six_digits(entry.would_explain_nm)}});
+        list_in(json, "undecidable")
+            .push_back({{"effect", entry.effect},
+                        {"reason", entry.reason},
+                        {"would_explain_nm", six_digits(entry.would_explain_nm)}});
     json["gap"] = gap_json(diagnosis.gap);
     put_beside(json, diagnosis);
     put_decided(json, diagnosis);
@@ -225,7 +228,7 @@ std::string write_diagnoses(std::span<const DiagnosedJoint> joints, const Proven
     for (const DiagnosedJoint& one : joints) {
         Json entry{{"joint", one.joint}};
         put_diagnosis(entry, one.diagnosis, one.gear, one.arm);
-        json["joints"].push_back(std::move(entry));
+        list_in(json, "joints").push_back(std::move(entry));
     }
     return to_fitted_text(std::move(json));
 }

@@ -31,10 +31,10 @@ Json effect_json(const Effect& effect) {
                  {"parameters", Json::array()},  {"symptom", effect.symptom},
                  {"look_alikes", Json::array()}, {"source", effect.source}};
     for (const Parameter& parameter : effect.parameters)
-        json["parameters"].push_back(parameter_json(parameter));
+        list_in(json, "parameters").push_back(parameter_json(parameter));
     for (const LookAlike& other : effect.look_alikes) {
-        json["look_alikes"].push_back(
-            {{"name", other.name}, {"when", other.when}, {"told_by", other.told_by}});
+        list_in(json, "look_alikes")
+            .push_back({{"name", other.name}, {"when", other.when}, {"told_by", other.told_by}});
     }
     return json;
 }
@@ -44,7 +44,7 @@ Json effect_json(const Effect& effect) {
 std::string write_catalogue(std::span<const Effect* const> effects, const Provenance& provenance) {
     Json json = document_head("effects", provenance);
     json["effects"] = Json::array();
-    for (const Effect* effect : effects) json["effects"].push_back(effect_json(*effect));
+    for (const Effect* effect : effects) list_in(json, "effects").push_back(effect_json(*effect));
     return to_text(json);
 }
 

@@ -9,7 +9,7 @@ namespace {
 Json or_null(const std::optional<double>& value) { return value ? finite_or_null(*value) : Json(nullptr); }
 
 Json check_to_json(const SectionCheck& check) {
-    Json json;
+    Json json = Json::object();
     json["band"] = check.band;
     json["speed_from_deg_s"] = check.from.value();
     json["speed_to_deg_s"] = check.to.value();
@@ -41,7 +41,7 @@ std::string export_report_to_json(const ExportReport& report, const Provenance& 
     json["verified"] = report.verified;
     json["arithmetic"] = report.verified ? Json(report.arithmetic) : Json(nullptr);
     json["sections"] = Json::array();
-    for (const SectionCheck& check : report.checks) json["sections"].push_back(check_to_json(check));
+    for (const SectionCheck& check : report.checks) list_in(json, "sections").push_back(check_to_json(check));
     json["violations"] = report.violations;
     return to_fitted_text(std::move(json));
 }

@@ -75,31 +75,35 @@ Json panel_json(const Panel& panel) {
               {"curves", Json::array()},
               {"lines", Json::array()}};
     for (const Shade& shade : panel.shades) {
-        json["shades"].push_back({{"name", shade.name},
-                                  {"ink", ink_rgb(shade.ink)},
-                                  {"x", {number_json(shade.x_from), number_json(shade.x_to)}},
-                                  {"y", {number_json(shade.y_from), number_json(shade.y_to)}}});
+        list_in(json, "shades")
+            .push_back({{"name", shade.name},
+                        {"ink", ink_rgb(shade.ink)},
+                        {"x", {number_json(shade.x_from), number_json(shade.x_to)}},
+                        {"y", {number_json(shade.y_from), number_json(shade.y_to)}}});
     }
     for (const Ribbon& ribbon : panel.ribbons) {
-        json["ribbons"].push_back({{"name", ribbon.name},
-                                   {"ink", ink_rgb(ribbon.ink)},
-                                   {"x", numbers_json(ribbon.x)},
-                                   {"low", numbers_json(ribbon.low)},
-                                   {"high", numbers_json(ribbon.high)}});
+        list_in(json, "ribbons")
+            .push_back({{"name", ribbon.name},
+                        {"ink", ink_rgb(ribbon.ink)},
+                        {"x", numbers_json(ribbon.x)},
+                        {"low", numbers_json(ribbon.low)},
+                        {"high", numbers_json(ribbon.high)}});
     }
     for (const Curve& curve : panel.curves) {
-        json["curves"].push_back({{"name", curve.name},
-                                  {"ink", ink_rgb(curve.ink)},
-                                  {"style", style_name(curve.style)},
-                                  {"x", numbers_json(curve.x)},
-                                  {"y", numbers_json(curve.y)}});
+        list_in(json, "curves")
+            .push_back({{"name", curve.name},
+                        {"ink", ink_rgb(curve.ink)},
+                        {"style", style_name(curve.style)},
+                        {"x", numbers_json(curve.x)},
+                        {"y", numbers_json(curve.y)}});
     }
     for (const NamedLine& line : panel.lines) {
-        json["lines"].push_back({{"name", line.name},
-                                 {"ink", ink_rgb(line.ink)},
-                                 {"run", run_name(line.run)},
-                                 {"dashed", line.dashed},
-                                 {"value", number_json(line.value)}});
+        list_in(json, "lines")
+            .push_back({{"name", line.name},
+                        {"ink", ink_rgb(line.ink)},
+                        {"run", run_name(line.run)},
+                        {"dashed", line.dashed},
+                        {"value", number_json(line.value)}});
     }
     return json;
 }
@@ -114,7 +118,7 @@ std::string figure_text(const Figure& figure, const Provenance& provenance) {
     json["sentence"] = figure.sentence;
     json["columns"] = figure.columns;
     json["panels"] = Json::array();
-    for (const Panel& panel : figure.panels) json["panels"].push_back(panel_json(panel));
+    for (const Panel& panel : figure.panels) list_in(json, "panels").push_back(panel_json(panel));
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -11,7 +11,7 @@ namespace ripplenotch {
 namespace {
 
 Json point_to_json(const TradePoint& point) {
-    Json json;
+    Json json = Json::object();
     json["bands"] = point.bands;
     json["attenuation_db"] = point.attenuation_db;
     json["delay_ms"] = 1e3 * point.delay.value();
@@ -33,7 +33,7 @@ std::string frontier_to_json(const Frontier& frontier, const GearAccount& gear,
     json["gear"] = gear_to_json(gear);
     json["gear_ratio_error_percent"] = 100.0 * spec.ratio_error;
     json["orders"] = Json::array();
-    for (const Order order : spec.orders) json["orders"].push_back(order.value());
+    for (const Order order : spec.orders) list_in(json, "orders").push_back(order.value());
     json["amplitude_nm"] = spec.amplitude_nm.empty() ? Json(nullptr) : Json(spec.amplitude_nm);
     json["speed_deg_s"] = {goal.from.value(), goal.to.value()};
     json["settle_band_percent"] = spec.settle_band_percent;
@@ -41,11 +41,11 @@ std::string frontier_to_json(const Frontier& frontier, const GearAccount& gear,
     json["max_delay_ms"] = goal.max_delay ? Json(1e3 * goal.max_delay->value()) : Json(nullptr);
     json["max_bands"] = goal.most_bands ? Json(*goal.most_bands) : Json(nullptr);
     json["points"] = Json::array();
-    for (const TradePoint& point : frontier.points) json["points"].push_back(point_to_json(point));
+    for (const TradePoint& point : frontier.points) list_in(json, "points").push_back(point_to_json(point));
     json["recommended"] = point_to_json(frontier.points[frontier.recommended]);
-    json["recommended"]["point"] = frontier.recommended;
-    json["recommended"]["reason"] = frontier.reason;
-    json["recommended"]["no_notch_below_deg_s"] =
+    object_in(json, "recommended")["point"] = frontier.recommended;
+    object_in(json, "recommended")["reason"] = frontier.reason;
+    object_in(json, "recommended")["no_notch_below_deg_s"] =
         frontier.slowest ? Json(frontier.slowest->value()) : Json(nullptr);
     return to_fitted_text(std::move(json));
 }

@@ -12,10 +12,10 @@ namespace ripplenotch {
 /// {"ratio", "orders", "source"}; null when nobody says the gear.
 [[nodiscard]] inline Json gear_to_json(const std::optional<GearAccount>& gear) {
     if (!gear) return nullptr;
-    Json json;
+    Json json = Json::object();
     json["ratio"] = gear->ratio.value();
     json["orders"] = Json::array();
-    for (const Order order : gear->orders) json["orders"].push_back(order.value());
+    for (const Order order : gear->orders) list_in(json, "orders").push_back(order.value());
     json["source"] = gear->source;
     return json;
 }

@@ -16,7 +16,7 @@ Json optional_to_json(const std::optional<double>& value) {
 }
 
 Json line_to_json(const Line& line) {
-    Json json;
+    Json json = Json::object();
     json["kind"] = line_kind_name(line.kind);
     json["order"] = optional_to_json(line.order);
     json["order_output"] = optional_to_json(line.order_output);
@@ -30,34 +30,37 @@ Json line_to_json(const Line& line) {
     json["speed_range_deg_s"] = {line.speed_from_deg_s, line.speed_to_deg_s};
     json["amplitude_by_speed"] = Json::array();
     for (const AmplitudeAtSpeed& at : line.by_speed) {
-        json["amplitude_by_speed"].push_back({{"speed_deg_s", at.speed_deg_s},
-                                              {"hz", at.hz},
-                                              {"amplitude_nm", at.amplitude_nm},
-                                              {"snr", at.snr}});
+        list_in(json, "amplitude_by_speed")
+            .push_back({{"speed_deg_s", at.speed_deg_s},
+                        {"hz", at.hz},
+                        {"amplitude_nm", at.amplitude_nm},
+                        {"snr", at.snr}});
     }
     json["note"] = line.note;
     return json;
 }
 
 Json ratio_to_json(const GearRatioFit& fit) {
-    Json json;
+    Json json = Json::object();
     json["value"] = optional_to_json(fit.value);
     json["stderr"] = fit.value ? finite_or_null(fit.standard_error) : Json(nullptr);
     json["ci95"] =
         fit.value ? Json{finite_or_null(fit.ci95_low), finite_or_null(fit.ci95_high)} : Json(nullptr);
     json["candidates"] = Json::array();
     for (const RatioCandidate& candidate : fit.candidates) {
-        json["candidates"].push_back(
-            {{"value", candidate.value}, {"score", candidate.score}, {"reason", candidate.reason}});
+        list_in(json, "candidates")
+            .push_back(
+                {{"value", candidate.value}, {"score", candidate.score}, {"reason", candidate.reason}});
     }
     json["residuals"] = Json::array();
     for (const auto& r : fit.residuals) {
         // As many decimals as the frequency has: below them is only how a processor rounds.
-        json["residuals"].push_back({{"speed_deg_s", r.speed_deg_s},
-                                     {"hz", r.hz},
-                                     {"order", r.order},
-                                     {"residual_hz", to_digits_of(r.hz, r.residual_hz)},
-                                     {"weight", r.weight}});
+        list_in(json, "residuals")
+            .push_back({{"speed_deg_s", r.speed_deg_s},
+                        {"hz", r.hz},
+                        {"order", r.order},
+                        {"residual_hz", to_digits_of(r.hz, r.residual_hz)},
+                        {"weight", r.weight}});
     }
     return json;
 }
@@ -65,29 +68,30 @@ Json ratio_to_json(const GearRatioFit& fit) {
 void add_besides(Json& json, const Identification& identification) {
     json["families"] = Json::array();
     for (const ToneFamily& family : identification.families) {
-        json["families"].push_back(
-            {{"hz", family.hz}, {"hz_stderr", family.hz_stderr}, {"multiples", family.multiples}});
+        list_in(json, "families")
+            .push_back({{"hz", family.hz}, {"hz_stderr", family.hz_stderr}, {"multiples", family.multiples}});
     }
     json["hums"] = Json::array();
     for (const Hum& hum : identification.hums) {
-        json["hums"].push_back({{"from_hz", hum.from_hz},
-                                {"to_hz", hum.to_hz},
-                                {"peak_hz", hum.peak_hz},
-                                {"rms_nm", hum.rms_nm}});
+        list_in(json, "hums")
+            .push_back({{"from_hz", hum.from_hz},
+                        {"to_hz", hum.to_hz},
+                        {"peak_hz", hum.peak_hz},
+                        {"rms_nm", hum.rms_nm}});
     }
     json["disagreements"] = Json::array();
     for (const Disagreement& one : identification.disagreements) {
-        Json entry;
+        Json entry = Json::object();
         entry["about"] = about_name(one.about);
         entry["order"] = optional_to_json(one.order);
         entry["order_output"] = optional_to_json(one.order_output);
         entry["chance"] = one.chance;
         entry["values"] = Json::array();
         for (const Disagreement::Value& value : one.values) {
-            entry["values"].push_back(
-                {{"recording", value.recording}, {"value", value.value}, {"stderr", value.error}});
+            list_in(entry, "values")
+                .push_back({{"recording", value.recording}, {"value", value.value}, {"stderr", value.error}});
         }
-        json["disagreements"].push_back(std::move(entry));
+        list_in(json, "disagreements").push_back(std::move(entry));
     }
 }
 
@@ -96,7 +100,7 @@ void add_fields(Json& json, const Identification& identification) {
     json["finding"] = finding_name(identification.finding);
     json["doubts"] = Json::array();
     for (const Doubt& doubt : identification.doubts)
-        json["doubts"].push_back({{"reason", doubt_name(doubt.reason)}, {"because", doubt.because}});
+        list_in(json, "doubts").push_back({{"reason", doubt_name(doubt.reason)}, {"because", doubt.because}});
     json["conclusive"] = identification.conclusive;
     json["joint"] = identification.joint;
     json["sample_rate_hz"] = identification.sample_rate.value();
@@ -104,7 +108,7 @@ void add_fields(Json& json, const Identification& identification) {
     json["gear_ratio"] = ratio_to_json(identification.gear_ratio);
     json["gear"] = gear_to_json(found_gear(identification));
     json["lines"] = Json::array();
-    for (const Line& line : identification.lines) json["lines"].push_back(line_to_json(line));
+    for (const Line& line : identification.lines) list_in(json, "lines").push_back(line_to_json(line));
     add_besides(json, identification);
     json["notes"] = identification.notes;
 }
@@ -124,7 +128,7 @@ std::string identifications_text(std::span<const Identification> identifications
     for (const Identification& identification : identifications) {
         Json entry = Json::object();
         add_fields(entry, identification);
-        json["joints"].push_back(std::move(entry));
+        list_in(json, "joints").push_back(std::move(entry));
     }
     return to_fitted_text(std::move(json));
 }

@@ -115,10 +115,11 @@ void add_log(Json& json, const LogInfo& log) {
     if (!log.layout.contents.empty()) json["contents"] = contents_json(log.layout);
     json["speed_deg_s"] = range_json(widest(log.joints));
     json["joints"] = Json::array();
-    for (const JointInfo& joint : log.joints) json["joints"].push_back(joint_json(joint));
+    for (const JointInfo& joint : log.joints) list_in(json, "joints").push_back(joint_json(joint));
     json["uses"] = Json::array();
     for (const Use& use : log.uses) {
-        json["uses"].push_back({{"name", use.name}, {"possible", use.possible}, {"reason", use.reason}});
+        list_in(json, "uses")
+            .push_back({{"name", use.name}, {"possible", use.possible}, {"reason", use.reason}});
     }
     json["warnings"] = log.warnings;
     std::vector<Recording> recordings;
@@ -137,9 +138,9 @@ std::string info_to_json(std::span<const LogInfo> logs, const Provenance& proven
     }
     json["logs"] = Json::array();
     for (const LogInfo& log : logs) {
-        Json entry;
+        Json entry = Json::object();
         add_log(entry, log);
-        json["logs"].push_back(std::move(entry));
+        list_in(json, "logs").push_back(std::move(entry));
     }
     return to_fitted_text(std::move(json));
 }

@@ -15,7 +15,7 @@
 namespace ripplenotch {
 
 Json document_head(std::string_view kind, const Provenance& provenance) {
-    Json json;
+    Json json = Json::object();
     json["schema"] = fmt::format("ripplenotch/{}/1", kind);
     json["tool"] = tool_name;
     json["version"] = version();
@@ -25,7 +25,7 @@ Json document_head(std::string_view kind, const Provenance& provenance) {
         Json entry = {{"name", input.name}};
         if (!input.sha256.empty()) entry["sha256"] = input.sha256;
         if (input.rows) entry["rows"] = *input.rows;
-        json["inputs"].push_back(entry);
+        list_in(json, "inputs").push_back(entry);
     }
     add_recordings(json, provenance.recordings);
     return json;

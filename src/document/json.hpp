@@ -34,10 +34,24 @@ using Json = nlohmann::ordered_json;
 /// A document of any kind that a command writes: "table", "metrics".
 struct AnyDocument {
     std::string kind;
-    Json json;
+    Json json = Json::object();
 };
 /// The same for a document of any of these kinds, with a head whose fields are of their types.
 [[nodiscard]] AnyDocument parse_any_document(std::string_view text, const std::string& source);
+
+/// The list and the object that stand under a name, made where nothing does. The library's own way, to turn
+/// null into either where it is written to, leaves a broken value behind where memory ends, and the program
+/// with it.
+[[nodiscard]] inline Json& list_in(Json& json, const char* name) {
+    Json& there = json[name];
+    if (there.is_null()) there = Json::array();
+    return there;
+}
+[[nodiscard]] inline Json& object_in(Json& json, const char* name) {
+    Json& there = json[name];
+    if (there.is_null()) there = Json::object();
+    return there;
+}
 
 /// Null for what is not finite: JSON has no nan.
 [[nodiscard]] inline Json finite_or_null(double value) {

@@ -13,7 +13,7 @@ Json milliseconds_or_null(const std::optional<Seconds>& time) {
 }  // namespace
 
 Json switch_to_json(const Switch& change, Seconds time) {
-    Json json;
+    Json json = Json::object();
     json["time_s"] = finite_or_null(time.value());
     json["sample"] = change.sample;
     json["from_band"] = change.from_band;
@@ -43,7 +43,7 @@ Json settling_to_json(const StepMeasurement& step) {
 }
 
 Json ledger_entry_to_json(const LedgerEntry& entry) {
-    Json json;
+    Json json = Json::object();
     if (entry.band > 0) json["band"] = entry.band;
     if (entry.to.value() > 0.0) {
         json["speed_from_deg_s"] = entry.from.value();

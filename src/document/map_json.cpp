@@ -10,7 +10,7 @@ namespace {
 Json range_to_json(const MapRange& range) { return {range.from, range.to}; }
 
 Json form_to_json(const MapForm& form) {
-    Json json;
+    Json json = Json::object();
     json["words"] = map_form_words(form);
     json["speeds_deg_s"] = form.speeds_deg_s;
     json["directions"] = form.directions;
@@ -79,7 +79,7 @@ std::string map_text(const MapFit& fit, const Provenance& provenance) {
                      {"position_deg", range_to_json(fit.map.positions_deg)},
                      {"load_nm", range_to_json(fit.map.loads_nm)}};
     json["orders"] = Json::array();
-    for (const Order order : fit.map.orders) json["orders"].push_back(order.value());
+    for (const Order order : fit.map.orders) list_in(json, "orders").push_back(order.value());
     json["spread_nm"] = fit.map.spread_nm;
     json["coefficients"] = coefficients_to_json(fit);
     json["left_out"] = scores_to_json(fit.scores);

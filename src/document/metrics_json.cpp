@@ -18,7 +18,7 @@ Json order_to_json(const FilterMetrics& metrics, std::size_t order) {
     const OrderLevel& level = metrics.levels->orders[order];
     const auto predicted = predicted_nm(metrics, order);
     const auto attenuation = attenuation_db(level);
-    Json json;
+    Json json = Json::object();
     json["order"] = level.order;
     json["hz"] = finite_or_null(level.mean_hz);
     json["raw_nm"] = finite_or_null(level.amplitude_nm[0]);
@@ -42,7 +42,7 @@ void add_levels(Json& json, const FilterMetrics& metrics) {
     } else {
         const RippleLevels& levels = *metrics.levels;
         for (std::size_t i = 0; i < levels.orders.size(); ++i)
-            json["orders"].push_back(order_to_json(metrics, i));
+            list_in(json, "orders").push_back(order_to_json(metrics, i));
         json["residual_rms_nm"] = pair_to_json(levels.residual_rms_nm);
         json["residual_peak_to_peak_nm"] = pair_to_json(levels.residual_peak_to_peak_nm);
         json["ripple_peak_to_peak_nm"] = pair_to_json(levels.ripple_peak_to_peak_nm);
@@ -83,11 +83,12 @@ std::string metrics_to_json(const FilterMetrics& metrics, const Provenance& prov
     add_levels(json, metrics);
     json["crossover_hz"] = metrics.crossover ? Json(metrics.crossover->value()) : Json(nullptr);
     json["delays"] = Json::array();
-    for (const LedgerEntry& entry : metrics.delays) json["delays"].push_back(ledger_entry_to_json(entry));
+    for (const LedgerEntry& entry : metrics.delays)
+        list_in(json, "delays").push_back(ledger_entry_to_json(entry));
     json["switch_count"] = metrics.stream.switch_count;
     json["switches"] = Json::array();
     for (const TimedSwitch& entry : metrics.stream.switches)
-        json["switches"].push_back(switch_to_json(entry.change, Seconds(entry.time_s)));
+        list_in(json, "switches").push_back(switch_to_json(entry.change, Seconds(entry.time_s)));
     return to_fitted_text(std::move(json));
 }
 

@@ -22,7 +22,7 @@ auto nuisance_fields(Simulated& term) {
 }
 
 Json term_json(const Term& term) {
-    Json json;
+    Json json = Json::object();
     json["effect"] = term.effect->name;
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         if (term.values[p]) json[std::string(term.effect->parameters[p].name)] = *term.values[p];
@@ -88,7 +88,7 @@ void refuse_twice(const Model& model, const std::string& source) {
 void put_model(Json& json, const Model& model) {
     json["gear_ratio"] = model.gear_ratio.value();
     json["effects"] = Json::array();
-    for (const Term& term : model.terms) json["effects"].push_back(term_json(term));
+    for (const Term& term : model.terms) list_in(json, "effects").push_back(term_json(term));
 }
 
 std::string write_model(const ModelWithGiven& model, const Provenance& provenance) {

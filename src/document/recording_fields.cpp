@@ -17,10 +17,11 @@ void add_clock(Json& json, const ClockFacts& clock) {
     json["gaps"] = gaps_json(clock);
     json["rate_changes"] = Json::array();
     for (const RateChange& change : clock.rate_changes) {
-        json["rate_changes"].push_back({{"row", change.row},
-                                        {"time_s", change.time_s},
-                                        {"from_hz", to_digits(change.from.value())},
-                                        {"to_hz", to_digits(change.to.value())}});
+        list_in(json, "rate_changes")
+            .push_back({{"row", change.row},
+                        {"time_s", change.time_s},
+                        {"from_hz", to_digits(change.from.value())},
+                        {"to_hz", to_digits(change.to.value())}});
     }
     json["rows_left_out"] = clock.rows_left_out;
     json["repeated_times"] = clock.repeated_times;
@@ -49,7 +50,7 @@ Json outside_json(const RowsOutside& outside) {
 }
 
 Json recording_json(const Recording& recording) {
-    Json json;
+    Json json = Json::object();
     json["source"] = recording.source;
     json["joint"] = name_or_null(recording.joint);
     json["rows"] = recording.rows();
@@ -79,7 +80,7 @@ void add_recordings(Json& json, std::span<const Recording> recordings) {
     if (recordings.size() == 1) json["recording"] = recording_json(recordings.front());
     if (recordings.size() <= 1) return;
     json["recordings"] = Json::array();
-    for (const Recording& one : recordings) json["recordings"].push_back(recording_json(one));
+    for (const Recording& one : recordings) list_in(json, "recordings").push_back(recording_json(one));
 }
 
 }  // namespace ripplenotch

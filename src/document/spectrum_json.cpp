@@ -27,7 +27,7 @@ Json hump_to_json(const SpectralHump& hump) {
 }
 
 Json line_to_json(const MotionLine& line) {
-    Json json;
+    Json json = Json::object();
     json["kind"] = line_kind_name(line.kind);
     const bool tone = line.kind == LineKind::tone;
     json["order_output"] = tone ? Json(nullptr) : Json(line.order_output);
@@ -66,7 +66,7 @@ std::string spectra_text(const std::string& joint, const std::vector<StretchSpec
     Json json = head("frequency", joint, false_alarm, provenance);
     json["spectra"] = Json::array();
     for (const StretchSpectrum& one : spectra) {
-        Json entry;
+        Json entry = Json::object();
         entry["stretch"] = one.number ? Json(*one.number) : Json(nullptr);
         entry["first_row"] = one.stretch.first;
         entry["rows"] = one.stretch.count;
@@ -78,10 +78,12 @@ std::string spectra_text(const std::string& joint, const std::vector<StretchSpec
         entry["resolution_hz"] = one.spectrum.resolution.value();
         entry["noise_floor_nm"] = median_floor(one.spectrum.floor_nm);
         entry["peaks"] = Json::array();
-        for (const SpectralPeak& peak : one.spectrum.peaks) entry["peaks"].push_back(peak_to_json(peak));
+        for (const SpectralPeak& peak : one.spectrum.peaks)
+            list_in(entry, "peaks").push_back(peak_to_json(peak));
         entry["humps"] = Json::array();
-        for (const SpectralHump& hump : one.spectrum.humps) entry["humps"].push_back(hump_to_json(hump));
-        json["spectra"].push_back(std::move(entry));
+        for (const SpectralHump& hump : one.spectrum.humps)
+            list_in(entry, "humps").push_back(hump_to_json(hump));
+        list_in(json, "spectra").push_back(std::move(entry));
     }
     return to_fitted_text(std::move(json));
 }
@@ -96,7 +98,7 @@ std::string order_spectrum_text(const std::string& joint, const OrderSpectrum& s
     json["resolution_orders"] = spectrum.stack.resolution;
     json["noise_floor_nm"] = median_floor(spectrum.stack.floor_nm);
     json["lines"] = Json::array();
-    for (const MotionLine& line : spectrum.lines.lines) json["lines"].push_back(line_to_json(line));
+    for (const MotionLine& line : spectrum.lines.lines) list_in(json, "lines").push_back(line_to_json(line));
     return to_fitted_text(std::move(json));
 }
 

@@ -16,15 +16,16 @@ std::string speed_map_text(const std::string& joint, const SpeedMap& map, std::s
     json["runs_too_short"] = map.runs_too_short;
     json["axis"] = axis_name;
     json["axis_values"] = Json::array();
-    for (const double value : map.axis) json["axis_values"].push_back(six_digits(value));
+    for (const double value : map.axis) list_in(json, "axis_values").push_back(six_digits(value));
     json["rows"] = Json::array();
     for (std::size_t row = 0; row < map.speed_deg_s.size(); ++row) {
-        Json one;
+        Json one = Json::object();
         one["speed_deg_s"] = six_digits(map.speed_deg_s[row]);
         one["windows"] = map.windows[row];
         one["amplitude_nm"] = Json::array();
-        for (const double value : map.amplitude_nm[row]) one["amplitude_nm"].push_back(six_digits(value));
-        json["rows"].push_back(std::move(one));
+        for (const double value : map.amplitude_nm[row])
+            list_in(one, "amplitude_nm").push_back(six_digits(value));
+        list_in(json, "rows").push_back(std::move(one));
     }
     return to_fitted_text(std::move(json));
 }

@@ -29,7 +29,7 @@ Json band_to_json(const Band& band) {
     Json notches = Json::array();
     for (const CandidateNotch& notch : band.notches) {
         const Biquad& f = notch.section;
-        Json entry;
+        Json entry = Json::object();
         entry["order"] = notch.order.value();
         entry["center_hz"] = notch.notch.center.value();
         entry["q"] = notch.notch.q;
@@ -37,7 +37,7 @@ Json band_to_json(const Band& band) {
         entry["sos"] = {f.b0, f.b1, f.b2, 1.0, f.a1, f.a2};
         notches.push_back(std::move(entry));
     }
-    Json json;
+    Json json = Json::object();
     json["number"] = band.number;
     json["speed_from_deg_s"] = band.from.value();
     json["speed_to_deg_s"] = band.to.value();
@@ -55,7 +55,7 @@ Json band_to_json(const Band& band) {
 }
 
 Json note_to_json(const DesignNote& note) {
-    Json json;
+    Json json = Json::object();
     json["min_attenuation_db"] = note.min_attenuation_db ? Json(*note.min_attenuation_db) : Json(nullptr);
     json["max_delay_ms"] = note.max_delay ? Json(1e3 * note.max_delay->value()) : Json(nullptr);
     json["reason"] = note.reason;
@@ -174,14 +174,14 @@ std::string table_to_json(const CandidateTable& table, const Provenance& provena
     json["sample_rate_hz"] = spec.sample_rate.value();
     json["gear_ratio"] = spec.gear_ratio.value();
     json["orders"] = Json::array();
-    for (const Order order : spec.orders) json["orders"].push_back(order.value());
+    for (const Order order : spec.orders) list_in(json, "orders").push_back(order.value());
     if (note.gear) json["gear"] = gear_to_json(note.gear);
     if (spec.ratio_error > 0.0) json["gear_ratio_error_percent"] = 100.0 * spec.ratio_error;
     if (!spec.amplitude_nm.empty()) json["amplitude_nm"] = spec.amplitude_nm;
     if (!note.reason.empty()) json["designed_for"] = note_to_json(note);
     json["width"] = width_rule_name(spec.width);
     json["bands"] = Json::array();
-    for (const Band& band : table.bands()) json["bands"].push_back(band_to_json(band));
+    for (const Band& band : table.bands()) list_in(json, "bands").push_back(band_to_json(band));
     json["below_first_band"] = outside_rule_name(spec.below);
     json["above_last_band"] = outside_rule_name(spec.above);
     return to_text(json);

@@ -24,7 +24,7 @@ Json line_to_json(const TrackReport& report, std::size_t i) {
         return label.kind == kind ? Json(label.value) : Json(nullptr);
     };
     const auto measured = [&](double value) { return line.rows > 0 ? finite_or_null(value) : Json(nullptr); };
-    Json json;
+    Json json = Json::object();
     json["name"] = label.column();
     json["order"] = of_kind(TrackLabel::Kind::order);
     json["order_output"] = of_kind(TrackLabel::Kind::order_output);
@@ -60,7 +60,8 @@ std::string track_text(const TrackReport& report, const Provenance& provenance) 
     json["windows_too_slow"] = report.tracks.windows_too_slow;
     json["windows_too_few_samples"] = report.tracks.windows_too_few_samples;
     json["lines"] = Json::array();
-    for (std::size_t i = 0; i < report.labels.size(); ++i) json["lines"].push_back(line_to_json(report, i));
+    for (std::size_t i = 0; i < report.labels.size(); ++i)
+        list_in(json, "lines").push_back(line_to_json(report, i));
     json["columns"] = Json::object();
     for (const TrackColumn& column : track_columns(report))
         json["columns"][column.name] = array_of(column.values);

@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -33,8 +34,14 @@ constexpr double beta = SpreadingKernel::beta;
 template <class T>
 using FftwArray = std::unique_ptr<T, decltype(&fftw_free)>;
 
-FftwArray<double> real_array(std::size_t n) { return {fftw_alloc_real(n), fftw_free}; }
-FftwArray<fftw_complex> complex_array(std::size_t n) { return {fftw_alloc_complex(n), fftw_free}; }
+// FFTW gives no memory without a word.
+template <class T>
+FftwArray<T> checked(T* allocated) {
+    if (allocated == nullptr) throw std::bad_alloc();
+    return {allocated, fftw_free};
+}
+FftwArray<double> real_array(std::size_t n) { return checked(fftw_alloc_real(n)); }
+FftwArray<fftw_complex> complex_array(std::size_t n) { return checked(fftw_alloc_complex(n)); }
 
 /// A real signal of even length may be transformed as a complex one of half the length. Plans are estimated,
 /// and among powers of two up to here those of complex signals are the better ones: measured, 10 to 30 % with
