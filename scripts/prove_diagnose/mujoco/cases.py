@@ -95,15 +95,16 @@ def case(kind, number):
                 motion(random), number)
 
 
-def measured(case, torque_nm):
-    """Columns of the log in deg: the sensor adds load friction, offset, delay and noise, of the joint where they are hidden."""
+def measured(case, body_nm, ripple_nm):
+    """Columns of the log in deg. The gear adds friction by the load of the bodies, which the sensor's ripple is not; the sensor adds
+    offset, delay and noise. All but noise at the joint where they are hidden."""
     random = numpy.random.default_rng([7, case.seed])
     rows = numpy.asarray(case.rows)
-    torque = torque_nm.copy()
+    torque = body_nm + ripple_nm
     for effect in case.hidden:
         at = torque[:, case.joint]
         if effect["effect"] == "load-friction":
-            at += effect["fraction"] * numpy.abs(at) * numpy.tanh(rows[:, 4 + case.joint] * 180 / math.pi / 0.2)
+            at += effect["fraction"] * numpy.abs(body_nm[:, case.joint]) * numpy.tanh(rows[:, 4 + case.joint] * 180 / math.pi / 0.2)
         if effect["effect"] == "offset":
             at += effect["torque_nm"]
         if effect["effect"] == "delay":

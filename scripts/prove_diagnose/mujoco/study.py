@@ -20,10 +20,11 @@ def is_here():
 
 
 def mujocos_torque(case):
+    """Of bodies and friction, and of cogging; a column a joint."""
     told = json.dumps({"xml": case.xml, "rows": numpy.asarray(case.rows).tolist()})
     done = subprocess.run(["node", str(HERE / "arm.mjs")], input=told, capture_output=True, text=True, check=True)
     table = numpy.array([[float(cell) for cell in line.split(",")] for line in done.stdout.splitlines()])
-    return table[:, 1:4] + table[:, 4:7]
+    return table[:, 1:4], table[:, 4:7]
 
 
 def write_log(path, table):
@@ -41,7 +42,7 @@ def one(tool, case, keep=None):
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(keep) / case.name if keep else pathlib.Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        write_log(folder / "log.csv", cases.measured(case, mujocos_torque(case)))
+        write_log(folder / "log.csv", cases.measured(case, *mujocos_torque(case)))
         (folder / "arm.xml").write_text(case.xml)
         (folder / "truth.json").write_text(json.dumps(case.hidden))
         (folder / "model.json").write_text(json.dumps({
