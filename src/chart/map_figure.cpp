@@ -40,7 +40,7 @@ At at_speed(const MapFit& fit, std::size_t order, double speed_deg_s) {
 void add_curves(const MapFit& fit, std::size_t order, double sign, const std::string& name, Ink ink,
                 Panel& amplitude, Panel& phase) {
     Curve size{name, ink, CurveStyle::line, {}, {}}, angle{name, ink, CurveStyle::points, {}, {}};
-    Ribbon ribbon{"", ink, {}, {}, {}};
+    Ribbon ribbon{"", ink, {}, {}, {}}, doubt{"", ink, {}, {}, {}};
     const MapRange& range = fit.map.speeds_deg_s;
     for (int k = 0; k <= steps; ++k) {
         const double speed = range.from + (range.to - range.from) * k / steps;
@@ -50,12 +50,19 @@ void add_curves(const MapFit& fit, std::size_t order, double sign, const std::st
         size.y.push_back(nm);
         angle.x.push_back(speed);
         angle.y.push_back(-portable::arg(at.value) * degrees_per_radian);
+        // Of an amplitude that may be 0 any phase may be.
+        const double off = normal_95 * at.error_nm;
+        const double off_deg = off < nm ? portable::atan2(off, nm) * degrees_per_radian : 180.0;
+        doubt.x.push_back(speed);
+        doubt.low.push_back(std::max(-180.0, angle.y.back() - off_deg));
+        doubt.high.push_back(std::min(180.0, angle.y.back() + off_deg));
         ribbon.x.push_back(speed);
         ribbon.low.push_back(std::max(0.0, nm - normal_95 * at.error_nm));
         ribbon.high.push_back(nm + normal_95 * at.error_nm);
     }
     amplitude.ribbons.push_back(std::move(ribbon));
     amplitude.curves.push_back(std::move(size));
+    phase.ribbons.push_back(std::move(doubt));
     phase.curves.push_back(std::move(angle));
 }
 
