@@ -76,6 +76,20 @@ class Pasted(Case):
                 self.assertAlmostEqual(mine["db"], theirs["db"], places=6)
             self.assertAlmostEqual(judged["ripple_rms_nm"], rows[name]["ripple_rms_nm"], places=8)
 
+    def test_a_table_that_is_pasted_is_the_one_that_was_judged(self):
+        # Only tables fit into this target; without limits none of them has to come first, so both are pasted.
+        told = self.recommended("--target", "cmsis-dsp")
+        kinds = [line.split()[1] for line in told["take_commands"] + told["runner_up_commands"]]
+        self.assertIn("design", kinds)
+        for line in told["take_commands"] + told["runner_up_commands"]:
+            if "export" not in line:
+                self.paste(line)
+        compared = json.loads(self.paste(told["check"] + " --json").stdout)
+        for row in compared["methods"]:
+            judged = next(one for one in told["methods"] if one["method"] == row["method"])
+            for mine, theirs in zip(judged["attenuation_db"], row["attenuation_db"], strict=True):
+                self.assertAlmostEqual(mine["db"], theirs["db"], places=6)
+
     def test_a_method_that_needs_a_log_of_other_options_carries_them(self):
         wide = self.folder / "a log.csv"
         write_log(wide, header="t,dq,tau,q")
@@ -155,7 +169,8 @@ class Honest(Case):
         self.assertEqual(told["finding"], "recommended", told["verdict"])
         self.assertAlmostEqual(told["gear"]["ratio"] * told["gear"]["orders"][0] / 100, round(told["gear"]["ratio"] * told["gear"]["orders"][0] / 100),
                                delta=0.02)
-        self.paste(told["check"])
+        for line in [*told["take_commands"], told["check"]]:
+            self.paste(line)
 
     def test_fewer_decibels_where_the_delay_costs_more(self):
         # A torque that moves fast makes each ms dear: the answer has no more delay than for a slow one.

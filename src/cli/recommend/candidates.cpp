@@ -51,6 +51,10 @@ class Maker {
 
     Candidates all() {
         add("none");
+        if (!(fastest_deg_s_ > 0.0)) {
+            leave_out("the joint does not move in the part that methods learn from");
+            return std::move(made_);
+        }
         add_mapped();
         for (const char* const settings : oscillator_settings) add(std::string("oscillator") + settings);
         for (const char* const settings : tracking_settings) add(std::string("tracking") + settings);

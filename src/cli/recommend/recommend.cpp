@@ -188,6 +188,21 @@ std::vector<std::string> assumptions(const Request& request, const Parts& parts,
     return all;
 }
 
+// A map that does not reach as far as the judged part of the log moves is refused there; the others are
+// judged without it.
+Recommendation judged_methods(Candidates& candidates, const ComparedLog& log, const GearAccount& gear,
+                              const RecommendationLimits& limits) {
+    try {
+        return recommend(candidates.contenders, log, gear, limits);
+    } catch (const DataError& error) {
+        if (std::erase_if(candidates.contenders, [](const Contender& one) { return one.map != nullptr; }) ==
+            0)
+            throw;
+        candidates.left_out.emplace_back(error.what());
+        return recommend(candidates.contenders, log, gear, limits);
+    }
+}
+
 RecommendationReport report_of(const Request& request, Provenance& provenance) {
     RecommendationReport report;
     report.target = request.target.value_or("");
@@ -209,11 +224,11 @@ RecommendationReport report_of(const Request& request, Provenance& provenance) {
     say(request.common, gear_in_words(*report.gear));
     ComparedLog judged{parts.judge.trace.view()};
     judged.trace.sample_rate = parts.judge.recording.clock.nominal_rate;
-    const Candidates candidates =
+    Candidates candidates =
         candidates_for({parts.train, shell_quoted(request.log) + log_words(parts.train_options), choice,
                         *report.gear, request.offline, target});
+    report.found = judged_methods(candidates, judged, *report.gear, report.found.limits);
     report.left_out = candidates.left_out;
-    report.found = recommend(candidates.contenders, judged, *report.gear, report.found.limits);
     doubt_readings(parts, *report.gear, report.found);
     report.assumed = assumptions(request, parts, *report.gear, stated.of().has_value());
     report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;

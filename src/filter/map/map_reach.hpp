@@ -19,7 +19,7 @@ inline constexpr Key beyond_key{
     .kind = KeyKind::choice,
     .default_text = "refuse",
     .choices = beyond_choices,
-    .help = "a joint a fifth faster than fastest: refuse, as another joint; hold: the map's edge"};
+    .help = "a joint half as fast again: refuse, as another joint; hold: the map's edge"};
 
 /// Watches the mean speed over each motor turn, which noise of the velocity or a single bad row does not
 /// move.
@@ -29,7 +29,7 @@ class MapReach {
     MapReach(std::string_view method, const Settings& settings, double sample_rate_hz);
 
     void restart() noexcept { turned_ = samples_ = 0.0; }
-    /// Throws DataError, with both speeds, where the joint has turned a fifth faster than the map's logs did.
+    /// Throws DataError, with both speeds, where the joint turns half as fast again as the map's logs did.
     void next(double step_turns) {
         if (!(fastest_deg_s_ > 0.0)) return;
         turned_ += step_turns;
