@@ -29,6 +29,11 @@ CodeStyle style_of(const Settings& settings) {
 
 // Taylor's series about the nearest quarter of a turn: within 3e-8.
 constexpr std::string_view float_turn = R"c(
+/* The next whole number below, of what an int holds. */
+static inline float @name@_floor(float value) {
+    const int whole = (int)value;
+    return (float)(value < (float)whole ? whole - 1 : whole);
+}
 static inline void @name@_on_circle(float share, float* cosine, float* sine) {
     const int quarter = (int)(4.0f * share + 0.5f);
     const float a = 6.2831853f * (share - 0.25f * (float)quarter), s = a * a;
@@ -44,6 +49,7 @@ static inline void @name@_on_circle(float share, float* cosine, float* sine) {
 )c";
 
 constexpr std::string_view double_turn = R"c(
+static inline double @name@_floor(double value) { return floor(value); }
 static inline void @name@_on_circle(double share, double* cosine, double* sine) {
     const double angle = 6.283185307179586 * share;
     *cosine = cos(angle);
@@ -64,11 +70,10 @@ std::string CodeStyle::array(std::string_view what, const std::vector<double>& v
 }
 
 std::string CodeStyle::filled(std::string_view code) const {
-    const std::array<std::pair<std::string_view, std::string>, 5> fields = {
+    const std::array<std::pair<std::string_view, std::string>, 4> fields = {
         {{"@name@", name},
          {"@NAME@", upper_case(name)},
          {"@real@", is_float ? "float" : "double"},
-         {"@floor@", is_float ? "floorf" : "floor"},
          {"@sqrt@", is_float ? "sqrtf" : "sqrt"}}};
     return c_code::filled(std::string(code), fields);
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "export/method_code_parts.hpp"
 #include "export/oscillator_run.hpp"
@@ -13,116 +14,48 @@ namespace {
 
 constexpr std::string_view begin_code = R"c(
 typedef struct {
-    @real@ x[@NAME@_STATES], h[@NAME@_STATES], ph[@NAME@_STATES];
-    @real@ p[@NAME@_STATES][@NAME@_STATES]; /* of the covariance, what is above the diagonal */
-    @real@ origin, turns, slip, slipped, surprise;
+    @real@ x[@NAME@_STATES];      /* torque, its rate, of each order a cosine and a sine, in units of the noise */
+    @real@ p[@NAME@_COVARIANCES]; /* their covariance, row by row from the diagonal on */
+    @real@ origin, turns, slip, slipped;
     int started;
 } @name@_state;
 
 /* At start, and after a gap in time. */
 static inline void @name@_init(@name@_state* s) { s->started = 0; }
 
-static inline void @name@_look(@name@_state* s, @real@ turns, @real@ step) {
-    const @real@ size = step < 0 ? -step : step;
-    int i;
-    for (i = 0; i < @NAME@_ORDERS; ++i) {
-        const @real@ n = @name@_orders[i], cycles = n * turns;
-        @real@ share = ((@real@)0.48 - n * size) / ((@real@)0.48 - (@real@)0.45), cosine, sine;
-        share = share < 0 ? 0 : share > 1 ? 1 : share;
-        @name@_on_circle(cycles - @floor@(cycles), &cosine, &sine);
-        s->h[2 + 2 * i] = share * cosine;
-        s->h[3 + 2 * i] = share * sine;
-    }
+/* How an order shows at this angle: not at all where it nears half the sample rate. */
+static inline void @name@_look(@real@ n, @real@ turns, @real@ size, @real@* cosine, @real@* sine) {
+    const @real@ cycles = n * turns;
+    @real@ share = ((@real@)0.48 - n * size) / ((@real@)0.48 - (@real@)0.45);
+    share = share < 0 ? 0 : share > 1 ? 1 : share;
+    @name@_on_circle(cycles - @name@_floor(cycles), cosine, sine);
+    *cosine = share * *cosine;
+    *sine = share * *sine;
 }
 
-static inline @real@ @name@_ripple(const @name@_state* s) {
-    @real@ sum = 0;
+static inline @real@ @name@_begin(@name@_state* s, @real@ torque_nm, @real@ turns) {
+    @real@ variance = 1, ripple = 0, h[@NAME@_STATES];
     int i;
-    for (i = 2; i < @NAME@_STATES; ++i) sum += s->h[i] * s->x[i];
-    return sum;
-}
-
-static inline void @name@_begin(@name@_state* s, @real@ torque_nm, @real@ turns) {
-    @real@ variance = 1;
-    int i, j;
     s->started = 1;
     s->origin = torque_nm;
-    s->slip = s->slipped = s->surprise = 0;
-    @name@_look(s, turns, 0);
-    for (i = 0; i < @NAME@_STATES; ++i)
-        for (j = 0; j < @NAME@_STATES; ++j) s->p[i][j] = 0;
+    s->turns = turns;
+    s->slip = s->slipped = 0;
+    for (i = 0; i < @NAME@_COVARIANCES; ++i) s->p[i] = 0;
+    for (i = 0; i < @NAME@_ORDERS; ++i) @name@_look(@name@_orders[i], turns, 0, h + 2 + 2 * i, h + 3 + 2 * i);
     for (i = 2; i < @NAME@_STATES; ++i) {
         const @real@* const prior = @name@_priors + 3 * (i / 2 - 1);
         const @real@ square = prior[2] * prior[2];
         s->x[i] = prior[i % 2];
-        s->p[i][i] = square;
-        s->p[0][i] = -square * s->h[i];
-        variance += square * s->h[i] * s->h[i];
+        s->p[i * @NAME@_STATES - i * (i - 1) / 2] = square;
+        s->p[i] = -square * h[i];
+        variance += square * h[i] * h[i];
+        ripple += h[i] * s->x[i];
     }
-    s->x[0] = -@name@_ripple(s);
+    s->x[0] = -ripple;
     s->x[1] = 0;
-    s->p[0][0] = variance;
-    s->p[1][1] = @name@_values[5];
-}
-)c";
-
-constexpr std::string_view update_code = R"c(
-static inline void @name@_predict(@name@_state* s, @real@ step) {
-    const @real@* const c = @name@_values;
-    const @real@ share = step / c[6], added = 2 * share * share;
-    int j;
-    s->x[0] += c[0] * s->x[1];
-    s->p[0][0] += c[0] * s->p[0][1];
-    for (j = 1; j < @NAME@_STATES; ++j) s->p[0][j] += c[0] * s->p[1][j];
-    s->p[0][0] += c[0] * s->p[0][1];
-    s->p[0][0] += c[2];
-    s->p[0][1] += c[3];
-    s->p[1][1] += c[4];
-    for (j = 2; j < @NAME@_STATES; ++j) s->p[j][j] += added;
-}
-
-static inline void @name@_update(@name@_state* s, @real@ measured) {
-    const @real@ jump = @name@_values[7];
-    @real@ expected = s->x[0], variance = 1, surprise, scale;
-    int i, j;
-    for (i = 0; i < @NAME@_STATES; ++i) {
-        @real@ sum = s->p[0][i];
-        for (j = 2; j < @NAME@_STATES; ++j) sum += (i < j ? s->p[i][j] : s->p[j][i]) * s->h[j];
-        s->ph[i] = sum;
-        if (i == 0) variance += sum;
-        if (i >= 2) {
-            expected += s->h[i] * s->x[i];
-            variance += s->h[i] * sum;
-        }
-    }
-    surprise = measured - expected;
-    /* What the model holds for next to impossible is a torque that jumped. */
-    if (jump > 0 && surprise * surprise > jump * jump * variance) {
-        const @real@ added = surprise * surprise;
-        s->p[0][0] += added;
-        s->ph[0] += added;
-        variance += added;
-    }
-    scale = 1 / variance;
-    s->surprise = surprise * scale;
-    for (i = 0; i < @NAME@_STATES; ++i) {
-        const @real@ gain = s->ph[i] * scale;
-        s->x[i] += gain * surprise;
-        for (j = i; j < @NAME@_STATES; ++j) s->p[i][j] -= gain * s->ph[j];
-    }
-}
-
-/* By how much the ripple's phase ran ahead of the angle, in motor turns. */
-static inline @real@ @name@_ahead(const @name@_state* s) {
-    @real@ advance = 0, weights = 0;
-    int i;
-    for (i = 2; i < @NAME@_STATES; i += 2) {
-        const @real@ a = s->x[i], b = s->x[i + 1], n = @name@_orders[i / 2 - 1], square = a * a + b * b;
-        if (square <= 9 * (s->p[i][i] + s->p[i + 1][i + 1])) continue;
-        advance -= n * ((a * s->ph[i + 1] - b * s->ph[i]) * s->surprise);
-        weights += n * n * square;
-    }
-    return weights > 0 ? advance / ((@real@)6.283185307179586 * weights) : 0;
+    s->p[0] = variance;
+    s->p[@NAME@_STATES] = @name@_values[5];
+    return @NAME@_MINUS_RIPPLE ? torque_nm - @name@_values[1] * ripple : torque_nm + @name@_values[1] * s->x[0];
 }
 )c";
 
@@ -130,43 +63,129 @@ constexpr std::string_view step_code = R"c(
 /* Every sample, @NAME@_SAMPLE_RATE_HZ times a second: the torque without ripple. motor_turns is the motor's angle in
    turns, 0 where the joint is at position 0; the fraction of the turn is enough. */
 static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ motor_turns) {
-    const @real@ noise = @name@_values[1], most = @name@_values[8];
-    if (!s->started) {
-        @name@_begin(s, torque_nm, motor_turns);
-    } else {
-        @real@ moved = motor_turns - s->turns, step;
-        moved -= @floor@(moved + (@real@)0.5);
-        step = moved * (1 + s->slip);
-        s->slipped += moved * s->slip;
-        s->slipped -= @floor@(s->slipped);
-        @name@_predict(s, step);
-        @name@_look(s, motor_turns + s->slipped, step);
-        @name@_update(s, (torque_nm - s->origin) / noise);
-        if (most > 0) {
-            const @real@ size = step < 0 ? -step : step;
-            if (size > (@real@)1e-5) {
-                @real@ share = size / (4 * @name@_values[6]);
-                share = share < (@real@)0.01 ? share : (@real@)0.01;
-                s->slip += share * @name@_ahead(s) / step;
-                s->slip = s->slip < -most ? -most : s->slip > most ? most : s->slip;
-            }
+    const @real@* const c = @name@_values;
+    @real@* const x = s->x;
+    @real@* const p = s->p;
+    @real@ moved, step, size, added, measured, expected, variance, surprise, scale, gain@ripple@;
+    @real@ h[@NAME@_STATES], ph[@NAME@_STATES];
+    if (!s->started) return @name@_begin(s, torque_nm, motor_turns);
+    moved = motor_turns - s->turns;
+    moved -= @name@_floor(moved + (@real@)0.5);
+    step = moved * (1 + s->slip);
+    size = step < 0 ? -step : step;
+    s->slipped += moved * s->slip;
+    s->slipped -= @name@_floor(s->slipped);
+    s->turns = motor_turns;
+    measured = (torque_nm - s->origin) / c[1];
+    added = step / c[6];
+    added = 2 * added * added;
+)c";
+
+constexpr std::string_view jump_code = R"c(
+    /* What the model holds for next to impossible is a torque that jumped. */
+    if (c[7] > 0 && surprise * surprise > c[7] * c[7] * variance) {
+        const @real@ square = surprise * surprise;
+        p[0] += square;
+        ph[0] += square;
+        variance += square;
+    }
+    scale = 1 / variance;
+)c";
+
+// The filter's matrices written out, element by element: a compiler keeps what it can in registers.
+class MatrixCode {
+  public:
+    explicit MatrixCode(std::size_t orders) : orders_(orders), m_(2 + 2 * orders) {}
+
+    std::string step() {
+        predict();
+        look();
+        update();
+        correct();
+        return std::move(text_);
+    }
+    std::string last() {
+        line("    ripple = 0;");
+        for (std::size_t i = 2; i < m_; ++i) line("    ripple += h[{0}] * x[{0}];", i);
+        return std::move(text_);
+    }
+
+  private:
+    template <class... Values>
+    void line(std::string_view format, const Values&... values) {
+        text_ += fmt::format(fmt::runtime(format), values...) + "\n";
+    }
+    [[nodiscard]] std::size_t p(std::size_t i, std::size_t j) const {
+        if (i > j) std::swap(i, j);
+        return i * m_ + j - i * (i + 1) / 2;
+    }
+
+    void predict() {
+        line("    x[0] += c[0] * x[1];\n    p[0] += c[0] * p[1];");
+        for (std::size_t j = 1; j < m_; ++j) line("    p[{}] += c[0] * p[{}];", j, p(1, j));
+        line("    p[0] += c[0] * p[1];\n    p[0] += c[2];\n    p[1] += c[3];\n    p[{}] += c[4];", p(1, 1));
+        for (std::size_t j = 2; j < m_; ++j) line("    p[{}] += added;", p(j, j));
+    }
+    void look() {
+        for (std::size_t i = 0; i < orders_; ++i)
+            line("    @name@_look(@name@_orders[{}], motor_turns + s->slipped, size, h + {}, h + {});", i,
+                 2 + 2 * i, 3 + 2 * i);
+    }
+    void update() {
+        for (std::size_t i = 0; i < m_; ++i) {
+            text_ += fmt::format("    ph[{}] = p[{}]", i, p(0, i));
+            for (std::size_t j = 2; j < m_; ++j) text_ += fmt::format(" + p[{}] * h[{}]", p(i, j), j);
+            line(";");
+        }
+        line("    expected = x[0];\n    variance = 1 + ph[0];");
+        for (std::size_t i = 2; i < m_; ++i)
+            line("    expected += h[{0}] * x[{0}];\n    variance += h[{0}] * ph[{0}];", i);
+        text_ += "    surprise = measured - expected;" + std::string(jump_code);
+        for (std::size_t i = 0; i < m_; ++i) {
+            line("    gain = ph[{0}] * scale;\n    x[{0}] += gain * surprise;", i);
+            for (std::size_t j = i; j < m_; ++j) line("    p[{}] -= gain * ph[{}];", p(i, j), j);
         }
     }
-    s->turns = motor_turns;
-    return @NAME@_MINUS_RIPPLE ? torque_nm - noise * @name@_ripple(s) : s->origin + noise * s->x[0];
-}
-)c";
+    // What the ripple's phase says of the angle's rate.
+    void correct() {
+        line("    if (c[8] > 0 && size > (@real@)1e-5) {{");
+        line("        @real@ ahead = 0, weights = 0, share = size / (4 * c[6]);");
+        for (std::size_t i = 0; i < orders_; ++i) {
+            const std::size_t a = 2 + 2 * i, b = a + 1;
+            line(
+                "        {{\n            const @real@ n = @name@_orders[{}], square = x[{}] * x[{}] + x[{}] "
+                "* "
+                "x[{}];",
+                i, a, a, b, b);
+            line("            if (square > 9 * (p[{}] + p[{}])) {{", p(a, a), p(b, b));
+            line("                ahead -= n * ((x[{}] * ph[{}] - x[{}] * ph[{}]) * (surprise * scale));", a,
+                 b, b, a);
+            line("                weights += n * n * square;\n            }}\n        }}");
+        }
+        line("        if (weights > 0) {{");
+        line("            share = share < (@real@)0.01 ? share : (@real@)0.01;");
+        line("            s->slip += share * (ahead / ((@real@)6.283185307179586 * weights)) / step;");
+        line(
+            "            s->slip = s->slip < -c[8] ? -c[8] : s->slip > c[8] ? c[8] : s->slip;\n        }}\n  "
+            "  }}");
+    }
+
+    std::size_t orders_, m_;
+    std::string text_;
+};
 
 }  // namespace
 
 std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style) {
+    const std::size_t states = 2 + 2 * d.orders.size();
     std::vector<double> priors;
     for (const auto& prior : d.priors)
         priors.insert(priors.end(), {prior.cosine, prior.sine, prior.deviation});
-    std::string text = style.filled(fmt::format(
-        "enum {{ @NAME@_ORDERS = {}, @NAME@_STATES = {}, @NAME@_MINUS_RIPPLE = {}, @NAME@_SAMPLE_RATE_HZ = "
-        "{} }};\n",
-        d.orders.size(), 2 + 2 * d.orders.size(), d.minus_ripple ? 1 : 0, std::lround(1.0 / d.step_s)));
+    std::string text =
+        style.filled(fmt::format("enum {{ @NAME@_ORDERS = {}, @NAME@_STATES = {}, @NAME@_COVARIANCES = {}, "
+                                 "@NAME@_MINUS_RIPPLE = {},\n       @NAME@_SAMPLE_RATE_HZ = {} }};\n",
+                                 d.orders.size(), states, states * (states + 1) / 2, d.minus_ripple ? 1 : 0,
+                                 std::lround(1.0 / d.step_s)));
     text += style.array("orders", d.orders);
     text += "/* of each order, in units of the noise: cosine, sine, how far off they may be */\n";
     text += style.array("priors", priors);
@@ -176,8 +195,13 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
         "of rate;\n   variance of the rate at the start, memory in motor turns, jump, largest slip */\n";
     text += style.array("values", {d.step_s, d.noise_nm, d.torque_noise, d.cross_noise, d.rate_noise,
                                    d.first_rate_variance, d.memory_turns, d.jump, d.largest_slip});
-    return text + style.filled(turn_code(style.is_float)) + style.filled(begin_code) +
-           style.filled(update_code) + style.filled(step_code);
+    text += style.filled(turn_code(style.is_float)) + style.filled(begin_code);
+    std::string step = style.filled(step_code);
+    step.replace(step.find("@ripple@"), 8, d.minus_ripple ? ", ripple" : "");
+    text += step;
+    text += style.filled(MatrixCode(d.orders.size()).step());
+    if (!d.minus_ripple) return text + style.filled("    return s->origin + c[1] * x[0];\n}\n");
+    return text + MatrixCode(d.orders.size()).last() + "    return torque_nm - c[1] * ripple;\n}\n";
 }
 
 LoadedCode oscillator_loaded(TextReader& reader, const OscillatorDesign& d, const CodeStyle& style) {

@@ -49,7 +49,7 @@ class Maker {
         fastest_deg_s_ = speeds.back();
     }
 
-    Candidates all() {
+    TriedMethods all() {
         add("none");
         if (!(fastest_deg_s_ > 0.0)) {
             leave_out("the joint does not move in the part that methods learn from");
@@ -174,11 +174,11 @@ class Maker {
     const CandidateRequest& request_;
     TraceView view_;
     double median_deg_s_ = 0.0, slowest_deg_s_ = 0.0, fastest_deg_s_ = 0.0;
-    Candidates made_;
+    TriedMethods made_;
 };
 
 }  // namespace
 
-Candidates candidates_for(const CandidateRequest& request) { return Maker(request).all(); }
+TriedMethods candidates_for(const CandidateRequest& request) { return Maker(request).all(); }
 
 }  // namespace ripplenotch

@@ -19,7 +19,7 @@ struct MadeFile {
     std::string name, command;
 };
 
-struct Candidates {
+struct TriedMethods {
     std::vector<Contender> contenders;  ///< the control first
     std::vector<MadeFile> files;
     std::vector<std::string> left_out;  ///< what was not tried, and why, one sentence each
@@ -35,6 +35,6 @@ struct CandidateRequest {
 };
 
 /// The same for every limit, so that looser limits never give a worse answer.
-[[nodiscard]] Candidates candidates_for(const CandidateRequest& request);
+[[nodiscard]] TriedMethods candidates_for(const CandidateRequest& request);
 
 }  // namespace ripplenotch

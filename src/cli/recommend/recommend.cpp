@@ -129,7 +129,7 @@ void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation&
 
 class Commands {
   public:
-    Commands(const Request& request, const Parts& parts, const Candidates& candidates,
+    Commands(const Request& request, const Parts& parts, const TriedMethods& candidates,
              const std::optional<TargetChoice>& target, const GearAccount& gear)
         : request_(request), parts_(parts), candidates_(candidates), target_(target), gear_(gear) {}
 
@@ -167,7 +167,7 @@ class Commands {
   private:
     const Request& request_;
     const Parts& parts_;
-    const Candidates& candidates_;
+    const TriedMethods& candidates_;
     const std::optional<TargetChoice>& target_;
     const GearAccount& gear_;
 };
@@ -190,7 +190,7 @@ std::vector<std::string> assumptions(const Request& request, const Parts& parts,
 
 // A map that does not reach as far as the judged part of the log moves is refused there; the others are
 // judged without it.
-Recommendation judged_methods(Candidates& candidates, const ComparedLog& log, const GearAccount& gear,
+Recommendation judged_methods(TriedMethods& candidates, const ComparedLog& log, const GearAccount& gear,
                               const RecommendationLimits& limits) {
     try {
         return recommend(candidates.contenders, log, gear, limits);
@@ -224,7 +224,7 @@ RecommendationReport report_of(const Request& request, Provenance& provenance) {
     say(request.common, gear_in_words(*report.gear));
     ComparedLog judged{parts.judge.trace.view()};
     judged.trace.sample_rate = parts.judge.recording.clock.nominal_rate;
-    Candidates candidates =
+    TriedMethods candidates =
         candidates_for({parts.train, shell_quoted(request.log) + log_words(parts.train_options), choice,
                         *report.gear, request.offline, target});
     report.found = judged_methods(candidates, judged, *report.gear, report.found.limits);
