@@ -12,7 +12,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::string_view begin_code = R"c(
+constexpr std::string_view state_code = R"c(
 typedef struct {
     @real@ x[@NAME@_STATES];      /* torque, its rate, of each order a cosine and a sine, in units of the noise */
     @real@ p[@NAME@_COVARIANCES]; /* their covariance, row by row from the diagonal on */
@@ -23,16 +23,18 @@ typedef struct {
 /* At start, and after a gap in time. */
 static inline void @name@_init(@name@_state* s) { s->started = 0; }
 
-/* How an order shows at this angle: not at all where it nears half the sample rate. */
-static inline void @name@_look(@real@ n, @real@ turns, @real@ size, @real@* cosine, @real@* sine) {
-    const @real@ cycles = n * turns;
-    @real@ share = ((@real@)0.48 - n * size) / ((@real@)0.48 - (@real@)0.45);
-    share = share < 0 ? 0 : share > 1 ? 1 : share;
-    @name@_on_circle(cycles - @name@_floor(cycles), cosine, sine);
-    *cosine = share * *cosine;
-    *sine = share * *sine;
+/* Of cycles a sample. */
+static inline void @name@_fade(@real@ rate, @real@* cosine, @real@* sine) {
+    if (rate > (@real@)0.45) {
+        const @real@ share = rate < (@real@)0.48 ? ((@real@)0.48 - rate) / ((@real@)0.48 - (@real@)0.45) : 0;
+        *cosine = share * *cosine;
+        *sine = share * *sine;
+    }
 }
 
+)c";
+
+constexpr std::string_view begin_code = R"c(
 static inline @real@ @name@_begin(@name@_state* s, @real@ torque_nm, @real@ turns) {
     @real@ variance = 1, ripple = 0, h[@NAME@_STATES];
     int i;
@@ -41,7 +43,7 @@ static inline @real@ @name@_begin(@name@_state* s, @real@ torque_nm, @real@ turn
     s->turns = turns;
     s->slip = s->slipped = 0;
     for (i = 0; i < @NAME@_COVARIANCES; ++i) s->p[i] = 0;
-    for (i = 0; i < @NAME@_ORDERS; ++i) @name@_look(@name@_orders[i], turns, 0, h + 2 + 2 * i, h + 3 + 2 * i);
+    @name@_look(turns, 0, h);
     for (i = 2; i < @NAME@_STATES; ++i) {
         const @real@* const prior = @name@_priors + 3 * (i / 2 - 1);
         const @real@ square = prior[2] * prior[2];
@@ -95,11 +97,32 @@ constexpr std::string_view jump_code = R"c(
 // The filter's matrices written out, element by element: a compiler keeps what it can in registers.
 class MatrixCode {
   public:
-    explicit MatrixCode(std::size_t orders) : orders_(orders), m_(2 + 2 * orders) {}
+    explicit MatrixCode(const std::vector<double>& orders) : orders_(orders), m_(2 + 2 * orders.size()) {}
 
+    // How the orders show at an angle. An order twice another one is its double angle.
+    std::string look() {
+        line("\nstatic inline void @name@_look(@real@ turns, @real@ size, @real@* h) {{");
+        for (std::size_t i = 0; i < orders_.size(); ++i) {
+            const std::size_t half = half_of(orders_, i), a = 2 + 2 * i, of = 2 + 2 * half;
+            if (half < i) {
+                line("    h[{}] = 1 - 2 * h[{}] * h[{}];\n    h[{}] = 2 * h[{}] * h[{}];", a, of + 1, of + 1,
+                     a + 1, of, of + 1);
+            } else {
+                line(
+                    "    @name@_on_circle(@name@_orders[{0}] * turns - @name@_floor(@name@_orders[{0}] * "
+                    "turns), h + {1}, "
+                    "h + {2});",
+                    i, a, a + 1);
+            }
+        }
+        for (std::size_t i = 0; i < orders_.size(); ++i)
+            line("    @name@_fade(@name@_orders[{}] * size, h + {}, h + {});", i, 2 + 2 * i, 3 + 2 * i);
+        line("}}");
+        return std::move(text_);
+    }
     std::string step() {
         predict();
-        look();
+        line("    @name@_look(motor_turns + s->slipped, size, h);");
         update();
         correct();
         return std::move(text_);
@@ -126,11 +149,6 @@ class MatrixCode {
         line("    p[0] += c[0] * p[1];\n    p[0] += c[2];\n    p[1] += c[3];\n    p[{}] += c[4];", p(1, 1));
         for (std::size_t j = 2; j < m_; ++j) line("    p[{}] += added;", p(j, j));
     }
-    void look() {
-        for (std::size_t i = 0; i < orders_; ++i)
-            line("    @name@_look(@name@_orders[{}], motor_turns + s->slipped, size, h + {}, h + {});", i,
-                 2 + 2 * i, 3 + 2 * i);
-    }
     void update() {
         for (std::size_t i = 0; i < m_; ++i) {
             text_ += fmt::format("    ph[{}] = p[{}]", i, p(0, i));
@@ -150,7 +168,7 @@ class MatrixCode {
     void correct() {
         line("    if (c[8] > 0 && size > (@real@)1e-5) {{");
         line("        @real@ ahead = 0, weights = 0, share = size / (4 * c[6]);");
-        for (std::size_t i = 0; i < orders_; ++i) {
+        for (std::size_t i = 0; i < orders_.size(); ++i) {
             const std::size_t a = 2 + 2 * i, b = a + 1;
             line(
                 "        {{\n            const @real@ n = @name@_orders[{}], square = x[{}] * x[{}] + x[{}] "
@@ -170,7 +188,8 @@ class MatrixCode {
             "  }}");
     }
 
-    std::size_t orders_, m_;
+    const std::vector<double>& orders_;
+    std::size_t m_;
     std::string text_;
 };
 
@@ -195,13 +214,14 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
         "of rate;\n   variance of the rate at the start, memory in motor turns, jump, largest slip */\n";
     text += style.array("values", {d.step_s, d.noise_nm, d.torque_noise, d.cross_noise, d.rate_noise,
                                    d.first_rate_variance, d.memory_turns, d.jump, d.largest_slip});
-    text += style.filled(turn_code(style.is_float)) + style.filled(begin_code);
+    text += style.filled(turn_code(style.is_float)) + style.filled(state_code) +
+            style.filled(MatrixCode(d.orders).look()) + style.filled(begin_code);
     std::string step = style.filled(step_code);
     step.replace(step.find("@ripple@"), 8, d.minus_ripple ? ", ripple" : "");
     text += step;
-    text += style.filled(MatrixCode(d.orders.size()).step());
+    text += style.filled(MatrixCode(d.orders).step());
     if (!d.minus_ripple) return text + style.filled("    return s->origin + c[1] * x[0];\n}\n");
-    return text + MatrixCode(d.orders.size()).last() + "    return torque_nm - c[1] * ripple;\n}\n";
+    return text + MatrixCode(d.orders).last() + "    return torque_nm - c[1] * ripple;\n}\n";
 }
 
 LoadedCode oscillator_loaded(TextReader& reader, const OscillatorDesign& d, const CodeStyle& style) {

@@ -11,6 +11,14 @@
 
 namespace ripplenotch {
 
+/// The place of an earlier order that this one is twice of; its own where there is none.
+template <class Real>
+[[nodiscard]] std::size_t half_of(const std::vector<Real>& orders, std::size_t i) {
+    for (std::size_t j = 0; j < i; ++j)
+        if (orders[i] == 2 * orders[j]) return j;
+    return i;
+}
+
 template <class Real>
 class OscillatorRun {
   public:
@@ -52,12 +60,22 @@ class OscillatorRun {
     void look(Real turns, Real step) {
         const Real none = static_cast<Real>(0.48), full = static_cast<Real>(0.45);
         for (std::size_t i = 0; i < orders_.size(); ++i) {
+            if (const std::size_t half = 2 * half_of(orders_, i); half < 2 * i) {
+                h_[2 + 2 * i] = 1 - 2 * h_[3 + half] * h_[3 + half];
+                h_[3 + 2 * i] = 2 * h_[2 + half] * h_[3 + half];
+                continue;
+            }
             const Real cycles = orders_[i] * turns;
-            const Real share =
-                std::clamp((none - orders_[i] * std::abs(step)) / (none - full), Real(0), Real(1));
             const OnCircle<Real> at = on_circle(cycles - std::floor(cycles));
-            h_[2 + 2 * i] = share * at.cosine;
-            h_[3 + 2 * i] = share * at.sine;
+            h_[2 + 2 * i] = at.cosine;
+            h_[3 + 2 * i] = at.sine;
+        }
+        for (std::size_t i = 0; i < orders_.size(); ++i) {
+            const Real rate = orders_[i] * std::abs(step);
+            if (!(rate > full)) continue;
+            const Real share = rate < none ? (none - rate) / (none - full) : Real(0);
+            h_[2 + 2 * i] *= share;
+            h_[3 + 2 * i] *= share;
         }
     }
     [[nodiscard]] Real ripple() const {
