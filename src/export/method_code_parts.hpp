@@ -44,7 +44,9 @@ struct OnCircle {
     const float a = 6.2831853F * (share - 0.25F * static_cast<float>(quarter)), s = a * a;
     const float sine =
         a * (1.0F + s * (-1.6666667e-1F + s * (8.3333333e-3F + s * (-1.9841270e-4F + s * 2.7557319e-6F))));
-    const float cosine = 1.0F + s * (-0.5F + s * (4.1666667e-2F + s * (-1.3888889e-3F + s * 2.4801587e-5F)));
+    const float cosine =
+        1.0F +
+        s * (-0.5F + s * (4.1666667e-2F + s * (-1.3888889e-3F + s * (2.4801587e-5F - s * 2.7557319e-7F))));
     switch (quarter & 3) {
         case 1:
             return {-sine, cosine};
