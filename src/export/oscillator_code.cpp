@@ -16,7 +16,7 @@ constexpr std::string_view state_code = R"c(
 typedef struct {
     @real@ x[@NAME@_STATES];      /* torque, its rate, of each order a cosine and a sine, in units of the noise */
     @real@ p[@NAME@_COVARIANCES]; /* their covariance, row by row from the diagonal on */
-    @real@ origin, turns, slip, slipped;
+    @real@ origin, turns, slip, slipped, lost;
     int started;
 } @name@_state;
 
@@ -41,7 +41,7 @@ static inline @real@ @name@_begin(@name@_state* s, @real@ torque_nm, @real@ turn
     s->started = 1;
     s->origin = torque_nm;
     s->turns = turns;
-    s->slip = s->slipped = 0;
+    s->slip = s->slipped = s->lost = 0;
     for (i = 0; i < @NAME@_COVARIANCES; ++i) s->p[i] = 0;
     @name@_look(turns, 0, h);
     for (i = 2; i < @NAME@_STATES; ++i) {
@@ -68,15 +68,18 @@ static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ motor
     const @real@* const c = @name@_values;
     @real@* const x = s->x;
     @real@* const p = s->p;
-    @real@ moved, step, size, added, measured, expected, variance, surprise, scale, gain@ripple@;
+    @real@ moved, step, size, slipped, added, measured, expected, variance, surprise, scale, gain@ripple@;
     @real@ h[@NAME@_STATES], ph[@NAME@_STATES];
     if (!s->started) return @name@_begin(s, torque_nm, motor_turns);
     moved = motor_turns - s->turns;
     moved -= @name@_floor(moved + (@real@)0.5);
     step = moved * (1 + s->slip);
     size = step < 0 ? -step : step;
-    s->slipped += moved * s->slip;
-    s->slipped -= @name@_floor(s->slipped);
+    /* Added up with what rounding took off before (Kahan): a phase that drifts is not forgotten at rest. */
+    added = moved * s->slip - s->lost;
+    slipped = s->slipped + added;
+    s->lost = (slipped - s->slipped) - added;
+    s->slipped = slipped > 1 ? slipped - 1 : slipped < -1 ? slipped + 1 : slipped;
     s->turns = motor_turns;
     measured = (torque_nm - s->origin) / c[1];
     added = step / c[6];

@@ -43,8 +43,9 @@ class OscillatorRun {
             Real moved = turns - turns_;
             moved -= std::floor(moved + static_cast<Real>(0.5));
             const Real step = moved * (1 + slip_);
-            slipped_ += moved * slip_;
-            slipped_ -= std::floor(slipped_);
+            const Real added = moved * slip_ - lost_, slipped = slipped_ + added;
+            lost_ = (slipped - slipped_) - added;
+            slipped_ = slipped > 1 ? slipped - 1 : slipped < -1 ? slipped + 1 : slipped;
             predict(step);
             look(turns + slipped_, step);
             update((torque - origin_) / c_[1]);
@@ -160,7 +161,7 @@ class OscillatorRun {
     bool minus_ripple_;
     std::size_t m_;
     std::vector<Real> x_, h_, ph_, p_;  ///< p_: above the diagonal
-    Real origin_ = 0, turns_ = 0, slip_ = 0, slipped_ = 0, surprise_ = 0;
+    Real origin_ = 0, turns_ = 0, slip_ = 0, slipped_ = 0, lost_ = 0, surprise_ = 0;
     bool started_ = false;
 };
 
