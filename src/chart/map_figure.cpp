@@ -40,7 +40,7 @@ At at_speed(const MapFit& fit, std::size_t order, double speed_deg_s) {
 void add_curves(const MapFit& fit, std::size_t order, double sign, const std::string& name, Ink ink,
                 Panel& amplitude, Panel& phase) {
     Curve size{name, ink, CurveStyle::line, {}, {}}, angle{name, ink, CurveStyle::points, {}, {}};
-    Ribbon ribbon{"", ink, {}, {}, {}};
+    Ribbon ribbon{"", ink, {}, {}, {}}, doubt{"", ink, {}, {}, {}};
     const MapRange& range = fit.map.speeds_deg_s;
     for (int k = 0; k <= steps; ++k) {
         const double speed = range.from + (range.to - range.from) * k / steps;
@@ -49,13 +49,23 @@ void add_curves(const MapFit& fit, std::size_t order, double sign, const std::st
         size.x.push_back(speed);
         size.y.push_back(nm);
         angle.x.push_back(speed);
-        angle.y.push_back(-portable::arg(at.value) * degrees_per_radian);
+        // A phase goes on where it ended: at half a turn it does not jump to the other edge.
+        double deg = -portable::arg(at.value) * degrees_per_radian;
+        if (k > 0) deg += 360.0 * std::round((angle.y.back() - deg) / 360.0);
+        angle.y.push_back(deg);
+        // Of an amplitude that may be 0 any phase may be.
+        const double off = normal_95 * at.error_nm;
+        const double off_deg = off < nm ? portable::atan2(off, nm) * degrees_per_radian : 180.0;
+        doubt.x.push_back(speed);
+        doubt.low.push_back(deg - off_deg);
+        doubt.high.push_back(deg + off_deg);
         ribbon.x.push_back(speed);
         ribbon.low.push_back(std::max(0.0, nm - normal_95_errors * at.error_nm));
         ribbon.high.push_back(nm + normal_95_errors * at.error_nm);
     }
     amplitude.ribbons.push_back(std::move(ribbon));
     amplitude.curves.push_back(std::move(size));
+    phase.ribbons.push_back(std::move(doubt));
     phase.curves.push_back(std::move(angle));
 }
 
@@ -70,8 +80,6 @@ Figure map_figure(const std::string& source, const MapFit& fit) {
                 .legend = false,
                 .height = 0.7};
     amplitude.y.from = 0.0;
-    phase.y.from = -180.0;
-    phase.y.to = 180.0;
     std::size_t series = 0;
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
         const std::string order = "order " + shortest(fit.map.orders[i].value());

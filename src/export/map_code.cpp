@@ -6,6 +6,8 @@
 #include <array>
 #include <utility>
 
+#include "export/method_code_parts.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -28,7 +30,7 @@ static inline @real@ @name@_torque(@real@ speed_deg_s, @real@ motor_turns, @real
     }
     if (@name@_limits[2] > @name@_limits[1]) {
         const @real@ middle = (@real@)0.5 * (@name@_limits[1] + @name@_limits[2]);
-        joint -= 360 * @floor@((joint - middle) / 360 + (@real@)0.5);
+        joint -= 360 * @name@_floor((joint - middle) / 360 + (@real@)0.5);
         joint = joint < @name@_limits[1] ? @name@_limits[1] : joint > @name@_limits[2] ? @name@_limits[2] : joint;
     }
     joint = (joint - @name@_limits[5]) * (@real@)0.017453292519943295;
@@ -56,13 +58,13 @@ static inline @real@ @name@_torque(@real@ speed_deg_s, @real@ motor_turns, @real
     }
     for (i = 0; i < orders; ++i) {
         const @real@* const z = @name@_values + 2 * i * directions * each;
-        @real@ cosine = 0, sine = 0, cycles = @name@_orders[i] * motor_turns;
+        @real@ cosine = 0, sine = 0, c, s, cycles = @name@_orders[i] * motor_turns;
         for (k = 0; k < directions * each; ++k) {
             cosine += weight[k] * z[2 * k];
             sine += weight[k] * z[2 * k + 1];
         }
-        cycles = (@real@)6.283185307179586 * (cycles - @floor@(cycles));
-        ripple += cosine * @cos@(cycles) + sine * @sin@(cycles);
+        @name@_on_circle(cycles - @name@_floor(cycles), &c, &s);
+        ripple += cosine * c + sine * s;
     }
     return ripple;
 }
@@ -73,7 +75,7 @@ static inline @real@ @name@_torque(@real@ speed_deg_s, @real@ motor_turns, @real
 
 std::string map_code(const RippleMap& map, std::string_view name, bool is_float) {
     const MapForm& form = map.form;
-    const std::array<std::pair<std::string_view, std::string>, 10> fields = {{
+    const std::array<std::pair<std::string_view, std::string>, 9> fields = {{
         {"@real@", is_float ? "float" : "double"},
         {"@name@", std::string(name)},
         {"@orders@", std::to_string(map.orders.size())},
@@ -81,11 +83,10 @@ std::string map_code(const RippleMap& map, std::string_view name, bool is_float)
         {"@directions@", std::to_string(form.directions)},
         {"@harmonics@", std::to_string(form.turn_harmonics)},
         {"@loads@", form.by_load ? "1" : "0"},
-        {"@floor@", is_float ? "floorf" : "floor"},
         {"@cos@", is_float ? "cosf" : "cos"},
         {"@sin@", is_float ? "sinf" : "sin"},
     }};
-    std::string text(code);
+    std::string text = std::string(turn_code(is_float)) + std::string(code);
     for (const auto& [mark, value] : fields)
         for (std::size_t at = text.find(mark); at != std::string::npos;
              at = text.find(mark, at + value.size()))

@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "filter/map/map_reach.hpp"
 #include "filter/map/map_settings.hpp"
 #include "filter/ripple_keys.hpp"
 
@@ -102,6 +103,8 @@ inline constexpr std::array oscillator_keys = {
     positions_key,
     loads_key,
     spread_key,
+    fastest_key,
+    beyond_key,
     Key{.name = "zero",
         .kind = KeyKind::choice,
         .default_text = "known",

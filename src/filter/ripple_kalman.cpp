@@ -25,6 +25,11 @@ RippleModel::TorqueNoise RippleModel::torque_noise() const noexcept {
     return {density * portable::pow(step_s, 3) / 3.0, density * step_s * step_s / 2.0, density * step_s};
 }
 
+// A hundred times the settled variance: a log may begin amid a motion.
+double RippleModel::first_rate_variance() const noexcept {
+    return 100.0 * std::numbers::sqrt2 * portable::pow(bandwidth_rad_s, 3) * step_s;
+}
+
 // A pair alone settles to the gain step/memory: its amplitude forgets over memory_turns at any speed.
 double RippleModel::amplitude_noise(double step_turns) const noexcept {
     const double share = step_turns / memory_turns;
@@ -81,8 +86,7 @@ void RippleKalman::start(double motor_turns) {
     x_[0] = -ripple();
     x_[1] = 0.0;
     p_[0] = torque_variance;
-    // A hundred times the settled variance: a log may begin amid a motion.
-    p_[m_ + 1] = 100.0 * std::numbers::sqrt2 * portable::pow(model_.bandwidth_rad_s, 3) * model_.step_s;
+    p_[m_ + 1] = model_.first_rate_variance();
     surprise_ = 0.0;
 }
 

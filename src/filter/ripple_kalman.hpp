@@ -25,6 +25,8 @@ struct RippleModel {
         double torque, cross, rate;
     };
     [[nodiscard]] TorqueNoise torque_noise() const noexcept;
+    /// Variance of the torque's rate before the first sample.
+    [[nodiscard]] double first_rate_variance() const noexcept;
     /// What a step of this many motor turns adds to the variance of each amplitude.
     [[nodiscard]] double amplitude_noise(double step_turns) const noexcept;
     /// Share of an order that is looked at: 1, and less where it nears half the sample rate, beyond which it

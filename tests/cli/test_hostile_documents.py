@@ -19,7 +19,7 @@ from prove_trust import documents  # noqa: E402
 LONGEST_S = 2.0
 
 KINDS = ("comparison", "diagnosis", "effects", "export", "figure", "frontier", "info", "joint", "joints", "metrics", "model",
-         "simulation", "spectrum", "table", "track")
+         "recommendation", "simulation", "spectrum", "table", "track")
 
 
 def head(kind):

@@ -164,9 +164,57 @@ class Compensators(Case):
         self.assertIn("the map is of joint j4, and the log is of joint j3", done.stderr)
         found["joint"], found["range"]["speed_deg_s"] = "", [1.0, 40.0]
         self.map.write_text(json.dumps(found))
-        done = run("filter", self.log, "--method", f"map,map={self.map}", "-o", self.folder / "z.csv", "--force")
+        for command in ("filter", self.log, "-o", self.folder / "fast.csv"), ("compare", self.log):
+            for method in "map", "oscillator":
+                done = run(*command, "--method", f"{method},map={self.map}")
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertRegex(done.stderr, f"method {method}: its map was made at 1 to 40 deg/s, and this joint moves at [67].")
+                self.assertFalse((self.folder / "fast.csv").exists())
+        done = run("filter", self.log, "--method", f"map,map={self.map},beyond=hold", "-o", self.folder / "z.csv", "--force")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("its map was made at 1 to 40 deg/s", done.stderr)
+
+    def test_compare_names_the_joint_of_another_map_too(self):
+        write_log(self.log, 1)
+        found, _ = self.made(self.log)
+        found["joint"] = "j4"
+        self.map.write_text(json.dumps(found))
+        named = self.folder / "named.csv"
+        named.write_text(self.log.read_text().replace("velocity_deg_s,torque_nm,position_deg", "j3_velocity_deg_s,j3_torque_nm,j3_position_deg", 1))
+        done = run("compare", named, "--method", f"map,map={self.map}")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("the map is of joint j4, and the log is of joint j3", done.stderr)
+
+    def test_against_the_true_torque_a_map_leaves_the_noise(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        slow = write_log(self.log, 2)
+        rows = self.log.read_text().split("\n")
+        cells = [row.split(",") for row in rows[1:] if row]
+        truth = self.folder / "truth.csv"
+        truth.write_text("\n".join([rows[0], *(",".join([t, v, f"{nm!r}", q]) for (t, v, _, q), nm in zip(cells, slow, strict=True))]) + "\n")
+        done = run("compare", self.log, "--truth", truth, "--method", f"map,map={self.map}", "--method", f"oscillator,map={self.map}", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        none, mapped, followed = (one["error_rms_nm"] for one in json.loads(done.stdout)["methods"])
+        self.assertGreater(none, 0.6)
+        self.assertAlmostEqual(mapped, 0.05, delta=0.005)  # the noise
+        self.assertLess(followed, 0.03)
+
+    def test_a_map_is_drawn_with_its_intervals(self):
+        write_log(self.log, 1)
+        picture = self.folder / "map.figure.json"
+        done = run("map", self.log, *GEAR, "-o", self.map, "--plot", picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        panels = json.loads(picture.read_text())["panels"]
+        self.assertEqual([panel["y"]["unit"] for panel in panels], ["Nm", "deg"])
+        for panel, truths in zip(panels, ((0.8, 0.5), (30.0, 0.0)), strict=True):
+            for truth, curve, ribbon in zip(truths, panel["curves"], panel["ribbons"], strict=True):
+                self.assertTrue(all(low <= y <= high for low, y, high in zip(ribbon["low"], curve["y"], ribbon["high"], strict=True)))
+                self.assertAlmostEqual(curve["y"][0], truth, delta=2 * (ribbon["high"][0] - ribbon["low"][0]))
+        write_log(self.log, 1, ripple=0.0)
+        done = run("map", self.log, *GEAR, "--plot", self.folder / "empty.json")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("there is nothing to draw", done.stderr)
 
     def test_compare_takes_maps_beside_others(self):
         write_log(self.log, 1)

@@ -35,6 +35,7 @@ COMMANDS = {
     "order-map": ["spectrum", MOVE, "--map", "order", "--gear-ratio", "100", "--highest", "6"],
     "line-frequency": ["identify", *(str(DATA / f"paper_{v}deg_s.csv") for v in (60, 90, 120, 180))],
     "track": ["track", MOVE, "--orders", "1,2", "--gear-ratio", "100"],
+    "ripple-map": ["map", MOVE, "--orders", "1,2", "--gear-ratio", "100"],
     "candidate-table": ["design", *TABLE],
     "torque": ["filter", LOG, "--method", "lowpass,cutoff=13rad/s,order=1"],
     "comparison": ["compare", *SIGNALS, "--method", "fixed,centers=25Hz:50Hz,q=0.25", "--method",

@@ -36,6 +36,8 @@ COMMANDS = {
     "track by Vold and Kalman": ("track", MOVE, *GEAR, "--method", "vold-kalman", "--json"),
     "design": ("design", *GEAR, "--sample-rate", "1kHz", "--speed", "18:180:18", "--json"),
     "compare": ("compare", MOVE, *GEAR, "--method", "tracking", "--method", "oscillator", "--method", "subtract", "--json"),
+    "recommend": ("recommend", "made.csv", *GEAR, "--json"),
+    "a method as code": ("export", "--method", "oscillator,gear-ratio=100,orders=1:2", "--sample-rate", "1kHz", "--to", "c-header,precision=double"),
     "fixed": ("filter", MOVE, "--method", "fixed,centers=25Hz:50Hz"),
     "tracking": ("filter", MOVE, *GEAR, "--method", "tracking"),
     "oscillator": ("filter", MOVE, *GEAR, "--method", "oscillator"),

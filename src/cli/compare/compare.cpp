@@ -191,6 +191,7 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
     provenance.inputs.push_back(input_record(request.log));
     provenance.inputs.back().rows = log.recording.rows();
     provenance.recordings.push_back({log.recording});
+    for (const Contender& contender : field.contenders) refuse_other_joint(contender, log.trace.joint);
     ComparedLog compared{log.trace.view()};
     if (!request.truth.empty() && !field.gear) raise_no_gear("--truth");
     const std::vector<double> truth = true_torque(request, read, log.trace.size(), provenance);

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "cli/command.hpp"
+#include "cli/export/export_code.hpp"
 #include "cli/export/export_map.hpp"
 #include "cli/export/export_text.hpp"
 #include "cli/gear/chosen_method.hpp"
@@ -23,6 +24,7 @@
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
 #include "ripplenotch/export/map_target.hpp"
+#include "ripplenotch/export/method_code.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -126,6 +128,13 @@ ExitCode run(const Request& request, const std::string& command_line) {
     check(request);
     if (is_map(request.table))
         return export_map({request.table, request.to, request.verify, request.common}, command_line);
+    if (request.method && has_code(parse_spec(*request.method).name)) {
+        if (request.limits.any())
+            raise<UsageError>("limits are on coefficients, and those of this method change");
+        const Contender method = choose_method(*request.method);
+        return export_code({method, *request.sample_rate, request.to, request.verify, request.common},
+                           command_line);
+    }
     const Spec spec = parse_spec(request.to);
     const Target& target = find_target(spec.name);
     if (ends_with_json(request.common.output) && target.name != "json")

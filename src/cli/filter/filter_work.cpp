@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "cli/filter/filter_summary.hpp"
+#include "cli/gear/chosen_method.hpp"
 #include "cli/gear/joint_facts.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/metrics_json.hpp"
@@ -60,10 +61,7 @@ JointWork start_work(const FilterRequest& request, const FilterJob& job, const L
         metrics.table_rate = method.table->spec().sample_rate;
         refuse_table_rate(*metrics.table_rate, stream.design_rate(), metrics.source);
     }
-    if (method.map != nullptr && !method.map->joint.empty() && !joint.empty() && method.map->joint != joint) {
-        raise<UsageError>("method {}: the map is of joint {}, and the log is of joint {}", method.text,
-                          method.map->joint, joint);
-    }
+    refuse_other_joint(method, joint);
     metrics.joint = joint;
     metrics.method = method.text;
     metrics.sample_rate = stream.design_rate();

@@ -65,12 +65,13 @@ void use_table(Spec& spec, const Method& method, const std::optional<std::string
 }
 
 // map=FILE goes, and the keys that it stands for come; those that are given must be those of the map.
-std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, std::vector<std::string>& files) {
+std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const MapSource& maps,
+                                         std::vector<std::string>& files) {
     if (!has_key(method, "map") || !given(spec, "map")) return nullptr;
     const auto entry = entry_of(spec, "map");
     const std::string path = entry->second;
     spec.values.erase(entry);
-    auto map = std::make_shared<const RippleMap>(load_map(path).map);
+    auto map = std::make_shared<const RippleMap>(maps ? maps(path) : load_map(path).map);
     for (auto& [key, value] : map_as_keys(*map)) {
         if (!given(spec, key)) {
             spec.values.emplace_back(key, std::move(value));
@@ -87,6 +88,7 @@ std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, std::
 
 // The method with a map that says 0 everywhere.
 std::shared_ptr<const Contender> without_ripple(Spec spec) {
+    std::erase_if(spec.values, [](const auto& entry) { return entry.first == "fastest"; });
     for (auto& [key, value] : spec.values) {
         if (key != "cosines" && key != "sines") continue;
         std::string zeros = "0";
@@ -132,13 +134,13 @@ std::vector<std::string> files_of(const MethodGear& gear, const GearChoice& choi
 }  // namespace
 
 Contender choose_method(const std::string& spec_text, const std::optional<std::string>& table,
-                        const GearChoice& choice) {
+                        const GearChoice& choice, const MapSource& source) {
     Spec spec = parse_spec(spec_text);
     const Method& method = find_method(spec.name);
     use_table(spec, method, table);
     const std::string typed = spec.text();
     std::vector<std::string> maps;
-    const auto map = use_map(spec, method, maps);
+    const auto map = use_map(spec, method, source, maps);
     MethodGear stated = stated_gear(spec, method, choice);
     std::shared_ptr<const CandidateTable> loaded;
     if (method.needs_table && given(spec, "table")) {
@@ -163,6 +165,13 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
     chosen.files.insert(chosen.files.begin(), maps.begin(), maps.end());
     if (chosen.gear) refuse_other_gear(chosen, *chosen.gear);
     return chosen;
+}
+
+void refuse_other_joint(const Contender& method, const std::string& joint) {
+    if (method.map == nullptr || method.map->joint.empty() || joint.empty() || method.map->joint == joint)
+        return;
+    raise<UsageError>("method {}: the map is of joint {}, and the log is of joint {}", method.text,
+                      method.map->joint, joint);
 }
 
 void refuse_other_gear(const Contender& method, const GearAccount& measured) {

@@ -9,8 +9,10 @@
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/map/map_text.hpp"
+#include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
 #include "cli/talk.hpp"
+#include "ripplenotch/chart/map_figure.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -20,6 +22,7 @@ namespace {
 
 struct Request {
     CommonOptions common;
+    PlotRequest plot;
     LogOptions log;
     std::vector<std::string> logs;
     GearOptions gear;
@@ -75,6 +78,7 @@ MapFit fitted_by_readings(const std::vector<Log>& logs, const Request& request, 
 
 ExitCode run(Request& request, const std::string& command_line) {
     if (request.log.joint == "all") raise<UsageError>("--joint all: map looks at one joint; name it");
+    check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     const GearChoice choice(request.gear);
     const std::optional<GearAccount> gear = choice.of();
@@ -94,6 +98,11 @@ ExitCode run(Request& request, const std::string& command_line) {
     } else {
         write_text(request.common.output, text, request.common.overwrite());
     }
+    draw_plot(request.plot, request.common, provenance, [&] {
+        if (fit.map.orders.empty())
+            raise<DataError>("--plot: the map is empty, there is nothing to draw: {}", map_verdict(fit));
+        return map_figure(joint_in_words(request.logs.front(), fit.map.joint), fit);
+    });
     return fit.conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
 }
 
@@ -106,6 +115,7 @@ std::function<ExitCode()> attach(Options& options) {
                      "joint position at which the wave generator's angle counts as 0");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
+    attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a ripple map", ".txt .json"});
     return [request, &options] { return run(*request, options.command_line()); };

@@ -11,6 +11,7 @@
 #include "cli/options/file_claims.hpp"
 #include "cli/options/number_list.hpp"
 #include "cli/options/options_implementation.hpp"
+#include "cli/options/shell_word.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -32,17 +33,6 @@ CLI::Option* single(CLI::Option* option, std::string_view type_name) {
     return option->type_name(owned(type_name))
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
-}
-
-std::string shell_quoted(const std::string& word) {
-    const auto plain = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-               std::string_view("-_=./:,@+%").find(c) != std::string_view::npos;
-    };
-    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
 }
 
 }  // namespace

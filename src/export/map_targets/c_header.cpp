@@ -8,6 +8,7 @@
 
 #include "export/map_code.hpp"
 #include "export/map_targets.hpp"
+#include "export/method_code_parts.hpp"
 #include "export/text.hpp"
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -96,9 +97,8 @@ double run(const RippleMap& held, const MapState& state) {
         }
         Real cycles = static_cast<Real>(held.orders[i].value()) * motor_turns;
         cycles -= std::floor(cycles);
-        const double phase = static_cast<double>(static_cast<Real>(6.283185307179586) * cycles);
-        ripple +=
-            cosine * static_cast<Real>(portable::cos(phase)) + sine * static_cast<Real>(portable::sin(phase));
+        const OnCircle<Real> at = on_circle(cycles);
+        ripple += cosine * at.cosine + sine * at.sine;
     }
     return static_cast<double>(ripple);
 }

@@ -75,18 +75,21 @@ std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fi
     }
     const std::string ratio = shortest(map.gear_ratio.value());
     if (orders.empty()) return {{"gear-ratio", ratio}, {"orders", "1"}, {"cosines", "0"}, {"sines", "0"}};
-    return {{"gear-ratio", ratio},
-            {"orders", list_text(orders)},
-            {"cosines", list_text(cosines)},
-            {"sines", list_text(sines)},
-            {"speeds", list_text(map.form.speeds_deg_s)},
-            {"directions", std::to_string(map.form.directions)},
-            {"turn-harmonics", std::to_string(map.form.turn_harmonics)},
-            {"by-load", map.form.by_load ? "1" : "0"},
-            {"slowest", shortest(map.speeds_deg_s.from)},
-            {"positions", ends_text(map.positions_deg)},
-            {"loads", ends_text(map.loads_nm)},
-            {"spread", list_text(map.spread_nm)}};
+    std::vector<std::pair<std::string, std::string>> keys = {
+        {"gear-ratio", ratio},
+        {"orders", list_text(orders)},
+        {"cosines", list_text(cosines)},
+        {"sines", list_text(sines)},
+        {"speeds", list_text(map.form.speeds_deg_s)},
+        {"directions", std::to_string(map.form.directions)},
+        {"turn-harmonics", std::to_string(map.form.turn_harmonics)},
+        {"by-load", map.form.by_load ? "1" : "0"},
+        {"slowest", shortest(map.speeds_deg_s.from)},
+        {"positions", ends_text(map.positions_deg)},
+        {"loads", ends_text(map.loads_nm)},
+        {"spread", list_text(map.spread_nm)}};
+    if (map.speeds_deg_s.to > 0.0) keys.emplace_back("fastest", shortest(map.speeds_deg_s.to));
+    return keys;
 }
 
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "filter/map/map_reach.hpp"
 #include "filter/map/map_runner.hpp"
 #include "filter/map/map_settings.hpp"
 #include "filter/methods/list.hpp"
@@ -21,19 +22,33 @@ constexpr Key required(Key key) {
     return key;
 }
 
-constexpr std::array keys = {gear_ratio_key,      orders_key,  map_key,        required(cosines_key),
-                             required(sines_key), speeds_key,  directions_key, turn_harmonics_key,
-                             by_load_key,         slowest_key, positions_key,  loads_key,
-                             spread_key,          angle_key,   start_key};
+constexpr std::array keys = {gear_ratio_key,
+                             orders_key,
+                             map_key,
+                             required(cosines_key),
+                             required(sines_key),
+                             speeds_key,
+                             directions_key,
+                             turn_harmonics_key,
+                             by_load_key,
+                             slowest_key,
+                             positions_key,
+                             loads_key,
+                             spread_key,
+                             fastest_key,
+                             beyond_key,
+                             angle_key,
+                             start_key};
 
 class MapFilter final : public CausalFilter {
   public:
-    MapFilter(RippleMap map, const MotorAngle& angle, bool has_start)
-        : runner_(std::move(map)), angle_(angle), has_start_(has_start) {}
+    MapFilter(RippleMap map, const MotorAngle& angle, const MapReach& reach, bool has_start)
+        : runner_(std::move(map)), angle_(angle), reach_(reach), has_start_(has_start) {}
 
     void process(const Samples& in, std::span<double> out) override {
         for (std::size_t k = 0; k < out.size(); ++k) {
             angle_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
+            reach_.next(angle_.step_turns());
             runner_.at(in.velocity_deg_s[k], angle_.turns(), in.torque_nm[k]);
             // Without either, nobody knows where the motor stands.
             const bool tied = has_start_ || !in.position_deg.empty();
@@ -41,11 +56,15 @@ class MapFilter final : public CausalFilter {
             out[k] = in.torque_nm[k] - ripple;
         }
     }
-    void restart() override { angle_.restart(); }
+    void restart() override {
+        angle_.restart();
+        reach_.restart();
+    }
 
   private:
     MapRunner runner_;
     MotorAngle angle_;
+    MapReach reach_;
     bool has_start_;
 };
 
@@ -57,7 +76,8 @@ std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate,
     RippleMap map = map_in(settings);
     const MotorAngle angle(map.gear_ratio.value(), sample_rate.value(), angle_source(settings),
                            settings.has("start") ? settings.number("start") : 0.0);
-    return std::make_unique<MapFilter>(std::move(map), angle, settings.has("start"));
+    return std::make_unique<MapFilter>(std::move(map), angle, MapReach("map", settings, sample_rate.value()),
+                                       settings.has("start"));
 }
 
 FrozenFilter frozen(const Settings& settings, Hertz, const CandidateTable*, DegPerSec) {

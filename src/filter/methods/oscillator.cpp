@@ -13,6 +13,7 @@
 
 #include "filter/gain_schedule.hpp"
 #include "filter/map/map_mean.hpp"
+#include "filter/methods/designs.hpp"
 #include "filter/methods/list.hpp"
 #include "filter/motor_angle.hpp"
 #include "filter/observer_cascade.hpp"
@@ -44,6 +45,7 @@ struct Plan {
     double noise_nm = 0.0;
     std::optional<RippleMap> map;  ///< mean of the amplitudes
     bool zero_unknown = false;
+    std::optional<MapReach> reach;  ///< of the map
 };
 
 void plan_priors(Plan& p, const Settings& settings) {
@@ -75,6 +77,7 @@ void plan_map(Plan& p, const Settings& settings) {
     p.map = map_of("oscillator", settings, p.ripple);
     if (!p.map) return;
     p.zero_unknown = settings.text("zero") == "unknown";
+    p.reach.emplace("oscillator", settings, p.sample_rate_hz);
     p.model.return_turns = settings.number("return");
     if (!settings.has("memory")) p.model.memory_turns = memory_turns_beside_map;
     p.largest_offset_deg_s = p.largest_slip = 0.0;
@@ -131,6 +134,7 @@ class OscillatorFilter final : public CausalFilter {
         for (std::size_t k = 0; k < out.size(); ++k) {
             const double* const position = in.position_deg.empty() ? nullptr : &in.position_deg[k];
             angle_.next(in.velocity_deg_s[k], position, correction_deg_s_);
+            if (plan_.reach) plan_.reach->next(angle_.step_turns());
             const bool tied = position != nullptr || plan_.has_start;
             if (mean_ && !started_) mean_->restart(plan_.zero_unknown || !tied);
             const double mapped_nm =
@@ -150,6 +154,7 @@ class OscillatorFilter final : public CausalFilter {
     void restart() override {
         started_ = false;
         angle_.restart();
+        if (plan_.reach) plan_.reach->restart();
     }
 
   private:
@@ -217,6 +222,36 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
 }
 
 }  // namespace
+
+OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) {
+    const Plan p = plan(settings, sample_rate);
+    const auto refuse = [](bool is, std::string_view what) {
+        if (is) raise<UsageError>("method oscillator as code: {} is not written; leave it out", what);
+    };
+    refuse(p.map.has_value(), "a map");
+    refuse(p.scheduled, "gain=scheduled");
+    refuse(p.source == MotorAngle::Source::velocity, "angle=velocity");
+    refuse(p.rest_nm.has_value(), "rest");
+    for (const double order : p.ripple.orders) {
+        if (order == std::floor(order)) continue;
+        raise<UsageError>(
+            "method oscillator as code: order {} is not whole, and the motor's angle is told within a turn",
+            shortest(order));
+    }
+    OscillatorDesign design{p.ripple.orders, {}, p.model.step_s, p.noise_nm};
+    for (const AmplitudePrior& prior : p.warm)
+        design.priors.push_back({prior.cosine, prior.sine, prior.deviation});
+    const RippleModel::TorqueNoise noise = p.model.torque_noise();
+    design.torque_noise = noise.torque;
+    design.cross_noise = noise.cross;
+    design.rate_noise = noise.rate;
+    design.first_rate_variance = p.model.first_rate_variance();
+    design.memory_turns = p.model.memory_turns;
+    design.jump = p.model.jump;
+    design.largest_slip = p.largest_slip;
+    design.minus_ripple = p.minus_ripple;
+    return design;
+}
 
 const Method filter_methods::oscillator = {
     .name = "oscillator",

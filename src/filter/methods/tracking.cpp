@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "filter/methods/designs.hpp"
 #include "filter/methods/list.hpp"
 #include "filter/rate_edge.hpp"
 #include "filter/ripple_keys.hpp"
@@ -265,6 +266,23 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
 }
 
 }  // namespace
+
+TrackingDesign tracking_design(const Settings& settings, Hertz sample_rate) {
+    const Plan p = plan(settings, sample_rate);
+    return {p.ripple.gear_ratio,
+            p.sample_rate_hz,
+            p.ripple.orders,
+            p.weights,
+            p.spread,
+            p.q_each,
+            p.narrow_hz,
+            p.depth_gain,
+            p.min_hz,
+            p.fade_hz,
+            p.parks,
+            p.speed_pole,
+            p.slew};
+}
 
 const Method filter_methods::tracking = {
     .name = "tracking",

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Methods whose coefficients change while they run, as the numbers that they run on: what an export has to
+// write down.
+
+#include <variant>
+#include <vector>
+
+namespace ripplenotch {
+
+/// One notch per order, retuned at every sample (docs/methods/tracking.md).
+struct TrackingDesign {
+    double gear_ratio = 0.0, sample_rate_hz = 0.0;
+    std::vector<double> orders, weights;
+    std::vector<double> spread;  ///< centres of the composite's notches, relative to the order's
+    double q_each = 0.0;
+    double narrow_hz = 0.0;   ///< lines below this get a narrower notch, in proportion
+    double depth_gain = 0.0;  ///< at the centre, with full share
+    double min_hz = 0.0, fade_hz = 0.0;
+    bool parks = false;
+    double speed_pole = 0.0;  ///< of the low-pass on the speed, 0 for none
+    double slew = 1.0;        ///< 1 for none
+};
+
+/// A Kalman filter of torque and ripple with its gain worked out at every sample
+/// (docs/methods/oscillator.md).
+struct OscillatorDesign {
+    /// In units of the noise.
+    struct Prior {
+        double cosine = 0.0, sine = 0.0, deviation = 0.0;
+    };
+    std::vector<double> orders;
+    std::vector<Prior> priors;
+    double step_s = 0.0, noise_nm = 0.0;
+    double torque_noise = 0.0, cross_noise = 0.0, rate_noise = 0.0;  ///< that a sample adds
+    double first_rate_variance = 0.0;
+    double memory_turns = 0.0;
+    double jump = 0.0;  ///< 0: never
+    double largest_slip = 0.0;
+    bool minus_ripple = false;
+};
+
+using RunningDesign = std::variant<TrackingDesign, OscillatorDesign>;
+
+}  // namespace ripplenotch

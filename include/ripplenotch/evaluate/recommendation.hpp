@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which of several methods to take: all run over one log, are measured as compare does, and are held to what
+// they may cost and must do.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ripplenotch/evaluate/comparison.hpp"
+
+namespace ripplenotch {
+
+struct RecommendationLimits {
+    std::optional<Seconds> max_delay;          ///< DC delay at any speed of the log
+    std::optional<double> min_attenuation_db;  ///< of every order that shows
+};
+
+/// An order in the log, before any filter.
+struct OrderInLog {
+    double order = 0.0;
+    double ripple_nm = 0.0;  ///< zero to peak, rms over the windows of compare
+    double beside_nm = 0.0;  ///< the same half an order to its sides, where no ripple is
+    bool shows = false;      ///< it stands out from beside it by twice
+};
+
+/// One method on the log.
+struct JudgedMethod {
+    MethodFigures figures;
+    Seconds delay;                            ///< longest DC delay at speeds of the log ...
+    DegPerSec delay_at;                       ///< ... and where
+    std::optional<OrderAttenuation> weakest;  ///< of the orders that show
+    /// What its output is off by: the ripple it leaves and, for its DC delay at the log's median speed, the
+    /// way that the log's torque moves in that time; root of the sum of squares.
+    double error_nm = 0.0;
+    std::vector<std::string> shortfalls;  ///< one clause for each limit that it breaks
+    double excess = 0.0;                  ///< by how much, as a share of the limits, added up; 0: none
+
+    [[nodiscard]] bool meets() const { return shortfalls.empty(); }
+};
+
+enum class RecommendationFinding {
+    recommended,
+    out_of_reach,  ///< no method meets the limits; the first is the nearest
+    no_ripple,
+    cannot_tell,
+};
+[[nodiscard]] std::string_view recommendation_finding_name(RecommendationFinding finding);
+
+struct Recommendation {
+    RecommendationFinding finding = RecommendationFinding::cannot_tell;
+    std::string why;  ///< of no_ripple and cannot_tell: a sentence
+    RecommendationLimits limits;
+    std::vector<OrderInLog> orders;
+    std::size_t windows = 0;        ///< that the methods were measured in
+    double torque_rate_nm_s = 0.0;  ///< at which the log's torque moves from motor turn to motor turn, rms
+    std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
+
+    /// The one to take, or the nearest; null without methods.
+    [[nodiscard]] const JudgedMethod* taken() const { return methods.empty() ? nullptr : &methods.front(); }
+    /// The first one of another method; null where there is none.
+    [[nodiscard]] const JudgedMethod* runner_up() const;
+};
+
+/// Fewer windows of eight motor turns are too few to judge anything by.
+inline constexpr std::size_t fewest_judged_windows = 4;
+
+/// Rms rate of the mean torque from one motor turn to the next; of half a second where the motor is slower.
+[[nodiscard]] double torque_rate_nm_s(const TraceView& trace, GearRatio ratio);
+
+/// The orders of the log by the windows of compare: empty where there is no window.
+[[nodiscard]] std::vector<OrderInLog> orders_in_log(const ComparedLog& log, const GearAccount& lines);
+
+/// Runs all over the log and sorts them by what their output is off by. The same methods under looser limits
+/// give the same or a better one. The control is among them or not, as given.
+[[nodiscard]] Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
+                                       const GearAccount& lines, const RecommendationLimits& limits);
+
+/// One sentence, or two, with numbers: what to take, what it does, and what would be next.
+[[nodiscard]] std::string recommendation_verdict(const Recommendation& found);
+
+}  // namespace ripplenotch

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+// ripplenotch recommend: which method to take for a log, within what it may cost.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/options/gates.hpp"
+#include "cli/options/shell_word.hpp"
+#include "cli/readings/readings.hpp"
+#include "cli/recommend/candidates.hpp"
+#include "cli/recommend/pasted.hpp"
+#include "cli/recommend/recommend_text.hpp"
+#include "cli/talk.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/log/log.hpp"
+
+namespace ripplenotch {
+namespace {
+
+struct Request {
+    CommonOptions common;
+    LogOptions log_options;
+    std::string log;
+    std::optional<std::string> target;
+    GearOptions gear;
+    Gates limits;
+    double train_percent = 60.0;
+    bool offline = false, require_conclusive = false;
+};
+
+/// The log, and its parts as --to and --from give them.
+struct Parts {
+    Log whole, train, judge;
+    LogOptions train_options, judge_options;
+};
+
+void check(const Request& request) {
+    if (request.log == "-")
+        raise<UsageError>(
+            "recommend reads the log three times; standard input can be read once: name a file");
+    if (request.log_options.joint == "all")
+        raise<UsageError>("--joint all: recommend looks at one joint; name it");
+    if (!(request.train_percent >= 10.0 && request.train_percent <= 90.0))
+        raise<UsageError>("--train {} % is not from 10 to 90", shortest(request.train_percent));
+    if (request.limits.max_delay && !(request.limits.max_delay->value() >= 0.0))
+        raise<UsageError>("--max-delay is below 0");
+}
+
+// A time that people can read, on the log's own axis.
+double split_at(const Log& log, double percent) {
+    const double zero_s = log.recording.outside ? log.recording.outside->zero_s : 0.0;
+    const double from_s = log.trace.time_s.front() + zero_s, to_s = log.trace.time_s.back() + zero_s;
+    const double at_s = from_s + 0.01 * percent * (to_s - from_s);
+    const int digits = static_cast<int>(std::floor(portable::log10(std::max(to_s - from_s, 1e-6)))) - 2;
+    return *parse_number(fmt::format("{:.{}f}", at_s, std::max(-digits, 0)));
+}
+
+Parts read_parts(const Request& request, const std::optional<GearAccount>& gear, double& split_s,
+                 Provenance& provenance) {
+    Parts parts;
+    parts.whole = read_log_in_part(request.log, read_options(request.log_options, gear));
+    say_layout(request.common, parts.whole.layout);
+    say_warnings(request.common, parts.whole.recording.warnings);
+    provenance.inputs.push_back(input_record(request.log));
+    provenance.inputs.back().rows = parts.whole.recording.rows();
+    provenance.recordings.push_back({parts.whole.recording});
+    split_s = split_at(parts.whole, request.train_percent);
+    parts.train_options = parts.judge_options = request.log_options;
+    parts.train_options.to = parts.judge_options.from = shortest(split_s) + "s";
+    parts.train = read_log_in_part(request.log, read_options(parts.train_options, gear));
+    parts.judge = read_log_in_part(request.log, read_options(parts.judge_options, gear));
+    return parts;
+}
+
+// The gear that the first part of the log shows; empty, with the reason told, where it shows none.
+std::optional<GearOptions> found_gear_options(const Log& train, Recommendation& found) {
+    if (train.trace.size() < fewest_identify_samples) {
+        found.why = fmt::format("{} rows are too few to look for ripple in", train.trace.size());
+        return std::nullopt;
+    }
+    const Identification identified = identify_readings({&train, 1}, {});
+    const auto gear = found_gear(identified);
+    if (gear && !gear->orders.empty()) {
+        GearOptions options;
+        options.ratio = *parse_number(fmt::format("{:.6g}", gear->ratio.value()));
+        for (const Order order : gear->orders) options.orders.push_back(order.value());
+        return options;
+    }
+    std::string verdict = identified.verdict;
+    while (!verdict.empty() && verdict.back() == '.') verdict.pop_back();
+    if (identified.conclusive && identified.finding == RippleFinding::nothing) {
+        found.finding = RecommendationFinding::no_ripple;
+        found.why = verdict;
+    } else {
+        found.why = fmt::format(
+            "nobody states the gear, and identify says of the log's first part: {}; give "
+            "--gear-ratio and --orders",
+            verdict);
+    }
+    return std::nullopt;
+}
+
+// A reading under which something turns with the motor is confirmed by that, unless another one has it, too.
+void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation& found) {
+    const auto shows = [&](const OtherReading& reading) {
+        const Trace trace = read_otherwise(parts.judge.trace, reading);
+        ComparedLog log{trace.view()};
+        log.trace.sample_rate = Hertz(parts.judge.recording.clock.nominal_rate.value() / reading.time_factor);
+        const auto orders = orders_in_log(log, gear);
+        return std::any_of(orders.begin(), orders.end(), [](const OrderInLog& one) { return one.shows; });
+    };
+    std::string others;
+    for (const OtherReading& reading : open_readings({&parts.whole, 1})) {
+        if (!reading.changes_side && shows(reading))
+            others += (others.empty() ? "if " : ", if ") + reading.words;
+    }
+    if (others.empty()) return;
+    found.finding = RecommendationFinding::cannot_tell;
+    found.why =
+        fmt::format("there is ripple {}, too; {} settles it", others, settling_options({&parts.whole, 1}));
+    found.methods.clear();
+}
+
+class Commands {
+  public:
+    Commands(const Request& request, const Parts& parts, const TriedMethods& candidates,
+             const std::optional<TargetChoice>& target, const GearAccount& gear)
+        : request_(request), parts_(parts), candidates_(candidates), target_(target), gear_(gear) {}
+
+    /// What makes use of a method, one command after the other.
+    [[nodiscard]] std::vector<std::string> of(const MethodFigures& figures) const {
+        const auto contender = std::find_if(candidates_.contenders.begin(), candidates_.contenders.end(),
+                                            [&](const Contender& one) { return one.text == figures.method; });
+        std::vector<std::string> lines;
+        if (contender->method->part == MethodPart::control) return lines;
+        for (const MadeFile& file : candidates_.files) {
+            const auto& files = contender->files;
+            if (std::find(files.begin(), files.end(), file.name) != files.end())
+                lines.push_back(file.command);
+        }
+        lines.push_back(fmt::format("ripplenotch filter {}{} --method {} -o {}", shell_quoted(request_.log),
+                                    log_words(request_.log_options), shell_quoted(figures.method),
+                                    filtered_name(request_.log)));
+        if (!target_) return lines;
+        // A target that does not hold the whole map is given the map all the same.
+        if (contender->method->name == "map" && contender->files.empty() && !candidates_.files.empty())
+            lines.insert(lines.begin(), candidates_.files.front().command);
+        lines.push_back(target_->command(*contender, parts_.judge.recording.clock.nominal_rate));
+        return lines;
+    }
+
+    /// Measures methods as they were measured here.
+    [[nodiscard]] std::string check(const std::vector<const JudgedMethod*>& methods) const {
+        std::string line = fmt::format("ripplenotch compare {}{}{}", shell_quoted(request_.log),
+                                       log_words(parts_.judge_options), gear_words(gear_));
+        for (const JudgedMethod* method : methods)
+            if (method != nullptr) line += " --method " + shell_quoted(method->figures.method);
+        return line;
+    }
+
+  private:
+    const Request& request_;
+    const Parts& parts_;
+    const TriedMethods& candidates_;
+    const std::optional<TargetChoice>& target_;
+    const GearAccount& gear_;
+};
+
+std::vector<std::string> assumptions(const Request& request, const Parts& parts, const GearAccount& gear,
+                                     bool stated) {
+    std::vector<std::string> all;
+    for (const Assumption& one : parts.whole.layout.assumptions)
+        all.push_back(fmt::format("{}: {} ({})", one.about, one.assumed, one.settle_with));
+    all.push_back(fmt::format("gear ratio {:.6g}, {}", gear.ratio.value(),
+                              stated
+                                  ? "as stated: " + gear.source
+                                  : "as identify finds it in the log's first part; --gear-ratio settles it"));
+    if (request.gear.joint_file)
+        all.push_back(
+            fmt::format("{} was not made from the part of the log that is judged", *request.gear.joint_file));
+    all.emplace_back("the joint will move, and bear loads, as it does in the log's last part");
+    return all;
+}
+
+// A map that does not reach as far as the judged part of the log moves is refused there; the others are
+// judged without it.
+Recommendation judged_methods(TriedMethods& candidates, const ComparedLog& log, const GearAccount& gear,
+                              const RecommendationLimits& limits) {
+    try {
+        return recommend(candidates.contenders, log, gear, limits);
+    } catch (const DataError& error) {
+        if (std::erase_if(candidates.contenders, [](const Contender& one) { return one.map != nullptr; }) ==
+            0)
+            throw;
+        candidates.left_out.emplace_back(error.what());
+        return recommend(candidates.contenders, log, gear, limits);
+    }
+}
+
+RecommendationReport report_of(const Request& request, Provenance& provenance) {
+    RecommendationReport report;
+    report.target = request.target.value_or("");
+    const auto target = request.target ? std::optional(find_any_target(*request.target)) : std::nullopt;
+    const GearChoice stated(request.gear);
+    const Parts parts = read_parts(request, stated.of(), report.split_s, provenance);
+    if (stated.joint()) provenance.inputs.push_back(input_record(stated.joint()->path));
+    GearOptions gear_options = request.gear;
+    report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db};
+    if (!stated.of()) {
+        const auto found = found_gear_options(parts.train, report.found);
+        report.conclusive = report.found.finding == RecommendationFinding::no_ripple;
+        if (!found) return report;
+        gear_options = *found;
+    }
+    const GearChoice choice(gear_options);
+    report.gear = choice.of();
+    if (!stated.of()) report.gear->source = "identify, on the log's first part";
+    say(request.common, gear_in_words(*report.gear));
+    ComparedLog judged{parts.judge.trace.view()};
+    judged.trace.sample_rate = parts.judge.recording.clock.nominal_rate;
+    TriedMethods candidates =
+        candidates_for({parts.train, shell_quoted(request.log) + log_words(parts.train_options), choice,
+                        *report.gear, request.offline, target});
+    report.found = judged_methods(candidates, judged, *report.gear, report.found.limits);
+    report.left_out = candidates.left_out;
+    doubt_readings(parts, *report.gear, report.found);
+    report.assumed = assumptions(request, parts, *report.gear, stated.of().has_value());
+    report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;
+    if (report.found.methods.empty()) return report;
+    const Commands commands(request, parts, candidates, target, *report.gear);
+    const JudgedMethod* const next = report.found.runner_up();
+    report.take = commands.of(report.found.taken()->figures);
+    if (next != nullptr) report.runner_up = commands.of(next->figures);
+    report.check = commands.check({report.found.taken(), next});
+    return report;
+}
+
+ExitCode run(const Request& request, const std::string& command_line) {
+    check(request);
+    Provenance provenance{{}, command_line};
+    const RecommendationReport report = report_of(request, provenance);
+    write_text(request.common.output,
+               request.common.json ? recommendation_text(report, provenance) : recommendation_view(report),
+               request.common.overwrite());
+    if (report.found.finding == RecommendationFinding::out_of_reach) return ExitCode::limit_violated;
+    return report.conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
+}
+
+std::function<ExitCode()> attach(Options& options) {
+    const auto request = std::make_shared<Request>();
+    options.argument("LOG", request->log, true, "a log of the joint, as it moves at work");
+    attach_gear(options, request->gear);
+    options.duration("--max-delay", request->limits.max_delay,
+                     "longest DC delay at any speed of the log, e.g. 10ms");
+    options.number("--min-attenuation", request->limits.min_attenuation_db, Dimension::decibel,
+                   "of every order that shows in the log, e.g. 20dB");
+    options.text("--target", request->target, "TARGET[,KEY=VALUE...]",
+                 "only methods that this export target holds; see docs/export");
+    options.flag("--offline", request->offline,
+                 "the log is filtered afterwards: methods that look at all of it first count, too");
+    options.number("--train", request->train_percent, Dimension::none,
+                   "per cent of the log that methods learn from; they are judged on the rest");
+    options.flag("--require-conclusive", request->require_conclusive,
+                 "exit with code 5 when the log does not settle it");
+    attach_log(options, request->log_options);
+    attach_common(options, request->common, {"a recommendation", ".txt .json", true});
+    return [request, &options] { return run(*request, options.command_line()); };
+}
+
+}  // namespace
+
+const Command commands::recommend = {
+    .name = "recommend",
+    .summary = "which method to take for a log, and why, as commands to paste",
+    .description =
+        "Runs the methods on the log itself: what they have to know is learned from its first part, and they "
+        "are measured on\nthe rest, as compare measures. Answers with the one whose output is off by least, "
+        "within what it may cost\nand must do, and with the next one.\n"
+        "Example: ripplenotch recommend log.csv --gear-ratio 100 --orders 1,2 --max-delay 10ms",
+    .attach = attach,
+};
+
+}  // namespace ripplenotch

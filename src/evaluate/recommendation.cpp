@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/evaluate/recommendation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/progress.hpp"
+#include "ripplenotch/evaluate/ledger.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double slow_turn_s = 0.5;
+constexpr double stands_out = 2.0;
+
+// What passes a torque unchanged, to measure the log itself by.
+const Contender& control() {
+    static const Contender none = make_contender(parse_spec("none"));
+    return none;
+}
+
+double amplitude_nm(const ComparedLog& log, GearAccount lines, std::vector<Order> orders) {
+    if (orders.empty()) return 0.0;
+    const auto count = static_cast<double>(orders.size());
+    lines.orders = std::move(orders);
+    const LogLevels levels = measure_on_log({&control(), 1}, log, lines);
+    return std::sqrt(2.0 / count) * levels.methods.front().ripple_rms_nm.value_or(0.0);
+}
+
+// Half an order to both sides of one, unless another order is there.
+std::vector<Order> beside(Order order, const GearAccount& lines) {
+    std::vector<Order> found;
+    for (const double side : {-0.5, 0.5}) {
+        const Order at(order.value() + side);
+        const bool taken = std::any_of(lines.orders.begin(), lines.orders.end(), [at](Order other) {
+            return std::abs(other.value() - at.value()) < 0.25;
+        });
+        if (at.value() > 0.0 && !taken) found.push_back(at);
+    }
+    return found;
+}
+
+std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
+                                         DegPerSec fastest) {
+    if (contender.table == nullptr) {
+        const LongestDelay longest = longest_delay(contender, sample_rate, slowest, fastest);
+        return {longest.delay, longest.speed};
+    }
+    std::pair<Seconds, DegPerSec> longest{Seconds(0.0), fastest};
+    for (const Band& band : contender.table->bands()) {
+        if (!(band.from < fastest) || band.to < slowest) continue;
+        const Seconds delay = group_delay(band.cascade(), Hertz(0.0), sample_rate);
+        if (delay > longest.first) longest = {delay, 0.5 * (band.from + band.to)};
+    }
+    return longest;
+}
+
+std::optional<OrderAttenuation> weakest_of(const MethodFigures& figures,
+                                           const std::vector<OrderInLog>& orders) {
+    std::optional<OrderAttenuation> weakest;
+    for (std::size_t i = 0; i < figures.attenuation.size(); ++i) {
+        const OrderAttenuation& entry = figures.attenuation[i];
+        if (!orders[i].shows || !entry.db) continue;
+        if (!weakest || *entry.db < *weakest->db) weakest = entry;
+    }
+    return weakest;
+}
+
+void hold_to(JudgedMethod& method, const RecommendationLimits& limits,
+             const std::vector<OrderInLog>& orders) {
+    for (std::size_t i = 0; limits.min_attenuation_db && i < method.figures.attenuation.size(); ++i) {
+        const OrderAttenuation& entry = method.figures.attenuation[i];
+        const double limit = *limits.min_attenuation_db, db = entry.db.value_or(0.0);
+        if (!orders[i].shows || db >= limit) continue;
+        method.shortfalls.push_back(fmt::format("{:.1f} dB off order {:g}, {:.1f} dB less than {:g} dB", db,
+                                                entry.order, limit - db, limit));
+        method.excess += (limit - db) / std::max(limit, 1.0);
+    }
+    if (!limits.max_delay || method.delay <= *limits.max_delay) return;
+    const double limit_ms = 1e3 * limits.max_delay->value(), delay_ms = 1e3 * method.delay.value();
+    method.shortfalls.push_back(fmt::format("{:.1f} ms late at {:.3g} deg/s, {:.1f} ms more than {:g} ms",
+                                            delay_ms, method.delay_at.value(), delay_ms - limit_ms,
+                                            limit_ms));
+    method.excess += (delay_ms - limit_ms) / std::max(limit_ms, 1.0);
+}
+
+// What a method costs beside what it was measured to leave.
+JudgedMethod judged(const Contender& contender, MethodFigures&& measured, const ComparedLog& log,
+                    const Recommendation& found) {
+    JudgedMethod method;
+    method.figures = std::move(measured);
+    const TraceView& trace = log.trace;
+    DegPerSec slowest(1e300), fastest(0.0);
+    for (const double velocity : trace.velocity_deg_s) {
+        slowest = std::min(slowest, DegPerSec(std::abs(velocity)));
+        fastest = std::max(fastest, DegPerSec(std::abs(velocity)));
+    }
+    const MethodFigures at_median = measure_on_signals(
+        contender, trace.sample_rate, median_moving_speed(trace), std::nullopt, std::nullopt, nullptr);
+    method.figures.dc_delay_ms = at_median.dc_delay_ms;
+    method.figures.note = at_median.note;
+    std::tie(method.delay, method.delay_at) = longest_of(contender, trace.sample_rate, slowest, fastest);
+    method.weakest = weakest_of(method.figures, found.orders);
+    const double lag_nm = 1e-3 * method.figures.dc_delay_ms.value_or(0.0) * found.torque_rate_nm_s;
+    method.error_nm = portable::hypot(method.figures.ripple_rms_nm.value_or(0.0), lag_nm);
+    return method;
+}
+
+bool better(const JudgedMethod& a, const JudgedMethod& b) {
+    if (a.meets() != b.meets()) return a.meets();
+    if (!a.meets() && a.excess != b.excess) return a.excess < b.excess;
+    return a.error_nm < b.error_nm;
+}
+
+std::string name_of(const MethodFigures& figures) {
+    return figures.method.substr(0, figures.method.find(','));
+}
+
+}  // namespace
+
+std::string_view recommendation_finding_name(RecommendationFinding finding) {
+    switch (finding) {
+        case RecommendationFinding::recommended:
+            return "recommended";
+        case RecommendationFinding::out_of_reach:
+            return "out-of-reach";
+        case RecommendationFinding::no_ripple:
+            return "no-ripple";
+        case RecommendationFinding::cannot_tell:
+            break;
+    }
+    return "cannot-tell";
+}
+
+const JudgedMethod* Recommendation::runner_up() const {
+    for (const JudgedMethod& method : methods)
+        if (name_of(method.figures) != name_of(methods.front().figures)) return &method;
+    return nullptr;
+}
+
+double torque_rate_nm_s(const TraceView& trace, GearRatio ratio) {
+    double squares = 0.0, lasted_s = 0.0;                                      // of all turns
+    double turned = 0.0, torque = 0.0, time = 0.0, rows = 0.0, began_s = 0.0;  // of this one
+    std::optional<std::pair<double, double>> before;  // time and torque of the one before
+    for (std::size_t k = 0; k < trace.size(); ++k) {
+        if (k == 0 || trace.starts_run(k)) {
+            before.reset();
+            turned = torque = time = rows = 0.0;
+        } else {
+            const double step_s = trace.time_s[k] - trace.time_s[k - 1];
+            turned += ratio.value() * std::abs(trace.velocity_deg_s[k]) * step_s / 360.0;
+        }
+        if (rows == 0.0) began_s = trace.time_s[k];
+        torque += trace.torque_nm[k];
+        time += trace.time_s[k];
+        rows += 1.0;
+        if (turned < 1.0 && trace.time_s[k] - began_s < slow_turn_s) continue;
+        const std::pair<double, double> now{time / rows, torque / rows};
+        if (before && now.first > before->first) {
+            const double step_s = now.first - before->first;
+            const double rate = (now.second - before->second) / step_s;
+            squares += rate * rate * step_s;
+            lasted_s += step_s;
+        }
+        before = now;
+        turned = torque = time = rows = 0.0;
+    }
+    return lasted_s > 0.0 ? std::sqrt(squares / lasted_s) : 0.0;
+}
+
+std::vector<OrderInLog> orders_in_log(const ComparedLog& log, const GearAccount& lines) {
+    std::vector<OrderInLog> found;
+    if (measure_on_log({&control(), 1}, log, lines).windows == 0) return found;
+    for (const Order order : lines.orders) {
+        OrderInLog one{order.value(), amplitude_nm(log, lines, {order}),
+                       amplitude_nm(log, lines, beside(order, lines)), false};
+        one.shows = one.ripple_nm > stands_out * one.beside_nm;
+        found.push_back(one);
+    }
+    return found;
+}
+
+Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
+                         const GearAccount& lines, const RecommendationLimits& limits) {
+    Recommendation found;
+    found.limits = limits;
+    found.orders = orders_in_log(log, lines);
+    LogLevels levels = measure_on_log(contenders, log, lines);
+    found.windows = levels.windows;
+    if (levels.windows < fewest_judged_windows) {
+        found.why = levels.windows == 0
+                        ? fmt::format("nothing can be judged on this log: {}", levels.why_none)
+                        : fmt::format(
+                              "the log is too short to judge by: {} window{} of eight motor turns, "
+                              "and {} are needed",
+                              levels.windows, levels.windows == 1 ? "" : "s", fewest_judged_windows);
+        return found;
+    }
+    if (std::none_of(found.orders.begin(), found.orders.end(),
+                     [](const OrderInLog& one) { return one.shows; })) {
+        found.finding = RecommendationFinding::no_ripple;
+        found.why = "no order stands out from what is beside it: there is nothing to take out";
+        return found;
+    }
+    found.torque_rate_nm_s = torque_rate_nm_s(log.trace, lines.ratio);
+    Progress::current().begin("judging", "methods", contenders.size());
+    for (std::size_t i = 0; i < contenders.size(); ++i, Progress::current().add(1)) {
+        JudgedMethod method = judged(contenders[i], std::move(levels.methods[i]), log, found);
+        hold_to(method, limits, found.orders);
+        found.methods.push_back(std::move(method));
+    }
+    std::stable_sort(found.methods.begin(), found.methods.end(), better);
+    const bool any = !found.methods.empty() && found.methods.front().meets();
+    found.finding = any ? RecommendationFinding::recommended : RecommendationFinding::out_of_reach;
+    return found;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/export/method_code.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "export/c_code.hpp"
+#include "export/method_code_parts.hpp"
+#include "export/text.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::array<std::string_view, 2> precisions = {"float", "double"};
+constexpr std::array keys = {
+    Key{.name = "name", .kind = KeyKind::text, .default_text = "ripplenotch", .help = "prefix of all names"},
+    Key{.name = "precision",
+        .kind = KeyKind::choice,
+        .default_text = "float",
+        .choices = precisions,
+        .help = "of numbers and arithmetic"}};
+
+CodeStyle style_of(const Settings& settings) {
+    CodeStyle style{settings.text("name"), settings.text("precision") == "float"};
+    check_identifier(style.name, "target c-header, name");
+    return style;
+}
+
+// Taylor's series about the nearest quarter of a turn: within 2e-9 but for rounding.
+constexpr std::string_view float_turn = R"c(
+/* The next whole number below, of what an int holds. */
+static inline float @name@_floor(float value) {
+    const int whole = (int)value;
+    return (float)(value < (float)whole ? whole - 1 : whole);
+}
+static inline void @name@_on_circle(float share, float* cosine, float* sine) {
+    const int quarter = (int)(4.0f * share + 0.5f);
+    const float a = 6.2831853f * (share - 0.25f * (float)quarter), s = a * a;
+    const float y = a * (1.0f + s * (-1.6666667e-1f + s * (8.3333333e-3f + s * (-1.9841270e-4f + s * 2.7557319e-6f))));
+    const float x = 1.0f + s * (-0.5f + s * (4.1666667e-2f + s * (-1.3888889e-3f + s * (2.4801587e-5f - s * 2.7557319e-7f))));
+    switch (quarter & 3) {
+        case 1: *cosine = -y; *sine = x; break;
+        case 2: *cosine = -x; *sine = -y; break;
+        case 3: *cosine = y; *sine = -x; break;
+        default: *cosine = x; *sine = y; break;
+    }
+}
+)c";
+
+constexpr std::string_view double_turn = R"c(
+static inline double @name@_floor(double value) { return floor(value); }
+static inline void @name@_on_circle(double share, double* cosine, double* sine) {
+    const double angle = 6.283185307179586 * share;
+    *cosine = cos(angle);
+    *sine = sin(angle);
+}
+)c";
+
+}  // namespace
+
+std::string_view turn_code(bool is_float) { return is_float ? float_turn : double_turn; }
+
+std::string CodeStyle::array(std::string_view what, const std::vector<double>& values) const {
+    std::string text;
+    for (const double value : values)
+        text += (text.empty() ? "" : ", ") + (is_float ? decimal_float(value) : decimal(value));
+    return fmt::format("static const {} {}_{}[{}] = {{{}}};\n", is_float ? "float" : "double", name, what,
+                       values.size(), text);
+}
+
+std::string CodeStyle::filled(std::string_view code) const {
+    const std::array<std::pair<std::string_view, std::string>, 4> fields = {
+        {{"@name@", name},
+         {"@NAME@", upper_case(name)},
+         {"@real@", is_float ? "float" : "double"},
+         {"@sqrt@", is_float ? "sqrtf" : "sqrt"}}};
+    return c_code::filled(std::string(code), fields);
+}
+
+std::vector<double> CodeStyle::read(TextReader& reader, std::string_view what, std::size_t count) const {
+    reader.expect(fmt::format("{}_{}[", name, what));
+    return reader.numbers('{', '}', count);
+}
+
+bool is_code_target(std::string_view target) { return target == "c-header"; }
+
+bool has_code(std::string_view method) { return method == "tracking" || method == "oscillator"; }
+
+std::span<const Key> method_code_keys() { return keys; }
+
+Written write_method_code(const RunningDesign& design, const Settings& settings,
+                          std::span<const std::string> heading) {
+    const CodeStyle style = style_of(settings);
+    std::string text = comment_lines(heading, "// ");
+    text += style.filled("#ifndef @NAME@_H\n#define @NAME@_H\n#include <math.h>\n\n");
+    if (const auto* tracking = std::get_if<TrackingDesign>(&design))
+        text += tracking_header(*tracking, style);
+    if (const auto* oscillator = std::get_if<OscillatorDesign>(&design))
+        text += oscillator_header(*oscillator, style);
+    return {text + style.filled("\n#endif  // @NAME@_H\n"), {}};
+}
+
+LoadedCode read_method_code(std::string_view bytes, const std::string& source, const RunningDesign& design,
+                            const Settings& settings) {
+    const CodeStyle style = style_of(settings);
+    TextReader reader(bytes, source, Comments::c, style.is_float ? Precision::float32 : Precision::float64);
+    LoadedCode loaded = std::holds_alternative<TrackingDesign>(design)
+                            ? tracking_loaded(reader, std::get<TrackingDesign>(design), style)
+                            : oscillator_loaded(reader, std::get<OscillatorDesign>(design), style);
+    loaded.arithmetic = style.is_float ? "float32" : "float64";
+    return loaded;
+}
+
+}  // namespace ripplenotch

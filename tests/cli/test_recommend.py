@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch recommend: what it says can be pasted, comes out as told, and is no worse under looser limits."""
+
+import json
+import math
+import os
+import pathlib
+import random
+import shlex
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
+
+
+def write_log(path, seconds=16, ripple=1.0, noise=0.05, slow_nm=6.0, header="time_s,velocity_deg_s,torque_nm,position_deg",
+              speed=None, seed=1):
+    """Ripple of 0.8 Nm (order 1) and 0.5 Nm (order 2) at a gear ratio of 100, beside a slow torque."""
+    draw = random.Random(seed)
+    position, before = 3.0, None
+    with open(path, "w") as file:
+        file.write(header + "\n")
+        for k in range(int(seconds * 1000)):
+            t = k / 1000.0
+            v = speed if speed is not None else 80 * math.sin(0.9 * t + 1) + 30 * math.sin(0.37 * t)
+            position += 0.0 if before is None else (before + v) / 2000.0
+            before = v
+            theta = math.radians(100 * position)
+            nm = slow_nm * math.sin(0.5 * t) + ripple * (0.8 * math.cos(theta + 0.5) + 0.5 * math.cos(2 * theta)) + draw.gauss(0, noise)
+            cells = [t, v, nm, position]
+            file.write(",".join(f"{cell:.6f}" for cell in cells[:len(header.split(","))]) + "\n")
+
+
+class Case(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.log = cls.folder / "log.csv"
+        write_log(cls.log)
+
+    def run_tool(self, *words):
+        return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, cwd=self.folder,
+                              stdin=subprocess.DEVNULL)
+
+    def recommended(self, *words, log="log.csv", code=0, gear=GEAR):
+        done = self.run_tool("recommend", log, *gear, *words, "--json")
+        self.assertEqual(done.returncode, code, done.stderr + done.stdout)
+        told = json.loads(done.stdout)
+        self.assertEqual(told["schema"], "ripplenotch/recommendation/1")
+        return told
+
+    def paste(self, line):
+        words = shlex.split(line)
+        self.assertEqual(words[0], "ripplenotch")
+        done = self.run_tool(*words[1:], *([] if words[1] == "compare" else ["--force"]))
+        self.assertEqual(done.returncode, 0, f"{line}: {done.stderr}")
+        return done
+
+
+class Pasted(Case):
+    def test_what_is_told_to_paste_runs_and_measures_what_was_told(self):
+        told = self.recommended()
+        self.assertEqual((told["finding"], told["conclusive"]), ("recommended", True))
+        for line in told["take_commands"] + told["runner_up_commands"]:
+            self.paste(line)
+        compared = json.loads(self.paste(told["check"] + " --json").stdout)
+        rows = {row["method"]: row for row in compared["methods"]}
+        for name in told["take"], told["runner_up"]:
+            judged = next(one for one in told["methods"] if one["method"] == name)
+            for mine, theirs in zip(judged["attenuation_db"], rows[name]["attenuation_db"], strict=True):
+                self.assertAlmostEqual(mine["db"], theirs["db"], places=6)
+            self.assertAlmostEqual(judged["ripple_rms_nm"], rows[name]["ripple_rms_nm"], places=8)
+
+    def test_a_table_that_is_pasted_is_the_one_that_was_judged(self):
+        # Only tables fit into this target; without limits none of them has to come first, so both are pasted.
+        told = self.recommended("--target", "cmsis-dsp")
+        kinds = [line.split()[1] for line in told["take_commands"] + told["runner_up_commands"]]
+        self.assertIn("design", kinds)
+        for line in told["take_commands"] + told["runner_up_commands"]:
+            if "export" not in line:
+                self.paste(line)
+        compared = json.loads(self.paste(told["check"] + " --json").stdout)
+        for row in compared["methods"]:
+            judged = next(one for one in told["methods"] if one["method"] == row["method"])
+            for mine, theirs in zip(judged["attenuation_db"], row["attenuation_db"], strict=True):
+                self.assertAlmostEqual(mine["db"], theirs["db"], places=6)
+
+    def test_a_method_that_needs_a_log_of_other_options_carries_them(self):
+        wide = self.folder / "a log.csv"
+        write_log(wide, header="t,dq,tau,q")
+        told = self.recommended("--unit", "dq=deg/s", "--unit", "q=deg", "--columns", "time,velocity,torque,position", log=wide.name)
+        for line in told["take_commands"]:
+            self.paste(line)
+        self.paste(told["check"])
+
+    def test_the_same_log_gives_the_same_bytes(self):
+        self.assertEqual(self.run_tool("recommend", "log.csv", *GEAR).stdout, self.run_tool("recommend", "log.csv", *GEAR).stdout)
+
+
+class Limits(Case):
+    def test_looser_limits_never_give_a_worse_answer(self):
+        best = None
+        for limit in ("0.5ms", "3ms", "8ms", "20ms", "100ms", None):
+            told = self.recommended(*(["--max-delay", limit] if limit else []), "--target", "c-header")
+            first = told["methods"][0]
+            self.assertTrue(first["meets"])
+            if best is not None:
+                self.assertLessEqual(first["error_nm"], best)
+            best = first["error_nm"]
+        told = [self.recommended("--min-attenuation", f"{db}dB", code=code) for db, code in ((60, 1), (30, 0), (10, 0))]
+        self.assertGreaterEqual(told[1]["methods"][0]["error_nm"], told[2]["methods"][0]["error_nm"])
+
+    def test_what_is_taken_is_within_the_limits_and_leaves_least(self):
+        told = self.recommended("--max-delay", "5ms", "--min-attenuation", "10dB")
+        first = told["methods"][0]
+        self.assertLessEqual(first["longest_delay_ms"], 5.0)
+        self.assertGreaterEqual(min(one["db"] for one in first["attenuation_db"]), 10.0)
+        self.assertEqual(first["error_nm"], min(one["error_nm"] for one in told["methods"] if one["meets"]))
+
+    def test_out_of_reach_says_what_fails_and_by_how_much(self):
+        told = self.recommended("--min-attenuation", "80dB", "--max-delay", "1ms", code=1)
+        self.assertEqual((told["finding"], told["take"]), ("out-of-reach", None))
+        self.assertRegex(told["verdict"], r"Nothing is within the limits\. The nearest is .*dB off order \d, [\d.]+ dB less than 80 dB")
+        self.assertTrue(all(not one["meets"] for one in told["methods"]))
+
+    def test_a_target_limits_the_methods_to_what_it_holds(self):
+        self.assertEqual({one["method"].split(",")[0] for one in self.recommended("--target", "c-header")["methods"]},
+                         {"none", "tracking", "oscillator", "map", "switching", "lowpass"})
+        self.assertEqual({one["method"].split(",")[0] for one in self.recommended("--target", "moteus,kt=0.1")["methods"]}, {"none", "map"})
+        done = self.run_tool("recommend", "log.csv", *GEAR, "--target", "c-heade")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("c-header", done.stderr)
+
+    def test_the_export_of_a_target_can_be_pasted(self):
+        for target in ("c-header", "moteus,kt=0.1"):
+            for line in self.recommended("--target", target)["take_commands"]:
+                self.paste(line)
+
+    def test_offline_lets_a_method_in_that_sees_the_whole_log(self):
+        self.assertNotIn("subtract", "".join(one["method"] for one in self.recommended()["methods"]))
+        self.assertIn("subtract", "".join(one["method"] for one in self.recommended("--offline")["methods"]))
+
+
+class Honest(Case):
+    def test_without_ripple_there_is_nothing_to_take(self):
+        write_log(self.folder / "none.csv", ripple=0.0)
+        told = self.recommended(log="none.csv")
+        self.assertEqual((told["finding"], told["take"], told["conclusive"]), ("no-ripple", None, True))
+        self.assertIn("Nothing to take", told["verdict"])
+
+    def test_a_short_log_is_no_ground(self):
+        write_log(self.folder / "short.csv", seconds=1.2)
+        self.assertEqual(self.recommended(log="short.csv")["finding"], "cannot-tell")
+        self.recommended("--require-conclusive", log="short.csv", code=5)
+
+    def test_a_joint_at_rest_is_no_ground(self):
+        write_log(self.folder / "rest.csv", seconds=5, speed=0.0)
+        told = self.recommended(log="rest.csv")
+        self.assertEqual(told["finding"], "cannot-tell")
+        self.assertRegex(told["verdict"], "^Cannot tell: nothing can be judged on this log")
+
+    def test_a_gear_that_nobody_states_is_found_in_the_first_part(self):
+        told = self.recommended(gear=[])
+        self.assertEqual(told["finding"], "recommended", told["verdict"])
+        self.assertAlmostEqual(told["gear"]["ratio"] * told["gear"]["orders"][0] / 100, round(told["gear"]["ratio"] * told["gear"]["orders"][0] / 100),
+                               delta=0.02)
+        for line in [*told["take_commands"], told["check"]]:
+            self.paste(line)
+
+    def test_fewer_decibels_where_the_delay_costs_more(self):
+        # A torque that moves fast makes each ms dear: the answer has no more delay than for a slow one.
+        write_log(self.folder / "fast.csv", slow_nm=200.0)
+        words = ("--target", "c-header")
+        fast, slow = self.recommended(*words, log="fast.csv"), self.recommended(*words)
+        self.assertGreater(fast["torque_rate_nm_s"], 10 * slow["torque_rate_nm_s"])
+        self.assertLessEqual(fast["methods"][0]["longest_delay_ms"], slow["methods"][0]["longest_delay_ms"])
+
+    def test_standard_input_and_all_joints_are_refused(self):
+        for words, said in ((("-",), "name a file"), (("log.csv", "--joint", "all"), "name it"), (("log.csv", "--train", "95"), "10 to 90")):
+            done = self.run_tool("recommend", *words, *GEAR)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(said, done.stderr)
+
+    def test_what_was_assumed_is_listed(self):
+        done = self.run_tool("recommend", "log.csv", *GEAR)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for part in ("Take ", "To take it:", "Assumed:", "gear ratio 100, as stated", "Not tried:"):
+            self.assertIn(part, done.stdout)
+
+
+class Robot(Case):
+    @unittest.skipUnless((LOGS / "gpl3" / "panda_gaz_j1.csv").exists(), "SKIPPED: the folder of real logs is not here")
+    def test_on_a_robot_it_beats_the_notch_that_one_would_have_taken(self):
+        told = self.recommended("--max-delay", "10ms", "--min-attenuation", "12dB", log=LOGS / "gpl3" / "panda_gaz_j1.csv",
+                                gear=["--gear-ratio", "120", "--orders", "1,2"])
+        self.assertEqual(told["take"].split(",")[0], "oscillator")
+        self.assertIn("map=map.json", told["take"])
+        self.assertTrue(all(one["db"] >= 12 for one in told["methods"][0]["attenuation_db"]))
+
+
+if __name__ == "__main__":
+    unittest.main()
