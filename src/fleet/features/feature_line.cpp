@@ -44,11 +44,12 @@ std::span<const DescriptorKind> descriptor_kinds() {
 Descriptor descriptor_named(const std::string& name) {
     std::string near;
     for (const DescriptorKind& kind : descriptor_kinds()) {
-        const std::string unit(kind.unit), stem_here = unit.empty() ? name : name.substr(0, name.rfind('_'));
-        if (without_order(stem_here) != kind.stem) continue;
-        const Descriptor found{unit.empty() ? name : stem_here, unit, {}, {}, {}};
-        if (found.name() == name) return found;
-        near = found.name();
+        const std::string ending = kind.unit.empty() ? "" : "_" + std::string(kind.unit);
+        const bool ends = name.ends_with(ending);
+        const std::string stem = ends ? name.substr(0, name.size() - ending.size()) : name;
+        if (ends && without_order(stem) == kind.stem) return {stem, std::string(kind.unit), {}, {}, {}};
+        if (without_order(name).starts_with(std::string(kind.stem) + "_"))
+            near = name.substr(0, name.rfind('_')) + ending;
     }
     if (!near.empty()) raise<DataError>("'{}' is in another unit; this tool's lines have {}", name, near);
     raise<DataError>("'{}' is no descriptor of this tool", name);

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/local_motion.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -22,8 +22,10 @@ constexpr double widest_of_value = 0.5;    // an interval's half, of the value .
 constexpr double widest_of_torque = 0.02;  // ... or, in torque, of all torque of the log
 constexpr double widest_phase_deg = 90.0;  // of its interval, from end to end
 constexpr double least_load = 0.1;         // of inertia and weight, of all torque
-constexpr int iterations_of_load = 12;
-constexpr int iterations_of_lost_motion = 12;
+constexpr std::size_t fewest_reversals = 2;
+constexpr double far_deviations = 10.0;  // of a residual that is no noise
+constexpr double deviations_of_median = 1.4826;
+constexpr int linear_iterations = 3, iterations = 15;
 
 FitOptions fit_options(std::size_t samples, int most_iterations) {
     FitOptions options;
@@ -54,18 +56,70 @@ JointFit::JointFit(const Motion& motion, std::span<const double> torque_nm, cons
     if (motion.size() < fewest_samples)
         raise<DataError>("the log has {} rows; features need at least {}", motion.size(), fewest_samples);
     build();
-    fit_ = fit(model_, motion_, torque_nm_, fit_options(motion_.size(), 4));
-    // The load that friction grows with is of inertia and weight, which are known by now.
-    load_friction_ =
-        facts_.both_directions() && load_rms_nm().value_or(0.0) > least_load * facts_.mix.torque_rms_nm;
-    if (!load_friction_) return;
+    FitOptions options = fit_options(motion_.size(), linear_iterations);
+    options.errors = false;
+    fit_ = fit(model_, motion_, torque_nm_, options);
+    refine();
+}
+
+// What needs a first guess of the rest: friction that grows with the load, which is of inertia and weight,
+// and friction that turns over within an angle after each reversal (Dahl). Samples far off, as where the
+// speed jumps, do not count.
+void JointFit::refine() {
     Model guess = fit_.model;
-    const std::string friction = fmt::format("load-friction,exponent=1,width_deg_s={}", width_deg_s);
-    guess.terms.push_back(parse_term(friction + ",torque_nm=0.01"));
-    add_term(friction);
-    FitOptions options = fit_options(motion_.size(), iterations_of_load);
+    if (facts_.both_directions() && load_rms_nm().value_or(0.0) > least_load * facts_.mix.torque_rms_nm) {
+        const std::string friction = fmt::format("load-friction,exponent=1,width_deg_s={}", width_deg_s);
+        guess.terms.push_back(parse_term(friction + ",torque_nm=0.01"));
+        add_term(friction);
+    }
+    const std::vector<unsigned char> use = near_samples();
+    FitOptions options = fit_options(motion_.size(), iterations);
+    options.first_guess = &guess;
+    options.use = use;
+    const FittedValue* coulomb = fitted("coulomb-friction", "torque_nm");
+    if (facts_.mix.reversals < fewest_reversals)
+        no_wind_ = fmt::format("{} reversals; {} are needed", facts_.mix.reversals, fewest_reversals);
+    else if (!facts_.has_position)
+        no_wind_ = "the log has no position";
+    else if (coulomb == nullptr || !(coulomb->value > 0.0))
+        no_wind_ = "there is no friction whose change of side could be seen";
+    else if (winds(coulomb->term, coulomb->value, options))
+        return;
     options.first_guess = &guess;
     fit_ = fit(model_, motion_, torque_nm_, options);
+}
+
+// Takes the fit whose friction turns over within an angle, if the log tells the angle.
+bool JointFit::winds(std::size_t place, double friction_nm, FitOptions options) {
+    Model open = model_, guess = *options.first_guess;
+    open.terms[place] = parse_term("hysteresis,initial_state=0");
+    guess.terms[place] = parse_term(
+        fmt::format("hysteresis,torque_nm={},width_deg=0.1,initial_state=0", shortest(friction_nm)));
+    options.first_guess = &guess;
+    const Fit wound = fit(open, motion_, torque_nm_, options);
+    const auto width = std::find_if(wound.values.begin(), wound.values.end(), [&](const FittedValue& value) {
+        return value.term == place &&
+               open.terms[place].effect->parameters[value.parameter].name == "width_deg";
+    });
+    if (width == wound.values.end() || width->at_bound || !width->ci95)
+        no_wind_ = "the friction changes side too fast, or the log does not show how";
+    else if (width->ci95->high - width->ci95->low > 2.0 * width->value)
+        no_wind_ = fmt::format("known to +/- {:.2g} deg only, with a best value of {:.2g}",
+                               0.5 * (width->ci95->high - width->ci95->low), width->value);
+    if (!no_wind_.empty()) return false;
+    model_ = open;
+    fit_ = wound;
+    return true;
+}
+
+std::vector<unsigned char> JointFit::near_samples() const {
+    std::vector<double> left = predict_nm(fit_.model, motion_), sizes;
+    for (std::size_t k = 0; k < left.size(); ++k) sizes.push_back(std::abs(torque_nm_[k] - left[k]));
+    std::vector<double> sorted = sizes;
+    const double far = far_deviations * deviations_of_median * median_in(sorted);
+    std::vector<unsigned char> use;
+    for (const double size : sizes) use.push_back(size <= far || !(far > 0.0) ? 1 : 0);
+    return use;
 }
 
 void JointFit::add_term(const std::string& spec) { model_.terms.push_back(parse_term(spec)); }
@@ -170,13 +224,16 @@ std::vector<Descriptor> JointFit::torques() const {
     const double moving = std::sqrt(facts_.mix.moving_share);
     const double load_nm = std::max(load_rms_nm().value_or(0.0), 1e-9);
     std::vector<Descriptor> all;
-    all.push_back(told({"coulomb_friction", "nm", "coulomb-friction", "torque_nm", moving}, friction));
+    all.push_back(told(
+        {"coulomb_friction", "nm", no_wind_.empty() ? "hysteresis" : "coulomb-friction", "torque_nm", moving},
+        friction));
     all.push_back(told({"viscous_friction", "nm_per_deg_s", "viscous-friction", "coefficient_nm_per_deg_s",
                         facts_.speed_rms_deg_s},
                        friction));
-    all.push_back(told(
-        {"load_friction", "nm_per_nm", "load-friction", "torque_nm", load_nm},
-        load_friction_ || !one_way.empty() ? one_way : "the joint carries too little beside its friction"));
+    all.push_back(told({"load_friction", "nm_per_nm", "load-friction", "torque_nm", load_nm},
+                       fitted("load-friction", "torque_nm") != nullptr || !one_way.empty()
+                           ? one_way
+                           : "the joint carries too little beside its friction"));
     all.push_back(lost_motion());
     all.push_back(told({"inertia", "kgm2", "inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2}, ""));
     all.push_back(told({"gravity", "nm", "gravity", "amplitude_nm", std::sqrt(0.5)}, short_way));
@@ -184,49 +241,19 @@ std::vector<Descriptor> JointFit::torques() const {
     return all;
 }
 
-// Friction that turns over within an angle after each reversal (Dahl) in the place of one that does so at
-// once.
 Descriptor JointFit::lost_motion() const {
-    Descriptor one{"lost_motion", "deg", {}, {}, {}};
-    if (facts_.mix.reversals < 2)
-        one.reason = fmt::format("{} reversals; two are needed", facts_.mix.reversals);
-    else if (!facts_.has_position)
-        one.reason = "the log has no position";
-    const FittedValue* coulomb = fitted("coulomb-friction", "torque_nm");
-    if (one.reason.empty() && (coulomb == nullptr || !(coulomb->value > 0.0)))
-        one.reason = "there is no friction whose change of side could be seen";
-    if (!one.reason.empty()) return one;
-    Model guess = fit_.model, open = fit_.model;
-    for (std::size_t t = 0; t < open.terms.size(); ++t) {
-        if (open.terms[t].effect->name != "coulomb-friction") continue;
-        open.terms[t] = parse_term("hysteresis,initial_state=0");
-        guess.terms[t] = parse_term(
-            fmt::format("hysteresis,torque_nm={},width_deg=0.1,initial_state=0", shortest(coulomb->value)));
-    }
-    FitOptions options = fit_options(motion_.size(), iterations_of_lost_motion);
-    options.first_guess = &guess;
-    const Fit found = fit(open, motion_, torque_nm_, options);
-    for (const FittedValue& value : found.values) {
-        const Term& term = found.model.terms[value.term];
-        if (term.effect->name != "hysteresis" || term.effect->parameters[value.parameter].name != "width_deg")
-            continue;
-        if (value.at_bound || !value.ci95) {
-            one.reason = "the friction changes side too fast, or the log does not show how";
-        } else if (value.ci95->high - value.ci95->low > 2.0 * value.value) {
-            one.reason = fmt::format("known to +/- {:.2g} deg only, with a best value of {:.2g}",
-                                     0.5 * (value.ci95->high - value.ci95->low), value.value);
-        } else {
-            one.value = value.value;
-            one.ci95 = value.ci95;
-        }
-    }
-    return one;
+    if (!no_wind_.empty()) return {"lost_motion", "deg", {}, {}, no_wind_};
+    const FittedValue* width = fitted("hysteresis", "width_deg");
+    return {"lost_motion", "deg", width->value, width->ci95, {}};
 }
 
+// Second differences, of which the few at reversals and jumps do not count: their median.
 double JointFit::noise_nm() const {
-    std::vector<double> left = predict_nm(fit_.model, motion_);
+    std::vector<double> left = predict_nm(fit_.model, motion_), second;
     for (std::size_t k = 0; k < left.size(); ++k) left[k] = torque_nm_[k] - left[k];
-    return sample_noise(left);
+    for (std::size_t k = 2; k < left.size(); ++k)
+        second.push_back(std::abs(left[k] - 2.0 * left[k - 1] + left[k - 2]));
+    return deviations_of_median * median_in(second) / std::sqrt(6.0);
 }
 
 std::optional<double> JointFit::load_rms_nm() const {

@@ -33,6 +33,9 @@ class JointFit {
     struct Wanted;
     void add_term(const std::string& spec);
     void build();
+    void refine();
+    [[nodiscard]] bool winds(std::size_t place, double friction_nm, FitOptions options);
+    [[nodiscard]] std::vector<unsigned char> near_samples() const;
     [[nodiscard]] Descriptor told(const Wanted& wanted, std::string reason) const;
     [[nodiscard]] Descriptor lost_motion() const;
     [[nodiscard]] const FittedValue* fitted(const std::string& effect, const std::string& parameter,
@@ -44,7 +47,7 @@ class JointFit {
     const MotionFacts& facts_;
     std::optional<GearAccount> gear_;
     Hertz rate_;
-    bool load_friction_ = false;
+    std::string no_wind_;  ///< why the angle in which friction turns over is not told; empty: it is
     Model model_;
     Fit fit_;
 };

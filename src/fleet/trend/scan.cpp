@@ -57,7 +57,7 @@ Scan::Scan(const JointHistory& history, std::vector<std::size_t> rows, Regressio
     largest_ = found.t_squared;
     drift_ = found.drift;
     row_ = rows_[found.place];
-    find_memory(found);
+    leave_chance(found);
 }
 
 Scan::Found Scan::look(const std::vector<double>& residual) const {
@@ -84,16 +84,18 @@ Scan::Found Scan::look(const std::vector<double>& residual) const {
 }
 
 double Scan::largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const {
-    const auto& residual = regression_.residual();
     room.clear();
     for (const std::size_t row : order)
-        if (place_of_row_[row] < residual.size()) room.push_back(residual[place_of_row_[row]]);
+        if (place_of_row_[row] < chance_.size()) room.push_back(chance_[place_of_row_[row]]);
     regression_.project(room);
     return look(room).t_squared;
 }
 
-void Scan::find_memory(const Found& found) {
-    std::vector<double> left = regression_.residual();
+// What is left beside the best change is what chance makes of this series: a change would spoil its own
+// yardstick (Ter Braak, 1992).
+void Scan::leave_chance(const Found& found) {
+    chance_ = regression_.residual();
+    std::vector<double>& left = chance_;
     const std::size_t n = left.size();
     std::vector<double> column(n);
     if (found.drift)

@@ -23,7 +23,7 @@ class Scan {
     [[nodiscard]] bool is_drift() const { return drift_; }
     [[nodiscard]] std::size_t row() const { return row_; }   ///< of the joint's lines: first after the step
     [[nodiscard]] double memory() const { return memory_; }  ///< from row to row, beside the best change
-    /// The same with the residuals in another order of the joint's rows.
+    /// The same of what is left beside the best change, in another order of the joint's rows.
     [[nodiscard]] double largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const;
 
   private:
@@ -34,12 +34,13 @@ class Scan {
     };
     Scan(const JointHistory& history, std::vector<std::size_t> rows, Regression regression);
     [[nodiscard]] Found look(const std::vector<double>& residual) const;
-    void find_memory(const Found& found);
+    void leave_chance(const Found& found);
 
     std::vector<std::size_t> rows_;
     std::vector<std::size_t> place_of_row_;  ///< in rows_; rows that do not tell the series have rows_.size()
     Regression regression_;
     std::vector<double> norm_;  ///< squares that are left of a step before each place; 0: it is not looked at
+    std::vector<double> chance_;  ///< residual beside the best change, weighed
     std::vector<double> slope_;
     double slope_norm_ = 0.0, largest_ = 0.0, memory_ = 0.0;
     bool drift_ = false;

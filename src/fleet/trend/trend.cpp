@@ -14,6 +14,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_changes = 4;
+constexpr double spent_at_once = 0.8;
 constexpr double normal_95 = 1.96;
 constexpr double least_t_squared = 9.0;  // of a descriptor that is listed with a change
 constexpr double days_a_month = 365.25 / 12.0;
@@ -90,14 +91,16 @@ std::vector<DescriptorTrend> told_descriptors(const JointHistory& history,
     return told;
 }
 
-// Each test has half the chance of the one before it, so that all of them together have that of the rate.
+// Each test spends most of the chance that the ones before it have left, so that all of them together have
+// that of the rate.
 std::vector<FoundChange> find_changes(const JointHistory& history, const TrendOptions& options,
                                       std::vector<Change>& changes) {
     std::vector<FoundChange> found;
-    double limit = std::min(0.5, options.false_alarms * history.months());
-    if (!(limit > 0.0)) return found;
+    double left = std::min(0.5, options.false_alarms * history.months());
+    if (!(left > 0.0)) return found;
     while (found.size() < most_changes) {
-        limit *= 0.5;
+        const double limit = spent_at_once * left;
+        left -= limit;
         const std::vector<Regression> known = regressions(history, found);
         const auto next = next_change(history, known, limit, seed_of(history, options.seed, found.size()));
         if (!next) break;
