@@ -165,7 +165,7 @@ Descriptor JointFit::told(const Wanted& wanted, std::string reason) const {
     const FittedValue* value = fitted(wanted.effect, wanted.parameter, wanted.turn);
     if (value == nullptr) {
         one.reason = "the motion of this log does not show it";
-    } else if (!value->standard_error || !value->ci95) {
+    } else if (!value->standard_error || !value->ci95 || !std::isfinite(value->value)) {
         one.reason = "this log does not tell it from the other torques";
     } else {
         const double half = 0.5 * (value->ci95->high - value->ci95->low);
@@ -261,7 +261,8 @@ std::optional<double> JointFit::load_rms_nm() const {
     for (const Term& term : fit_.model.terms)
         if (term.effect->bears_load) load.terms.push_back(term);
     if (load.terms.empty()) return std::nullopt;
-    return rms(predict_nm(load, motion_));
+    const double load_nm = rms(predict_nm(load, motion_));
+    return std::isfinite(load_nm) ? std::optional(load_nm) : std::nullopt;
 }
 
 }  // namespace ripplenotch
