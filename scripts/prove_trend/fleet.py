@@ -7,7 +7,9 @@ of 1.5 % for Coulomb friction, 2 % for viscous friction and ripple, 0.5 % for in
 """
 
 import datetime
+import json
 import random
+import sys
 
 FIRST = datetime.date(2025, 1, 6)
 VERSION = "0.1.0"
@@ -120,3 +122,9 @@ def fleet(joints, weeks, seed, events, logs_after=None):
                 days = [day for day in days if day not in after[logs_after:]]
         made.append(Joint(robot, [line(draw, robot, day, base, event) for day in days], event))
     return made
+
+
+if __name__ == "__main__":  # data/fleet.ndjson
+    for joint in fleet(4, 30, 6, events=True, logs_after=8):
+        for one in joint.lines:
+            sys.stdout.write(json.dumps(one, separators=(",", ":")) + "\n")

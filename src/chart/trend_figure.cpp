@@ -60,7 +60,7 @@ Panel map_panel(const Trend& trend) {
     return panel;
 }
 
-Panel course_panel(const JointTrend& joint, const Change& change, double origin_s) {
+Panel course_panel(const JointTrend& joint, const JointChange& change, double origin_s) {
     Panel panel;
     panel.title = fmt::format("{}: {}", joint.name(), change.cause);
     panel.x = {"day", "", PlotScale::linear};
@@ -89,7 +89,7 @@ Figure trend_figure(const Trend& trend) {
     const double origin_s = first_second(trend);
     std::size_t alerts = 0, shown = 0;
     for (const JointTrend& joint : trend.joints) {
-        for (const Change& change : joint.changes) {
+        for (const JointChange& change : joint.changes) {
             ++alerts;
             if (shown == most_courses || change.course.empty()) continue;
             ++shown;

@@ -16,7 +16,7 @@ void add_interval(Json& json, const std::string& name, const Interval& interval)
     json[name + "_ci95_high"] = six_digits(interval.high);
 }
 
-Json alert_to_json(const JointTrend& joint, const Change& change) {
+Json alert_to_json(const JointTrend& joint, const JointChange& change) {
     Json json = head_of(joint);
     json["cause"] = change.cause;
     json["kind"] = change.drift ? "drift" : "step";
@@ -38,7 +38,7 @@ Json alert_to_json(const JointTrend& joint, const Change& change) {
     return json;
 }
 
-Json part_to_json(const JointTrend& joint, const Change& change, const ChangedDescriptor& part) {
+Json part_to_json(const JointTrend& joint, const JointChange& change, const ChangedDescriptor& part) {
     Json json = head_of(joint);
     json["date"] = change.date;
     json["descriptor"] = part.name;
@@ -77,7 +77,7 @@ void add_lists(const Trend& trend, Json& json) {
     for (const char* name : {"alerts", "changed", "odd", "joints", "descriptors", "months"})
         json[name] = Json::array();
     for (const JointTrend& joint : trend.joints) {
-        for (const Change& change : joint.changes) {
+        for (const JointChange& change : joint.changes) {
             json["alerts"].push_back(alert_to_json(joint, change));
             for (const ChangedDescriptor& part : change.descriptors)
                 json["changed"].push_back(part_to_json(joint, change, part));
@@ -139,7 +139,7 @@ std::string trend_text(const Trend& trend, const Provenance& provenance) {
 std::string alert_lines(const Trend& trend) {
     std::string text;
     for (const JointTrend& joint : trend.joints)
-        for (const Change& change : joint.changes)
+        for (const JointChange& change : joint.changes)
             text += visible_json(
                         alert_to_json(joint, change).dump(-1, ' ', false, Json::error_handler_t::replace)) +
                     "\n";

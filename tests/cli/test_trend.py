@@ -144,6 +144,12 @@ class Findings(Case):
         self.assertIn("cannot be compared", note)
 
 
+class Example(Case):
+    def test_the_example_of_the_pages_is_what_its_script_makes(self):
+        done = subprocess.run([sys.executable, SOURCE / "scripts/prove_trend/fleet.py"], capture_output=True, text=True)
+        self.assertEqual((SOURCE / "data/fleet.ndjson").read_text(), done.stdout)
+
+
 class Determinism(Case):
     def test_the_order_of_lines_and_files_does_not_matter(self):
         lines = lines_of(fleet.fleet(6, 40, 21, events=True))

@@ -51,7 +51,7 @@ struct JointMonth {
 };
 
 /// One alert: something happened to the joint, or goes on.
-struct Change {
+struct JointChange {
     bool drift = false;            ///< no day: it went on from the first log to the last
     std::string cause;             ///< "Coulomb friction", "gain of the torque sensor"
     std::string date;              ///< of the first log after it; of a drift, of the last
@@ -78,10 +78,10 @@ struct JointTrend {
     double months = 0.0;
     std::vector<std::string> conditions;  ///< that were regressed out
     std::vector<DescriptorTrend> descriptors;
-    std::vector<Change> changes;     ///< in the order of their dates
-    std::vector<OddDescriptor> odd;  ///< farthest first
-    std::vector<JointMonth> course;  ///< months in which there are logs, in their order
-    std::vector<std::string> notes;  ///< what could not be looked at, and why
+    std::vector<JointChange> changes;  ///< in the order of their dates
+    std::vector<OddDescriptor> odd;    ///< farthest first
+    std::vector<JointMonth> course;    ///< months in which there are logs, in their order
+    std::vector<std::string> notes;    ///< what could not be looked at, and why
     [[nodiscard]] std::string name() const { return robot.empty() ? joint : robot + " " + joint; }
 };
 

@@ -8,6 +8,7 @@
 #include "cli/command.hpp"
 #include "cli/features/feature_lines.hpp"
 #include "cli/features/shard_work.hpp"
+#include "cli/talk.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/progress.hpp"
@@ -63,7 +64,7 @@ ExitCode print_missing(const FeatureRequest& request) {
     for (const std::size_t number :
          missing_shards(found.records, found.names, static_cast<std::size_t>(request.shards)))
         text += fmt::format("{}\n", number);
-    write_all("-", text, ByteSink::Overwrite::no);
+    write_text("-", text, ByteSink::Overwrite::no);
     return ExitCode::done;
 }
 

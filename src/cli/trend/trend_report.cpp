@@ -14,7 +14,7 @@ using Rows = std::vector<std::vector<std::string>>;
 
 std::string day_of(const std::string& date) { return date.substr(0, 10); }
 
-std::string days_of(const Change& change) {
+std::string days_of(const JointChange& change) {
     if (change.drift) return "all the time";
     if (change.earliest == change.latest) return day_of(change.date);
     return fmt::format("{} ({} to {})", day_of(change.date), day_of(change.earliest), day_of(change.latest));
@@ -30,7 +30,7 @@ std::string size_of(const ChangedDescriptor& one) {
 Rows alerts_of(const Trend& trend) {
     Rows rows = {{"joint", "alert", "since", "surest sign, 95 %", "p", ""}};
     for (const JointTrend& joint : trend.joints) {
-        for (const Change& change : joint.changes) {
+        for (const JointChange& change : joint.changes) {
             rows.push_back({joint.name(), (change.drift ? "drift: " : "") + change.cause, days_of(change),
                             change.descriptors.empty() ? "" : size_of(change.descriptors.front()),
                             fmt::format("{:.1g}", change.p),

@@ -70,7 +70,7 @@ std::vector<JointMonth> months_of(const JointHistory& history, const std::vector
 void tell_courses(const JointHistory& history, std::span<const FoundChange> changes, JointTrend& joint) {
     const std::vector<Adjusted> adjusted = adjusted_of(history, changes);
     joint.course = months_of(history, adjusted);
-    for (Change& change : joint.changes) {
+    for (JointChange& change : joint.changes) {
         if (change.descriptors.empty()) continue;
         for (std::size_t s = 0; s < adjusted.size(); ++s) {
             const Series& series = history.series[s];

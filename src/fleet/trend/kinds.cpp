@@ -45,13 +45,13 @@ void find_odd(const Kind& kind) {
 
 void find_shared(const Kind& kind) {
     for (JointTrend* joint : kind) {
-        for (Change& change : joint->changes) {
+        for (JointChange& change : joint->changes) {
             change.kin = 0;
             const double at_s = date_seconds(change.date).value_or(0.0);
             for (const JointTrend* other : kind) {
                 if (other == joint) continue;
                 change.kin +=
-                    std::any_of(other->changes.begin(), other->changes.end(), [&](const Change& one) {
+                    std::any_of(other->changes.begin(), other->changes.end(), [&](const JointChange& one) {
                         return one.cause == change.cause && one.drift == change.drift &&
                                std::abs(date_seconds(one.date).value_or(0.0) - at_s) <= same_time_s;
                     });
@@ -63,7 +63,7 @@ void find_shared(const Kind& kind) {
 // The surest sign that a joint changed; 0 where it did not, or as its kind did.
 double own_change(const JointTrend& joint, std::size_t kin) {
     double surest = 0.0;
-    for (const Change& change : joint.changes) {
+    for (const JointChange& change : joint.changes) {
         if (kin >= fewest_kin && static_cast<double>(change.kin) > shared_part * static_cast<double>(kin))
             continue;
         for (const ChangedDescriptor& one : change.descriptors)

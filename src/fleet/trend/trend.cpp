@@ -27,9 +27,10 @@ std::uint64_t seed_of(const JointHistory& history, std::uint64_t seed, std::size
     return hash;
 }
 
-Change told(const JointHistory& history, const std::vector<Regression>& known, const FoundChange& found) {
+JointChange told(const JointHistory& history, const std::vector<Regression>& known,
+                 const FoundChange& found) {
     const std::vector<ChangedSeries> changed = changed_series(history, known, found);
-    Change change;
+    JointChange change;
     change.drift = found.drift;
     change.cause = cause_of(history, known, found, changed);
     const auto date = [&](std::size_t row) { return *history.lines[row]->date; };
@@ -94,7 +95,7 @@ std::vector<DescriptorTrend> told_descriptors(const JointHistory& history,
 // Each test spends most of the chance that the ones before it have left, so that all of them together have
 // that of the rate.
 std::vector<FoundChange> find_changes(const JointHistory& history, const TrendOptions& options,
-                                      std::vector<Change>& changes) {
+                                      std::vector<JointChange>& changes) {
     std::vector<FoundChange> found;
     double left = std::min(0.5, options.false_alarms * history.months());
     if (!(left > 0.0)) return found;
@@ -108,7 +109,7 @@ std::vector<FoundChange> find_changes(const JointHistory& history, const TrendOp
         found.push_back(*next);
     }
     std::stable_sort(changes.begin(), changes.end(),
-                     [](const Change& a, const Change& b) { return a.date < b.date; });
+                     [](const JointChange& a, const JointChange& b) { return a.date < b.date; });
     return found;
 }
 
