@@ -22,6 +22,9 @@ constexpr double first_stamp_s = 946684800.0, last_stamp_s = 4102444800.0;  // o
 
 FeatureLine failed_line(FeatureLine line, const Error& error) {
     line.error = error.what();
+    // The library knows no file.
+    if (line.error.find(line.log) == std::string::npos)
+        line.error = fmt::format("{}: {}", line.log, line.error);
     line.error_code = static_cast<int>(error.code());
     return line;
 }
