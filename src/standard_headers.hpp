@@ -2,13 +2,17 @@
 // Precompiled where the build asks for it (cmake/precompiled_headers.cmake): what most files of this project
 // include anyway. Files go on including what they use, so a build without it is the same.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>

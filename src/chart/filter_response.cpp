@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "chart/nothing.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -12,7 +13,6 @@ namespace ripplenotch {
 namespace {
 
 constexpr int points = 600;
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double lowest_share = 1e-4, highest_share = 0.499;  // of the sample rate
 
 // Where a section's zeros lie on the unit circle, if they do.

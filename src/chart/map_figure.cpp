@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/normal_errors.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -13,7 +14,6 @@ namespace ripplenotch {
 namespace {
 
 constexpr int steps = 40;
-constexpr double normal_95 = 1.96;
 
 /// Amplitude and error at one speed, the joint's turn averaged out.
 struct At {
@@ -51,8 +51,8 @@ void add_curves(const MapFit& fit, std::size_t order, double sign, const std::st
         angle.x.push_back(speed);
         angle.y.push_back(-portable::arg(at.value) * degrees_per_radian);
         ribbon.x.push_back(speed);
-        ribbon.low.push_back(std::max(0.0, nm - normal_95 * at.error_nm));
-        ribbon.high.push_back(nm + normal_95 * at.error_nm);
+        ribbon.low.push_back(std::max(0.0, nm - normal_95_errors * at.error_nm));
+        ribbon.high.push_back(nm + normal_95_errors * at.error_nm);
     }
     amplitude.ribbons.push_back(std::move(ribbon));
     amplitude.curves.push_back(std::move(size));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/chart/residual_figure.hpp"
+#include "chart/nothing.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +13,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t map_columns = 60, map_rows = 30;
 
 std::vector<double> edges_over(std::span<const double> values, std::size_t count) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/chart/spectrum_figure.hpp"
+#include "chart/nothing.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +12,6 @@
 
 namespace ripplenotch {
 namespace {
-
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 // The noise and a little below it; a spectrum without noise (simulated) must not fill the page with rounding.
 double lowest_shown(const std::vector<double>& amplitude_nm, const std::vector<double>& floor_nm) {

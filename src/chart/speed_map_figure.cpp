@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "chart/nothing.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -12,7 +13,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_bins = 400;
 
 /// Columns of the figure: the map's speeds, with empty ones where no speed was measured.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/chart/table_figure.hpp"
+#include "chart/nothing.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN(),
-                 endless = std::numeric_limits<double>::infinity();
+constexpr double endless = std::numeric_limits<double>::infinity();
 
 // A level in each band, nothing in the holes between them.
 Curve stairs(const CandidateTable& table, std::string name, Ink ink,

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/map_json.hpp"
 
+#include "core/normal_errors.hpp"
 #include "document/json.hpp"
 
 namespace ripplenotch {
 namespace {
-
-constexpr double normal_95 = 1.96;
 
 Json range_to_json(const MapRange& range) { return {range.from, range.to}; }
 
@@ -28,9 +27,9 @@ Json coefficients_to_json(const MapFit& fit) {
             json.push_back({{"order", fit.map.orders[i].value()},
                             {"column", map_column_words(fit.map.form, c)},
                             {"cosine_nm", fit.map.values[i][c].real()},
-                            {"cosine_ci95_nm", normal_95 * fit.errors[i][c].real()},
+                            {"cosine_ci95_nm", normal_95_errors * fit.errors[i][c].real()},
                             {"sine_nm", fit.map.values[i][c].imag()},
-                            {"sine_ci95_nm", normal_95 * fit.errors[i][c].imag()}});
+                            {"sine_ci95_nm", normal_95_errors * fit.errors[i][c].imag()}});
         }
     }
     return json;

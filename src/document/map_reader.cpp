@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/normal_errors.hpp"
 #include "document/fields.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
@@ -11,7 +12,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double normal_95 = 1.96;
 constexpr std::size_t most_speeds = 64, most_turn_harmonics = 8, most_orders = 64;
 
 std::optional<MapFinding> map_finding_of(std::string_view name) {
@@ -64,8 +64,8 @@ void coefficients_from_json(Fields& fields, MapFit& fit) {
     fields.each("coefficients", [&](Fields& entry) {
         entry.ignore({"order", "column"});
         values.emplace_back(entry.number("cosine_nm"), entry.number("sine_nm"));
-        errors.emplace_back(entry.number("cosine_ci95_nm") / normal_95,
-                            entry.number("sine_ci95_nm") / normal_95);
+        errors.emplace_back(entry.number("cosine_ci95_nm") / normal_95_errors,
+                            entry.number("sine_ci95_nm") / normal_95_errors);
     });
     if (values.size() != columns * fit.map.orders.size()) {
         raise<DataError>("{}: {} values, expected {} for each of {} orders", fields.where("coefficients"),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/normal_errors.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -11,7 +12,6 @@ namespace ripplenotch {
 namespace {
 
 constexpr double unbounded = 1e300;
-constexpr double normal_95 = 1.959963984540054;
 
 FittedValue told(std::size_t term, std::size_t parameter, double value, double variance, double per_unit) {
     FittedValue fitted;
@@ -21,7 +21,7 @@ FittedValue told(std::size_t term, std::size_t parameter, double value, double v
     if (!(variance >= 0.0) || !std::isfinite(variance)) return fitted;
     const double error = std::sqrt(variance) * per_unit;
     fitted.standard_error = error;
-    fitted.ci95 = Interval{value - normal_95 * error, value + normal_95 * error};
+    fitted.ci95 = Interval{value - normal_95_errors * error, value + normal_95_errors * error};
     return fitted;
 }
 
@@ -123,7 +123,7 @@ std::vector<FittedValue> Coordinates::values(const std::vector<double>& point,
             const double value = portable::exp(point[c]);
             found.push_back(told(place.term, place.parameter, value, variance(c, c), value));
             if (auto& ci95 = found.back().ci95) {
-                const double half = normal_95 * std::sqrt(variance(c, c));
+                const double half = normal_95_errors * std::sqrt(variance(c, c));
                 ci95 = Interval{value * portable::exp(-half), value * portable::exp(half)};
             }
             found.back().at_bound = point[c] <= place.lower || point[c] >= place.upper;

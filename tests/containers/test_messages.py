@@ -86,7 +86,7 @@ class Mcap(Messages):
         said = self.run_tool("info", self.bag()).stdout.decode()
         self.assertRegex(said, r"/joint_states.effort\[0..1\] +read +4000 messages +float64 +1000")
         self.assertRegex(said, r"/load.data +40 messages +float64")
-        self.assertRegex(said, r"/log +.*json messages, which are not read")
+        self.assertRegex(said, r"/log +.*rcl/Log, no numbers")
         self.assertIn("elbow", said)
         found = json.loads(self.run_tool("info", self.bag(), "--json").stdout)
         self.assertEqual([e["read"] for e in found["contents"] if e["path"] == "/load.data"], [False])

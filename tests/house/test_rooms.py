@@ -35,7 +35,7 @@ SEES = {
 # Third-party header -> the files that may include it.
 DOORS = {
     r"fftw3": {"src/analysis/spectrum/fourier.cpp"},
-    r"nlohmann/": {"src/document/json.hpp"},
+    r"nlohmann/": {"src/document/json.hpp", "src/log/messages/json_message.cpp"},
     r"CLI/": {"src/cli/options/options_implementation.hpp"},
     r"fast_float/": {"src/core/number.cpp"},
     r"nettle/": {"src/core/sha256.cpp"},

@@ -128,3 +128,59 @@ def db3(path, channels, messages, definitions=True):
                     [(channel + 1, ns, data) for channel, ns, data in messages])
     bag.commit()
     bag.close()
+
+
+class Protobuf:
+    """Fields of a message, in the order in which they are written: each behind its number and the kind of its size."""
+
+    def __init__(self):
+        self.body = b""
+
+    @staticmethod
+    def varint(value):
+        value &= 2**64 - 1
+        out = b""
+        while value > 127:
+            out += bytes([value & 127 | 128])
+            value >>= 7
+        return out + bytes([value])
+
+    def tag(self, number, size):
+        self.body += self.varint(number << 3 | size)
+        return self
+
+    def whole(self, number, value):
+        self.tag(number, 0).body += self.varint(value)
+        return self
+
+    def fixed(self, number, code, value):
+        size = struct.calcsize("<" + code)
+        self.tag(number, {4: 5, 8: 1}[size]).body += struct.pack("<" + code, value)
+        return self
+
+    def counted(self, number, content):
+        raw = content.encode() if isinstance(content, str) else content.body if isinstance(content, Protobuf) else content
+        self.tag(number, 2).body += self.varint(len(raw)) + raw
+        return self
+
+
+PROTOBUF_TYPES = {"double": 1, "float": 2, "int64": 3, "uint64": 4, "int32": 5, "fixed64": 6, "fixed32": 7, "bool": 8, "string": 9, "bytes": 12,
+                  "uint32": 13, "enum": 14, "sfixed32": 15, "sfixed64": 16, "sint32": 17, "sint64": 18}
+
+
+def protobuf_schema(package, types, syntax="proto3"):
+    """A FileDescriptorSet. `types`: name -> fields (name, number, type, marks), where a type with a point is a message's, and marks are
+    "repeated" and "optional"."""
+    file = Protobuf().counted(1, "tests.proto").counted(2, package)
+    for name, fields in types.items():
+        message = Protobuf().counted(1, name)
+        for field, number, kind, *marks in fields:
+            one = Protobuf().counted(1, field).whole(3, number).whole(4, 3 if "repeated" in marks else 1)
+            one.whole(5, PROTOBUF_TYPES.get(kind, 11))
+            if "." in kind:
+                one.counted(6, "." + kind)
+            if "optional" in marks:
+                one.whole(9, 0).whole(17, 1)
+            message.counted(2, one)
+        file.counted(4, message)
+    return Protobuf().counted(1, file.counted(12, syntax)).body

@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-std::string plain(double value) { return fmt::format("{:.4g}", value); }
+std::string four(double value) { return fmt::format("{:.4g}", value); }
 
 std::string q_range(const TradePoint& point) {
     if (point.least_q == point.largest_q) return fmt::format("{:.3g}", point.least_q);
@@ -21,8 +21,8 @@ std::string q_range(const TradePoint& point) {
 std::string heading(const Frontier& frontier) {
     const DesignGoal& goal = frontier.goal;
     std::string limits;
-    if (goal.min_attenuation_db) limits += fmt::format(", at least {} dB", plain(*goal.min_attenuation_db));
-    if (goal.max_delay) limits += fmt::format(", at most {} ms", plain(1e3 * goal.max_delay->value()));
+    if (goal.min_attenuation_db) limits += fmt::format(", at least {} dB", four(*goal.min_attenuation_db));
+    if (goal.max_delay) limits += fmt::format(", at most {} ms", four(1e3 * goal.max_delay->value()));
     if (!goal.min_attenuation_db && !goal.max_delay)
         limits += fmt::format(", up to {} bands", goal.most_bands.value_or(frontier_bands));
     const std::string doubt =
@@ -31,21 +31,21 @@ std::string heading(const Frontier& frontier) {
             : "";
     return fmt::format("What a table for gear ratio {}{} can hold from {} to {} deg/s at {} Hz{}.\n\n",
                        fmt::format("{:.6g}", frontier.spec.gear_ratio.value()), doubt,
-                       plain(goal.from.value()), plain(goal.to.value()),
+                       four(goal.from.value()), four(goal.to.value()),
                        fmt::format("{:.6g}", frontier.spec.sample_rate.value()), limits);
 }
 
 }  // namespace
 
 std::string slowest_sentence(Seconds delay, DegPerSec slowest) {
-    return fmt::format("Below {} deg/s no notch of Q 5 or less is within {} ms.", plain(slowest.value()),
-                       plain(1e3 * delay.value()));
+    return fmt::format("Below {} deg/s no notch of Q 5 or less is within {} ms.", four(slowest.value()),
+                       four(1e3 * delay.value()));
 }
 
 std::string frontier_to_text(const Frontier& frontier) {
     std::vector<std::vector<std::string>> rows = {
         {"attenuation", "delay", "bands", "Q", "settles", "overshoot", ""},
-        {"dB held", "ms", "", "", fmt::format("ms to {} %", plain(frontier.spec.settle_band_percent)), "%",
+        {"dB held", "ms", "", "", fmt::format("ms to {} %", four(frontier.spec.settle_band_percent)), "%",
          ""}};
     for (std::size_t i = 0; i < frontier.points.size(); ++i) {
         const TradePoint& point = frontier.points[i];

@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "cli/text_table.hpp"
+#include "core/normal_errors.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double normal_95 = 1.96;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string whole(double value) { return fmt::format("{:.0f}", std::round(value) + 0.0); }
@@ -38,7 +38,7 @@ Rows values_of(const MapFit& fit) {
     Rows rows = {{"order", "at", "cosine Nm", "+/-", "sine Nm", "+/-", "amplitude Nm", "phase deg"}};
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
         for (std::size_t c = 0; c < fit.map.values[i].size(); ++c) {
-            const std::complex<double> z = fit.map.values[i][c], error = normal_95 * fit.errors[i][c];
+            const std::complex<double> z = fit.map.values[i][c], error = normal_95_errors * fit.errors[i][c];
             rows.push_back({shortest(fit.map.orders[i].value()), map_column_words(fit.map.form, c),
                             fmt::format("{:.3f}", z.real()), fmt::format("{:.3f}", error.real()),
                             fmt::format("{:.3f}", z.imag()), fmt::format("{:.3f}", error.imag()),
@@ -53,8 +53,8 @@ Rows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
     Rows rows = {{"order", "times as large", "+/-", "deg ahead", "+/-", "", "log"}};
     for (const MapAgreement& one : fit.agreement) {
         rows.push_back({shortest(one.order), fmt::format("{:.2f}", one.amplitude_ratio),
-                        fmt::format("{:.2f}", normal_95 * one.amplitude_error), whole(one.phase_deg),
-                        whole(std::min(normal_95 * one.phase_error_deg, 180.0)),
+                        fmt::format("{:.2f}", normal_95_errors * one.amplitude_error), whole(one.phase_deg),
+                        whole(std::min(normal_95_errors * one.phase_error_deg, 180.0)),
                         one.agrees ? "" : "disagrees",
                         one.log < logs.size() ? logs[one.log] : fmt::format("log {}", one.log + 1)});
     }

@@ -10,7 +10,7 @@
 namespace ripplenotch {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     std::string safe = "'";
     for (const char c : text) {
         if (c == '\'' || c == '\\') safe += '\\';
@@ -20,16 +20,16 @@ std::string quoted(std::string_view text) {
 }
 
 std::string option_line(const OptionEntry& option, std::string_view condition) {
-    std::string line = fmt::format("complete -c {} -n {}", tool_name, quoted(condition));
+    std::string line = fmt::format("complete -c {} -n {}", tool_name, in_quotes(condition));
     for (const std::string& name : option.names)
         line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
     const auto choices = option.choices();
     if (!choices.empty()) {
-        line += fmt::format(" -x -a {}", quoted(fmt::format("{}", fmt::join(choices, " "))));
+        line += fmt::format(" -x -a {}", in_quotes(fmt::format("{}", fmt::join(choices, " "))));
     } else if (option.takes_value()) {
         line += option.names_file() ? " -r -F" : " -x";
     }
-    return line + " -d " + quoted(option.help) + "\n";
+    return line + " -d " + in_quotes(option.help) + "\n";
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ std::string fish_completion(const Reference& reference) {
         script += option_line(option, "__fish_use_subcommand");
     for (const CommandEntry& command : reference.commands)
         script += fmt::format("complete -c {} -f -n '__fish_use_subcommand' -a {} -d {}\n", tool_name,
-                              command.name, quoted(command.summary));
+                              command.name, in_quotes(command.summary));
     for (const CommandEntry& command : reference.commands) {
         for (const OptionEntry& option : command.options) {
             if (!option.is_argument)

@@ -4,13 +4,11 @@
 
 #include <vector>
 
+#include "core/normal_errors.hpp"
 #include "diagnose/beside/sums.hpp"
 #include "ripplenotch/model/fit.hpp"
 
 namespace ripplenotch {
-
-/// Half of a 95 % interval, in standard errors.
-inline constexpr double normal_95_errors = 1.959963984540054;
 
 struct BesideValues {
     Term term;

@@ -13,7 +13,7 @@ namespace {
 
 // The JSON library lives in room document, which sees this one; what is written here is text of our
 // own and numbers, so that quoting is all there is to it.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') out += '\\';
@@ -65,7 +65,7 @@ Written write(const FilterSet& filters, const Settings&, std::span<const std::st
         "{{\n  \"schema\": \"ripplenotch/filters/1\",\n  \"tool\": \"{}\",\n  \"version\": \"{}\",\n  "
         "\"made\": [",
         tool_name, version());
-    for (std::size_t i = 0; i < heading.size(); ++i) text += (i == 0 ? "" : ", ") + quoted(heading[i]);
+    for (std::size_t i = 0; i < heading.size(); ++i) text += (i == 0 ? "" : ", ") + in_quotes(heading[i]);
     text += fmt::format("],\n  \"sample_rate_hz\": {},\n", decimal(filters.sample_rate.value()));
     if (filters.by_speed()) {
         text += fmt::format(

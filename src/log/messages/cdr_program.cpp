@@ -49,20 +49,59 @@ void pass_cdr(CdrCursor& cursor, const CdrStep& step) {
     }
 }
 
-void run_cdr(std::span<const CdrStep> steps, std::string_view message,
-             const std::vector<std::ptrdiff_t>& offsets, char* into) {
-    CdrCursor cursor(message);
-    for (const CdrStep& step : steps) {
-        const bool keeps = step.kind == CdrStep::Kind::number || step.kind == CdrStep::Kind::stamp;
-        if (!keeps || offsets[step.leaf] < 0) {
-            pass_cdr(cursor, step);
-        } else if (step.kind == CdrStep::Kind::number) {
-            cursor.number(step.size, into + offsets[step.leaf]);
-        } else {
-            const std::int64_t stamp = cursor.stamp();
-            std::memcpy(into + offsets[step.leaf], &stamp, sizeof stamp);
+namespace {
+
+bool keeps(const CdrStep& step) {
+    return step.kind == CdrStep::Kind::number || step.kind == CdrStep::Kind::stamp;
+}
+
+class CdrReader final : public MessageReader {
+  public:
+    CdrReader(std::shared_ptr<const std::vector<CdrStep>> steps, const LeafOffsets& offsets)
+        : steps_(std::move(steps)), count_(steps_->size()), offsets_(offsets) {
+        // Behind the last useful step there is nothing to go on for.
+        const auto useful = [&](const CdrStep& step) {
+            return keeps(step) ? offsets_[step.leaf] >= 0 : step.kind == CdrStep::Kind::length_is;
+        };
+        while (count_ > 0 && !useful((*steps_)[count_ - 1])) --count_;
+    }
+    void read(std::string_view message, char* into) override {
+        CdrCursor cursor(message);
+        for (std::size_t s = 0; s < count_; ++s) {
+            const CdrStep& step = (*steps_)[s];
+            if (!keeps(step) || offsets_[step.leaf] < 0) {
+                pass_cdr(cursor, step);
+            } else if (step.kind == CdrStep::Kind::number) {
+                cursor.number(step.size, into + offsets_[step.leaf]);
+            } else {
+                const std::int64_t stamp = cursor.stamp();
+                std::memcpy(into + offsets_[step.leaf], &stamp, sizeof stamp);
+            }
         }
     }
+
+  private:
+    std::shared_ptr<const std::vector<CdrStep>> steps_;
+    std::size_t count_;
+    LeafOffsets offsets_;
+};
+
+class CdrProgram final : public MessageProgram {
+  public:
+    explicit CdrProgram(std::vector<CdrStep> steps)
+        : steps_(std::make_shared<const std::vector<CdrStep>>(std::move(steps))) {}
+    [[nodiscard]] std::unique_ptr<MessageReader> reader(const LeafOffsets& offsets) const override {
+        return std::make_unique<CdrReader>(steps_, offsets);
+    }
+
+  private:
+    std::shared_ptr<const std::vector<CdrStep>> steps_;
+};
+
+}  // namespace
+
+std::shared_ptr<const MessageProgram> cdr_program(std::vector<CdrStep> steps) {
+    return std::make_shared<CdrProgram>(std::move(steps));
 }
 
 }  // namespace ripplenotch

@@ -23,7 +23,7 @@ enum class Join {
 /// One number of the messages of another topic.
 struct SideSignal {
     std::string path;                         ///< "/ft.wrench.torque.z"
-    std::string read_as;                      ///< as CdrLeaf has it
+    std::string read_as;                      ///< as MessageLeaf has it
     std::unique_ptr<MessageRecords> records;  ///< its clock and the number, nothing else
     NpyField type;                            ///< of the number, behind the clock
     std::int64_t limit_ns = 0;                ///< the farthest message that is taken

@@ -10,7 +10,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_elements = 64, most_leaves = 4096, most_steps = 100000;
+constexpr std::size_t most_leaves = 4096, most_steps = 100000;
 
 /// Goes through the first message and writes down the way.
 class LayOut {
@@ -33,7 +33,7 @@ class LayOut {
         }
         names_ = outer;
     }
-    std::vector<CdrLeaf> leaves;
+    std::vector<MessageLeaf> leaves;
 
   private:
     void take_names(const std::string& path, std::vector<std::string>& names, std::vector<CdrStep>& steps) {
@@ -51,7 +51,8 @@ class LayOut {
         const bool any = field.count == RosField::Count::any;
         CdrCursor ahead = cursor_;
         const std::size_t count = any ? ahead.length() : field.fixed;
-        const bool listed = count > 0 && count <= most_elements && field.type.kind != RosType::Kind::text;
+        const bool listed =
+            count > 0 && count <= most_listed_elements && field.type.kind != RosType::Kind::text;
         if (!listed) return pass_over(field, count, steps);
         if (any) {
             cursor_.length();
@@ -82,7 +83,7 @@ class LayOut {
                 step.kind = stamp ? CdrStep::Kind::stamp : CdrStep::Kind::number;
                 step.size = type.size;
                 step.leaf = leaves.size();
-                CdrLeaf leaf{path, read_as, {}, stamp, path == "header.stamp"};
+                MessageLeaf leaf{path, read_as, {}, stamp, path == "header.stamp"};
                 leaf.type.kind = stamp ? 'i' : type.number;
                 leaf.type.size = stamp ? 8 : type.size;
                 leaf.type.big_endian = std::endian::native == std::endian::big;
@@ -166,12 +167,11 @@ class LayOut {
 
 }  // namespace
 
-CdrLayout lay_out_cdr(const RosType& type, std::string_view message) {
-    CdrLayout layout;
+MessageLayout lay_out_cdr(const RosType& type, std::string_view message) {
+    std::vector<CdrStep> steps;
     LayOut work(message);
-    work.record(type, "", layout.steps);
-    layout.leaves = std::move(work.leaves);
-    return layout;
+    work.record(type, "", steps);
+    return {std::move(work.leaves), cdr_program(std::move(steps))};
 }
 
 }  // namespace ripplenotch

@@ -7,8 +7,8 @@
 #include <bit>
 
 #include "log/containers/stored_array.hpp"
-#include "log/messages/cdr_program.hpp"
 #include "log/messages/joined_records.hpp"
+#include "log/messages/message_layout.hpp"
 #include "log/messages/message_rows.hpp"
 #include "log/messages/message_source.hpp"
 #include "log/messages/topic_contents.hpp"
@@ -41,11 +41,13 @@ class TopicChoice {
             return number == chosen || is_named(path);
         });
         table.options = fmt::format("--clock {}", header_clock ? "header" : "log");
-        CdrLeaf clock{header_clock ? "header.stamp" : "log_time", "time", {}, true, true};
+        const MessageLayout& layout = topics_[chosen].layout;
+        MessageLeaf clock{"log_time", "time", {}, true, true};
+        for (const MessageLeaf& leaf : layout.leaves)
+            if (leaf.clock && header_clock) clock.path = leaf.path;
         clock.type.kind = 'i';
         clock.type.big_endian = std::endian::native == std::endian::big;
         add_field(channel.topic, clock, table);
-        const CdrLayout& layout = topics_[chosen].layout;
         for (const std::size_t leaf : leaves_beside_clock(layout, header_clock))
             add_field(channel.topic, layout.leaves[leaf], table);
         std::vector<SideSignal> sides = sides_of(chosen, header_clock);
@@ -70,7 +72,7 @@ class TopicChoice {
             const Topic& topic = topics_[c];
             const auto beside = leaves_beside_clock(topic.layout, header_clock);
             for (std::size_t f = 0; f < beside.size(); ++f) {
-                const CdrLeaf& leaf = topic.layout.leaves[beside[f]];
+                const MessageLeaf& leaf = topic.layout.leaves[beside[f]];
                 const std::string path = fmt::format("{}.{}", source_->channels()[c].topic, leaf.path);
                 if (!is_named(path)) continue;
                 const double period_ns = static_cast<double>(topic.to_ns - topic.from_ns) /
@@ -108,7 +110,7 @@ class TopicChoice {
         table.options += fmt::format(" --join {}", how);
         return join_records(std::move(base), std::move(sizes), std::move(sides), join_named(how));
     }
-    static void add_field(const std::string& topic, const CdrLeaf& leaf, RecordTable& table) {
+    static void add_field(const std::string& topic, const MessageLeaf& leaf, RecordTable& table) {
         NpyField field = leaf.type;
         field.name = fmt::format("{}.{}", topic, leaf.path);
         field.offset = table.record_size;
@@ -156,20 +158,11 @@ class TopicChoice {
     void lay_out(std::size_t c) {
         const MessageChannel& channel = source_->channels()[c];
         Topic& topic = topics_[c];
-        std::string_view schema = channel.schema;
-        const bool none = schema.empty();
-        if (none) schema = known_ros_schema(channel.type);
-        if (channel.encoding != "cdr")
-            topic.refusal = fmt::format("{} messages, which are not read", channel.encoding);
-        else if (!none && channel.schema_encoding != "ros2msg")
-            topic.refusal = fmt::format("defined in {}, which is not read", channel.schema_encoding);
-        else if (schema.empty())
-            topic.refusal = "not defined in the recording";
-        else if (topic.seen == 0)
-            topic.refusal = "no message seen";
+        topic.refusal = refusal_of(channel);
+        if (topic.refusal.empty() && topic.seen == 0) topic.refusal = "no message seen";
         if (!topic.refusal.empty()) return;
         try {
-            topic.layout = lay_out_cdr(parse_ros_schema(schema, channel.type), topic.first);
+            topic.layout = lay_out_message(channel, topic.first);
             if (topic.layout.leaves.empty()) topic.refusal = "no numbers";
         } catch (const DataError& error) {
             topic.refusal = fmt::format("not read: {}", error.what());
@@ -189,7 +182,7 @@ class TopicChoice {
             }
             if (!topics_[c].refusal.empty() || best == asked) continue;
             std::vector<std::string> names;
-            for (const CdrLeaf& leaf : topics_[c].layout.leaves) names.push_back(leaf.read_as);
+            for (const MessageLeaf& leaf : topics_[c].layout.leaves) names.push_back(leaf.read_as);
             if (const int tells = names_tell(names); tells > best) {
                 best = tells;
                 chosen = c;
@@ -200,16 +193,15 @@ class TopicChoice {
             for (std::size_t c = 0; c < std::min<std::size_t>(topics_.size(), 5); ++c)
                 seen += fmt::format("{}{} ({}: {})", c == 0 ? "" : ", ", source_->channels()[c].topic,
                                     source_->channels()[c].type, topics_[c].refusal);
-            raise<DataError>(
-                "{}: read {}, expected a topic of numbers in CDR, as of sensor_msgs/msg/JointState",
-                source_->name(), seen.empty() ? "no message" : seen);
+            raise<DataError>("{}: read {}, expected a topic of numbers, as of sensor_msgs/msg/JointState",
+                             source_->name(), seen.empty() ? "no message" : seen);
         }
         return *chosen;
     }
     bool takes_header(std::size_t chosen) const {
         const Topic& topic = topics_[chosen];
         const auto stamp = std::find_if(topic.layout.leaves.begin(), topic.layout.leaves.end(),
-                                        [](const CdrLeaf& leaf) { return leaf.clock; });
+                                        [](const MessageLeaf& leaf) { return leaf.clock; });
         const bool has = stamp != topic.layout.leaves.end();
         if (options_.clock == "log") return false;
         if (options_.clock == "header") {
@@ -220,9 +212,9 @@ class TopicChoice {
         }
         if (!has) return false;
         std::int64_t first = 0;  // who does not stamp leaves it at 0
-        std::vector<std::ptrdiff_t> offsets(topic.layout.leaves.size(), -1);
+        LeafOffsets offsets(topic.layout.leaves.size(), -1);
         offsets[static_cast<std::size_t>(stamp - topic.layout.leaves.begin())] = 0;
-        run_cdr(topic.layout.steps, topic.first, offsets, reinterpret_cast<char*>(&first));
+        topic.layout.program->reader(offsets)->read(topic.first, reinterpret_cast<char*>(&first));
         return first != 0;
     }
 

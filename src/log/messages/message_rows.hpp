@@ -3,11 +3,10 @@
 // The messages of one topic as the bytes of records: a row a message.
 
 #include <cstring>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "log/messages/cdr_program.hpp"
+#include "log/messages/message_layout.hpp"
 #include "log/messages/message_source.hpp"
 #include "log/records/record_table.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -15,7 +14,7 @@
 namespace ripplenotch {
 
 /// The clock, then the leaves but for the one that is it.
-[[nodiscard]] inline std::vector<std::size_t> leaves_beside_clock(const CdrLayout& layout,
+[[nodiscard]] inline std::vector<std::size_t> leaves_beside_clock(const MessageLayout& layout,
                                                                   bool header_clock) {
     std::vector<std::size_t> leaves;
     for (std::size_t l = 0; l < layout.leaves.size(); ++l)
@@ -27,7 +26,7 @@ namespace ripplenotch {
 class MessageRecords final : public RecordSource {
   public:
     /// `header_clock`: the layout has a leaf that is the clock, and it is taken; else the time of recording.
-    MessageRecords(std::unique_ptr<MessageSource> source, std::size_t channel, CdrLayout layout,
+    MessageRecords(std::unique_ptr<MessageSource> source, std::size_t channel, MessageLayout layout,
                    bool header_clock)
         : RecordSource(Name{source->name()}, sizes_of(layout, header_clock)),
           source_(std::move(source)),
@@ -41,7 +40,7 @@ class MessageRecords final : public RecordSource {
   private:
     static constexpr std::size_t buffered_rows = std::size_t{1} << 18;  // bytes
 
-    static std::vector<std::size_t> sizes_of(const CdrLayout& layout, bool header_clock) {
+    static std::vector<std::size_t> sizes_of(const MessageLayout& layout, bool header_clock) {
         std::vector<std::size_t> sizes = {sizeof(std::int64_t)};
         for (const std::size_t leaf : leaves_beside_clock(layout, header_clock))
             sizes.push_back(layout.leaves[leaf].type.size);
@@ -64,24 +63,17 @@ class MessageRecords final : public RecordSource {
                 if (layout_.leaves[l].clock) offsets_[l] = at;
             at += sizeof(std::int64_t);
         }
-        // Behind the last useful step there is nothing to go on for.
-        steps_ = layout_.steps.size();
-        const auto useful = [&](const CdrStep& step) {
-            const bool keeps = step.kind == CdrStep::Kind::number || step.kind == CdrStep::Kind::stamp;
-            return keeps ? offsets_[step.leaf] >= 0 : step.kind == CdrStep::Kind::length_is;
-        };
-        while (steps_ > 0 && !useful(layout_.steps[steps_ - 1])) --steps_;
+        reader_ = layout_.program->reader(offsets_);
     }
     void refill(std::string& bytes) override {
         RecordedMessage message;
-        const auto steps = std::span(layout_.steps).first(steps_);
         while (!ended_ && bytes.size() < buffered_rows) {
             ended_ = !source_->next(message);
             if (ended_) return;
             const std::size_t at = bytes.size();
             bytes.resize(at + record_size());
             try {
-                run_cdr(steps, message.bytes, offsets_, bytes.data() + at);
+                reader_->read(message.bytes, bytes.data() + at);
             } catch (const DataError& error) {
                 raise<DataError>("{}: message {}, {}: read {}", name(), message.number, topic_, error.what());
             }
@@ -91,11 +83,11 @@ class MessageRecords final : public RecordSource {
 
     std::unique_ptr<MessageSource> source_;
     std::string topic_;
-    CdrLayout layout_;
+    MessageLayout layout_;
     bool header_clock_;
-    std::vector<std::ptrdiff_t> offsets_;  ///< of each leaf in a record; -1: left out
+    LeafOffsets offsets_;
     std::ptrdiff_t clock_offset_ = -1;
-    std::size_t steps_ = 0;
+    std::unique_ptr<MessageReader> reader_;
     bool ended_ = false;  ///< behind it some sources would begin again
 };
 

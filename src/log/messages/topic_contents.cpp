@@ -14,7 +14,7 @@ std::optional<double> rate_of(const Topic& topic) {
 }
 
 // Elements of an array are one thing, position[0..6]: the last of those that begin with this one.
-std::size_t last_element(const std::vector<CdrLeaf>& leaves, std::size_t first) {
+std::size_t last_element(const std::vector<MessageLeaf>& leaves, std::size_t first) {
     const std::string& path = leaves[first].path;
     if (!path.ends_with("[0]")) return first;
     const std::string stem = path.substr(0, path.size() - 2);

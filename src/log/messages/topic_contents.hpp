@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "log/messages/cdr_program.hpp"
+#include "log/messages/message_layout.hpp"
 #include "log/messages/message_source.hpp"
 
 namespace ripplenotch {
@@ -16,7 +16,7 @@ struct Topic {
     std::string first;  ///< its first message; empty where none was seen
     std::uint64_t seen = 0;
     std::int64_t from_ns = 0, to_ns = 0;
-    CdrLayout layout;
+    MessageLayout layout;
     std::string refusal;  ///< why it has no numbers; empty where it has
 };
 

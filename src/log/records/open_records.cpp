@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "log/records/open_records.hpp"
 
-#include <cmath>
-
+#include "log/npy/kept_rows.hpp"
 #include "log/npy/npy_reader.hpp"
-#include "log/npy/temporary_bytes.hpp"
-#include "log/row_cut.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -14,35 +11,18 @@ namespace {
 class KeptRecords final : public ByteSource {
   public:
     KeptRecords(NpyReader& whole, const ReadOptions& options)
-        : ByteSource(Name{whole.layout().source}), cut_(options, whole.layout()), table_(whole.table()) {
-        const std::size_t size = whole.header().record_size;
-        const bool timed = whole.layout().chosen.time.has_value();
-        RowBlock block;
-        while (whole.fetch(block)) {
-            const std::string_view bytes = block.bytes;
-            for (std::size_t at = 0; at < bytes.size(); at += size) {
-                std::optional<double> time;
-                if (timed) time = whole.time_of(bytes.data() + at);
-                const bool stays = cut_.keeps(time && std::isfinite(*time) ? time : std::nullopt);
-                numbers_.add(stays);
-                if (stays) rows_.put(bytes.substr(at, size));
-            }
-        }
-        cut_.require_rows();
-        table_.rows = cut_.kept();
-        rows_.rewind();
+        : ByteSource(Name{whole.layout().source}), rows_(whole, options), table_(whole.table()) {
+        table_.rows = rows_.cut().kept();
     }
     std::size_t read(char* into, std::size_t size) override { return rows_.read(into, size); }
     [[nodiscard]] std::size_t number_in_file(std::size_t number) const override {
-        return numbers_.in_file(number);
+        return rows_.number_in_file(number);
     }
-    [[nodiscard]] const RowCut& rows() const { return cut_; }
+    [[nodiscard]] const RowCut& cut() const { return rows_.cut(); }
     [[nodiscard]] const RecordTable& table() const { return table_; }
 
   private:
-    RowCut cut_;
-    KeptNumbers numbers_;
-    TemporaryBytes rows_;
+    KeptRows rows_;
     RecordTable table_;
 };
 
@@ -63,7 +43,7 @@ LogCut cut_records(std::unique_ptr<ByteSource> source, std::string first_bytes, 
     Records records = make(std::move(source), std::move(first_bytes), options);
     NpyReader whole(std::move(records.bytes), std::move(records.table), clock_only(options), true);
     auto bytes = std::make_unique<KeptRecords>(whole, options);
-    auto outside = bytes->rows().outside();
+    auto outside = bytes->cut().outside();
     return {std::move(bytes), whole.layout(), std::move(outside)};
 }
 
