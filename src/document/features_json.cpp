@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
+Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
 
 void add_descriptors(const FeatureLine& line, Json& json) {
     Json reasons = Json::object();
@@ -41,7 +41,7 @@ Json line_to_json(const FeatureLine& line) {
         json["error_code"] = line.error_code;
         return json;
     }
-    json["date"] = or_null(line.date);
+    json["date"] = text_or_null(line.date);
     json["date_source"] = line.date ? line.date_source : "";
     json["temperature_degc"] = six_digits(line.temperature_degc);
     json["temperature_source"] = line.temperature_degc ? line.temperature_source : "";

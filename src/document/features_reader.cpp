@@ -12,11 +12,11 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::string_view wanted = "a line of features, as 'ripplenotch features' prints it";
+constexpr std::string_view features_line = "a line of features, as 'ripplenotch features' prints it";
 
-class Line {
+class LineFields {
   public:
-    Line(const Json& json, const std::string& source) : json_(json), source_(source) {}
+    LineFields(const Json& json, const std::string& source) : json_(json), source_(source) {}
 
     [[noreturn]] void refuse(std::string_view name, std::string_view expected) const {
         const auto found = json_.find(name);
@@ -78,7 +78,7 @@ bool is_known(std::string_view name) {
                        [&](const MixField& field) { return field.name == name; });
 }
 
-void read_descriptors(const Line& line, const std::string& source, FeatureLine& read) {
+void read_descriptors(const LineFields& line, const std::string& source, FeatureLine& read) {
     std::size_t intervals = 0;
     for (const auto& [name, value] : line.json().items()) {
         if (is_known(name)) continue;
@@ -100,7 +100,7 @@ void read_descriptors(const Line& line, const std::string& source, FeatureLine& 
     if (intervals != 0) raise<DataError>("{}: an interval stands beside no value", source);
 }
 
-void read_conditions(const Line& line, FeatureLine& read) {
+void read_conditions(const LineFields& line, FeatureLine& read) {
     const auto date = line.json().find("date");
     if (date == line.json().end() || !(date->is_null() || date->is_string()))
         line.refuse("date", "a date or null");
@@ -122,9 +122,9 @@ void read_conditions(const Line& line, FeatureLine& read) {
 }  // namespace
 
 FeatureLine feature_line_from_json(std::string_view text, const std::string& source) {
-    const Json json = read_json(text, source, wanted);
-    if (!json.is_object()) raise<DataError>("{}: expected {}", source, wanted);
-    const Line line(json, source);
+    const Json json = read_json(text, source, features_line);
+    if (!json.is_object()) raise<DataError>("{}: expected {}", source, features_line);
+    const LineFields line(json, source);
     if (line.text("schema") != features_schema) line.refuse("schema", features_schema);
     FeatureLine read;
     read.version = line.text("version");

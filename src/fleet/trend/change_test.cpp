@@ -17,10 +17,10 @@ constexpr std::size_t enough_exceed = 10;  // orders that show as much, after wh
 constexpr double hardly_worse = 3.84;      // fall of twice the log-likelihood, 95 % of one degree of freedom
 constexpr double takes_part = 4.0;         // t squared
 
-using Order = std::vector<std::size_t>;
+using RowOrder = std::vector<std::size_t>;
 
 // Blocks of rows that stand together stay together; where they are cut is chance.
-Order shuffled(std::size_t rows, std::size_t block, std::mt19937_64& engine) {
+RowOrder shuffled(std::size_t rows, std::size_t block, std::mt19937_64& engine) {
     const std::size_t offset = block > 1 ? engine() % block : 0;
     std::vector<std::size_t> starts;
     for (std::size_t at = 0; at < rows; at = at == 0 && offset > 0 ? offset : at + block)
@@ -28,7 +28,7 @@ Order shuffled(std::size_t rows, std::size_t block, std::mt19937_64& engine) {
     std::vector<std::size_t> blocks(starts.size());
     std::iota(blocks.begin(), blocks.end(), std::size_t{0});
     for (std::size_t i = blocks.size(); i > 1; --i) std::swap(blocks[i - 1], blocks[engine() % i]);
-    Order order;
+    RowOrder order;
     order.reserve(rows);
     for (const std::size_t b : blocks) {
         const std::size_t end = b + 1 < starts.size() ? starts[b + 1] : rows;
@@ -52,7 +52,7 @@ std::size_t block_length(const std::vector<Scan>& scans, std::size_t rows) {
                                    std::max<std::size_t>(rows / 6, 1));
 }
 
-double largest(const std::vector<Scan>& scans, const Order& order, std::vector<double>& room) {
+double largest(const std::vector<Scan>& scans, const RowOrder& order, std::vector<double>& room) {
     double most = 0.0;
     for (const Scan& scan : scans) most = std::max(most, scan.largest_of(order, room));
     return most;

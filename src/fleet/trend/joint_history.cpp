@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/normal_errors.hpp"
 #include "fleet/trend/line_checks.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
@@ -16,10 +17,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double seconds_a_day = 86400.0, days_a_month = 365.25 / 12.0;
+constexpr double seconds_a_day = 86400.0;
 constexpr double comparable = 2.5;    // speeds that differ by more are another job of the joint
 constexpr double fewest_share = 0.6;  // of the lines have to tell a descriptor
-constexpr double normal_95 = 1.96;
 constexpr std::size_t lines_for_bend = 20;
 
 double median_of(std::vector<double> values) { return median_in(values); }
@@ -108,7 +108,8 @@ void add_series(JointHistory& history) {
             }
             series.rows.push_back(row);
             series.value.push_back(*one.value);
-            series.error.push_back(one.ci95 ? (one.ci95->high - one.ci95->low) / (2.0 * normal_95) : 0.0);
+            series.error.push_back(one.ci95 ? (one.ci95->high - one.ci95->low) / (2.0 * normal_95_errors)
+                                            : 0.0);
         }
     }
     for (const std::string& name : order) {

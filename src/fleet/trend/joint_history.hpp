@@ -10,6 +10,8 @@
 
 namespace ripplenotch {
 
+inline constexpr double days_a_month = 365.25 / 12.0;
+
 /// One descriptor in the rows that tell it.
 struct Series {
     std::string name;

@@ -10,7 +10,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t fewest_before = 5, fewest_after = 3;
-constexpr double least_left = 0.05;  // of a step, beside conditions and other changes
+constexpr double least_left_of_step = 0.05;  // of a step, beside conditions and other changes
 constexpr std::size_t fewest_torques = 3;
 
 double squares_of(const std::vector<double>& values) {
@@ -41,7 +41,7 @@ Scan::Scan(const JointHistory& history, std::vector<std::size_t> rows, Regressio
         FoundChange step;
         step.row = rows_[place];
         const double left = squares_of(regression_.beside(change_column(history, step, rows_)));
-        if (left > least_left * behind * (all - behind) / all) norm_[place] = left;
+        if (left > least_left_of_step * behind * (all - behind) / all) norm_[place] = left;
     }
     FoundChange drift;
     drift.drift = true;
@@ -52,7 +52,7 @@ Scan::Scan(const JointHistory& history, std::vector<std::size_t> rows, Regressio
     for (const double value : column) middle += value / static_cast<double>(n);
     for (std::size_t i = 0; i < n; ++i)
         spread += (column[i] - middle) * (column[i] - middle) * weights[i] * weights[i];
-    if (!(slope_norm_ > least_left * spread)) slope_norm_ = 0.0;
+    if (!(slope_norm_ > least_left_of_step * spread)) slope_norm_ = 0.0;
     const Found found = look(regression_.residual());
     largest_ = found.t_squared;
     drift_ = found.drift;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/normal_errors.hpp"
 #include "fleet/trend/cause.hpp"
 #include "fleet/trend/courses.hpp"
 #include "fleet/trend/kinds.hpp"
@@ -15,9 +16,7 @@ namespace {
 
 constexpr std::size_t most_changes = 4;
 constexpr double spent_at_once = 0.8;
-constexpr double normal_95 = 1.96;
 constexpr double least_t_squared = 9.0;  // of a descriptor that is listed with a change
-constexpr double days_a_month = 365.25 / 12.0;
 
 // The same for a joint whatever else is in the fleet (Fowler, Noll and Vo).
 std::uint64_t seed_of(const JointHistory& history, std::uint64_t seed, std::size_t turn) {
@@ -48,11 +47,11 @@ JointChange told(const JointHistory& history, const std::vector<Regression>& kno
     for (const ChangedSeries& one : sure) {
         if (one.extra.t_squared < least_t_squared) continue;
         const Series& series = history.series[one.series];
-        ChangedDescriptor part{
-            series.name,
-            one.extra.size,
-            {one.extra.size - normal_95 * one.extra.error, one.extra.size + normal_95 * one.extra.error},
-            {}};
+        ChangedDescriptor part{series.name,
+                               one.extra.size,
+                               {one.extra.size - normal_95_errors * one.extra.error,
+                                one.extra.size + normal_95_errors * one.extra.error},
+                               {}};
         if (std::abs(one.baseline) > 0.0 && !series.name.ends_with("_phase_deg"))
             part.percent = 100.0 * one.extra.size / std::abs(one.baseline);
         change.descriptors.push_back(std::move(part));
@@ -83,8 +82,8 @@ std::vector<DescriptorTrend> told_descriptors(const JointHistory& history,
         if (const auto slope = all[s].extra(change_column(history, drift, series.rows));
             slope && span_months > 0.0) {
             one.slope_per_month = slope->size / span_months;
-            one.slope_ci95 = Interval{(slope->size - normal_95 * slope->error) / span_months,
-                                      (slope->size + normal_95 * slope->error) / span_months};
+            one.slope_ci95 = Interval{(slope->size - normal_95_errors * slope->error) / span_months,
+                                      (slope->size + normal_95_errors * slope->error) / span_months};
         }
         told.push_back(std::move(one));
     }
