@@ -23,12 +23,13 @@ SEES = {
     "evaluate": {"core", "filter", "analysis", "design"},
     "export": {"core", "design"},
     "diagnose": {"core", "model", "analysis"},
+    "fleet": {"core", "analysis", "model"},
     "figure": {"core"},
-    "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "figure"},
-    "document": {"core", "figure", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "arm"},
+    "chart": {"core", "log", "analysis", "design", "filter", "evaluate", "model", "diagnose", "fleet", "figure"},
+    "document": {"core", "figure", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "arm", "fleet"},
     "page": {"core", "diagnose", "figure", "chart", "document"},
     "cli": {"core", "log", "analysis", "survey", "design", "filter", "evaluate", "model", "export", "diagnose", "figure", "chart",
-            "document", "page", "arm"},
+            "document", "page", "arm", "fleet"},
 }
 
 # Third-party header -> the files that may include it.

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/fleet/features.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fleet/features/joint_fit.hpp"
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/model/measured_motion.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_samples = std::size_t{1} << 14U;
+constexpr std::size_t most_orders = 6;
+
+Descriptor untold(std::string stem, std::string unit, std::string reason) {
+    return {std::move(stem), std::move(unit), {}, {}, std::move(reason)};
+}
+
+Descriptor ratio_of(const Identification& found) {
+    const GearRatioFit& fit = found.gear_ratio;
+    if (!fit.value) return untold("gear_ratio", "", found.verdict);
+    return {"gear_ratio", "", fit.value, Interval{fit.ci95_low, fit.ci95_high}, {}};
+}
+
+Descriptor resonance_of(const Identification& found) {
+    if (found.hums.empty())
+        return untold("resonance", "hz", "no band of frequencies holds more torque than the lines");
+    const Hum& hum = found.hums.front();
+    return {"resonance", "hz", hum.peak_hz, Interval{hum.from_hz, hum.to_hz}, {}};
+}
+
+Descriptor noise_of(const JointFit& joint) {
+    const double noise_nm = joint.noise_nm();
+    if (!(noise_nm > 0.0))
+        return untold("noise_floor", "nm", "the torque holds its values from sample to sample");
+    return {"noise_floor", "nm", noise_nm, {}, {}};
+}
+
+// Of the ripple: what is stated, else what was found.
+std::optional<GearAccount> gear_of_ripple(const Identification& found,
+                                          const std::optional<GearAccount>& stated) {
+    std::optional<GearAccount> gear = stated ? stated : found_gear(found);
+    if (gear && gear->orders.size() > most_orders) gear->orders.resize(most_orders);
+    return gear;
+}
+
+}  // namespace
+
+Features features_of(const TraceView& log, const Identification& found,
+                     const std::optional<GearAccount>& stated) {
+    std::vector<double> torque_nm(log.torque_nm.begin(), log.torque_nm.end());
+    const Motion motion = thinned(motion_along(log), torque_nm, most_samples);
+    const MotionFacts facts = motion_facts(motion, torque_nm, log.has_position());
+    const JointFit joint(motion, torque_nm, facts, gear_of_ripple(found, stated), log.sample_rate);
+    Features features{facts.mix, {}};
+    features.mix.load_rms_nm = joint.load_rms_nm();
+    features.descriptors.push_back(ratio_of(found));
+    for (Descriptor& one : joint.ripple()) features.descriptors.push_back(std::move(one));
+    for (Descriptor& one : joint.torques()) features.descriptors.push_back(std::move(one));
+    features.descriptors.push_back(noise_of(joint));
+    features.descriptors.push_back(resonance_of(found));
+    return features;
+}
+
+}  // namespace ripplenotch

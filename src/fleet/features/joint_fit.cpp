@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+#include "fleet/features/joint_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr double least_travel_deg = 20.0;  // less, and the weight of a link is hardly told from a zero error
+constexpr double width_deg_s = 0.5;        // of the step of friction where the joint reverses
+constexpr double samples_a_period = 3.0;
+constexpr std::size_t fewest_samples = 200;
+constexpr std::size_t stretches = 40;      // of the log, for errors that are not white
+constexpr double widest_of_value = 0.5;    // an interval's half, of the value ...
+constexpr double widest_of_torque = 0.02;  // ... or, in torque, of all torque of the log
+constexpr double widest_phase_deg = 90.0;  // of its interval, from end to end
+constexpr double least_load = 0.1;         // of inertia and weight, of all torque
+constexpr std::size_t fewest_reversals = 2;
+constexpr double far_deviations = 10.0;  // of a residual that is no noise
+constexpr double deviations_of_median = 1.4826;
+constexpr int linear_iterations = 3, iterations = 15;
+
+FitOptions fit_options(std::size_t samples, int most_iterations) {
+    FitOptions options;
+    options.most_iterations = most_iterations;
+    options.settled = 1e-6;
+    options.error_stretch = std::max<std::size_t>(8, samples / stretches);
+    return options;
+}
+
+double rms(const std::vector<double>& values) {
+    double squares = 0.0;
+    for (const double value : values) squares += value * value;
+    return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
+}
+
+}  // namespace
+
+/// One value of the fit as a descriptor.
+struct JointFit::Wanted {
+    std::string stem, unit, effect, parameter;
+    double carrier = 1.0;  ///< rms torque in Nm of a value of 1
+    std::size_t turn = 0;  ///< which term of that effect
+};
+
+JointFit::JointFit(const Motion& motion, std::span<const double> torque_nm, const MotionFacts& facts,
+                   std::optional<GearAccount> gear, Hertz rate)
+    : motion_(motion), torque_nm_(torque_nm), facts_(facts), gear_(std::move(gear)), rate_(rate) {
+    if (motion.size() < fewest_samples)
+        raise<DataError>("the log has {} rows; features need at least {}", motion.size(), fewest_samples);
+    build();
+    FitOptions options = fit_options(motion_.size(), linear_iterations);
+    options.errors = false;
+    fit_ = fit(model_, motion_, torque_nm_, options);
+    refine();
+}
+
+// What needs a first guess of the rest: friction that grows with the load, which is of inertia and weight,
+// and friction that turns over within an angle after each reversal (Dahl). Samples far off, as where the
+// speed jumps, do not count.
+void JointFit::refine() {
+    Model guess = fit_.model;
+    if (facts_.both_directions() && load_rms_nm().value_or(0.0) > least_load * facts_.mix.torque_rms_nm) {
+        const std::string friction = fmt::format("load-friction,exponent=1,width_deg_s={}", width_deg_s);
+        guess.terms.push_back(parse_term(friction + ",torque_nm=0.01"));
+        add_term(friction);
+    }
+    const std::vector<unsigned char> use = near_samples();
+    FitOptions options = fit_options(motion_.size(), iterations);
+    options.first_guess = &guess;
+    options.use = use;
+    const FittedValue* coulomb = fitted("coulomb-friction", "torque_nm");
+    if (facts_.mix.reversals < fewest_reversals)
+        no_wind_ = fmt::format("{} reversals; {} are needed", facts_.mix.reversals, fewest_reversals);
+    else if (!facts_.has_position)
+        no_wind_ = "the log has no position";
+    else if (coulomb == nullptr || !(coulomb->value > 0.0))
+        no_wind_ = "there is no friction whose change of side could be seen";
+    else if (winds(coulomb->term, coulomb->value, options))
+        return;
+    options.first_guess = &guess;
+    fit_ = fit(model_, motion_, torque_nm_, options);
+}
+
+// Takes the fit whose friction turns over within an angle, if the log tells the angle.
+bool JointFit::winds(std::size_t place, double friction_nm, FitOptions options) {
+    Model open = model_, guess = *options.first_guess;
+    open.terms[place] = parse_term("hysteresis,initial_state=0");
+    guess.terms[place] = parse_term(
+        fmt::format("hysteresis,torque_nm={},width_deg=0.1,initial_state=0", shortest(friction_nm)));
+    options.first_guess = &guess;
+    const Fit wound = fit(open, motion_, torque_nm_, options);
+    const auto width = std::find_if(wound.values.begin(), wound.values.end(), [&](const FittedValue& value) {
+        return value.term == place &&
+               open.terms[place].effect->parameters[value.parameter].name == "width_deg";
+    });
+    if (width == wound.values.end() || width->at_bound || !width->ci95)
+        no_wind_ = "the friction changes side too fast, or the log does not show how";
+    else if (width->ci95->high - width->ci95->low > 2.0 * width->value)
+        no_wind_ = fmt::format("known to +/- {:.2g} deg only, with a best value of {:.2g}",
+                               0.5 * (width->ci95->high - width->ci95->low), width->value);
+    if (!no_wind_.empty()) return false;
+    model_ = open;
+    fit_ = wound;
+    return true;
+}
+
+std::vector<unsigned char> JointFit::near_samples() const {
+    std::vector<double> left = predict_nm(fit_.model, motion_), sizes;
+    for (std::size_t k = 0; k < left.size(); ++k) sizes.push_back(std::abs(torque_nm_[k] - left[k]));
+    std::vector<double> sorted = sizes;
+    const double far = far_deviations * deviations_of_median * median_in(sorted);
+    std::vector<unsigned char> use;
+    for (const double size : sizes) use.push_back(size <= far || !(far > 0.0) ? 1 : 0);
+    return use;
+}
+
+void JointFit::add_term(const std::string& spec) { model_.terms.push_back(parse_term(spec)); }
+
+void JointFit::build() {
+    model_.gear_ratio = gear_ ? gear_->ratio : GearRatio(1.0);
+    add_term("offset");
+    const bool moves = facts_.mix.moving_share > 0.0;
+    if (moves) add_term("inertia");
+    if (facts_.mix.travel_deg >= least_travel_deg) add_term("gravity");
+    if (facts_.both_directions()) {
+        add_term(fmt::format("coulomb-friction,width_deg_s={}", width_deg_s));
+        if (facts_.several_speeds()) add_term("viscous-friction");
+    }
+    if (!gear_ || !moves) return;
+    for (const Order order : gear_->orders)
+        if (too_fast(order).empty()) add_term(fmt::format("ripple,order={}", shortest(order.value())));
+}
+
+std::string JointFit::too_fast(Order order) const {
+    const double hz = order.value() * gear_->ratio.value() * facts_.mix.speed_p50_deg_s / 360.0;
+    if (hz * samples_a_period <= rate_.value()) return {};
+    return fmt::format(
+        "at {:.3g} deg/s this line is at {:.3g} Hz, beyond a third of the {:.4g} Hz of the log",
+        facts_.mix.speed_p50_deg_s, hz, rate_.value());
+}
+
+const FittedValue* JointFit::fitted(const std::string& effect, const std::string& parameter,
+                                    std::size_t turn) const {
+    for (std::size_t t = 0; t < model_.terms.size(); ++t) {
+        if (model_.terms[t].effect->name != effect || turn-- > 0) continue;
+        const auto place = find_parameter(*model_.terms[t].effect, parameter);
+        for (const FittedValue& value : fit_.values)
+            if (value.term == t && value.parameter == place) return &value;
+        return nullptr;
+    }
+    return nullptr;
+}
+
+Descriptor JointFit::told(const Wanted& wanted, std::string reason) const {
+    Descriptor one{wanted.stem, wanted.unit, {}, {}, std::move(reason)};
+    if (!one.reason.empty()) return one;
+    const FittedValue* value = fitted(wanted.effect, wanted.parameter, wanted.turn);
+    if (value == nullptr) {
+        one.reason = "the motion of this log does not show it";
+    } else if (!value->standard_error || !value->ci95 || !std::isfinite(value->value)) {
+        one.reason = "this log does not tell it from the other torques";
+    } else {
+        const double half = 0.5 * (value->ci95->high - value->ci95->low);
+        const double widest = std::max(widest_of_value * std::abs(value->value),
+                                       widest_of_torque * facts_.mix.torque_rms_nm / wanted.carrier);
+        if (!(half <= widest)) {
+            one.reason =
+                fmt::format("known to +/- {:.2g} only, with a best value of {:.2g}", half, value->value);
+        } else {
+            one.value = value->value;
+            one.ci95 = value->ci95;
+        }
+    }
+    return one;
+}
+
+std::vector<Descriptor> JointFit::ripple() const {
+    std::vector<Descriptor> all;
+    if (!gear_) return all;
+    std::size_t turn = 0;
+    for (const Order order : gear_->orders) {
+        const std::string stem = "ripple_" + shortest(order.value());
+        std::string reason = too_fast(order);
+        if (reason.empty() && !(facts_.mix.moving_share > 0.0)) reason = "the joint rests";
+        const std::size_t here = reason.empty() ? turn++ : turn;
+        all.push_back(
+            told({stem + "_amplitude", "nm", "ripple", "amplitude_nm", std::sqrt(0.5), here}, reason));
+        const bool amplitude = all.back().value.has_value();
+        Descriptor phase{stem + "_phase", "deg", {}, {}, reason};
+        const FittedValue* value = fitted("ripple", "phase_deg", here);
+        const bool sharp = amplitude && value != nullptr && value->ci95 &&
+                           value->ci95->high - value->ci95->low < widest_phase_deg;
+        if (reason.empty() && !facts_.has_position)
+            phase.reason = "the log has no position, and so no angle to count from";
+        else if (reason.empty() && !sharp)
+            phase.reason = "the amplitude is too small for a phase";
+        if (phase.reason.empty()) {
+            phase.value = value->value;
+            phase.ci95 = value->ci95;
+        }
+        all.push_back(std::move(phase));
+    }
+    return all;
+}
+
+std::vector<Descriptor> JointFit::torques() const {
+    std::string one_way, one_speed;
+    if (!facts_.both_directions()) one_way = "the joint does not move in both directions";
+    if (one_way.empty() && !facts_.several_speeds())
+        one_speed = "the joint moves at one speed, where viscous and Coulomb friction look alike";
+    const std::string& friction = one_way.empty() ? one_speed : one_way;
+    const std::string short_way = facts_.mix.travel_deg >= least_travel_deg
+                                      ? ""
+                                      : fmt::format("the joint travels {:.3g} deg, and a weight needs {:g}",
+                                                    facts_.mix.travel_deg, least_travel_deg);
+    const double moving = std::sqrt(facts_.mix.moving_share);
+    const double load_nm = std::max(load_rms_nm().value_or(0.0), 1e-9);
+    std::vector<Descriptor> all;
+    all.push_back(told(
+        {"coulomb_friction", "nm", no_wind_.empty() ? "hysteresis" : "coulomb-friction", "torque_nm", moving},
+        friction));
+    all.push_back(told({"viscous_friction", "nm_per_deg_s", "viscous-friction", "coefficient_nm_per_deg_s",
+                        facts_.speed_rms_deg_s},
+                       friction));
+    all.push_back(told({"load_friction", "nm_per_nm", "load-friction", "torque_nm", load_nm},
+                       fitted("load-friction", "torque_nm") != nullptr || !one_way.empty()
+                           ? one_way
+                           : "the joint carries too little beside its friction"));
+    all.push_back(lost_motion());
+    all.push_back(told({"inertia", "kgm2", "inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2}, ""));
+    all.push_back(told({"gravity", "nm", "gravity", "amplitude_nm", std::sqrt(0.5)}, short_way));
+    all.push_back(told({"sensor_zero", "nm", "offset", "torque_nm", 1.0}, one_way));
+    return all;
+}
+
+Descriptor JointFit::lost_motion() const {
+    if (!no_wind_.empty()) return {"lost_motion", "deg", {}, {}, no_wind_};
+    const FittedValue* width = fitted("hysteresis", "width_deg");
+    return {"lost_motion", "deg", width->value, width->ci95, {}};
+}
+
+// Second differences, of which the few at reversals and jumps do not count: their median.
+double JointFit::noise_nm() const {
+    std::vector<double> left = predict_nm(fit_.model, motion_), second;
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] = torque_nm_[k] - left[k];
+    for (std::size_t k = 2; k < left.size(); ++k)
+        second.push_back(std::abs(left[k] - 2.0 * left[k - 1] + left[k - 2]));
+    return deviations_of_median * median_in(second) / std::sqrt(6.0);
+}
+
+std::optional<double> JointFit::load_rms_nm() const {
+    Model load{fit_.model.gear_ratio, {}};
+    for (const Term& term : fit_.model.terms)
+        if (term.effect->bears_load) load.terms.push_back(term);
+    if (load.terms.empty()) return std::nullopt;
+    const double load_nm = rms(predict_nm(load, motion_));
+    return std::isfinite(load_nm) ? std::optional(load_nm) : std::nullopt;
+}
+
+}  // namespace ripplenotch

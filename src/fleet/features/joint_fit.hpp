@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal: the model of a joint, fitted to one log, with only the terms that its motion can tell.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fleet/features/motion_facts.hpp"
+#include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/fleet/feature_line.hpp"
+#include "ripplenotch/model/fit.hpp"
+
+namespace ripplenotch {
+
+class JointFit {
+  public:
+    /// All must outlive it. `rate`: of the log, before it was thinned. Throws DataError for too few samples.
+    JointFit(const Motion& motion, std::span<const double> torque_nm, const MotionFacts& facts,
+             std::optional<GearAccount> gear, Hertz rate);
+
+    /// Amplitude and phase of each order of the gear; none where there is no gear.
+    [[nodiscard]] std::vector<Descriptor> ripple() const;
+    /// Coulomb, viscous and load friction, lost motion, inertia, gravity, zero of the sensor.
+    [[nodiscard]] std::vector<Descriptor> torques() const;
+    /// rms torque of inertia and gravity; empty where neither is fitted.
+    [[nodiscard]] std::optional<double> load_rms_nm() const;
+
+    /// rms of what is new from sample to sample beside the fit.
+    [[nodiscard]] double noise_nm() const;
+
+  private:
+    struct Wanted;
+    void add_term(const std::string& spec);
+    void build();
+    void refine();
+    [[nodiscard]] bool winds(std::size_t place, double friction_nm, FitOptions options);
+    [[nodiscard]] std::vector<unsigned char> near_samples() const;
+    [[nodiscard]] Descriptor told(const Wanted& wanted, std::string reason) const;
+    [[nodiscard]] Descriptor lost_motion() const;
+    [[nodiscard]] const FittedValue* fitted(const std::string& effect, const std::string& parameter,
+                                            std::size_t turn = 0) const;
+    [[nodiscard]] std::string too_fast(Order order) const;
+
+    const Motion& motion_;
+    std::span<const double> torque_nm_;
+    const MotionFacts& facts_;
+    std::optional<GearAccount> gear_;
+    Hertz rate_;
+    std::string no_wind_;  ///< why the angle in which friction turns over is not told; empty: it is
+    Model model_;
+    Fit fit_;
+};
+
+}  // namespace ripplenotch

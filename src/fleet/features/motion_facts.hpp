@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal: what the motion of a log lets be told of the joint.
+
+#include "ripplenotch/fleet/feature_line.hpp"
+#include "ripplenotch/model/effect.hpp"
+
+namespace ripplenotch {
+
+struct MotionFacts {
+    MotionMix mix;
+    double moving_deg_s = 0.0;     ///< slower samples count as resting
+    double speed_rms_deg_s = 0.0;  ///< of all samples
+    double acceleration_rms_rad_s2 = 0.0;
+    bool has_position = false;
+
+    [[nodiscard]] bool both_directions() const;
+    [[nodiscard]] bool several_speeds() const;
+};
+
+/// The motion in at most so many samples, evenly spread, and the torque of the same ones.
+[[nodiscard]] Motion thinned(const Motion& motion, std::vector<double>& torque_nm, std::size_t most);
+
+[[nodiscard]] MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm,
+                                       bool has_position);
+
+}  // namespace ripplenotch

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+#include "fleet/trend/cause.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/linear_algebra.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double unlikely_left = 5.0;  // chi square of what a cause leaves over its freedom, in deviations
+constexpr double took_part = 16.0;     // t squared of a descriptor that is named where no cause fits
+
+/// What would change which series: a column a number that is open.
+struct Hypothesis {
+    std::string name;
+    std::vector<VectorXd> columns;
+};
+
+bool is_phase(const Series& series) { return series.name.ends_with("_phase_deg"); }
+bool is_ripple(const Series& series) {
+    return series.name.starts_with("ripple_") && series.name.ends_with("_amplitude_nm");
+}
+// "2" of "ripple_2_amplitude_nm"
+std::string order_of(const Series& series) { return series.name.substr(7, series.name.find('_', 7) - 7); }
+
+class Namer {
+  public:
+    Namer(const JointHistory& history, const std::vector<ChangedSeries>& changed)
+        : history_(history), changed_(changed) {
+        single("coulomb_friction_nm", "Coulomb friction");
+        single("viscous_friction_nm_per_deg_s", "viscous friction");
+        single("load_friction_nm_per_nm", "load friction");
+        single("lost_motion_deg", "lost motion");
+        single("sensor_zero_nm", "zero of the torque sensor");
+        single("noise_floor_nm", "noise of the torque sensor");
+        single("resonance_hz", "resonance");
+        single("inertia_kgm2", "inertia of the load");
+        single("gravity_nm", "weight of the load");
+        several("friction", {"coulomb_friction_nm", "viscous_friction_nm_per_deg_s"});
+        several("load", {"inertia_kgm2", "gravity_nm"});
+        ripple();
+        gain();
+        phases();
+        ratio();
+    }
+    [[nodiscard]] const std::vector<Hypothesis>& list() const { return list_; }
+
+  private:
+    [[nodiscard]] const Series& series(std::size_t i) const { return history_.series[changed_[i].series]; }
+    [[nodiscard]] VectorXd unit(std::size_t i) const {
+        return VectorXd::Unit(static_cast<Index>(changed_.size()), static_cast<Index>(i));
+    }
+    template <class Holds>
+    std::vector<VectorXd> units_where(Holds holds) const {
+        std::vector<VectorXd> found;
+        for (std::size_t i = 0; i < changed_.size(); ++i)
+            if (holds(series(i))) found.push_back(unit(i));
+        return found;
+    }
+    void single(const std::string& name, const std::string& cause) {
+        auto columns = units_where([&](const Series& one) { return one.name == name; });
+        if (!columns.empty()) list_.push_back({cause, std::move(columns)});
+    }
+    void several(const std::string& cause, const std::vector<std::string>& names) {
+        auto columns = units_where([&](const Series& one) {
+            return std::find(names.begin(), names.end(), one.name) != names.end();
+        });
+        if (columns.size() > 1) list_.push_back({cause, std::move(columns)});
+    }
+    void ripple() {
+        for (std::size_t i = 0; i < changed_.size(); ++i)
+            if (is_ripple(series(i))) list_.push_back({"ripple of order " + order_of(series(i)), {unit(i)}});
+    }
+    // Another gain moves all torques by the same part of each.
+    void gain() {
+        VectorXd column = VectorXd::Zero(static_cast<Index>(changed_.size()));
+        int torques = 0;
+        for (std::size_t i = 0; i < changed_.size(); ++i) {
+            if (!series(i).torque || series(i).name == "sensor_zero_nm") continue;
+            column[static_cast<Index>(i)] = changed_[i].baseline;
+            ++torques;
+        }
+        if (torques > 1) list_.push_back({"gain of the torque sensor", {column}});
+    }
+    void phases() {
+        auto columns = units_where(is_phase);
+        if (!columns.empty())
+            list_.push_back({"phase of the ripple (encoder or gear set anew)", std::move(columns)});
+    }
+    // A ripple that is measured at the order of another gear is none of either.
+    void ratio() {
+        auto columns = units_where(
+            [](const Series& one) { return one.name == "gear_ratio" || is_phase(one) || is_ripple(one); });
+        const auto own = units_where([](const Series& one) { return one.name == "gear_ratio"; });
+        if (own.empty()) return;
+        list_.push_back({"gear ratio (another gear)", own});
+        if (columns.size() > 1) list_.push_back({"gear ratio (another gear)", std::move(columns)});
+    }
+
+    const JointHistory& history_;
+    const std::vector<ChangedSeries>& changed_;
+    std::vector<Hypothesis> list_;
+};
+
+// Residuals of the series at the rows that all of them have, beside the change.
+MatrixXd correlation_of(const JointHistory& history, const std::vector<Regression>& known,
+                        const FoundChange& change, const std::vector<ChangedSeries>& changed) {
+    const auto d = static_cast<Index>(changed.size()), n = static_cast<Index>(history.lines.size());
+    MatrixXd residual = MatrixXd::Zero(n, d);
+    for (Index i = 0; i < d; ++i) {
+        const ChangedSeries& one = changed[static_cast<std::size_t>(i)];
+        const auto& rows = history.series[one.series].rows;
+        const auto column = known[one.series].beside(change_column(history, change, rows));
+        const auto& before = known[one.series].residual();
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            residual(static_cast<Index>(rows[k]), i) = before[k] - one.extra.size * column[k];
+        const double size = residual.col(i).norm();
+        if (size > 0.0) residual.col(i) /= size;
+    }
+    MatrixXd correlation = residual.transpose() * residual;
+    // What few logs tell of it is drawn towards none.
+    const double kept = static_cast<double>(n) / static_cast<double>(n + 2 * d);
+    for (Index i = 0; i < d; ++i)
+        for (Index j = 0; j < d; ++j) correlation(i, j) = i == j ? 1.0 : kept * correlation(i, j);
+    return correlation;
+}
+
+}  // namespace
+
+std::vector<ChangedSeries> changed_series(const JointHistory& history, const std::vector<Regression>& known,
+                                          const FoundChange& change) {
+    std::vector<ChangedSeries> changed;
+    for (std::size_t s = 0; s < known.size(); ++s) {
+        const auto extra = known[s].extra(change_column(history, change, history.series[s].rows));
+        if (extra && extra->error > 0.0) changed.push_back({s, *extra, known[s].first_value()});
+    }
+    return changed;
+}
+
+std::string cause_of(const JointHistory& history, const std::vector<Regression>& known,
+                     const FoundChange& change, const std::vector<ChangedSeries>& changed) {
+    const auto d = static_cast<Index>(changed.size());
+    VectorXd sizes(d), errors(d);
+    for (Index i = 0; i < d; ++i) {
+        sizes[i] = changed[static_cast<std::size_t>(i)].extra.size;
+        errors[i] = changed[static_cast<std::size_t>(i)].extra.error;
+    }
+    const MatrixXd correlation = correlation_of(history, known, change, changed);
+    const Eigen::LLT<MatrixXd> root(correlation);
+    const auto whitened = [&](const VectorXd& v) -> VectorXd {
+        return root.matrixL().solve(v.cwiseQuotient(errors));
+    };
+    const VectorXd seen = whitened(sizes);
+    const double price = portable::log(static_cast<double>(history.lines.size()));
+    const Namer namer(history, changed);
+    const Hypothesis* best = nullptr;
+    double least = 0.0, left_by_best = 0.0;
+    for (const Hypothesis& one : namer.list()) {
+        MatrixXd columns(d, static_cast<Index>(one.columns.size()));
+        for (std::size_t c = 0; c < one.columns.size(); ++c)
+            columns.col(static_cast<Index>(c)) = whitened(one.columns[c]);
+        const VectorXd values = columns.colPivHouseholderQr().solve(seen);
+        const double left = (seen - columns * values).squaredNorm();
+        const double score = left + price * static_cast<double>(one.columns.size());
+        if (best != nullptr && score >= least) continue;
+        best = &one;
+        least = score;
+        left_by_best = left;
+    }
+    if (best != nullptr) {
+        const double freedom =
+            std::max(1.0, static_cast<double>(d) - static_cast<double>(best->columns.size()));
+        const bool explained = left_by_best < freedom + unlikely_left * std::sqrt(2.0 * freedom);
+        if (explained || left_by_best < 0.1 * seen.squaredNorm()) return best->name;
+    }
+    std::string words;
+    for (const ChangedSeries& one : changed)
+        if (one.extra.t_squared >= took_part)
+            words += (words.empty() ? "" : ", ") + history.series[one.series].name;
+    return "several at once: " + words;
+}
+
+}  // namespace ripplenotch

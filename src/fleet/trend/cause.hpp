@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal: what happened to a joint, by the pattern in which its descriptors changed.
+
+#include <string>
+#include <vector>
+
+#include "fleet/trend/change_test.hpp"
+
+namespace ripplenotch {
+
+/// The change of every series at one place, with the errors and what they have in common.
+struct ChangedSeries {
+    std::size_t series = 0;
+    Extra extra;
+    double baseline = 0.0;
+};
+
+/// Of the series that can tell it.
+[[nodiscard]] std::vector<ChangedSeries> changed_series(const JointHistory& history,
+                                                        const std::vector<Regression>& known,
+                                                        const FoundChange& change);
+
+/// The cause that explains the changes with the fewest numbers (by Schwarz's criterion); what took part in
+/// words where none does.
+[[nodiscard]] std::string cause_of(const JointHistory& history, const std::vector<Regression>& known,
+                                   const FoundChange& change, const std::vector<ChangedSeries>& changed);
+
+}  // namespace ripplenotch

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "fleet/trend/kinds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/fleet/log_date.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t fewest_kin = 5;
+constexpr double odd_from = 5.0;          // robust deviations
+constexpr double least_deviation = 0.01;  // of the kind's median: less apart is no other joint
+constexpr double deviations_of_median = 1.4826;
+constexpr double same_time_s = 30.0 * 86400.0;
+constexpr double shared_part = 0.3;  // of a kind, from which a change is none of the joint alone
+
+using Kind = std::vector<JointTrend*>;
+
+void find_odd(const Kind& kind) {
+    std::map<std::string, std::vector<std::pair<JointTrend*, double>>> baselines;
+    for (JointTrend* joint : kind)
+        for (const DescriptorTrend& one : joint->descriptors)
+            if (one.baseline && !one.name.ends_with("_phase_deg"))
+                baselines[one.name].emplace_back(joint, *one.baseline);
+    for (auto& [name, all] : baselines) {
+        if (all.size() < fewest_kin) continue;
+        std::vector<double> values, off;
+        for (const auto& [joint, value] : all) values.push_back(value);
+        const double middle = median_in(values);
+        for (const auto& [joint, value] : all) off.push_back(std::abs(value - middle));
+        const double deviation =
+            std::max(deviations_of_median * median_in(off), least_deviation * std::abs(middle));
+        for (const auto& [joint, value] : all) {
+            const double deviations = deviation > 0.0 ? (value - middle) / deviation : 0.0;
+            if (std::abs(deviations) >= odd_from) joint->odd.push_back({name, value, middle, deviations});
+        }
+    }
+}
+
+void find_shared(const Kind& kind) {
+    for (JointTrend* joint : kind) {
+        for (JointChange& change : joint->changes) {
+            change.kin = 0;
+            const double at_s = date_seconds(change.date).value_or(0.0);
+            for (const JointTrend* other : kind) {
+                if (other == joint) continue;
+                change.kin +=
+                    std::any_of(other->changes.begin(), other->changes.end(), [&](const JointChange& one) {
+                        return one.cause == change.cause && one.drift == change.drift &&
+                               std::abs(date_seconds(one.date).value_or(0.0) - at_s) <= same_time_s;
+                    });
+            }
+        }
+    }
+}
+
+// The surest sign that a joint changed; 0 where it did not, or as its kind did.
+double own_change(const JointTrend& joint, std::size_t kin) {
+    double surest = 0.0;
+    for (const JointChange& change : joint.changes) {
+        if (kin >= fewest_kin && static_cast<double>(change.kin) > shared_part * static_cast<double>(kin))
+            continue;
+        for (const ChangedDescriptor& one : change.descriptors)
+            surest = std::max(surest, std::abs(one.size) / std::max(one.ci95.high - one.ci95.low, 1e-300));
+    }
+    return surest;
+}
+
+}  // namespace
+
+void compare_kinds(std::vector<JointTrend>& joints) {
+    std::map<std::string, Kind> kinds;
+    for (JointTrend& joint : joints) kinds[joint.joint].push_back(&joint);
+    for (auto& [name, kind] : kinds) {
+        if (kind.size() >= fewest_kin) find_odd(kind);
+        find_shared(kind);
+    }
+    for (JointTrend& joint : joints)
+        std::sort(joint.odd.begin(), joint.odd.end(), [](const OddDescriptor& a, const OddDescriptor& b) {
+            return std::make_tuple(-std::abs(a.deviations), a.name) <
+                   std::make_tuple(-std::abs(b.deviations), b.name);
+        });
+    const auto key = [&](const JointTrend& joint) {
+        const double own = own_change(joint, kinds[joint.joint].size());
+        const double odd = joint.odd.empty() ? 0.0 : std::abs(joint.odd.front().deviations);
+        return std::make_tuple(-own, -odd, joint.changes.empty(), joint.robot, joint.joint);
+    };
+    std::sort(joints.begin(), joints.end(),
+              [&](const JointTrend& a, const JointTrend& b) { return key(a) < key(b); });
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal: the largest statistic of one series over all places of a step, and of a drift, for its residuals
+// in any order.
+
+#include <optional>
+#include <vector>
+
+#include "fleet/trend/joint_history.hpp"
+#include "fleet/trend/regression.hpp"
+
+namespace ripplenotch {
+
+class Scan {
+  public:
+    Scan(const JointHistory& history, const Series& series, const Regression& regression);
+    /// All torques together, each by its relative residual: what a sensor of another gain moves at once, each
+    /// of them by too little. Empty where fewer than three torques are told by every line.
+    [[nodiscard]] static std::optional<Scan> of_sensor_gain(const JointHistory& history,
+                                                            const std::vector<Regression>& known);
+
+    [[nodiscard]] double largest() const { return largest_; }  ///< t squared, in the order of time
+    [[nodiscard]] bool is_drift() const { return drift_; }
+    [[nodiscard]] std::size_t row() const { return row_; }   ///< of the joint's lines: first after the step
+    [[nodiscard]] double memory() const { return memory_; }  ///< from row to row, beside the best change
+    /// The same of what is left beside the best change, in another order of the joint's rows.
+    [[nodiscard]] double largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const;
+
+  private:
+    struct Found {
+        double t_squared = 0.0;
+        bool drift = false;
+        std::size_t place = 0;
+    };
+    Scan(const JointHistory& history, std::vector<std::size_t> rows, Regression regression);
+    [[nodiscard]] Found look(const std::vector<double>& residual) const;
+    void leave_chance(const Found& found);
+
+    std::vector<std::size_t> rows_;
+    std::vector<std::size_t> place_of_row_;  ///< in rows_; rows that do not tell the series have rows_.size()
+    Regression regression_;
+    std::vector<double> norm_;  ///< squares that are left of a step before each place; 0: it is not looked at
+    std::vector<double> chance_;  ///< residual beside the best change, weighed
+    std::vector<double> slope_;
+    double slope_norm_ = 0.0, largest_ = 0.0, memory_ = 0.0;
+    bool drift_ = false;
+    std::size_t row_ = 0;
+};
+
+}  // namespace ripplenotch

@@ -1,0 +1,319 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch features and merge: a line for each log and joint, shards that are done once, and the same bytes however."""
+
+import csv
+import io
+import json
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
+JOINT = ["--gear-ratio", "100", "--inertia", "1.2", "--ripple", "1:0.5Nm:30deg", "--ripple", "2:0.8Nm:10deg",
+         "--effect", "gravity,amplitude_nm=8,phase_deg=20", "--effect", "offset,torque_nm=0.3",
+         "--effect", "viscous-friction,coefficient_nm_per_deg_s=0.03", "--effect", "load-friction,torque_nm=0.05,exponent=1,width_deg_s=0.2"]
+WINDING = ["--effect", "hysteresis,torque_nm=2,width_deg=0.2,initial_state=0"]
+SHARP = ["--effect", "coulomb-friction,torque_nm=2,width_deg_s=0.2"]
+MOTION = ["--motion", "multisine,frequency=0.15Hz,amplitude=60deg,duration=8s"]
+
+
+def run(*words, cwd=None):
+    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL, cwd=cwd)
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def log(self, name="log.csv", joint=JOINT, friction=WINDING, motion=MOTION, seed=1, rate="500Hz"):
+        path = self.folder / name
+        done = run("simulate", *joint, *friction, *motion, "--sample-rate", rate, "--noise", "0.05Nm", "--seed", seed, "-o", path)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return path
+
+    def line(self, *words, code=0):
+        done = run("features", *words)
+        self.assertEqual(done.returncode, code, done.stderr)
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual(len(lines), 1)
+        return lines[0]
+
+    def small_fleet(self, logs):
+        """Small logs that differ, and a list of them."""
+        first = self.log("base.csv", friction=SHARP, motion=["--motion", "multisine,frequency=0.3Hz,amplitude=60deg,duration=3s"], rate="200Hz")
+        rows = first.read_text().splitlines()
+        names = []
+        for number in range(logs):
+            name = f"R{number % 3}_2026-{1 + number // 28:02}-{1 + number % 28:02}.csv"
+            (self.folder / name).write_text("\n".join([rows[0], *rows[1 + number % 50:]]) + "\n")
+            names.append(name)
+        (self.folder / "list.txt").write_text("\n".join(names) + "\n")
+        return names
+
+
+class Values(Case):
+    def test_a_log_gives_what_it_was_made_with_within_its_intervals(self):
+        line = self.line(self.log(), *GEAR)
+        truth = {"gear_ratio": 100, "ripple_1_amplitude_nm": 0.5, "ripple_1_phase_deg": 30, "ripple_2_amplitude_nm": 0.8,
+                 "ripple_2_phase_deg": 10, "coulomb_friction_nm": 2, "viscous_friction_nm_per_deg_s": 0.03, "load_friction_nm_per_nm": 0.05,
+                 "lost_motion_deg": 0.2, "inertia_kgm2": 1.2, "gravity_nm": 8, "sensor_zero_nm": 0.3}
+        for name, value in truth.items():
+            low, high = next(line[key] for key in line if "_ci95" in key and key.replace("_ci95", "") == name)
+            self.assertLess(low, line[name], name)
+            self.assertLess(abs(line[name] - value), 2.5 * 0.5 * (high - low) + 1e-9, name)
+            self.assertLess(high - low, 0.3 * abs(value), name)
+        self.assertAlmostEqual(line["noise_floor_nm"], 0.05, delta=0.005)
+
+    def test_sharp_friction_has_no_lost_motion_and_the_same_size(self):
+        line = self.line(self.log(friction=SHARP), *GEAR)
+        self.assertAlmostEqual(line["coulomb_friction_nm"], 2, delta=0.05)
+        self.assertIsNone(line["lost_motion_deg"])
+
+    def test_every_null_has_its_reason_and_nothing_else_has_one(self):
+        motions = {"one way": ["--motion", "constant,speed=60deg/s,duration=8s"], "rest": ["--motion", "rest,duration=8s"],
+                   "both ways": MOTION, "one speed": ["--motion", "ramp,from-speed=60deg/s,to-speed=61deg/s,duration=8s"]}
+        for words, motion in motions.items():
+            line = self.line(self.log(f"{words[:6].strip()}.csv", motion=motion), *GEAR)
+            nulls = {name for name, value in line.items() if value is None}
+            self.assertEqual(nulls, set(line["not_told"]), words)
+            self.assertTrue(all(line["not_told"].values()), words)
+            if words != "both ways":
+                self.assertIsNone(line["coulomb_friction_nm"], words)
+                self.assertIsNone(line["lost_motion_deg"], words)
+
+    def test_a_log_without_position_has_no_phase(self):
+        path = self.log()
+        cut = self.folder / "cut.csv"
+        cut.write_text("\n".join(",".join(row.split(",")[:3]) for row in path.read_text().splitlines()) + "\n")
+        line = self.line(cut, *GEAR)
+        self.assertIn("no position", line["not_told"]["ripple_1_phase_deg"])
+        self.assertAlmostEqual(line["ripple_2_amplitude_nm"], 0.8, delta=0.1)
+
+    def test_units_that_a_log_does_not_say_are_no_features(self):
+        rows = self.log(motion=["--motion", "multisine,frequency=0.15Hz,amplitude=2deg,duration=8s"]).read_text().splitlines()
+        bare = self.folder / "bare.csv"
+        bare.write_text("\n".join(["time_s,speed,torque_nm"] + [",".join(row.split(",")[:3]) for row in rows[1:]]) + "\n")
+        line = self.line(bare, *GEAR, code=3)
+        self.assertIn("--unit", line["error"])
+        self.line(bare, *GEAR, "--unit", "velocity=deg/s")
+
+    def test_the_ratio_is_found_where_nobody_states_it(self):
+        line = self.line(self.log())
+        self.assertAlmostEqual(line["gear_ratio"], 100, delta=0.05)
+        self.assertAlmostEqual(line["ripple_2_amplitude_nm"], 0.8, delta=0.02)
+
+
+class Conditions(Case):
+    def test_date_and_robot_come_from_the_name(self):
+        path = self.log("R7_2026-03-09.csv")
+        line = self.line(path, *GEAR, "--date-from-name", "{robot}_%Y-%m-%d.csv")
+        self.assertEqual((line["robot"], line["date"], line["date_source"]), ("R7", "2026-03-09T00:00:00Z", "name"))
+        line = self.line(path, *GEAR, "--date-from-name", "{robot}_%Y%m%d.csv")
+        self.assertIsNone(line["date"])
+        self.assertIn("does not fit", line["not_told"]["date"])
+
+    def test_a_day_that_no_month_has_is_no_date(self):
+        line = self.line(self.log("R7_2026-02-30.csv"), *GEAR, "--date-from-name", "{robot}_%Y-%m-%d.csv")
+        self.assertIsNone(line["date"])
+
+    def test_stamps_that_count_from_1970_tell_the_day(self):
+        rows = self.log().read_text().splitlines()
+        stamped = self.folder / "stamped.csv"
+        lines = [rows[0]] + [f"{1767225600 + float(row.split(',')[0]):.3f},{row.split(',', 1)[1]}" for row in rows[1:]]
+        stamped.write_text("\n".join(lines) + "\n")
+        line = self.line(stamped, *GEAR)
+        self.assertEqual((line["date"], line["date_source"]), ("2026-01-01T00:00:00Z", "log"))
+
+    def test_the_files_day_is_taken_only_where_asked_for(self):
+        path = self.log()
+        os.utime(path, (1767225600, 1767225600))
+        self.assertIsNone(self.line(path, *GEAR)["date"])
+        self.assertEqual(self.line(path, *GEAR, "--date-from-file")["date"], "2026-01-01T00:00:00Z")
+
+    def test_temperature_is_a_number_or_the_mean_of_a_column(self):
+        path = self.log()
+        self.assertEqual(self.line(path, *GEAR, "--temperature", "31.5")["temperature_degc"], 31.5)
+        rows = path.read_text().splitlines()
+        warm = self.folder / "warm.csv"
+        warm.write_text("\n".join([rows[0] + ",motor_temp"] + [f"{row},{30 + k % 2}" for k, row in enumerate(rows[1:])]) + "\n")
+        line = self.line(warm, *GEAR, "--temperature", "motor_temp")
+        self.assertAlmostEqual(line["temperature_degc"], 30.5, delta=0.01)
+        self.assertEqual(line["temperature_source"], "column motor_temp")
+        cold = self.line(path, *GEAR, "--temperature", "no_such", code=3)
+        self.assertIn("no_such", cold["error"])
+
+    def test_patterns_that_are_none_are_refused(self):
+        for pattern, word in (("%Y-%m.csv", "%d"), ("%Y%Y%m%d", "twice"), ("%Y%m%d%q", "Y m d")):
+            done = run("features", "x.csv", "--date-from-name", pattern)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(word, done.stderr)
+
+
+class ManyLogs(Case):
+    def test_a_failed_log_is_a_line_and_the_others_are_done(self):
+        good, bad = self.log(), self.folder / "bad.csv"
+        bad.write_text("time_s,velocity_deg_s,torque_nm\n0,1,x\n")
+        done = run("features", bad, good, self.folder / "none.csv", *GEAR)
+        self.assertEqual(done.returncode, 3)
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual([pathlib.Path(line["log"]).name for line in lines], ["bad.csv", "log.csv", "none.csv"])
+        self.assertEqual(["error" in line for line in lines], [True, False, True])
+        self.assertEqual([line.get("error_code") for line in lines], [3, None, 4])
+
+    def test_each_joint_of_a_log_has_its_line(self):
+        rows = self.log().read_text().splitlines()
+        two = self.folder / "two.csv"
+        head = "time_s,j1_velocity_deg_s,j1_torque_nm,j1_position_deg,j2_velocity_deg_s,j2_torque_nm,j2_position_deg"
+        two.write_text("\n".join([head] + [row + "," + row.split(",", 1)[1] for row in rows[1:]]) + "\n")
+        done = run("features", two, *GEAR)
+        lines = [json.loads(line) for line in done.stdout.splitlines()]
+        self.assertEqual(len({line["joint"] for line in lines}), 2, done.stdout + done.stderr)
+        self.assertEqual(lines[0]["coulomb_friction_nm"], lines[1]["coulomb_friction_nm"])
+
+    def test_csv_holds_what_the_lines_hold(self):
+        path = self.log()
+        line = self.line(path, *GEAR)
+        row, = csv.DictReader(io.StringIO(run("features", path, *GEAR, "--csv").stdout))
+        self.assertEqual(float(row["coulomb_friction_nm"]), line["coulomb_friction_nm"])
+        self.assertEqual(float(row["coulomb_friction_ci95_nm_high"]), line["coulomb_friction_ci95_nm"][1])
+        self.assertEqual(row["resonance_hz"], "")
+        self.assertIn("resonance_hz: ", row["not_told"])
+
+    def test_fields_of_a_list_are_those_of_the_lines(self):
+        self.log()
+        (self.folder / "list.txt").write_text("log.csv\tdate=2026-01-05\trobot=R9\ttemperature_degc=40\n\n")
+        done = run("features", "--manifest", "list.txt", *GEAR, cwd=self.folder)
+        line = json.loads(done.stdout)
+        self.assertEqual((line["robot"], line["date"], line["temperature_degc"]), ("R9", "2026-01-05T00:00:00Z", 40))
+
+    def test_lists_that_are_none_are_refused_with_their_line(self):
+        for text, words in (("a.csv\na.csv\n", "list.txt:2: 'a.csv' stands in line 1 already"), ("", "lists no log"),
+                            ("a.csv\twhen=now\n", "list.txt:1: 'when=now'"), ("a.csv\tdate=2026-02-30\n", "2026-02-30")):
+            (self.folder / "list.txt").write_text(text)
+            done = run("features", "--manifest", "list.txt", cwd=self.folder)
+            self.assertEqual(done.returncode, 3)
+            self.assertIn(words, done.stderr)
+
+
+class Shards(Case):
+    WORDS = ["--manifest", "list.txt", *GEAR, "--date-from-name", "{robot}_%Y-%m-%d.csv"]
+
+    def shard(self, i, n, folder="shards", *more):
+        return run("features", *self.WORDS, "--shard", f"{i}/{n}", "-o", folder, *more, cwd=self.folder)
+
+    def whole(self):
+        done = run("features", *self.WORDS, cwd=self.folder)
+        self.assertEqual(done.stdout.count("\n"), len((self.folder / "list.txt").read_text().split()))
+        return done.stdout
+
+    def test_shards_in_any_number_and_order_give_the_bytes_of_one_run(self):
+        names = self.small_fleet(11)
+        (self.folder / names[4]).write_text("nothing\n")
+        whole = self.whole()
+        for n in (1, 3, 11, 17):
+            order = list(range(1, n + 1))
+            random.Random(n).shuffle(order)
+            for i in order:
+                self.assertEqual(self.shard(i, n, f"shards{n}").returncode, 0)
+            merged = run("merge", f"shards{n}", cwd=self.folder)
+            self.assertEqual((merged.returncode, merged.stdout), (0, whole), n)
+            self.assertIn("1 of 11 lines have an error", merged.stderr)
+
+    def test_a_complete_shard_is_not_done_twice(self):
+        names = self.small_fleet(4)
+        self.shard(1, 2)
+        for name in names:
+            (self.folder / name).unlink()
+        done = self.shard(1, 2, "shards", "-v")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("complete already", done.stderr)
+        self.assertNotIn("error", (self.folder / "shards/shard-000001-of-000002.ndjson").read_text())
+
+    def test_what_is_missing_is_told_and_merge_refuses_it(self):
+        self.small_fleet(6)
+        for i in (2, 5):
+            self.shard(i, 6)
+        done = run("features", "--missing", "shards", "--shards", "6", cwd=self.folder)
+        self.assertEqual(done.stdout.split(), ["1", "3", "4", "6"])
+        merged = run("merge", "shards", cwd=self.folder)
+        self.assertEqual(merged.returncode, 3)
+        self.assertIn("of 6 shards 4 are not there: 1, 3 to 4, 6", merged.stderr)
+
+    def test_merge_refuses_a_double_a_mixture_and_changed_lines(self):
+        self.small_fleet(4)
+        for i in (1, 2):
+            self.shard(i, 2)
+        shards = self.folder / "shards"
+        record, lines = shards / "shard-000001-of-000002.done.json", shards / "shard-000001-of-000002.ndjson"
+        (shards / "copy.done.json").write_bytes(record.read_bytes())
+        (shards / "copy.ndjson").write_bytes(lines.read_bytes())
+        self.assertIn("both are shard 1", run("merge", "shards", cwd=self.folder).stderr)
+        (shards / "copy.done.json").unlink()
+        self.assertEqual(run("merge", "shards", cwd=self.folder).returncode, 0)
+        for field, value, words in (("manifest_sha256", "0" * 64, "two lists"), ("version", "9.9", "version 9.9"),
+                                    ("settings", "ripplenotch features --orders 3", "--orders 3")):
+            kept = record.read_text()
+            record.write_text(json.dumps({**json.loads(kept), field: value}))
+            done = run("merge", "shards", cwd=self.folder)
+            self.assertEqual(done.returncode, 3)
+            self.assertIn(words, done.stderr)
+            record.write_text(kept)
+        lines.write_text(lines.read_text().replace("R0", "R8"))
+        self.assertIn("do shard 1/2 again", run("merge", "shards", cwd=self.folder).stderr)
+        self.assertEqual(self.shard(1, 2).returncode, 0)
+        self.assertEqual(run("merge", "shards", cwd=self.folder).stdout, self.whole())
+
+    def test_a_folder_of_another_job_is_left_alone(self):
+        self.small_fleet(4)
+        self.shard(1, 2)
+        done = self.shard(1, 2, "shards", "--hold-bad-values")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("another job", done.stderr)
+        self.assertEqual(self.shard(1, 2, "shards", "--hold-bad-values", "--force").returncode, 0)
+
+    def test_kill_at_any_moment_then_resume_gives_the_same_bytes(self):
+        self.small_fleet(24)
+        whole = self.whole()
+        draw = random.Random(21)
+        kills = int(os.environ.get("RIPPLENOTCH_KILLS", "12"))
+        begin = time.perf_counter()
+        self.shard(1, 4, "timed")
+        once = time.perf_counter() - begin
+        done = 0
+        for _ in range(kills):
+            for i in range(1, 5):
+                worker = subprocess.Popen([TOOL, "features", *self.WORDS, "--shard", f"{i}/4", "-o", "shards"], cwd=self.folder,
+                                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                time.sleep(draw.uniform(0, 1.2 * once))
+                worker.send_signal(signal.SIGKILL)
+                worker.wait()
+            done += 1
+        left = run("features", "--missing", "shards", "--shards", "4", cwd=self.folder).stdout.split()
+        for i in left:
+            self.assertEqual(self.shard(i, 4).returncode, 0)
+        merged = run("merge", "shards", cwd=self.folder)
+        self.assertEqual((merged.returncode, merged.stdout, done), (0, whole, kills))
+        self.assertEqual(sorted(path.name for path in (self.folder / "shards").iterdir()),
+                         sorted(f"shard-{i:06}-of-000004{end}" for i in range(1, 5) for end in (".ndjson", ".done.json")))
+
+    def test_requests_that_make_no_sense_are_refused(self):
+        self.small_fleet(2)
+        for words, said in ((["--shard", "1/2", "-o", "x"], "--manifest"), ([*self.WORDS, "--shard", "3/2", "-o", "x"], "3/2"),
+                            ([*self.WORDS, "--shard", "1/2"], "-o DIR"), (["--missing", "x"], "--shards"), ([], "LOG"),
+                            ([*self.WORDS, "more.csv"], "more.csv")):
+            done = run("features", *words, cwd=self.folder)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn(said, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

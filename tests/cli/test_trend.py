@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: MIT
+"""ripplenotch trend: what it finds in simulated histories, what it leaves alone, and what it says of bad input."""
+
+import json
+import os
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
+sys.path.insert(0, str(SOURCE / "scripts"))
+
+from prove_trend import fleet  # noqa: E402
+
+
+def run(*words, text=None):
+    return subprocess.run([TOOL, "trend", *map(str, words)], capture_output=True, text=True, timeout=120,
+                          **({"input": text} if text is not None else {"stdin": subprocess.DEVNULL}))
+
+
+def text_of(lines):
+    return "".join(json.dumps(line) + "\n" for line in lines)
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def trend(self, lines, *words):
+        done = run("-", "--json", *words, text=text_of(lines))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def refused(self, lines, *words):
+        done = run("-", text=text_of(lines))
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        said = [line for line in done.stderr.splitlines() if "warning" not in line]
+        self.assertEqual(len(said), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, said[0])
+
+
+def lines_of(made):
+    return [line for joint in made for line in joint.lines]
+
+
+class Findings(Case):
+    def test_events_are_found_named_dated_and_sized(self):
+        made = fleet.fleet(16, 52, 5, events=True, logs_after=8)
+        told = self.trend(lines_of(made))
+        named = 0
+        for joint in made:
+            alerts = [alert for alert in told["alerts"] if alert["robot"] == joint.robot]
+            self.assertTrue(alerts, joint.event.words)
+            right = [alert for alert in alerts if alert["cause"] in joint.event.causes]
+            named += bool(right)
+            self.assertTrue(any(joint.logs_between(joint.event.day, alert["date"]) <= 1 for alert in alerts), joint.event.words)
+        self.assertGreaterEqual(named, 15)
+        sizes = [alert["percent"] for alert in told["alerts"] if alert["cause"] == "ripple of order 2"]
+        self.assertTrue(all(16 < size < 24 for size in sizes), sizes)
+
+    def test_joints_to_which_nothing_happens_raise_no_more_than_the_rate(self):
+        # 60 joints, 11.5 months each: 0.7 alerts are to be expected at most; 4 or more would be 1 in 170.
+        told = self.trend(lines_of(fleet.fleet(60, 52, 77, events=False)))
+        self.assertLess(len(told["alerts"]), 4)
+        self.assertAlmostEqual(told["expected_false_alarms"], 0.001 * told["joint_months"], delta=1e-4)
+
+    def test_a_rate_of_one_in_two_is_one_in_two_at_most(self):
+        # Each joint may raise one by chance with probability 0.5 at most (16 of 60 +/- 3 deviations is far below 42).
+        told = self.trend(lines_of(fleet.fleet(60, 52, 78, events=False)), "--false-alarms", "1/12")
+        joints = {alert["robot"] for alert in told["alerts"]}
+        self.assertLess(len(joints), 42)
+        self.assertGreater(len(joints), 8, "a test that never raises anything is no test")
+
+    def test_warmth_that_is_not_told_is_no_wear_where_it_is_told(self):
+        made = fleet.fleet(10, 52, 9, events=False)
+        lines = lines_of(made)
+        slopes = [abs(one["slope_per_month"] / one["baseline"]) for one in self.trend(lines)["descriptors"]
+                  if one["descriptor"] == "viscous_friction_nm_per_deg_s"]
+        self.assertLess(max(slopes), 0.01)
+
+    def test_a_slow_drift_is_a_drift(self):
+        made = fleet.fleet(4, 52, 11, events=False)
+        for joint in made:
+            for week, line in enumerate(joint.lines):
+                if line["coulomb_friction_nm"] is not None:
+                    factor = 1 + 0.2 * week / len(joint.lines)
+                    line["coulomb_friction_nm"] *= factor
+                    line["coulomb_friction_ci95_nm"] = [factor * end for end in line["coulomb_friction_ci95_nm"]]
+        told = self.trend(lines_of(made))
+        for joint in made:
+            kinds = [(alert["kind"], alert["cause"]) for alert in told["alerts"] if alert["robot"] == joint.robot]
+            self.assertIn(kinds[:1], ([("drift", "Coulomb friction")], [("drift", "friction")]))
+
+    def test_two_changes_of_one_joint_are_two_alerts(self):
+        joint, = fleet.fleet(1, 52, 12, events=False)
+        for week, line in enumerate(joint.lines):
+            if week >= 15 and line["coulomb_friction_nm"] is not None:
+                line["coulomb_friction_nm"] += 0.8
+                line["coulomb_friction_ci95_nm"] = [end + 0.8 for end in line["coulomb_friction_ci95_nm"]]
+            if week >= 30 and line["ripple_1_phase_deg"] is not None:
+                for name in ("ripple_1_phase", "ripple_2_phase"):
+                    if line[name + "_deg"] is not None:
+                        line[name + "_deg"] += 60
+                        line[name + "_ci95_deg"] = [end + 60 for end in line[name + "_ci95_deg"]]
+        causes = [alert["cause"] for alert in self.trend(joint.lines)["alerts"]]
+        self.assertEqual(len(causes), 2, causes)
+        self.assertIn("friction", causes[0].lower())
+        self.assertIn("phase", causes[1])
+
+    def test_another_gear_is_named(self):
+        joint, = fleet.fleet(1, 52, 13, events=False)
+        for line in joint.lines[30:]:
+            if line["gear_ratio"] is not None:
+                line["gear_ratio"] += 20
+                line["gear_ratio_ci95"] = [end + 20 for end in line["gear_ratio_ci95"]]
+        alert, *_ = self.trend(joint.lines)["alerts"]
+        self.assertIn("gear ratio", alert["cause"])
+
+    def test_a_joint_unlike_its_kind_is_listed_and_comes_first(self):
+        made = fleet.fleet(12, 30, 14, events=False)
+        odd = made[7]
+        for line in odd.lines:
+            if line["coulomb_friction_nm"] is not None:
+                line["coulomb_friction_nm"] *= 3
+                line["coulomb_friction_ci95_nm"] = [3 * end for end in line["coulomb_friction_ci95_nm"]]
+        told = self.trend(lines_of(made))
+        self.assertIn((odd.robot, "coulomb_friction_nm"), {(one["robot"], one["descriptor"]) for one in told["odd"]})
+        if not told["alerts"]:
+            self.assertEqual(told["joints"][0]["robot"], odd.robot)
+
+    def test_logs_of_another_motion_are_left_out_and_said_to_be(self):
+        joint, = fleet.fleet(1, 52, 15, events=False)
+        for line in joint.lines[20:24]:
+            line["speed_p50_deg_s"] *= 20
+        note = self.trend(joint.lines)["joints"][0]["notes"]
+        self.assertIn("4 of", note)
+        self.assertIn("cannot be compared", note)
+
+
+class Example(Case):
+    def test_the_example_of_the_pages_is_what_its_script_makes(self):
+        done = subprocess.run([sys.executable, SOURCE / "scripts/prove_trend/fleet.py"], capture_output=True, text=True)
+        self.assertEqual((SOURCE / "data/fleet.ndjson").read_text(), done.stdout)
+
+
+class Determinism(Case):
+    def test_the_order_of_lines_and_files_does_not_matter(self):
+        lines = lines_of(fleet.fleet(6, 40, 21, events=True))
+        first = self.trend(lines)
+        random.Random(1).shuffle(lines)
+        second = self.trend(lines)
+        a, b = self.folder / "a.ndjson", self.folder / "b.ndjson"
+        a.write_text(text_of(lines[:50]))
+        b.write_text(text_of(lines[50:]))
+        third = json.loads(run(b, a, "--json").stdout)
+        for told in (first, second, third):
+            told.pop("inputs"), told.pop("command")
+        self.assertEqual(first, second)
+        self.assertEqual(first, third)
+
+    def test_the_seed_is_told_and_the_same_seed_gives_the_same_bytes(self):
+        text = text_of(lines_of(fleet.fleet(4, 40, 22, events=True)))
+        self.assertEqual(run("-", "--json", "--seed", "7", text=text).stdout, run("-", "--json", "--seed", "7", text=text).stdout)
+        self.assertEqual(json.loads(run("-", "--json", "--seed", "7", text=text).stdout)["seed"], 7)
+
+    @unittest.skipIf("san" in TOOL, "sanitizers take their own time")
+    def test_ten_thousand_lines_take_at_most_two_seconds_of_a_core(self):
+        path = self.folder / "many.ndjson"
+        path.write_text(text_of(lines_of(fleet.fleet(214, 52, 23, events=False))))
+        self.assertGreater(path.read_text().count("\n"), 9800)
+        before = os.times()
+        done = run(path, "-q")
+        after = os.times()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLess(after.children_user - before.children_user, 6.0, "three times the bar, for slow machines")
+
+
+class Outputs(Case):
+    def setUp(self):
+        super().setUp()
+        self.lines = lines_of(fleet.fleet(4, 40, 31, events=True))
+
+    def test_text_json_and_lines_tell_the_same_alerts(self):
+        text, told = run("-", text=text_of(self.lines)).stdout, self.trend(self.lines)
+        lines = [json.loads(line) for line in run("-", "--ndjson", text=text_of(self.lines)).stdout.splitlines()]
+        self.assertEqual(lines, told["alerts"])
+        self.assertTrue(lines)
+        for alert in lines:
+            self.assertIn(f"{alert['robot']} {alert['joint']}", text)
+            self.assertIn(alert["cause"], text)
+        self.assertIn(told["verdict"], text)
+
+    def test_report_shows_a_trend(self):
+        path, page = self.folder / "trend.json", self.folder / "page.html"
+        run("-", "-o", path, text=text_of(self.lines))
+        done = subprocess.run([TOOL, "report", path, "-o", page, "--no-plotly"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("alerts", page.read_text())
+
+    def test_the_figure_has_a_map_and_a_course_for_each_alert(self):
+        path = self.folder / "trend.figure.json"
+        done = run("-", "--plot", path, text=text_of(self.lines))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        panels = json.loads(path.read_text())["panels"]
+        self.assertEqual(len(panels), 1 + min(10, len(self.trend(self.lines)["alerts"])))
+
+
+class BadInput(Case):
+    def setUp(self):
+        super().setUp()
+        self.lines = lines_of(fleet.fleet(2, 30, 41, events=False))
+
+    def test_each_is_one_clear_line(self):
+        self.refused([], "no lines")
+        self.refused(self.lines[:1], "one log only")
+        self.refused([{**line, "version": "9.9"} if i == 3 else line for i, line in enumerate(self.lines)], "two versions", "9.9")
+        self.refused([{**line, "date": "2026-01-01T00:00:00Z"} for line in self.lines], "2026-01-01", "different days")
+        self.refused([{**line, "date": None, "not_told": {**line["not_told"], "date": "no day"}} for line in self.lines], "no line has a date")
+        self.refused([{("coulomb_friction_mnm" if name == "coulomb_friction_nm" else name): value for name, value in line.items()}
+                      for line in self.lines], "line 1", "coulomb_friction_mnm", "coulomb_friction_nm")
+
+    def test_broken_lines_are_named_with_their_number(self):
+        for field, value in (("rows", "many"), ("gear_ratio", "x"), ("gear_ratio_ci95", [2, 1]), ("date", "soon"), ("schema", "x/1"),
+                             ("inertia_kgm2", None), ("no_such_thing", 1)):
+            lines = [dict(line) for line in self.lines]
+            lines[2][field] = value
+            lines[2]["not_told"] = {}
+            for name in [name for name, had in lines[2].items() if had is None and name != field]:
+                lines[2]["not_told"][name] = "reason"
+            self.refused(lines, "line 3", field)
+
+    def test_few_logs_of_a_joint_are_a_note(self):
+        told = self.trend(self.lines[:5] + self.lines[-12:])
+        notes = {joint["robot"]: joint["notes"] for joint in told["joints"]}
+        self.assertIn("a trend needs 10", notes["R0000"])
+        self.assertEqual(notes["R0001"], "")
+
+    def test_a_joint_that_ends_where_another_begins_is_told(self):
+        lines = [{**line, "robot": "R0", "joint": "arm_2" if line["date"] > "2025-05-01" else "J2"} for line in self.lines[:26]]
+        notes = self.trend(lines)["notes"]
+        self.assertTrue(any("'R0 J2' ends" in note and "'R0 arm_2' begins" in note for note in notes), notes)
+
+    def test_lines_that_stand_twice_count_once(self):
+        marked = [{**line, "sha256": f"{i:064}"} for i, line in enumerate(self.lines)]
+        once, twice = self.trend(marked), self.trend(marked + marked[:4])
+        self.assertEqual(once["descriptors"], twice["descriptors"])
+        self.assertTrue(any("count once" in note for note in twice["notes"]))
+
+    def test_rates_that_are_none_are_refused(self):
+        for rate in ("0", "1", "x", "1/0", "-1/1000"):
+            self.assertEqual(run("-", "--false-alarms=" + rate, text=text_of(self.lines)).returncode, 2, rate)
+
+
+if __name__ == "__main__":
+    unittest.main()
