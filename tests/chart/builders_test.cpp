@@ -236,15 +236,34 @@ TEST_CASE("torque before and after keeps its peaks over two million samples, and
     report.switch_count = 2;
     const Figure figure = course.figure("log.csv", "switching", report);
     check_figure(figure);
-    REQUIRE(figure.panels.size() == 4);
-    const Panel& torque = figure.panels.front();
+    REQUIRE(figure.panels.size() == 5);
+    const Panel& torque = figure.panels[1];
     CHECK(top_of(torque.curves[0]).y == 55.0);
     CHECK(top_of(torque.curves[0]).x == Approx(1234.567));
     CHECK(*std::min_element(torque.curves[1].y.begin(), torque.curves[1].y.end()) == -7.0);
     CHECK(torque.curves[0].x.size() < 20000);
-    CHECK(figure.panels[2].curves[0].y == std::vector<double>{0.0, 3.0, 4.0, 4.0});
-    CHECK(figure.panels[3].curves[0].y == std::vector<double>{0.4, -0.2});
+    CHECK(figure.panels[3].curves[0].y == std::vector<double>{0.0, 3.0, 4.0, 4.0});
+    CHECK(figure.panels[4].curves[0].y == std::vector<double>{0.4, -0.2});
     CHECK_THAT(figure.sentence, Contains("2 changes"));
+}
+
+TEST_CASE("a filter's figure opens where it takes off most, with every sample of half a second") {
+    TorqueCourse course;
+    for (int k = 0; k < 5000; ++k) {
+        const double t = 0.001 * k;
+        const double ripple = t >= 2.0 && t < 2.5 ? (k % 20 < 10 ? 0.8 : -0.8) : 0.1;
+        course.add(t, 90.0, 3.0 + ripple, 3.0);
+    }
+    const Figure figure = course.figure("log.csv", "switching", {});
+    check_figure(figure);
+    REQUIRE(figure.panels.size() == 3);
+    const Panel& close_up = figure.panels.front();
+    CHECK(*close_up.x.from == Approx(2.0));
+    CHECK(*close_up.x.to == Approx(2.499));
+    CHECK(close_up.curves[0].x.size() == 500);
+    TorqueCourse brief;
+    for (int k = 0; k < 900; ++k) brief.add(0.001 * k, 90.0, k % 2, 0.0);
+    CHECK(brief.figure("log.csv", "switching", {}).panels.size() == 2);
 }
 
 TEST_CASE("a frontier runs by delay whatever the order of its designs, the choice named") {

@@ -56,6 +56,11 @@ struct TrackColumn {
 /// nan where a line was not measured.
 [[nodiscard]] std::vector<TrackColumn> track_columns(const TrackReport& report);
 
+/// Rows that do not follow on the row before, since there are no data between: the joint turns round or
+/// rests, or the log has a gap. Rising, never 0; over speed those with an empty range before them.
+[[nodiscard]] std::vector<std::size_t> track_breaks(const OrderTracks& tracks);
+[[nodiscard]] std::vector<std::size_t> track_breaks(const SpeedTrack& tracks);
+
 /// One line over the rows in which it was measured, amplitudes in the kind of the report.
 struct TrackSummary {
     std::size_t rows = 0;  ///< where it was measured; 0: the rest means nothing
