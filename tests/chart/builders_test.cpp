@@ -247,25 +247,6 @@ TEST_CASE("torque before and after keeps its peaks over two million samples, and
     CHECK_THAT(figure.sentence, Contains("2 changes"));
 }
 
-TEST_CASE("a filter's figure opens where it takes off most, with every sample of half a second") {
-    TorqueCourse course;
-    for (int k = 0; k < 5000; ++k) {
-        const double t = 0.001 * k;
-        const double ripple = t >= 2.0 && t < 2.5 ? (k % 20 < 10 ? 0.8 : -0.8) : 0.1;
-        course.add(t, 90.0, 3.0 + ripple, 3.0);
-    }
-    const Figure figure = course.figure("log.csv", "switching", {});
-    check_figure(figure);
-    REQUIRE(figure.panels.size() == 3);
-    const Panel& close_up = figure.panels.front();
-    CHECK(*close_up.x.from == Approx(2.0));
-    CHECK(*close_up.x.to == Approx(2.499));
-    CHECK(close_up.curves[0].x.size() == 500);
-    TorqueCourse brief;
-    for (int k = 0; k < 900; ++k) brief.add(0.001 * k, 90.0, k % 2, 0.0);
-    CHECK(brief.figure("log.csv", "switching", {}).panels.size() == 2);
-}
-
 TEST_CASE("a frontier runs by delay whatever the order of its designs, the choice named") {
     const std::vector<FrontierPoint> points{{80.0, 40.0, false, ""},
                                             {20.0, 15.0, true, ""},
