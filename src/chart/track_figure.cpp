@@ -12,6 +12,15 @@ namespace {
 
 constexpr std::size_t most_ribbon_rows = 2000;
 
+Ink ink_of(const TrackName& line) {
+    if (line.order) return order_ink(*line.order);
+    return line.is_tone ? tone_ink : unknown_ink;
+}
+
+CurveStyle style_of(const TrackName& line, CurveStyle style) {
+    return line.order ? order_style(*line.order, style) : other_mark(style);
+}
+
 struct TrackPanels {
     Panel amplitude, phase;
 };
@@ -29,9 +38,10 @@ TrackPanels panels_over(const PlotAxis& x, const TrackScale& scale) {
     return panels;
 }
 
-void add_line(TrackPanels& panels, const std::string& name, Ink ink, const std::vector<double>& x,
+void add_line(TrackPanels& panels, const TrackName& line, const std::vector<double>& x,
               std::vector<double> amplitude_nm, const std::vector<double>& half_width_nm,
               const std::vector<double>& phase_deg, const TrackScale& scale) {
+    const Ink ink = ink_of(line);
     Ribbon ribbon{"", ink, x, {}, {}};
     for (std::size_t i = 0; i < x.size(); ++i) {
         amplitude_nm[i] *= scale.factor;
@@ -40,8 +50,10 @@ void add_line(TrackPanels& panels, const std::string& name, Ink ink, const std::
     }
     // A ribbon of more rows than a picture has columns would be a blur.
     if (x.size() <= most_ribbon_rows) panels.amplitude.ribbons.push_back(std::move(ribbon));
-    panels.amplitude.curves.push_back(thinned({name, ink, CurveStyle::line, x, std::move(amplitude_nm)}));
-    panels.phase.curves.push_back(thinned({name, ink, CurveStyle::points, x, phase_deg}));
+    panels.amplitude.curves.push_back(
+        thinned({line.words, ink, style_of(line, CurveStyle::line), x, std::move(amplitude_nm)}));
+    panels.phase.curves.push_back(
+        thinned({line.words, ink, style_of(line, CurveStyle::points), x, phase_deg}));
 }
 
 Figure figure_of(const std::string& source, TrackPanels panels) {
@@ -53,23 +65,23 @@ Figure figure_of(const std::string& source, TrackPanels panels) {
 
 }  // namespace
 
-Figure track_figure(const std::string& source, const OrderTracks& tracks, std::span<const std::string> names,
+Figure track_figure(const std::string& source, const OrderTracks& tracks, std::span<const TrackName> names,
                     const TrackScale& scale) {
     TrackPanels panels = panels_over({"time", "s"}, scale);
     for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
         std::vector<double> twice = tracks.lines[i].standard_error_nm;
         for (double& error : twice) error *= 2.0;
-        add_line(panels, names[i], series_ink(i), tracks.time_s, tracks.lines[i].amplitude_nm, twice,
+        add_line(panels, names[i], tracks.time_s, tracks.lines[i].amplitude_nm, twice,
                  tracks.lines[i].phase_deg, scale);
     }
     return figure_of(source, std::move(panels));
 }
 
-Figure track_figure(const std::string& source, const SpeedTrack& tracks, std::span<const std::string> names,
+Figure track_figure(const std::string& source, const SpeedTrack& tracks, std::span<const TrackName> names,
                     const TrackScale& scale) {
     TrackPanels panels = panels_over({"joint speed", "deg/s"}, scale);
     for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
-        add_line(panels, names[i], series_ink(i), tracks.speed_deg_s, tracks.lines[i].amplitude_nm,
+        add_line(panels, names[i], tracks.speed_deg_s, tracks.lines[i].amplitude_nm,
                  tracks.lines[i].spread_nm, tracks.lines[i].phase_deg, scale);
     }
     return figure_of(source, std::move(panels));
