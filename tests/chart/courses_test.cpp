@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "ripplenotch/analysis/track_report.hpp"
 #include "ripplenotch/chart/compared_course.hpp"
 #include "ripplenotch/chart/torque_course.hpp"
+#include "ripplenotch/chart/track_figure.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -35,8 +39,11 @@ TEST_CASE("methods on one log stand beside the true torque, each with its error"
     CHECK(course.empty());
     const std::vector<double> time{0.0, 0.5}, speed{90.0, 90.0}, raw{1.5, 0.5}, out{1.0, 1.25},
         truth{1.0, 1.0};
-    const TraceView block{
-        .sample_rate = Hertz(2.0), .time_s = time, .velocity_deg_s = speed, .torque_nm = raw};
+    const TraceView block{.sample_rate = Hertz(2.0),
+                          .time_s = time,
+                          .velocity_deg_s = speed,
+                          .torque_nm = raw,
+                          .position_deg = {}};
     course.add(0, block, raw, truth);
     course.add(1, block, out, truth);
     const Figure figure = course.figure("log.csv", comparison);
@@ -47,4 +54,25 @@ TEST_CASE("methods on one log stand beside the true torque, each with its error"
     CHECK(figure.panels[0].curves[1].name == "oscillator, error 0.025 Nm rms");
     CHECK(figure.panels[0].curves[2].y == truth);
     CHECK(figure.panels[1].curves[1].y == std::vector<double>{0.0, 0.25});
+}
+
+TEST_CASE("a track's line breaks where the joint turns round or rests, its ribbon too") {
+    OrderTracks tracks;
+    tracks.time_s = {0.0, 0.1, 0.2, 0.3, 1.3, 1.4, 1.5};
+    tracks.speed_deg_s = {10.0, 20.0, -20.0, -10.0, -10.0, -20.0, -20.0};
+    const std::vector<double> ones(7, 1.0);
+    tracks.lines = {{ones, ones, ones, ones}};
+    CHECK(track_breaks(tracks) == std::vector<std::size_t>{2, 4});
+    const std::vector<TrackName> names{{"order 2", 2.0}};
+    const Figure figure = track_figure("log.csv", tracks, names, {});
+    check_figure(figure);
+    const Curve& line = figure.panels.front().curves[0];
+    REQUIRE(line.y.size() == 9);
+    CHECK(std::isnan(line.y[2]));
+    CHECK(std::isnan(line.y[5]));
+    CHECK(figure.panels.front().ribbons.size() == 3);
+    SpeedTrack by_speed;
+    by_speed.speed_deg_s = {10.0, 12.0, 30.0};
+    by_speed.step_deg_s = 2.0;
+    CHECK(track_breaks(by_speed) == std::vector<std::size_t>{2});
 }
