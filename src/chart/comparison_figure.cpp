@@ -12,9 +12,16 @@
 namespace ripplenotch {
 namespace {
 
-// The control is grey, methods take the inks in turn.
-Ink ink_of(const Contender& contender, std::size_t& taken) {
-    return contender.method->part == MethodPart::control ? Ink::grey : series_ink(taken++);
+struct Look {
+    Ink ink;
+    CurveStyle style;
+};
+
+// The control is grey and dashed, methods take the inks in turn.
+Look look_of(const Contender& contender, std::size_t& taken) {
+    if (contender.method->part == MethodPart::control) return {Ink::grey, CurveStyle::dashed};
+    const std::size_t i = taken++;
+    return {series_ink(i), series_style(i, CurveStyle::line)};
 }
 
 // Short, as in the table; a contender that was not measured by its text.
@@ -36,7 +43,7 @@ double shown_s(const Comparison& comparison) {
 // Output of a filter that has seen no torque for ever, then `signal(t)` from t = 0 on.
 template <class Signal>
 Curve run(const Contender& contender, const std::string& name, const Comparison& comparison,
-          double duration_s, Ink ink, const Signal& signal) {
+          double duration_s, const Look& look, const Signal& signal) {
     const double rate = comparison.sample_rate.value();
     const auto before = static_cast<std::size_t>(0.1 * duration_s * rate) + 1;
     const auto count = before + static_cast<std::size_t>(duration_s * rate) + 1;
@@ -52,8 +59,8 @@ Curve run(const Contender& contender, const std::string& name, const Comparison&
     filter->process({velocity, torque, position}, out);
     for (std::size_t k = 0; k < count; ++k)
         course.add(1e3 * (static_cast<double>(k) - static_cast<double>(before)) / rate, out[k]);
-    Curve curve = course.curve(name, ink);
-    if (ink == Ink::grey) curve.style = CurveStyle::dashed;
+    Curve curve = course.curve(name, look.ink);
+    curve.style = look.style;
     return curve;
 }
 
@@ -65,15 +72,15 @@ std::vector<Panel> course_panels(const Comparison& comparison, std::span<const C
     step.legend = ramp.legend = false;
     std::size_t taken = 0;
     for (const Contender& contender : contenders) {
-        const Ink ink = ink_of(contender, taken);
+        const Look look = look_of(contender, taken);
         if (comparison.step_nm) {
             const double height = *comparison.step_nm;
-            step.curves.push_back(run(contender, name_of(comparison, contender), comparison, duration_s, ink,
+            step.curves.push_back(run(contender, name_of(comparison, contender), comparison, duration_s, look,
                                       [height](double) { return height; }));
         }
         if (comparison.ramp_nm_s) {
             const double slope = *comparison.ramp_nm_s;
-            ramp.curves.push_back(run(contender, name_of(comparison, contender), comparison, duration_s, ink,
+            ramp.curves.push_back(run(contender, name_of(comparison, contender), comparison, duration_s, look,
                                       [slope](double t) { return slope * t; }));
         }
     }
@@ -121,17 +128,16 @@ std::vector<Panel> response_panels(const Comparison& comparison, std::span<const
     std::size_t taken = 0;
     double longest_dc_ms = 0.0, deepest_db = -20.0;
     for (const Contender& contender : contenders) {
-        const Ink ink = ink_of(contender, taken);
+        const Look look = look_of(contender, taken);
         const auto frozen = contender.frozen(comparison.sample_rate, comparison.speed);
         if (!frozen) continue;
         const FilterResponse response = filter_response(frozen->cascade, comparison.sample_rate, lines_hz);
-        const CurveStyle style = ink == Ink::grey ? CurveStyle::dashed : CurveStyle::line;
         panels.magnitude.curves.push_back(
-            {name_of(comparison, contender), ink, style, response.hz, response.magnitude_db});
+            {name_of(comparison, contender), look.ink, look.style, response.hz, response.magnitude_db});
         panels.phase.curves.push_back(
-            {name_of(comparison, contender), ink, style, response.hz, response.phase_deg});
+            {name_of(comparison, contender), look.ink, look.style, response.hz, response.phase_deg});
         panels.delay.curves.push_back(
-            {name_of(comparison, contender), ink, style, response.hz, response.group_delay_ms});
+            {name_of(comparison, contender), look.ink, look.style, response.hz, response.group_delay_ms});
         longest_dc_ms = std::max(longest_dc_ms, response.group_delay_ms.front());
         deepest_db = std::min(deepest_db,
                               *std::min_element(response.magnitude_db.begin(), response.magnitude_db.end()));

@@ -19,8 +19,19 @@ std::string name_of(const Line& line) {
     return line.hz ? fmt::format("{}{:.4g} Hz", what, *line.hz) : "line";
 }
 
-Curve points(const Line& line, std::size_t i, double AmplitudeAtSpeed::*what) {
-    Curve curve{name_of(line), series_ink(i), CurveStyle::points, {}, {}};
+Ink ink_of(const Line& line) {
+    if (line.kind == LineKind::tone) return tone_ink;
+    return line.kind == LineKind::order && line.order ? order_ink(*line.order) : unknown_ink;
+}
+
+// A line that is no order is told from orders by its mark, too.
+CurveStyle style_of(const Line& line) {
+    return line.kind == LineKind::order && line.order ? order_style(*line.order, CurveStyle::points)
+                                                      : other_mark(CurveStyle::points);
+}
+
+Curve points(const Line& line, double AmplitudeAtSpeed::*what) {
+    Curve curve{name_of(line), ink_of(line), style_of(line), {}, {}};
     for (const AmplitudeAtSpeed& at : line.by_speed) {
         curve.x.push_back(std::abs(at.speed_deg_s));
         curve.y.push_back(at.*what);
@@ -33,18 +44,16 @@ Panel frequency_panel(const Identification& found) {
                 .x = {"joint speed", "deg/s"},
                 .y = {"frequency", "Hz"}};
     panel.x.from = panel.y.from = 0.0;
-    for (std::size_t i = 0; i < found.lines.size(); ++i) {
-        const Line& line = found.lines[i];
-        panel.curves.push_back(points(line, i, &AmplitudeAtSpeed::hz));
+    for (const Line& line : found.lines) {
+        panel.curves.push_back(points(line, &AmplitudeAtSpeed::hz));
         if (line.kind == LineKind::tone && line.hz) {
-            panel.lines.push_back({name_of(line), NamedLine::Run::at_y, *line.hz, series_ink(i)});
+            panel.lines.push_back({name_of(line), NamedLine::Run::at_y, *line.hz, ink_of(line)});
         } else if (line.kind == LineKind::order && found.gear_ratio.value && line.order) {
-            panel.lines.push_back(
-                {fmt::format("{} x {:.6g} v / 360", shortest(*line.order), *found.gear_ratio.value),
-                 NamedLine::Run::ray, *line.order * *found.gear_ratio.value / 360.0, series_ink(i)});
+            panel.lines.push_back({fmt::format("order {}", shortest(*line.order)), NamedLine::Run::ray,
+                                   *line.order * *found.gear_ratio.value / 360.0, ink_of(line)});
         } else if (line.kind == LineKind::order && line.order_output) {
             panel.lines.push_back({fmt::format("{:.5g} v / 360", *line.order_output), NamedLine::Run::ray,
-                                   *line.order_output / 360.0, series_ink(i)});
+                                   *line.order_output / 360.0, ink_of(line)});
         }
     }
     return panel;
@@ -81,8 +90,8 @@ Figure identification_figure(const std::string& source, const Identification& fo
                     .height = 0.6};
     amplitude.x.from = amplitude.y.from = 0.0;
     amplitude.legend = false;
-    for (std::size_t i = 0; i < found.lines.size(); ++i)
-        amplitude.curves.push_back(points(found.lines[i], i, &AmplitudeAtSpeed::amplitude_nm));
+    for (const Line& line : found.lines)
+        amplitude.curves.push_back(points(line, &AmplitudeAtSpeed::amplitude_nm));
     if (!found.lines.empty()) figure.panels.push_back(std::move(amplitude));
     return figure;
 }

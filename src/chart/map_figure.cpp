@@ -37,9 +37,15 @@ At at_speed(const MapFit& fit, std::size_t order, double speed_deg_s) {
     return found;
 }
 
-void add_curves(const MapFit& fit, std::size_t order, double sign, const std::string& name, Ink ink,
+void add_curves(const MapFit& fit, std::size_t order, double sign, const std::string& name, double ordinal,
                 Panel& amplitude, Panel& phase) {
-    Curve size{name, ink, CurveStyle::line, {}, {}}, angle{name, ink, CurveStyle::points, {}, {}};
+    // Backward has the colour of its order and the other mark.
+    const Ink ink = order_ink(ordinal);
+    const auto style = [&](CurveStyle one) {
+        return sign < 0.0 ? other_mark(one) : order_style(ordinal, one);
+    };
+    Curve size{name, ink, style(CurveStyle::line), {}, {}},
+        angle{name, ink, style(CurveStyle::points), {}, {}};
     Ribbon ribbon{"", ink, {}, {}, {}}, doubt{"", ink, {}, {}, {}};
     const MapRange& range = fit.map.speeds_deg_s;
     for (int k = 0; k <= steps; ++k) {
@@ -54,7 +60,7 @@ void add_curves(const MapFit& fit, std::size_t order, double sign, const std::st
         if (k > 0) deg += 360.0 * std::round((angle.y.back() - deg) / 360.0);
         angle.y.push_back(deg);
         // Of an amplitude that may be 0 any phase may be.
-        const double off = normal_95 * at.error_nm;
+        const double off = normal_95_errors * at.error_nm;
         const double off_deg = off < nm ? portable::atan2(off, nm) * degrees_per_radian : 180.0;
         doubt.x.push_back(speed);
         doubt.low.push_back(deg - off_deg);
@@ -80,14 +86,13 @@ Figure map_figure(const std::string& source, const MapFit& fit) {
                 .legend = false,
                 .height = 0.7};
     amplitude.y.from = 0.0;
-    std::size_t series = 0;
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
         const std::string order = "order " + shortest(fit.map.orders[i].value());
         if (fit.map.form.directions == 1) {
-            add_curves(fit, i, 1.0, order, series_ink(series++), amplitude, phase);
+            add_curves(fit, i, 1.0, order, fit.map.orders[i].value(), amplitude, phase);
         } else {
-            add_curves(fit, i, 1.0, order + " forward", series_ink(series++), amplitude, phase);
-            add_curves(fit, i, -1.0, order + " backward", series_ink(series++), amplitude, phase);
+            add_curves(fit, i, 1.0, order + " forward", fit.map.orders[i].value(), amplitude, phase);
+            add_curves(fit, i, -1.0, order + " backward", fit.map.orders[i].value(), amplitude, phase);
         }
     }
     return {"ripple-map", fmt::format("Ripple over speed: {}", source), "", {amplitude, phase}};

@@ -17,8 +17,8 @@ constexpr double endless = std::numeric_limits<double>::infinity();
 
 // A level in each band, nothing in the holes between them.
 Curve stairs(const CandidateTable& table, std::string name, Ink ink,
-             const std::function<double(const Band&)>& level) {
-    Curve curve{std::move(name), ink, CurveStyle::line, {}, {}};
+             const std::function<double(const Band&)>& level, CurveStyle style = CurveStyle::line) {
+    Curve curve{std::move(name), ink, style, {}, {}};
     for (const Band& band : table.bands()) {
         if (!curve.x.empty() && curve.x.back() < band.from.value()) {
             curve.x.push_back(band.from.value());
@@ -68,11 +68,12 @@ Panel centre_panel(const CandidateTable& table) {
     panel.shades = shades_of(table);
     for (std::size_t i = 0; i < spec.orders.size(); ++i) {
         const double order = spec.orders[i].value();
-        panel.curves.push_back(
-            stairs(table, fmt::format("notch for order {}", shortest(order)), series_ink(i),
-                   [i](const Band& band) { return band.notches[i].notch.center.value(); }));
+        panel.curves.push_back(stairs(
+            table, fmt::format("notch for order {}", shortest(order)), order_ink(order),
+            [i](const Band& band) { return band.notches[i].notch.center.value(); },
+            order_style(order, CurveStyle::line)));
         panel.lines.push_back({fmt::format("order {}", shortest(order)), NamedLine::Run::ray,
-                               order * spec.gear_ratio.value() / 360.0, series_ink(i)});
+                               order * spec.gear_ratio.value() / 360.0, order_ink(order)});
     }
     const double highest_hz = spec.orders.back().value() * spec.gear_ratio.value() * *panel.x.to / 360.0;
     panel.y.to = std::min(1.1 * highest_hz, 0.5 * spec.sample_rate.value());
@@ -89,9 +90,11 @@ Figure table_figure(const CandidateTable& table) {
                 .height = 0.7};
     worst.shades = shades_of(table);
     for (std::size_t i = 0; i < spec.orders.size(); ++i) {
-        worst.curves.push_back(stairs(table, fmt::format("order {}", shortest(spec.orders[i].value())),
-                                      series_ink(i),
-                                      [i](const Band& band) { return band.worst_attenuation_db[i]; }));
+        const double order = spec.orders[i].value();
+        worst.curves.push_back(stairs(
+            table, fmt::format("order {}", shortest(order)), order_ink(order),
+            [i](const Band& band) { return band.worst_attenuation_db[i]; },
+            order_style(order, CurveStyle::line)));
     }
     leave_room(worst);
     Panel delay{.title = "What each band costs", .x = speed_axis(table), .y = {"time", "ms"}, .height = 0.7};
@@ -136,8 +139,12 @@ Figure frontier_figure(const std::string& title, const std::string& sentence,
     std::size_t rival = 1;
     for (const FrontierPoint& point : points) {
         if (point.name.empty()) continue;
-        panel.curves.push_back(
-            {point.name, series_ink(rival++), CurveStyle::points, {point.delay_ms}, {point.attenuation_db}});
+        panel.curves.push_back({point.name,
+                                series_ink(rival),
+                                series_style(rival, CurveStyle::points),
+                                {point.delay_ms},
+                                {point.attenuation_db}});
+        ++rival;
     }
     return {"frontier", title, sentence, {std::move(panel)}};
 }

@@ -3,7 +3,45 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace ripplenotch {
+
+namespace {
+
+constexpr double stretch_s = 0.5;
+constexpr std::size_t most_in_stretch = 4096, fewest_stretches = 3;
+
+}  // namespace
+
+void CloseUp::add(double time_s, double before_nm, double after_nm) {
+    const bool full = now_.time_s.size() == most_in_stretch;
+    if (!now_.time_s.empty() && (full || time_s - now_.time_s.front() >= stretch_s)) end_stretch();
+    if (!now_.time_s.empty()) {
+        const double step = (before_nm - after_nm) - (now_.before_nm.back() - now_.after_nm.back());
+        if (std::isfinite(step)) now_.taken_off += step * step;
+    }
+    now_.time_s.push_back(time_s);
+    now_.before_nm.push_back(before_nm);
+    now_.after_nm.push_back(after_nm);
+}
+
+void CloseUp::end_stretch() {
+    ++ended_;
+    if (now_.taken_off > best_.taken_off) best_ = now_;
+    now_ = {};
+}
+
+std::optional<Panel> CloseUp::panel() const {
+    if (ended_ < fewest_stretches || best_.time_s.empty()) return std::nullopt;
+    Panel panel{
+        .title = "Close up, where the filter takes off most", .x = {"time", "s"}, .y = {"torque", "Nm"}};
+    panel.x.from = best_.time_s.front();
+    panel.x.to = best_.time_s.back();
+    panel.curves = {{"before", Ink::orange, CurveStyle::line, best_.time_s, best_.before_nm},
+                    {"after", Ink::blue, CurveStyle::line, best_.time_s, best_.after_nm}};
+    return panel;
+}
 
 void TorqueCourse::add(double time_s, double speed_deg_s, double before_nm, double after_nm) {
     if (!any_) first_s_ = time_s;
@@ -12,6 +50,7 @@ void TorqueCourse::add(double time_s, double speed_deg_s, double before_nm, doub
     speed_.add(time_s, speed_deg_s);
     before_.add(time_s, before_nm);
     after_.add(time_s, after_nm);
+    close_up_.add(time_s, before_nm, after_nm);
 }
 
 Figure TorqueCourse::figure(const std::string& source, const std::string& method,
@@ -19,11 +58,14 @@ Figure TorqueCourse::figure(const std::string& source, const std::string& method
     PlotAxis time{"time", "s"};
     time.from = first_s_;
     time.to = last_s_;
+    Figure figure{"torque", fmt::format("{}: {}", source, method), "", {}};
+    if (std::optional<Panel> close_up = close_up_.panel()) figure.panels.push_back(std::move(*close_up));
     Panel torque{.title = "Torque before and after", .x = time, .y = {"torque", "Nm"}};
     torque.curves = {before_.curve("before", Ink::orange), after_.curve("after", Ink::blue)};
     Panel speed{.title = "Joint speed", .x = time, .y = {"speed", "deg/s"}, .height = 0.5};
     speed.curves = {speed_.curve("", Ink::black)};
-    Figure figure{"torque", fmt::format("{}: {}", source, method), "", {std::move(torque), std::move(speed)}};
+    figure.panels.push_back(std::move(torque));
+    figure.panels.push_back(std::move(speed));
     if (report.switches.empty()) return figure;
 
     Curve band{"",

@@ -41,6 +41,8 @@ const char* style_name(CurveStyle style) {
             return "points";
         case CurveStyle::stems:
             return "stems";
+        case CurveStyle::crosses:
+            return "crosses";
         case CurveStyle::line:
             break;
     }

@@ -21,7 +21,7 @@ Enum word_of(Fields& fields, std::string_view name, const std::array<const char*
 
 constexpr double lowest_panel = 0.1, highest_panel = 10.0;  // against the others
 constexpr std::array scales = {"linear", "logarithmic", "whole"};
-constexpr std::array styles = {"line", "dashed", "steps", "points", "stems"};
+constexpr std::array styles = {"line", "dashed", "steps", "points", "stems", "crosses"};
 constexpr std::array runs = {"at-x", "at-y", "ray"};
 
 Ink ink_of(Fields& fields) {

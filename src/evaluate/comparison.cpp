@@ -159,6 +159,8 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
         [&](const TraceView& block) {
             const auto truth = log.truth_nm.empty() ? log.truth_nm : log.truth_nm.subspan(done, block.size());
             run_block(runners, meter, block, truth);
+            for (std::size_t i = 0; log.watch && i < runners.size(); ++i)
+                log.watch(i, block, runners[i].out, truth);
             done += block.size();
         },
         [&] {

@@ -15,6 +15,8 @@ namespace {
 constexpr std::array<const char*, 8> inks = {"#000000", "#0072b2", "#d55e00", "#009e73",
                                              "#e69f00", "#cc79a7", "#56b4e9", "#808080"};
 
+constexpr std::size_t inks_of_series = 6;
+
 // Least and greatest of what an axis of this scale can show.
 class Span {
   public:
@@ -60,8 +62,28 @@ void demand(bool holds, const Figure& figure, const char* what) {
 std::string ink_rgb(Ink ink) { return inks[static_cast<std::size_t>(ink)]; }
 
 Ink series_ink(std::size_t i) {
-    constexpr std::array order = {Ink::blue, Ink::vermilion, Ink::green, Ink::orange, Ink::purple, Ink::sky};
+    constexpr std::array<Ink, inks_of_series> order = {Ink::blue,   Ink::vermilion, Ink::green,
+                                                       Ink::orange, Ink::purple,    Ink::sky};
     return order[i % order.size()];
+}
+
+CurveStyle other_mark(CurveStyle style) {
+    if (style == CurveStyle::line) return CurveStyle::dashed;
+    return style == CurveStyle::points ? CurveStyle::crosses : style;
+}
+
+CurveStyle series_style(std::size_t i, CurveStyle style) {
+    return i < inks_of_series ? style : other_mark(style);
+}
+
+Ink order_ink(double order) {
+    const double whole = std::clamp(std::ceil(order - 1e-9), 1.0, 1e6);
+    return series_ink(static_cast<std::size_t>(whole) - 1);
+}
+
+CurveStyle order_style(double order, CurveStyle style) {
+    const bool whole = std::abs(order - std::round(order)) < 1e-9;
+    return whole && order < static_cast<double>(inks_of_series) + 0.5 ? style : other_mark(style);
 }
 
 PlotRange x_range(const Panel& panel) {

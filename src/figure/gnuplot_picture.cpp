@@ -174,11 +174,12 @@ class PanelScript {
         const Curve curve = thinned(whole, buckets);
         const std::string data = script_.rows({&curve.x, &curve.y});
         const std::string ink = ink_rgb(curve.ink);
-        const char* how = curve.style == CurveStyle::points   ? "points pt 7 ps 0.7"
-                          : curve.style == CurveStyle::steps  ? "steps lw 1.6"
-                          : curve.style == CurveStyle::stems  ? "impulses lw 1.6"
-                          : curve.style == CurveStyle::dashed ? "lines lw 1.4 dt (7,4)"
-                                                              : "lines lw 1.5";
+        const char* how = curve.style == CurveStyle::points    ? "points pt 7 ps 0.7"
+                          : curve.style == CurveStyle::crosses ? "points pt 2 ps 0.7 lw 1.4"
+                          : curve.style == CurveStyle::steps   ? "steps lw 1.6"
+                          : curve.style == CurveStyle::stems   ? "impulses lw 1.6"
+                          : curve.style == CurveStyle::dashed  ? "lines lw 1.4 dt (7,4)"
+                                                               : "lines lw 1.5";
         parts.push_back(
             fmt::format("{} using 1:2 with {} lc rgb '{}' {}", data, how, ink, titled(curve.name)));
     }

@@ -83,7 +83,7 @@ class TextPanel {
         const Curve curve = thinned(whole, static_cast<std::size_t>(columns_));
         const std::string data = script_.rows({&curve.x, &curve.y});
         const std::size_t type = i % curve_characters.size() + 1;
-        if (curve.style == CurveStyle::points) {
+        if (curve.style == CurveStyle::points || curve.style == CurveStyle::crosses) {
             // A point is the character of its curve, which "with points" would not give.
             parts.push_back(
                 fmt::format("{} using 1:2:(\"{}\") with labels", data, curve_characters[type - 1]));

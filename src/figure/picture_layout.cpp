@@ -14,7 +14,7 @@ namespace {
 constexpr double page_width = 900.0, wide_page_width = 1160.0;
 constexpr double right_px = 22.0, box_height = 250.0, below_px = 50.0, colours_px = 96.0;
 constexpr double label_apart_px = 15.0;
-constexpr std::size_t longest_label = 44;
+constexpr std::size_t longest_label = 32;
 
 double px(const std::string& text) { return letter_px * static_cast<double>(text_width(text)); }
 

@@ -11,6 +11,7 @@
 #include "log/opening.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/percent.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -27,7 +28,7 @@ int decimals_of(std::string_view number) {
     return static_cast<int>(std::min<std::size_t>(at - mark - 1, 17));
 }
 
-std::string per_cent(double share) { return fmt::format("{:.2g} %", 100.0 * share); }
+std::string per_cent(double share) { return percent_text(100.0 * share) + " %"; }
 
 }  // namespace
 

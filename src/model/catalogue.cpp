@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -35,6 +37,14 @@ const Effect& find_effect(std::string_view name) {
         if (effect->name == name) return *effect;
         known.emplace_back(effect->name);
     }
+    // "friction" is part of several names, and near to none.
+    constexpr std::size_t fewest_letters = 4;
+    std::vector<std::string> within;
+    std::copy_if(known.begin(), known.end(), std::back_inserter(within),
+                 [&](const std::string& one) { return one.find(name) != std::string::npos; });
+    if (name.size() >= fewest_letters && !within.empty())
+        raise<UsageError>("there is no effect '{}'; there {} {}; 'ripplenotch effects' lists all", name,
+                          within.size() == 1 ? "is" : "are", fmt::join(within, ", "));
     const auto near = nearest_name(name, known);
     raise<UsageError>("there is no effect '{}'{}; 'ripplenotch effects' lists them", name,
                       near ? fmt::format(" (did you mean {}?)", *near) : "");

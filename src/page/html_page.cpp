@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "page/page_dress.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/core/visible_text.hpp"
@@ -14,45 +15,6 @@
 
 namespace ripplenotch {
 namespace {
-
-constexpr std::string_view style = R"css(
-:root { color-scheme: light; }
-body { font: 16px/1.45 system-ui, sans-serif; color: #1b1b1b; background: #fff; margin: 0 auto; max-width: 62rem;
-  padding: 1rem; overflow-wrap: anywhere; }
-h1 { font-size: 1.35rem; margin: .2rem 0 1rem; }
-h2 { font-size: 1.1rem; margin: 2.2rem 0 .3rem; border-top: 1px solid #bbb; padding-top: 1rem; }
-h3 { font-size: 1rem; margin: 1.2rem 0 .2rem; }
-.verdict { font-size: 1.15rem; font-weight: 600; margin: .3rem 0 1rem; }
-.facts { display: flex; flex-wrap: wrap; gap: .6rem; margin: 0 0 1rem; padding: 0; list-style: none; }
-.facts li { border: 1px solid #ccc; border-radius: .4rem; padding: .3rem .7rem; }
-.facts b { display: block; font-size: 1.05rem; }
-.facts span, .note, figcaption { color: #444; font-size: .9rem; }
-figure { margin: 1.2rem 0; }
-.plot { width: 100%; }
-figure img { width: 100%; height: auto; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .2rem .7rem; text-align: right; border-bottom: 1px solid #ddd; overflow-wrap: normal; }
-th:first-child, td:first-child, .words { text-align: left; }
-td.words { min-width: 6rem; }
-pre { background: #f3f3f3; padding: .6rem; overflow-x: auto; font-size: .85rem; white-space: pre-wrap; }
-details { margin: .6rem 0; }
-@media print { body { max-width: none; padding: 0; } details, .modebar { display: none; }
-  figure, table { break-inside: avoid; } }
-)css";
-
-constexpr std::string_view draw_all = R"js(
-for (const source of document.querySelectorAll("script[data-figure]")) {
-  const place = document.getElementById(source.dataset.figure);
-  const figure = JSON.parse(source.textContent);
-  const config = {responsive: true, displaylogo: false, showSendToCloud: false, plotlyServerURL: "",
-                  modeBarButtonsToRemove: ["lasso2d", "select2d"]};
-  Plotly.newPlot(place, figure.data, figure.layout, config).then(() => {
-    place.dataset.drawn = figure.data.length;
-    place.dataset.points = figure.data.reduce((sum, trace) => sum + (trace.x ? trace.x.length : 0), 0);
-  });
-}
-)js";
 
 std::string base64(std::string_view bytes) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -97,10 +59,12 @@ class Writer {
                 "pictures: no zoom, no "
                 "values under the pointer.</p>\n");
         }
+        summary(page);
+        contents(page);
         for (const PageSection& one : page.sections) section(one);
         put("<p class=\"note\">Made by {} {}; this page loads nothing from anywhere.</p>\n", tool_name,
             version());
-        if (plotly_js_) put("<script>{}</script>\n<script>{}</script>\n", *plotly_js_, draw_all);
+        if (plotly_js_) put("<script>{}</script>\n<script>{}</script>\n", *plotly_js_, page_script);
         put("</body>\n</html>\n");
         return std::move(text_);
     }
@@ -114,29 +78,73 @@ class Writer {
 
     void head(const std::string& title) {
         std::string scripts = "'none'";
-        if (plotly_js_) scripts = script_hash(*plotly_js_) + " " + script_hash(draw_all);
+        if (plotly_js_) scripts = script_hash(*plotly_js_) + " " + script_hash(page_script);
         put("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
             "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src {}; "
             "style-src "
             "'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n"
+            "<meta name=\"color-scheme\" content=\"light dark\">\n"
             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
             "<style>{}</style>\n</head>\n<body>\n",
-            scripts, shown(title), style);
+            scripts, shown(title), page_style);
+    }
+
+    // What was asked, the verdict and the numbers of each result, before anything else.
+    void summary(const Page& page) {
+        put("<div class=\"summary\">\n");
+        for (std::size_t i = 0; i < page.sections.size(); ++i) {
+            const PageSection& one = page.sections[i];
+            if (one.asked.empty()) continue;
+            put("<article>\n<h2><a href=\"#result-{}\">{}</a></h2>\n", i + 1, shown(one.asked));
+            if (!one.verdict.empty()) put("<p>{}</p>\n", shown(one.verdict));
+            facts(one.key);
+            put("</article>\n");
+        }
+        put("</div>\n");
+    }
+
+    void contents(const Page& page) {
+        if (page.sections.size() < 2) return;
+        put("<nav>\n<h2>Contents</h2>\n<ol>\n");
+        for (std::size_t i = 0; i < page.sections.size(); ++i)
+            put("<li><a href=\"#result-{}\">{}</a></li>\n", i + 1, shown(page.sections[i].title));
+        put("</ol>\n</nav>\n");
+    }
+
+    void facts(const std::vector<PageFact>& all) {
+        if (all.empty()) return;
+        put("<ul class=\"facts\">\n");
+        for (const PageFact& fact : all)
+            put("<li><b>{}</b><span>{}</span></li>\n", shown(fact.value), shown(fact.name));
+        put("</ul>\n");
     }
 
     void section(const PageSection& one) {
-        put("<section>\n<h2>{}</h2>\n", shown(one.title));
+        put("<section>\n<h2 id=\"result-{}\">{}</h2>\n", ++sections_, shown(one.title));
         if (!one.verdict.empty()) put("<p class=\"verdict\">{}</p>\n", shown(one.verdict));
-        if (!one.facts.empty()) {
-            put("<ul class=\"facts\">\n");
-            for (const PageFact& fact : one.facts)
-                put("<li><b>{}</b><span>{}</span></li>\n", shown(fact.value), shown(fact.name));
-            put("</ul>\n");
-        }
+        facts(one.key);
         for (const Figure& drawn : one.figures) figure(drawn, drawn.title != one.title);
-        for (const PageTable& shown_table : one.tables) table(shown_table);
-        reproduce(one);
+        for (const PageTable& shown_table : one.tables)
+            if (!shown_table.folded) table(shown_table);
+        folded(one);
         put("</section>\n");
+    }
+
+    // What few people open: ledgers, every value, how to make it again, the JSON.
+    void folded(const PageSection& one) {
+        for (const PageTable& ledger : one.tables) {
+            if (!ledger.folded) continue;
+            put("<details><summary>{} ({} row{})</summary>\n", shown(ledger.title), ledger.rows.size(),
+                ledger.rows.size() == 1 ? "" : "s");
+            rows(ledger);
+            put("</details>\n");
+        }
+        if (!one.facts.empty()) {
+            put("<details><summary>Every value</summary>\n");
+            facts(one.facts);
+            put("</details>\n");
+        }
+        reproduce(one);
     }
 
     void figure(const Figure& drawn, bool titled) {
@@ -159,7 +167,12 @@ class Writer {
     }
 
     void table(const PageTable& one) {
-        put("<h3>{}</h3>\n<div class=\"scroll\"><table>\n<thead><tr>", shown(one.title));
+        put("<h3>{}</h3>\n", shown(one.title));
+        rows(one);
+    }
+
+    void rows(const PageTable& one) {
+        put("<div class=\"scroll\"><table>\n<thead><tr>");
         for (std::size_t c = 0; c < one.header.size(); ++c) {
             const bool words = !one.rows.empty() && !is_number(one.rows.front()[c]);
             put("<th{}>{}</th>", words ? " class=\"words\"" : "", shown(one.header[c]));
@@ -172,14 +185,21 @@ class Writer {
             put("</tr>\n");
         }
         put("</tbody>\n</table></div>\n");
+        if (one.legend.empty()) return;
+        put("<dl>\n");
+        for (const PageFact& label : one.legend)
+            put("<dt>{}</dt><dd>{}</dd>\n", shown(label.name), shown(label.value));
+        put("</dl>\n");
     }
 
     void reproduce(const PageSection& one) {
-        if (!one.command.empty()) put("<h3>Made by</h3>\n<pre>{}</pre>\n", shown(one.command));
-        if (!one.inputs.empty()) {
+        if (!one.command.empty() || !one.inputs.empty()) {
+            put("<details><summary>Made by</summary>\n");
+            if (!one.command.empty()) put("<pre>{}</pre>\n", shown(one.command));
             PageTable inputs{"From", {"file", "SHA-256"}, {}};
             for (const PageFact& input : one.inputs) inputs.rows.push_back({input.name, input.value});
-            table(inputs);
+            if (!inputs.rows.empty()) table(inputs);
+            put("</details>\n");
         }
         // Shown as text and kept as data: a program finds it by its type.
         if (one.json.empty()) return;
@@ -189,7 +209,7 @@ class Writer {
 
     const std::optional<std::string>& plotly_js_;
     std::string text_;
-    int figures_ = 0;
+    int figures_ = 0, sections_ = 0;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-std::string shown_name(const NamedLine& line) { return cut_to(visible_text(line.name), 44); }
+std::string shown_name(const NamedLine& line) { return cut_to(visible_text(line.name), 28); }
 
 }  // namespace
 

@@ -77,10 +77,11 @@ Json curve_trace(Json json, const Panel& panel, const Curve& whole) {
     json["x"] = numbers_json(curve.x);
     json["y"] = numbers_json(curve.y);
     json["hovertemplate"] = hover(panel) + (curve.name.empty() ? "<extra></extra>" : "");
-    if (curve.style == CurveStyle::points) {
+    if (curve.style == CurveStyle::points || curve.style == CurveStyle::crosses) {
         json["mode"] = "markers";
         json["cliponaxis"] = false;
         json["marker"] = {{"color", ink_rgb(curve.ink)}, {"size", 6}};
+        if (curve.style == CurveStyle::crosses) json["marker"]["symbol"] = "x";
     } else if (curve.style == CurveStyle::stems) {
         stems(json, curve);
     } else {

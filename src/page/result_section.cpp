@@ -7,6 +7,8 @@
 #include "page/diagnosis_rounds.hpp"
 #include "page/json_table.hpp"
 #include "page/json_words.hpp"
+#include "page/key_numbers.hpp"
+#include "page/result_tables.hpp"
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/chart/identification_figure.hpp"
 #include "ripplenotch/chart/map_figure.hpp"
@@ -51,16 +53,77 @@ std::string text_at(const Json& json, const char* name) {
     return found != json.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
+// What a person reads first of a kind; its other tables are ledgers.
+bool is_ledger(const std::string& kind, const std::string& name) {
+    struct Shown {
+        std::string_view kind, name;
+    };
+    constexpr std::array shown = {Shown{"joint", "lines"},           Shown{"table", "bands"},
+                                  Shown{"metrics", "orders"},        Shown{"metrics", "switches"},
+                                  Shown{"comparison", "methods"},    Shown{"diagnosis", "rounds"},
+                                  Shown{"diagnosis", "faults"},      Shown{"diagnosis", "ambiguous"},
+                                  Shown{"diagnosis", "unexplained"}, Shown{"diagnosis", "undecidable"}};
+    const bool chosen =
+        std::any_of(shown.begin(), shown.end(), [&](const Shown& s) { return s.kind == kind; });
+    return chosen && std::none_of(shown.begin(), shown.end(),
+                                  [&](const Shown& s) { return s.kind == kind && s.name == name; });
+}
+
+// Each method's ledgers, under the label that the comparison gives it.
+void add_method_ledgers(PageSection& section, const Json& methods, const PageTable& compared) {
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        for (const char* name : {"ledger", "switch_ledger"}) {
+            const auto found = methods[i].find(name);
+            if (found == methods[i].end() || !is_table(*found)) continue;
+            section.tables.push_back(table_of(name, *found));
+            section.tables.back().title = fmt::format("{} of {}", spoken(name).name, compared.rows[i][0]);
+            section.tables.back().folded = true;
+        }
+    }
+}
+
+// The tables that people read across have columns of their own choice; false for any other.
+bool add_known_table(PageSection& section, const std::string& kind, const std::string& name,
+                     const Json& rows) {
+    if (!is_table(rows)) return false;
+    if (kind == "comparison" && name == "methods") {
+        section.tables.push_back(comparison_table(rows));
+        add_method_ledgers(section, rows, PageTable(section.tables.back()));
+    } else if (kind == "joint" && name == "lines") {
+        Json lines = rows;  // amplitudes at each speed are in the figure
+        for (Json& line : lines) line.erase("amplitude_by_speed");
+        section.tables.push_back(table_of(name, lines));
+        section.tables.push_back(table_of(name, rows));
+        section.tables.back().title = "Every value of the lines";
+        section.tables.back().folded = true;
+    } else if (kind == "table" && name == "bands") {
+        section.tables.push_back(notch_table(rows));
+        section.tables.push_back(table_of(name, rows));
+        section.tables.back().title = "Every value of the bands";
+        section.tables.back().folded = true;
+    } else if (kind == "metrics" && name == "switches") {
+        if (auto drawn = switch_figure(rows)) section.figures.push_back(std::move(*drawn));
+        section.tables.push_back(largest_switches(rows));
+    } else {
+        return false;
+    }
+    return true;
+}
+
 // Every field as a fact or a table, in the order of the document, but for what stands elsewhere in the
 // section.
-void add_fields(PageSection& section, const Json& json, const std::optional<Diagnosis>& diagnosis) {
+void add_fields(PageSection& section, const std::string& kind, const Json& json,
+                const std::optional<Diagnosis>& diagnosis) {
     constexpr std::array told = {"schema", "tool", "version", "command", "inputs", "verdict"};
     for (const auto& [name, entry] : json.items()) {
         if (std::find(told.begin(), told.end(), name) != told.end()) continue;
         if (diagnosis && name == "rounds") {
             if (!diagnosis->rounds.empty()) section.tables.push_back(rounds_table(*diagnosis));
-        } else {
+        } else if (!add_known_table(section, kind, name, entry)) {
+            const std::size_t before = section.tables.size();
             add_field(section, name, json);
+            for (std::size_t i = before; i < section.tables.size(); ++i)
+                section.tables[i].folded = is_ledger(kind, name);
         }
     }
 }
@@ -89,7 +152,10 @@ PageSection section_of_result(const std::string& text, const std::string& source
         section.verdict = value_text(*verdict);
     std::optional<Diagnosis> diagnosis;
     if (kind == "diagnosis") diagnosis = read_diagnosis(text, source);
-    add_fields(section, json, diagnosis);
+    if (section.verdict.empty()) section.verdict = sentence_of(kind, json);
+    section.asked = question_of(kind);
+    section.key = key_numbers(kind, json);
+    add_fields(section, kind, json, diagnosis);
     if (kind == "joint") {
         section.figures.push_back(identification_figure(source, identification_from_json(text, source)));
         section.figures.back().sentence.clear();  // it is the verdict above

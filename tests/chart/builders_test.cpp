@@ -236,14 +236,14 @@ TEST_CASE("torque before and after keeps its peaks over two million samples, and
     report.switch_count = 2;
     const Figure figure = course.figure("log.csv", "switching", report);
     check_figure(figure);
-    REQUIRE(figure.panels.size() == 4);
-    const Panel& torque = figure.panels.front();
+    REQUIRE(figure.panels.size() == 5);
+    const Panel& torque = figure.panels[1];
     CHECK(top_of(torque.curves[0]).y == 55.0);
     CHECK(top_of(torque.curves[0]).x == Approx(1234.567));
     CHECK(*std::min_element(torque.curves[1].y.begin(), torque.curves[1].y.end()) == -7.0);
     CHECK(torque.curves[0].x.size() < 20000);
-    CHECK(figure.panels[2].curves[0].y == std::vector<double>{0.0, 3.0, 4.0, 4.0});
-    CHECK(figure.panels[3].curves[0].y == std::vector<double>{0.4, -0.2});
+    CHECK(figure.panels[3].curves[0].y == std::vector<double>{0.0, 3.0, 4.0, 4.0});
+    CHECK(figure.panels[4].curves[0].y == std::vector<double>{0.4, -0.2});
     CHECK_THAT(figure.sentence, Contains("2 changes"));
 }
 

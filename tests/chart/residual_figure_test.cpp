@@ -77,7 +77,7 @@ TEST_CASE("a track's ribbon is twice its standard error, in the kind of amplitud
     tracks.time_s = {0.0, 1.0};
     tracks.speed_deg_s = {10.0, 20.0};
     tracks.lines = {{{1.0, 2.0}, {0.1, 0.2}, {30.0, 40.0}, {5.0, 6.0}}};
-    const std::vector<std::string> names{"order 1"};
+    const std::vector<TrackName> names{{"order 1", 1.0}};
     const Figure figure = track_figure("log.csv", tracks, names, {2.0, "peak to peak"});
     check_figure(figure);
     const Panel& panel = figure.panels.front();
@@ -85,4 +85,20 @@ TEST_CASE("a track's ribbon is twice its standard error, in the kind of amplitud
     CHECK(panel.ribbons[0].low == std::vector<double>{1.6, 3.2});
     CHECK(panel.ribbons[0].high == std::vector<double>{2.4, 4.8});
     CHECK(figure.panels[1].curves[0].y == std::vector<double>{30.0, 40.0});
+}
+
+TEST_CASE("an order has one colour in every figure; a tone and a line that nobody knows have others") {
+    OrderTracks tracks;
+    tracks.time_s = {0.0, 1.0};
+    tracks.speed_deg_s = {10.0, 20.0};
+    tracks.lines.assign(4, {{1.0, 2.0}, {0.1, 0.2}, {30.0, 40.0}, {5.0, 6.0}});
+    // Order 2 alone, first of the list, has the colour that it has beside order 1.
+    const std::vector<TrackName> names{
+        {"order 2", 2.0}, {"60 Hz", {}, true}, {"output order 3", {}, false}, {"order 8", 8.0}};
+    const auto& curves = track_figure("log.csv", tracks, names, {}).panels.front().curves;
+    CHECK(curves[0].ink == order_ink(2.0));
+    CHECK(curves[1].ink == Ink::black);
+    CHECK(curves[2].ink == Ink::grey);
+    CHECK(curves[3].ink == curves[0].ink);  // the colours begin again: the mark tells them apart
+    CHECK(curves[3].style != curves[0].style);
 }

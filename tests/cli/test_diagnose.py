@@ -72,6 +72,23 @@ class Diagnose(unittest.TestCase):
         self.assertIn("named: nothing\n", second.stdout)
         self.assertIn("unexplained: ", second.stdout)
 
+    def test_a_model_is_made_of_the_log_by_identify(self):
+        self.log("log.csv", move(0, 120, -60), "coulomb-friction,torque_nm=0.4,width_deg_s=2")
+        done = self.run_tool("diagnose", "log.csv", "--model", "auto", "-v", "-o", "made.json", "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the model is made of the log: gear ratio ", done.stderr)
+        self.assertIn("named: coulomb-friction", done.stdout)
+        made = json.loads((pathlib.Path(self.folder.name) / "made.json").read_text())
+        self.assertAlmostEqual(made["gear_ratio"], MODEL["gear_ratio"], delta=0.1)
+        told = self.run_tool("diagnose", "log.csv")
+        self.assertIn("--model auto", told.stderr)
+        piped = self.run_tool("diagnose", "-", "--model", "auto")
+        self.assertEqual((piped.returncode, piped.stdout), (2, ""))
+        self.log("rest.csv", ["--motion", "rest,duration=2s,from=0deg"])
+        silent = self.run_tool("diagnose", "rest.csv", "--model", "auto")
+        self.assertEqual((silent.returncode, silent.stdout), (3, ""), silent.stderr)
+        self.assertIn("--gear-ratio N", silent.stderr)
+
     def test_wrong_requests_get_one_message(self):
         self.log("log.csv", move(0, 120))
         (pathlib.Path(self.folder.name) / "open.json").write_text(

@@ -141,7 +141,8 @@ class Pages(unittest.TestCase):
         parser.feed(text)
         self.assertEqual(parser.stack, [])
         for part in ("ripplenotch design joint.json --speed 18:180:18", "Ripple at orders 1 and 2", "attenuation, dB",
-                     "gear ratio value", "Content-Security-Policy", "viewport"):
+                     "gear ratio value", "Which ripple is in the log", "order 1: centre, Hz", "order 1: Q",
+                     "<dt>A</dt><dd>lowpass,cutoff=13Hz</dd>", "Content-Security-Policy", "viewport"):
             self.assertIn(part, text)
         self.assertNotIn("http", text.replace("http-equiv", ""))
 

@@ -85,3 +85,20 @@ TEST_CASE("the first six series have colours of their own, none of them too ligh
     }
     CHECK(seen.size() == 6);
 }
+
+TEST_CASE("twelve series, and twelve orders, are told apart by colour and mark") {
+    for (const CurveStyle style : {CurveStyle::line, CurveStyle::points}) {
+        std::set<std::pair<Ink, CurveStyle>> series, orders;
+        for (std::size_t i = 0; i < 12; ++i) {
+            series.emplace(series_ink(i), series_style(i, style));
+            const double order = static_cast<double>(i) + 1.0;
+            orders.emplace(order_ink(order), order_style(order, style));
+        }
+        CHECK(series.size() == 12);
+        CHECK(orders.size() == 12);
+        CHECK(orders.count({tone_ink, other_mark(style)}) + orders.count({unknown_ink, other_mark(style)}) ==
+              0);
+    }
+    CHECK(order_style(0.5, CurveStyle::points) == CurveStyle::crosses);
+    CHECK(order_ink(0.5) == order_ink(1.0));
+}

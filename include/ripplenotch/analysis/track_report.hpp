@@ -56,7 +56,14 @@ struct TrackColumn {
 /// nan where a line was not measured.
 [[nodiscard]] std::vector<TrackColumn> track_columns(const TrackReport& report);
 
-/// One line over the rows in which it was measured, amplitudes in the kind of the report.
+/// Rows that do not follow on the row before, since there are no data between: the joint turns round or
+/// rests, or the log has a gap. Rising, never 0; over speed those with an empty range before them.
+[[nodiscard]] std::vector<std::size_t> track_breaks(const OrderTracks& tracks);
+[[nodiscard]] std::vector<std::size_t> track_breaks(const SpeedTrack& tracks);
+
+/// One line over the rows in which it was measured, amplitudes in the kind of the report. Median, least and
+/// greatest of Vold-Kalman leave out rows within 1 / bandwidth of the log's ends, where an envelope rests on
+/// one side alone.
 struct TrackSummary {
     std::size_t rows = 0;  ///< where it was measured; 0: the rest means nothing
     double median_nm = 0.0, least_nm = 0.0, greatest_nm = 0.0;

@@ -3,8 +3,10 @@
 // Torque before and after a filter along a log of any length, in bounded memory, and the ledger of its
 // switches.
 
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/figure/min_max.hpp"
@@ -12,18 +14,38 @@
 
 namespace ripplenotch {
 
+/// The stretch of half a second in which a filter takes off most of what goes fast: there ripple can be seen,
+/// which a picture of a whole log blurs.
+class CloseUp {
+  public:
+    void add(double time_s, double before_nm, double after_nm);
+    /// Empty while the log is not some times as long as the stretch.
+    [[nodiscard]] std::optional<Panel> panel() const;
+
+  private:
+    struct Stretch {
+        std::vector<double> time_s, before_nm, after_nm;
+        double taken_off = 0.0;  ///< squares of the steps of before less after
+    };
+    void end_stretch();
+
+    Stretch now_, best_;
+    std::size_t ended_ = 0;
+};
+
 class TorqueCourse {
   public:
     /// One sample; time in the order of the log.
     void add(double time_s, double speed_deg_s, double before_nm, double after_nm);
 
-    /// Panels: torque before and after, joint speed, and for a filter that switches the band in force and the
-    /// jump of the output at each switch.
+    /// Panels: a close-up where the log is long enough, torque before and after, joint speed, and for a
+    /// filter that switches the band in force and the jump of the output at each switch.
     [[nodiscard]] Figure figure(const std::string& source, const std::string& method,
                                 const StreamReport& report) const;
 
   private:
     MinMaxCourse speed_, before_, after_;
+    CloseUp close_up_;
     double first_s_ = 0.0, last_s_ = 0.0;
     bool any_ = false;
 };

@@ -3,6 +3,7 @@
 // Several methods side by side: on signals of the tool's own making, or on a log.
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -99,6 +100,11 @@ struct ComparedLog {
     TraceView trace;  ///< its sample_rate is what the filters are designed for
     std::span<const double> truth_nm =
         {};  ///< the torque without ripple and noise, row by row, where it is known
+    /// Sees what each method, counted from 0, makes of each block of the log, in the order of the rows; may
+    /// be empty.
+    std::function<void(std::size_t method, const TraceView& block, std::span<const double> out_nm,
+                       std::span<const double> truth_nm)>
+        watch = {};
 };
 
 /// Median of |v| over the samples that move: faster than a twentieth of the fastest. 0 for a log at rest.

@@ -27,7 +27,18 @@ enum class Ink { black, blue, vermilion, green, orange, purple, sky, grey };
 /// The i-th of the inks that tell series apart; starts again after six.
 [[nodiscard]] Ink series_ink(std::size_t i);
 
-enum class CurveStyle { line, dashed, steps, points, stems };
+enum class CurveStyle { line, dashed, steps, points, stems, crosses };
+/// The other mark of the same kind, for a curve whose ink another has: dashes for a line, crosses for points.
+[[nodiscard]] CurveStyle other_mark(CurveStyle style);
+/// `style` for the i-th series: from the seventh on the inks begin again, with the other mark.
+[[nodiscard]] CurveStyle series_style(std::size_t i, CurveStyle style);
+
+/// The ink of an order, the same in every figure: that of its whole number, 1 blue, 2 vermilion, 3 green,
+/// 4 orange, 5 purple, 6 sky. Broken orders and those above 6 share these inks with the other mark.
+[[nodiscard]] Ink order_ink(double order);
+[[nodiscard]] CurveStyle order_style(double order, CurveStyle style);
+/// A tone does not turn with the motor: it is black, with the other mark. What nobody knows is grey.
+inline constexpr Ink tone_ink = Ink::black, unknown_ink = Ink::grey;
 
 /// Points of equal length x and y, joined in this order; a nan breaks the line.
 struct Curve {

@@ -30,6 +30,25 @@ const std::vector<double>& amplitudes(const TrackReport& report, std::size_t lin
                            : report.tracks.lines[line].amplitude_nm;
 }
 
+// Where an envelope has as much log before as after it. Within one response time of an end it rests on one
+// side alone, and may be anything.
+struct Settled {
+    bool any = false;  ///< false: all rows count
+    double from_s = 0.0, to_s = 0.0;
+    [[nodiscard]] bool holds(double time_s) const { return time_s >= from_s && time_s <= to_s; }
+};
+
+Settled settled_of(const TrackReport& report, const std::vector<double>& amplitude) {
+    const std::vector<double>& time_s = report.tracks.time_s;
+    const auto bandwidth = report.bandwidth_obtained ? report.bandwidth_obtained : report.bandwidth;
+    if (report.by_speed || !bandwidth || !(bandwidth->value() > 0.0) || time_s.empty()) return {};
+    const double response_s = 1.0 / bandwidth->value();
+    Settled settled{false, time_s.front() + response_s, time_s.back() - response_s};
+    for (std::size_t row = 0; row < time_s.size() && !settled.any; ++row)
+        settled.any = std::isfinite(amplitude[row]) && settled.holds(time_s[row]);
+    return settled;
+}
+
 const std::vector<double>& speeds(const TrackReport& report) {
     return report.by_speed ? report.by_speed->speed_deg_s : report.tracks.speed_deg_s;
 }
@@ -126,16 +145,21 @@ std::string_view amplitude_words(AmplitudeKind kind) {
 
 TrackSummary track_summary(const TrackReport& report, std::size_t line) {
     const std::vector<double>& amplitude = amplitudes(report, line);
+    const Settled settled = settled_of(report, amplitude);
     std::vector<std::pair<double, std::size_t>> sorted;
+    std::size_t rows = 0;
     for (std::size_t row = 0; row < amplitude.size(); ++row) {
-        if (std::isfinite(amplitude[row])) sorted.emplace_back(amplitude[row], row);
+        if (!std::isfinite(amplitude[row])) continue;
+        ++rows;
+        if (!settled.any || settled.holds(report.tracks.time_s[row]))
+            sorted.emplace_back(amplitude[row], row);
     }
     if (sorted.empty()) return {};
     std::sort(sorted.begin(), sorted.end());
     const std::size_t n = sorted.size();
     const double median = 0.5 * (sorted[(n - 1) / 2].first + sorted[n / 2].first);
     const double factor = amplitude_factor(report.kind);
-    return {n,
+    return {rows,
             factor * median,
             factor * sorted.front().first,
             factor * sorted.back().first,

@@ -15,6 +15,7 @@
 #include "cli/options/name_list.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
+#include "ripplenotch/chart/compared_course.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -181,7 +182,8 @@ std::vector<double> true_torque(const Request& request, const ReadOptions& read,
     return std::move(truth.trace.torque_nm);
 }
 
-Comparison compare_on_log(const Request& request, const Field& field, Provenance& provenance) {
+Comparison compare_on_log(const Request& request, const Field& field, Provenance& provenance,
+                          ComparedCourse& course) {
     if (request.log_options.joint == "all")
         raise<UsageError>("--joint all: compare looks at one joint; name it");
     const ReadOptions read = read_options(request.log_options, field.gear);
@@ -196,6 +198,8 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
     if (!request.truth.empty() && !field.gear) raise_no_gear("--truth");
     const std::vector<double> truth = true_torque(request, read, log.trace.size(), provenance);
     compared.truth_nm = truth;
+    if (request.plot.wanted() && !truth.empty())
+        compared.watch = [&course](auto&&... all) { course.add(all...); };
     // The filters are those that the filter command would run.
     compared.trace.sample_rate = log.recording.clock.nominal_rate;
 
@@ -220,6 +224,7 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
                                               "give --gear-ratio or --joint-file"});
     }
     add_methods(comparison, field.contenders, compared, request.common);
+    compared.watch = {};  // what is matched is measured more than once
     if (wants_match(request)) add_match_on_log(comparison, request, compared);
     return comparison;
 }
@@ -232,13 +237,15 @@ ExitCode run(const Request& request, const std::string& command_line) {
     const Field field = load_contenders(request.methods, request.gear, provenance);
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
     if (field.gear) say(request.common, gear_in_words(*field.gear));
-    Comparison comparison =
-        request.log.empty() ? compare_on_signals(request, field) : compare_on_log(request, field, provenance);
+    ComparedCourse course;
+    Comparison comparison = request.log.empty() ? compare_on_signals(request, field)
+                                                : compare_on_log(request, field, provenance, course);
     add_costs(comparison, request.costs, field);
     const std::string text =
         request.common.json ? comparison_text(comparison, provenance) : comparison_view(comparison);
     write_text(request.common.output, text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, [&] {
+        if (!course.empty()) return course.figure(request.log, comparison);
         std::vector<Contender> shown = field.contenders;
         if (comparison.match && comparison.match->low_pass)
             shown.push_back(make_contender(parse_spec(*comparison.match->low_pass)));

@@ -10,6 +10,8 @@
 #include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
 
+#include "ripplenotch/core/percent.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -162,7 +164,7 @@ std::string table_to_text(const CandidateTable& table, const DesignNote& note) {
     text += text_table(rows, "r");
     text += "\nWorst: the least attenuation of that order's line anywhere in the band";
     if (spec.ratio_error >= 5e-5)
-        text += fmt::format(", the gear ratio being up to {:.2g} % off", 100.0 * spec.ratio_error);
+        text += fmt::format(", the gear ratio being up to {} % off", percent_text(100.0 * spec.ratio_error));
     text += ". ";
     if (extra.held) text += "Together: of all orders by their amplitudes. ";
     if (extra.left) text += "Left: what that leaves of each at most. ";

@@ -13,6 +13,13 @@ namespace {
 
 std::string four(double value) { return fmt::format("{:.4g}", value); }
 
+// A delay turns a loop's phase by 360 degrees times delay times crossover; so much is often spared for it.
+constexpr double spared_deg = 30.0;
+
+std::string crossover_text(Seconds delay) {
+    return delay.value() > 0.0 ? fmt::format("{:.2g}", spared_deg / 360.0 / delay.value()) : "-";
+}
+
 std::string q_range(const TradePoint& point) {
     if (point.least_q == point.largest_q) return fmt::format("{:.3g}", point.least_q);
     return fmt::format("{:.3g}-{:.3g}", point.least_q, point.largest_q);
@@ -44,14 +51,15 @@ std::string slowest_sentence(Seconds delay, DegPerSec slowest) {
 
 std::string frontier_to_text(const Frontier& frontier) {
     std::vector<std::vector<std::string>> rows = {
-        {"attenuation", "delay", "bands", "Q", "settles", "overshoot", ""},
-        {"dB held", "ms", "", "", fmt::format("ms to {} %", four(frontier.spec.settle_band_percent)), "%",
-         ""}};
+        {"attenuation", "delay", "loop to", "bands", "Q", "settles", "overshoot", ""},
+        {"dB held", "ms", "Hz", "", "", fmt::format("ms to {} %", four(frontier.spec.settle_band_percent)),
+         "%", ""}};
     for (std::size_t i = 0; i < frontier.points.size(); ++i) {
         const TradePoint& point = frontier.points[i];
         rows.push_back({fmt::format("{:.1f}", point.attenuation_db),
-                        fmt::format("{:.1f}", 1e3 * point.delay.value()), std::to_string(point.bands),
-                        q_range(point), fmt::format("{:.0f}", 1e3 * point.settle.value()),
+                        fmt::format("{:.1f}", 1e3 * point.delay.value()), crossover_text(point.delay),
+                        std::to_string(point.bands), q_range(point),
+                        fmt::format("{:.0f}", 1e3 * point.settle.value()),
                         fmt::format("{:.1f}", point.overshoot_percent),
                         i == frontier.recommended ? "<- recommended" : ""});
     }
@@ -60,6 +68,11 @@ std::string frontier_to_text(const Frontier& frontier) {
     text +=
         fmt::format("\nRecommended: {:.1f} dB with {:.1f} ms in {} band{}: {}.\n", chosen.attenuation_db,
                     1e3 * chosen.delay.value(), chosen.bands, chosen.bands == 1 ? "" : "s", frontier.reason);
+    text += fmt::format(
+        "At a crossover of {} Hz this delay costs a loop {:g} deg of phase (\"loop to\"); for a faster loop "
+        "give "
+        "--max-delay.\n",
+        crossover_text(chosen.delay), spared_deg);
     if (frontier.slowest) text += slowest_sentence(chosen.delay, *frontier.slowest) + "\n";
     return text;
 }

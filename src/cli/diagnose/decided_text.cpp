@@ -16,8 +16,12 @@ std::string value_text(const Term& term, const FittedValue& value) {
     const Parameter& parameter = term.effect->parameters[value.parameter];
     std::string text = fmt::format("{} = {}", parameter.name, short_number(value.value));
     if (value.at_bound) text += " (at its bound)";
-    if (value.ci95)
+    // An interval over all that the parameter may be says nothing, in whatever digits.
+    if (value.ci95 && value.ci95->low <= parameter.lower && value.ci95->high >= parameter.upper) {
+        text += " (this log does not tell its size)";
+    } else if (value.ci95) {
         text += fmt::format(" [{}, {}]", short_number(value.ci95->low), short_number(value.ci95->high));
+    }
     return text;
 }
 

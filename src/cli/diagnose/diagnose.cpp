@@ -114,7 +114,10 @@ ExitCode run(const DiagnoseRequest& request, const std::string& command_line) {
 std::function<ExitCode()> attach(Options& options) {
     const auto request = std::make_shared<DiagnoseRequest>();
     options.argument("LOG", request->path, false, "the measured log; - is standard input");
-    options.text("--model", request->model, "FILE", "model.json of the joint; values left out are fitted");
+    options.text(
+        "--model", request->model, "FILE",
+        "model.json of the joint; values left out are fitted; auto: gear ratio and ripple orders as identify "
+        "finds them in LOG");
     attach_given(options, request->given);
     attach_gear(options, request->gear,
                 {.ratio = "motor turns per joint turn, in place of --model", .orders = "", .joint_file = ""});

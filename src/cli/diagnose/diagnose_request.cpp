@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cli/diagnose/diagnose_request.hpp"
 
+#include "cli/diagnose/model_from_log.hpp"
 #include "cli/gear/joint_methods.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -10,13 +11,19 @@ namespace {
 
 void check_model(const DiagnoseRequest& request) {
     if (request.model.empty() && !request.given.any())
-        raise<UsageError>("--model is missing: the model.json whose gap to the log is to be explained");
+        raise<UsageError>(
+            "--model is missing: the model.json whose gap to the log is to be explained; --model auto makes "
+            "one "
+            "of the log itself, from what identify finds in it, and -o FILE writes it with what was added");
     if (request.model.empty() && !request.gear.ratio)
         raise<UsageError>("--gear-ratio is missing; give it, or --model FILE, which states it");
-    if (!request.model.empty() && request.gear.ratio)
+    if (!request.model.empty() && request.model != model_from_log && request.gear.ratio)
         raise<UsageError>("--gear-ratio: the model of {} states the gear ratio; change it there",
                           request.model == "-" ? "standard input" : request.model);
     check_gear(request.gear);
+    if (request.path == "-" && request.model == model_from_log)
+        raise<UsageError>(
+            "--model auto reads the log twice, and standard input can be read once; give a file");
     if (request.path == "-" && request.model == "-")
         raise<UsageError>("--model - and LOG -: standard input holds one of them");
 }

@@ -207,13 +207,13 @@ std::string findings_text(const Diagnosis& diagnosis, bool explain) {
 std::string gap_text(const DiagnosisGap& gap) {
     std::string text =
         fmt::format("gap {} -> {} Nm", short_number(gap.before_nm), short_number(gap.after_nm));
-    if (gap.closed_percent) text += fmt::format(", {:.1f} % of it closed", *gap.closed_percent);
+    if (gap.closed_percent) text += fmt::format(", {} % of it closed", rounded(*gap.closed_percent, 1));
     text += "\n";
     if (gap.validation_before_nm) {
         text += fmt::format("on the validation log {} -> {} Nm", short_number(*gap.validation_before_nm),
                             short_number(*gap.validation_after_nm));
         if (gap.validation_closed_percent)
-            text += fmt::format(", {:.1f} % of it closed", *gap.validation_closed_percent);
+            text += fmt::format(", {} % of it closed", rounded(*gap.validation_closed_percent, 1));
         text += "\n";
     }
     return text;

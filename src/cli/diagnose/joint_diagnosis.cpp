@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cli/diagnose/model_from_log.hpp"
 #include "cli/gear/joint_facts.hpp"
 #include "cli/gear/joint_methods.hpp"
 #include "cli/readings/readings.hpp"
@@ -18,7 +19,14 @@ constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17;  // with all t
 
 std::string source_of(const std::string& model) { return model == "-" ? "standard input" : model; }
 
-ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path, Provenance& provenance) {
+ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path, const LogOptions& words,
+                        Provenance& provenance) {
+    if (path == model_from_log) {
+        ModelWithGiven model{identified_model(request, words)};
+        say(request.common, fmt::format("the model is made of the log: {}; its values are fitted",
+                                        model_in_words(model.model)));
+        return model;
+    }
     if (path.empty()) return {{GearRatio(*request.gear.ratio), {}}};
     ModelWithGiven model = read_model_with_given(read_all(path), source_of(path));
     if (path != "-") provenance.inputs.push_back(input_record(path));
@@ -89,9 +97,11 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     LogOptions words = request.log;
     if (joint) words.joint = *joint;
     const std::string path = joint ? with_joint(request.model, *joint) : request.model;
-    const ModelWithGiven model = model_of(request, path, one.provenance);
+    const ModelWithGiven model = model_of(request, path, words, one.provenance);
     take_joint_of(model, words.joint);
-    one.gear = gear_of(model.model, path.empty() ? "--gear-ratio" : source_of(path));
+    one.gear = gear_of(model.model, path.empty()             ? "--gear-ratio"
+                                    : path == model_from_log ? "identify"
+                                                             : source_of(path));
     say(request.common, gear_in_words(one.gear));
     const ReadOptions reading = read_options(words, one.gear);
     const bool given = request.given.any() || model.any_given();

@@ -161,8 +161,11 @@ void write_columns(const Request& request, const TrackReport& report) {
 }
 
 Figure figure_of(const Request& request, const TrackReport& report) {
-    std::vector<std::string> names;
-    for (const TrackLabel& label : report.labels) names.push_back(label.words());
+    std::vector<TrackName> names;
+    for (const TrackLabel& label : report.labels) {
+        names.push_back({label.words(), {}, label.kind == TrackLabel::Kind::tone});
+        if (label.kind == TrackLabel::Kind::order) names.back().order = label.value;
+    }
     const TrackScale scale{amplitude_factor(report.kind), request.amplitude == "rms" ? "rms"
                                                           : request.amplitude == "peak-to-peak"
                                                               ? "peak to peak"

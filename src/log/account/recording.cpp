@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "ripplenotch/core/percent.hpp"
+
 namespace ripplenotch {
 
 std::vector<LogWarning> recording_warnings(const Recording& recording, const std::string& clock_check) {
@@ -12,8 +14,8 @@ std::vector<LogWarning> recording_warnings(const Recording& recording, const std
     if (held >= 0.1) {
         warnings.push_back(
             {"held samples",
-             fmt::format("{} rows ({:.2g} %) hold the sample before while the joint moves, up to {} in a row",
-                         recording.held.count, held, recording.held.longest),
+             fmt::format("{} rows ({} %) hold the sample before while the joint moves, up to {} in a row",
+                         recording.held.count, percent_text(held), recording.held.longest),
              true});
     }
     using Verdict = AngleFacts::Verdict;

@@ -5,6 +5,8 @@
 
 #include "ripplenotch/log/clock.hpp"
 
+#include "ripplenotch/core/percent.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -40,12 +42,12 @@ std::vector<LogWarning> clock_warnings(const ClockFacts& clock) {
     if (clock.repeated_times > 0) {
         warnings.push_back(
             {"repeated times",
-             fmt::format(
-                 "{} rows ({:.2g} %) repeat the time of the row before: the clock is coarser than the "
-                 "rows, or rows "
-                 "were doubled",
-                 clock.repeated_times,
-                 100.0 * static_cast<double>(clock.repeated_times) / static_cast<double>(clock.rows))});
+             fmt::format("{} rows ({} %) repeat the time of the row before: the clock is coarser than the "
+                         "rows, or rows "
+                         "were doubled",
+                         clock.repeated_times,
+                         percent_text(100.0 * static_cast<double>(clock.repeated_times) /
+                                      static_cast<double>(clock.rows)))});
     }
     const double mean = clock.mean_rate.value(), nominal = clock.nominal_rate.value();
     if (nominal > 0.0 && std::abs(mean / nominal - 1.0) > rate_worth_a_word) {

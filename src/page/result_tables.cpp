@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "page/result_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "page/json_table.hpp"
+#include "page/json_words.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_letters = 26, most_switches = 10, fewest_for_figure = 20, bars = 20;
+
+std::string label_of(std::size_t i) {
+    return i < most_letters ? std::string(1, static_cast<char>('A' + i)) : fmt::format("M{}", i + 1);
+}
+
+// A number, or a dash; attenuation without bound is null in a document.
+std::string cell(const Json& row, const char* name) {
+    const auto found = row.find(name);
+    if (found == row.end() || !found->is_number()) return "-";
+    return coarse_text(found->get<double>());
+}
+
+std::vector<std::pair<std::string, std::string>> cells_of(const Json& method) {
+    std::vector<std::pair<std::string, std::string>> cells;
+    if (const auto settle = method.find("settle_ms"); settle != method.end() && settle->is_object())
+        cells.emplace_back("settles to 0.5 %, ms", cell(*settle, "0.5"));
+    cells.emplace_back("overshoot, %", cell(method, "overshoot_percent"));
+    cells.emplace_back("ramp delay, ms", cell(method, "ramp_delay_ms"));
+    cells.emplace_back("delay at 0 Hz, ms", cell(method, "dc_delay_ms"));
+    cells.emplace_back("lag at the crossover, deg", cell(method, "phase_lag_deg"));
+    if (const auto lines = method.find("attenuation_db"); lines != method.end() && is_table(*lines))
+        for (const Json& line : *lines)
+            cells.emplace_back(fmt::format("attenuation of order {}, dB", cell(line, "order")),
+                               cell(line, "db"));
+    cells.emplace_back("ripple left, Nm rms", cell(method, "ripple_rms_nm"));
+    cells.emplace_back("residual, Nm rms", cell(method, "residual_rms_nm"));
+    cells.emplace_back("switches", cell(method, "switches"));
+    cells.emplace_back("largest jump, Nm", cell(method, "largest_jump_nm"));
+    cells.emplace_back("error, Nm rms", cell(method, "error_rms_nm"));
+    return cells;
+}
+
+void drop_empty_columns(PageTable& table) {
+    for (std::size_t c = table.header.size(); c-- > 1;) {
+        if (!std::all_of(table.rows.begin(), table.rows.end(),
+                         [c](const auto& row) { return row[c] == "-"; }))
+            continue;
+        table.header.erase(table.header.begin() + static_cast<std::ptrdiff_t>(c));
+        for (auto& row : table.rows) row.erase(row.begin() + static_cast<std::ptrdiff_t>(c));
+    }
+}
+
+double jump_of(const Json& one) {
+    const auto found = one.find("jump_nm");
+    return found != one.end() && found->is_number() ? std::abs(found->get<double>()) : 0.0;
+}
+
+}  // namespace
+
+PageTable comparison_table(const Json& methods) {
+    PageTable table{"The methods", {"method"}, {}};
+    std::vector<std::vector<std::pair<std::string, std::string>>> all;
+    std::size_t labels = 0;
+    for (const Json& method : methods) {
+        const auto found = method.find("method");
+        const std::string spec = found != method.end() ? value_text(*found) : "-";
+        const std::string label = spec == "none" ? spec : label_of(labels++);
+        if (spec != "none") table.legend.push_back({label, spec});
+        table.rows.push_back({label});
+        all.push_back(cells_of(method));
+        for (const auto& [column, value] : all.back())
+            if (std::find(table.header.begin(), table.header.end(), column) == table.header.end())
+                table.header.push_back(column);
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        table.rows[i].resize(table.header.size(), "-");
+        for (const auto& [column, value] : all[i]) {
+            const auto at = std::find(table.header.begin(), table.header.end(), column);
+            table.rows[i][static_cast<std::size_t>(at - table.header.begin())] = value;
+        }
+    }
+    drop_empty_columns(table);
+    return table;
+}
+
+PageTable notch_table(const Json& bands) {
+    Json rows = Json::array();
+    for (const Json& band : bands) {
+        Json row{{"band", band.value("number", Json())}};
+        row["speed, deg/s"] =
+            fmt::format("{} to {}", cell(band, "speed_from_deg_s"), cell(band, "speed_to_deg_s"));
+        const auto notches = band.find("notches");
+        if (notches != band.end() && is_table(*notches)) {
+            for (const Json& notch : *notches) {
+                const std::string order = cell(notch, "order");
+                row[fmt::format("order {}: centre, Hz", order)] = cell(notch, "center_hz");
+                row[fmt::format("order {}: Q", order)] = cell(notch, "q");
+            }
+        }
+        row["delay at 0 Hz, ms"] = cell(band, "dc_delay_ms");
+        row["settles, ms"] = cell(band, "settle_ms");
+        row["least attenuation, dB"] = cell(band, "held_attenuation_db");
+        rows.push_back(std::move(row));
+    }
+    return table_of("notches", rows);
+}
+
+std::optional<Figure> switch_figure(const Json& switches) {
+    if (!is_table(switches) || switches.size() < fewest_for_figure) return std::nullopt;
+    double largest = 0.0;
+    for (const Json& one : switches) largest = std::max(largest, jump_of(one));
+    if (!(largest > 0.0)) return std::nullopt;
+    std::vector<double> counts(bars, 0.0);
+    for (const Json& one : switches) {
+        const auto bar = static_cast<std::size_t>(jump_of(one) / largest * static_cast<double>(bars));
+        counts[std::min(bar, bars - 1)] += 1.0;
+    }
+    Curve course{"", Ink::blue, CurveStyle::steps, {0.0}, {0.0}};
+    for (std::size_t i = 0; i < bars; ++i) {
+        course.x.push_back(largest * static_cast<double>(i) / static_cast<double>(bars));
+        course.y.push_back(counts[i]);
+    }
+    course.x.push_back(largest);
+    course.y.push_back(0.0);
+    Panel panel{.title = "",
+                .x = {"size of the jump", "Nm"},
+                .y = {"switches", "", PlotScale::whole},
+                .legend = false,
+                .height = 0.7};
+    panel.y.from = 0.0;
+    panel.curves.push_back(std::move(course));
+    return Figure{
+        "switches", fmt::format("Jumps of the output at {} switches", switches.size()), "", {panel}};
+}
+
+PageTable largest_switches(const Json& switches) {
+    std::vector<const Json*> sorted;
+    for (const Json& one : switches) sorted.push_back(&one);
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const Json* a, const Json* b) { return jump_of(*a) > jump_of(*b); });
+    sorted.resize(std::min(sorted.size(), most_switches));
+    Json rows = Json::array();
+    for (const Json* one : sorted) rows.push_back(*one);
+    PageTable table = table_of("switches", rows);
+    table.title = switches.size() > most_switches
+                      ? fmt::format("The {} largest of {} switches", most_switches, switches.size())
+                      : "Switches";
+    return table;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Tables of results that people read across: columns chosen and named, four digits.
+
+#include <optional>
+
+#include "document/json.hpp"
+#include "ripplenotch/figure/figure.hpp"
+#include "ripplenotch/page/page.hpp"
+
+namespace ripplenotch {
+
+/// The methods of a comparison under the labels A, B, C in the order given (a control keeps its name), with
+/// what each label stands for below; columns that no method fills are left out.
+[[nodiscard]] PageTable comparison_table(const Json& methods);
+
+/// The design itself: one row a band, with centre frequency and Q of the notch for each order.
+[[nodiscard]] PageTable notch_table(const Json& bands);
+
+/// How many switches have a jump of which size; none for fewer than 20, which a table tells better.
+[[nodiscard]] std::optional<Figure> switch_figure(const Json& switches);
+
+/// The ten switches with the largest jumps; all of them where there are no more.
+[[nodiscard]] PageTable largest_switches(const Json& switches);
+
+}  // namespace ripplenotch

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "page/result_tables.hpp"
+
+#include "page/key_numbers.hpp"
+#include "ripplenotch/page/html_page.hpp"
+#include "ripplenotch/page/result_section.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+using Catch::Contains;
+
+TEST_CASE("a comparison has short labels and four digits, and each spec once below") {
+    const Json methods = Json::parse(R"([
+        {"method": "none", "settle_ms": {"0.5": 0.0}, "error_rms_nm": null},
+        {"method": "switching,table=long/name/of/a/table.json", "settle_ms": {"0.5": 112.34567},
+         "attenuation_db": [{"order": 1.0, "hz": 22.2, "db": 12.3456789}], "ledger": [{"band": 1}]},
+        {"method": "oscillator", "settle_ms": null, "ramp_delay_ms": -3.1e-12}])");
+    const PageTable table = comparison_table(methods);
+    CHECK(table.header == std::vector<std::string>{"method", "settles to 0.5 %, ms", "ramp delay, ms",
+                                                   "attenuation of order 1, dB"});
+    CHECK(table.rows[0] == std::vector<std::string>{"none", "0", "-", "-"});
+    CHECK(table.rows[1] == std::vector<std::string>{"A", "112.3", "-", "12.35"});
+    CHECK(table.rows[2] == std::vector<std::string>{"B", "-", "0", "-"});
+    REQUIRE(table.legend.size() == 2);
+    CHECK(table.legend[0].name == "A");
+    CHECK(table.legend[0].value == "switching,table=long/name/of/a/table.json");
+}
+
+TEST_CASE("the notch table is the design: centre and Q of each order in each band") {
+    const Json bands = Json::parse(R"([{"number": 1, "speed_from_deg_s": 18.0, "speed_to_deg_s": 36.0,
+        "notches": [{"order": 1.0, "center_hz": 7.49998, "q": 0.25}, {"order": 2.0, "center_hz": 14.99997, "q": 0.3}],
+        "dc_delay_ms": 127.27699, "settle_ms": 490.0}])");
+    const PageTable table = notch_table(bands);
+    CHECK(table.header == std::vector<std::string>{"band", "speed, deg/s", "order 1: centre, Hz",
+                                                   "order 1: Q", "order 2: centre, Hz", "order 2: Q",
+                                                   "delay at 0 Hz, ms", "settles, ms"});
+    CHECK(table.rows[0] ==
+          std::vector<std::string>{"1", "18 to 36", "7.5", "0.25", "15", "0.3", "127.3", "490"});
+}
+
+TEST_CASE("130 switches are a histogram and the ten largest; a few are a table") {
+    Json many = Json::array();
+    for (int i = 0; i < 130; ++i)
+        many.push_back({{"sample", i}, {"jump_nm", i % 2 == 0 ? 0.01 * i : -0.01 * i}});
+    const auto figure = switch_figure(many);
+    REQUIRE(figure);
+    check_figure(*figure);
+    double counted = 0.0;
+    for (const double count : figure->panels.front().curves.front().y) counted += count;
+    CHECK(counted == 130.0);
+    const PageTable largest = largest_switches(many);
+    CHECK(largest.title == "The 10 largest of 130 switches");
+    REQUIRE(largest.rows.size() == 10);
+    CHECK(largest.rows.front().front() == "129");
+    CHECK(largest.rows.back().front() == "120");
+    many.erase(many.begin() + 5, many.end());
+    CHECK_FALSE(switch_figure(many));
+    CHECK(largest_switches(many).rows.size() == 5);
+}
+
+TEST_CASE("a page begins with what was asked, the verdict and three numbers, and folds its ledgers") {
+    const std::string text = R"({"schema": "ripplenotch/metrics/1", "command": "ripplenotch x",
+        "ripple_peak_to_peak_nm": {"raw": 2.60239, "filtered": 1.181297},
+        "delays": [{"band": 1, "dc_delay_ms": 127.277}, {"band": 2, "dc_delay_ms": 19.81}],
+        "orders": [{"order": 1.0, "raw_nm": 0.9}]})";
+    const PageSection section = section_of_result(text, "m.json");
+    CHECK(section.asked == "What did the filter take off?");
+    CHECK_THAT(section.verdict, Contains("2.6 Nm") && Contains("1.18 Nm"));
+    REQUIRE(section.key.size() == 3);
+    CHECK(section.key[2].value == "19.81 to 127.3 ms");
+    const std::string html = html_page({"t", {section, section}}, std::nullopt);
+    const std::size_t summary = html.find("class=\"summary\""), contents = html.find("<nav>"),
+                      first = html.find("<section>");
+    REQUIRE(summary != std::string::npos);
+    CHECK(summary < contents);
+    CHECK(contents < first);
+    CHECK(html.find("2.602 Nm") < contents);
+    CHECK_THAT(html, Contains("<summary>delays (2 rows)</summary>") &&
+                         Contains("prefers-color-scheme: dark") && Contains("href=\"#result-2\"") &&
+                         Contains("id=\"result-2\""));
+}
+
+TEST_CASE("a hostile or empty document has no key numbers and throws nothing") {
+    for (const char* text :
+         {"{}", R"({"methods": 1, "bands": {}, "gear_ratio": [], "lines": [1, null, []]})",
+          R"({"methods": [1, {"method": 2, "settle_ms": 3}], "ripple_peak_to_peak_nm": "x"})"}) {
+        for (const char* kind : {"joint", "table", "metrics", "comparison", "diagnosis"}) {
+            CAPTURE(text, kind);
+            CHECK(key_numbers(kind, Json::parse(text)).empty());
+            CHECK(sentence_of(kind, Json::parse(text)).empty());
+        }
+    }
+    CHECK(question_of("new-kind") == "new-kind");
+}
