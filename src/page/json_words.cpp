@@ -129,7 +129,10 @@ std::string value_text(const Json& json) {
     return json.is_boolean() ? (json.get<bool>() ? "yes" : "no") : json.dump();
 }
 
-std::string coarse_text(double value) { return fmt::format("{:.4g}", value + 0.0); }
+std::string coarse_text(double value) {
+    constexpr double dust = 1e-9;  // of Nm, dB, %, ms: what rounding leaves of nothing
+    return std::abs(value) < dust ? "0" : fmt::format("{:.4g}", value);
+}
 
 std::string field_text(const Json& owner, const std::string& name) {
     const Json& json = owner.at(name);

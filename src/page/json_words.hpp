@@ -21,7 +21,7 @@ struct Spoken {
 /// "-" for null; numbers with six significant digits, or four below 1, spans as "0.5 to 2.25; 4 to 5".
 [[nodiscard]] std::string value_text(const Json& json);
 
-/// Four significant digits.
+/// Four significant digits; 0 for what rounding leaves of nothing (below 1e-9).
 [[nodiscard]] std::string coarse_text(double value);
 
 /// A field of `owner`: digits as far as its standard error (NAME_stderr, or stderr and ci95 beside a value)

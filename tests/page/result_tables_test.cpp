@@ -14,13 +14,13 @@ TEST_CASE("a comparison has short labels and four digits, and each spec once bel
         {"method": "none", "settle_ms": {"0.5": 0.0}, "error_rms_nm": null},
         {"method": "switching,table=long/name/of/a/table.json", "settle_ms": {"0.5": 112.34567},
          "attenuation_db": [{"order": 1.0, "hz": 22.2, "db": 12.3456789}], "ledger": [{"band": 1}]},
-        {"method": "oscillator", "settle_ms": null}])");
+        {"method": "oscillator", "settle_ms": null, "ramp_delay_ms": -3.1e-12}])");
     const PageTable table = comparison_table(methods);
-    CHECK(table.header ==
-          std::vector<std::string>{"method", "settles to 0.5 %, ms", "attenuation of order 1, dB"});
-    CHECK(table.rows[0] == std::vector<std::string>{"none", "0", "-"});
-    CHECK(table.rows[1] == std::vector<std::string>{"A", "112.3", "12.35"});
-    CHECK(table.rows[2] == std::vector<std::string>{"B", "-", "-"});
+    CHECK(table.header == std::vector<std::string>{"method", "settles to 0.5 %, ms", "ramp delay, ms",
+                                                   "attenuation of order 1, dB"});
+    CHECK(table.rows[0] == std::vector<std::string>{"none", "0", "-", "-"});
+    CHECK(table.rows[1] == std::vector<std::string>{"A", "112.3", "-", "12.35"});
+    CHECK(table.rows[2] == std::vector<std::string>{"B", "-", "0", "-"});
     REQUIRE(table.legend.size() == 2);
     CHECK(table.legend[0].name == "A");
     CHECK(table.legend[0].value == "switching,table=long/name/of/a/table.json");
