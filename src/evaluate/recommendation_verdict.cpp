@@ -29,8 +29,8 @@ std::string late(const JudgedMethod& method) {
 }
 
 std::string short_text(const MethodFigures& figures) {
-    constexpr std::size_t short_enough = 60;
-    if (figures.method.size() <= short_enough) return figures.method;
+    constexpr std::size_t longest_text = 60;
+    if (figures.method.size() <= longest_text) return figures.method;
     return figures.method.substr(0, figures.method.find(',')) + ",...";
 }
 
