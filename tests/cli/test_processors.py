@@ -51,6 +51,9 @@ COMMANDS = {
     "a map as JSON": ("map", MOVE, *GEAR, "--json"),
     "filter by a map": ("filter", MOVE, "--method", "oscillator,map=map.json"),
     "export a map": ("export", "map.json", "--to", "c-header"),
+    "features": ("features", "made.csv", *GEAR),
+    "merge": ("merge", "shards"),
+    "trend": ("trend", str(DATA / "fleet.ndjson"), "--json"),
     "report": ("report", "table.json", "--no-plotly"),
     "effects": ("effects",),
     "diagnose": ("diagnose", "--model", "model.json", "made.csv", "--json"),
@@ -68,6 +71,8 @@ class Processors(unittest.TestCase):
         (folder / "made.csv").write_bytes(cls.run_tool(*MADE))
         (folder / "table.json").write_bytes(cls.run_tool(*COMMANDS["design"]))
         (folder / "map.json").write_bytes(cls.run_tool("map", MOVE, *GEAR, "--json"))
+        (folder / "list.txt").write_text("made.csv\n")
+        subprocess.run([TOOL, "features", "--manifest", "list.txt", "--shard", "1/1", "-o", "shards", *GEAR], cwd=folder, check=True)
         cls.here = {name: cls.run_tool(*words) for name, words in COMMANDS.items()}
 
     @classmethod
