@@ -111,6 +111,38 @@ void of_diagnosis(const Json&, Numbers& numbers) {
     numbers.add("noise floor, rms", "/gap/noise_floor_nm", "Nm");
 }
 
+// Of each order of the map: what is left of it on blocks that the map was not fitted to.
+void of_map(const Json& json, Numbers& numbers) {
+    for (const Json& line : list_at(json, "left_out")) {
+        const auto order = number_under(line, "/order"), left = number_under(line, "/left_nm"),
+                   was = number_under(line, "/ripple_nm");
+        if (order && left && was)
+            numbers.add_text(fmt::format("order {:.4g} before and after", *order),
+                             fmt::format("{:.3g} to {:.3g}", *was, *left), "Nm");
+    }
+}
+
+// Of the method that it says to take.
+void of_recommendation(const Json& json, Numbers& numbers) {
+    const auto take = json.find("take");
+    for (const Json& method : list_at(json, "methods")) {
+        if (take == json.end() || !method.is_object() || method.value("method", Json()) != *take) continue;
+        if (const auto off = extremes(list_at(method, "attenuation_db"), "/db"))
+            numbers.add_text("least attenuation", fmt::format("{:.1f}", off->first), "dB");
+        if (const auto late = number_under(method, "/longest_delay_ms"))
+            numbers.add_text("late at most", fmt::format("{:.1f}", *late), "ms");
+        if (const auto left = number_under(method, "/ripple_rms_nm"))
+            numbers.add_text("ripple left, rms", coarse_text(*left), "Nm");
+        return;
+    }
+}
+
+void of_trend(const Json& json, Numbers& numbers) {
+    numbers.add_text("alerts", std::to_string(list_at(json, "alerts").size()), "");
+    numbers.add_text("joints", std::to_string(list_at(json, "joints").size()), "");
+    numbers.add("alerts by chance alone, at most", "/expected_false_alarms", "");
+}
+
 // The first numbers of a kind that is not looked into.
 void of_any(const Json& json, Numbers& numbers) {
     for (const auto& [name, entry] : json.items()) {
@@ -123,12 +155,14 @@ struct Kind {
     const char *name, *question;
     void (*numbers)(const Json&, Numbers&);
 };
-constexpr std::array<Kind, 11> kinds = {
+constexpr std::array<Kind, 13> kinds = {
     {{"info", "What is in the log?", of_any},
      {"joint", "Which ripple is in the log, and which gear ratio?", of_joint},
      {"spectrum", "Which frequencies are in the torque?", of_any},
      {"track", "How does the ripple change along the log?", of_any},
-     {"map", "What is the ripple at each angle and speed?", of_any},
+     {"map", "What is the ripple at each angle and speed?", of_map},
+     {"recommendation", "Which method does this log ask for?", of_recommendation},
+     {"trend", "Which joint changed, when, and what in it?", of_trend},
      {"table", "Which notches at which speed, and at what delay?", of_table},
      {"metrics", "What did the filter take off?", of_metrics},
      {"comparison", "Which method takes off most for its delay?", of_comparison},
