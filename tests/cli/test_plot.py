@@ -170,6 +170,14 @@ class Plots(unittest.TestCase):
         self.assertEqual(done.returncode, 4)
         self.assertIn(b"it hurts", done.stderr)
 
+    def test_a_start_that_fails_only_in_the_child_is_no_gnuplot(self):
+        fake = self.path / "gnuplot"
+        fake.write_text("#!/bin/sh\nexit 127\n")
+        fake.chmod(0o755)
+        done = self.plot(COMMANDS["spectrum"], "picture.svg", PATH=f"{self.path}:/usr/bin:/bin")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(b"no gnuplot", done.stderr)
+
     def test_requests_that_make_no_sense_are_refused_before_any_work(self):
         for words, part in ((["--plot", "picture.jpg"], b".svg"), (["--plot", "-", "--json"], b"standard output")):
             done = run(*COMMANDS["spectrum"], *words)
