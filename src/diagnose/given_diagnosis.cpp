@@ -7,6 +7,7 @@
 
 #include "core/vectors/dot.hpp"
 #include "diagnose/beside/always_on.hpp"
+#include "diagnose/beside/sensing.hpp"
 #include "diagnose/beside/sizes.hpp"
 #include "diagnose/beside/told.hpp"
 #include "diagnose/doubt.hpp"
@@ -110,14 +111,20 @@ class GivenDiagnosis {
         const Candidate first =
             fitted_own(part.less(model_, as_given(model_, part, rules_), rules_), model_, model_);
         told_.baseline = first.stated;
+        sensed_ = first.stated;
         std::optional<GivenCase> validation;
         if (other_) validation.emplace(other_->view());
         const BesideOutcome outcome =
             find_beside(part.view(), validation ? &*validation : nullptr, first, effects_, rules_, work_);
         tell_given(told_, model_, whole_.given, outcome);
-        const Candidate last =
-            looked_at_rest(part.less(model_, outcome.given_values, rules_), first, outcome);
-        measure_at_samples(spoiled, whole_.less(model_, outcome.given_values, rules_), last.stated);
+        Candidate own = first;
+        if (outcome.sensor) {
+            own = with_sensor(first, outcome.sensor->term);
+            sensed_ = own.stated;
+            adopt_sensor(*outcome.sensor, part, first.stated, outcome.given_values);
+        }
+        const Candidate last = looked_at_rest(part.less(sensed_, outcome.given_values, rules_), own, outcome);
+        measure_at_samples(spoiled, whole_.less(sensed_, outcome.given_values, rules_), last.stated);
         told_.unexplained.insert(told_.unexplained.begin(), spoiled.begin(), spoiled.end());
         finish(last, outcome.given_values);
         return std::move(told_);
@@ -127,6 +134,19 @@ class GivenDiagnosis {
     [[nodiscard]] Candidate fitted_own(const Case& c, const Model& open, const Model& guess) {
         const ModelBench rough(c, {1.0, 1.0, {}}, work_, rules_);
         return rough.fitted(open, guess, std::vector<double>(open.terms.size(), 0.0), 30);
+    }
+
+    // What is left with and without it, the given values as they are in the end.
+    void adopt_sensor(Finding sensor, const GivenLog& part, const Model& without,
+                      const std::vector<double>& values) {
+        const Case before = part.less(without, values, rules_), after = part.less(sensed_, values, rules_);
+        sensor.gap_before_nm = rms_of(left_of(before, without), before.use);
+        sensor.gap_after_nm = rms_of(left_of(after, sensed_), after.use);
+        sensor.evidence.share_sigma = sensor.evidence.share_nm / std::max(sensor.gap_after_nm, 1e-300);
+        sensor.evidence.raw_gain =
+            static_cast<double>(before.used()) *
+            (sensor.gap_before_nm * sensor.gap_before_nm - sensor.gap_after_nm * sensor.gap_after_nm);
+        told_.rounds.push_back(std::move(sensor));
     }
 
     // What is left of the log beside what was found.
@@ -144,7 +164,7 @@ class GivenDiagnosis {
         Candidate own = first;
         own.stated.terms.assign(
             named.stated.terms.begin(),
-            named.stated.terms.begin() + static_cast<std::ptrdiff_t>(model_.terms.size()));
+            named.stated.terms.begin() + static_cast<std::ptrdiff_t>(first.stated.terms.size()));
         const Candidate last = adopt(told_, outcome, own, bench);
         told_.unexplained = leftovers(bench, last.stated);
         told_.disagreement = told_.unexplained;
@@ -165,15 +185,15 @@ class GivenDiagnosis {
             told_.named.emplace_back(fault.term.effect->name);
         }
         told_.samples_used = whole_.c.used();
-        const Case before = whole_.less(model_, as_given(model_, whole_, rules_), rules_);
-        const Case after = whole_.less(model_, values, rules_);
+        const Case before = whole_.less(told_.baseline, as_given(model_, whole_, rules_), rules_);
+        const Case after = whole_.less(sensed_, values, rules_);
         told_.residual_before_nm = left_of(before, told_.baseline);
         told_.residual_after_nm = left_of(after, told_.model);
         told_.beside_given_nm = after.torque_nm;
         const GapCase log{before, after};
         if (other_) {
-            const Case other_before = other_->less(model_, as_given(model_, *other_, rules_), rules_);
-            const Case other_after = other_->less(model_, values, rules_);
+            const Case other_before = other_->less(told_.baseline, as_given(model_, *other_, rules_), rules_);
+            const Case other_after = other_->less(sensed_, values, rules_);
             const GapCase other{other_before, other_after};
             measure_gap(told_, log, &other, rules_);
         } else {
@@ -190,6 +210,8 @@ class GivenDiagnosis {
     std::vector<const Effect*> effects_;
     GivenLog whole_;
     std::optional<GivenLog> other_;
+    Model
+        sensed_;  ///< the user's effects, fitted, and what was found of the sensor: it acts on what is given
     Diagnosis told_;
 };
 

@@ -77,7 +77,7 @@ class GivenSource {
     std::shared_ptr<GivenArm> arm_;
 };
 
-/// The sum of terms whose values are all stated, an entry a row.
+/// The sum of terms whose values are all stated, an entry a row: at the joint, before any sensor.
 struct GivenTorque {
     std::vector<double> torque_nm, carried_nm;  ///< all of it; what gear and bearings carry
 };

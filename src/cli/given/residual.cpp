@@ -10,6 +10,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
+#include "ripplenotch/model/sensors.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -37,6 +38,7 @@ std::vector<double> predicted_nm(const ResidualOptions& residual, const ModelWit
     GivenTorque given = given_torque(terms, log.log.trace.size());
     Motion motion = motion_along(log.log.trace.view(), default_smoothing);
     motion.carried_nm = std::move(given.carried_nm);
+    through_sensors(model.model, motion, given.torque_nm);
     std::vector<double> sum = predict_nm(model.model, motion);
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += given.torque_nm[k];
     return sum;

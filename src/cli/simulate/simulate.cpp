@@ -21,6 +21,7 @@
 #include "ripplenotch/model/measured_motion.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/noise.hpp"
+#include "ripplenotch/model/sensors.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -85,6 +86,7 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     say_warnings(options.common, log.recording.warnings);
     Motion motion = motion_along(log.trace.view(), options.smoothing);
     if (!given.carried_nm.empty()) motion.carried_nm = std::move(given.carried_nm);
+    if (!given.torque_nm.empty()) through_sensors(model.model, motion, given.torque_nm);
     return {std::move(motion),          log.trace.velocity_deg_s,        log.trace.torque_nm,
             std::move(given.torque_nm), log.trace.view().has_position(), {{log.recording}}};
 }

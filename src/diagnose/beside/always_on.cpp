@@ -7,6 +7,7 @@
 #include "diagnose/beside/ridge.hpp"
 #include "model/fit_coordinates.hpp"
 #include "ripplenotch/model/prediction.hpp"
+#include "ripplenotch/model/sensors.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -51,6 +52,14 @@ void add(AlwaysOn& columns, std::vector<double> torque_nm, double mean, double d
     columns.deviation.push_back(deviation);
 }
 
+// A torque at the joint; the model's delay and lag act on all of it.
+void add_stated(AlwaysOn& columns, std::vector<double> at_joint_nm, const Model& model,
+                const Motion& motion) {
+    columns.torque_nm.push_back(at_joint_nm);
+    through_sensors(model, motion, columns.torque_nm.back());
+    columns.at_joint_nm.push_back(std::move(at_joint_nm));
+}
+
 }  // namespace
 
 AlwaysOn given_columns(const Case& looked_at, const Model& model, std::span<const GivenTerm> given,
@@ -60,14 +69,18 @@ AlwaysOn given_columns(const Case& looked_at, const Model& model, std::span<cons
         for (std::size_t i = 0; i < term.torque_nm.size(); ++i) {
             std::vector<double> torque_nm;
             for (const std::size_t row : looked_at.row) torque_nm.push_back(term.torque_nm[i][row]);
-            add(columns, std::move(torque_nm), term.mean[i], term.deviation[i]);
+            add_stated(columns, std::move(torque_nm), model, looked_at.motion);
+            columns.mean.push_back(term.mean[i]);
+            columns.deviation.push_back(term.deviation[i]);
             columns.bears_load.push_back(term.bears_load);
         }
     }
     columns.given = columns.torque_nm.size();
     const Prediction nothing({model.gear_ratio, {}}, looked_at.motion);
     for (const Mend& mend : mends_of(model, given, rules.beside)) {
-        add(columns, nothing.added(mend.term), 0.0, mend.deviation);
+        add_stated(columns, nothing.added(mend.term), model, looked_at.motion);
+        columns.mean.push_back(0.0);
+        columns.deviation.push_back(mend.deviation);
         columns.bears_load.push_back(mend.term.effect->bears_load);
     }
     columns.stated = columns.torque_nm.size();
@@ -109,7 +122,8 @@ std::vector<double> brought_nm(const AlwaysOn& columns, std::span<const double> 
 std::vector<double> carried_nm(const AlwaysOn& columns, std::span<const double> values) {
     std::vector<double> sum(columns.torque_nm.empty() ? 0 : columns.torque_nm[0].size(), 0.0);
     for (std::size_t i = 0; i < columns.stated; ++i) {
-        if (columns.bears_load[i]) add_scaled(values[i], columns.torque_nm[i].data(), sum.data(), sum.size());
+        if (columns.bears_load[i])
+            add_scaled(values[i], columns.at_joint_nm[i].data(), sum.data(), sum.size());
     }
     return sum;
 }

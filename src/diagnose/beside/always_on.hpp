@@ -14,7 +14,8 @@ namespace ripplenotch {
 
 /// Columns over the samples of a case, one a value, and what their values are drawn to.
 struct AlwaysOn {
-    std::vector<std::vector<double>> torque_nm;
+    std::vector<std::vector<double>> torque_nm;    ///< as the sensor tells it
+    std::vector<std::vector<double>> at_joint_nm;  ///< of the stated ones, before the sensor
     std::vector<double> mean, deviation;
     std::vector<bool> bears_load;  ///< of the stated ones
     std::size_t given = 0;  ///< the first so many are the given terms', in their order; then what mends them

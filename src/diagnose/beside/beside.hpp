@@ -3,6 +3,7 @@
 // Names beside a leftover that nothing explains: what is found, what of it another log confirms, and the
 // values.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct GivenCase {
 };
 
 struct BesideOutcome {
+    /// A delay or lag of the sensor, which acts on all that is given and named; the model has it besides.
+    std::optional<Finding> sensor;
     std::vector<Finding> findings;  ///< in the order of adoption; those withdrawn come last
     std::vector<Term> believed;     ///< terms of the findings that are neither tentative nor not reproduced
     /// Of given_columns(), by plain least squares beside what is believed.

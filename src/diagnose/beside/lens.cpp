@@ -26,14 +26,25 @@ std::vector<double> swelled(const std::vector<double>& column, const Motion& mot
 
 Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenTerm> given,
            std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work)
+    : Lens(looked_at, model, given, effects, rules, work, nullptr, false) {}
+
+Lens::Lens(const Lens& like, const Candidate& model, std::span<const GivenTerm> given,
+           std::span<const Effect* const> effects, bool offset_is_open)
+    : Lens(like.case_, model, given, effects, like.rules_, like.work_, &like, offset_is_open) {}
+
+Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenTerm> given,
+           std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work, const Lens* like,
+           bool offset_is_open)
     : case_(looked_at),
       rules_(rules),
       work_(work),
       ground_(looked_at, rules.beside),
       bounds_(scale_bounds(looked_at, rules.beside)) {
-    if (!given.empty()) carry(given, model);
+    if (!given.empty() && case_.motion.carried_nm.empty()) carry(given, model);
     prediction_.emplace(model.stated, case_.motion);
     always_ = always_on(case_, model, given, rules);
+    // Of what is stated it is the last (always_on.cpp).
+    if (offset_is_open) always_.deviation[always_.stated - 1] = stated_deviation;
     open_nm_ = case_.torque_nm;
     add_scaled(-1.0, prediction_->torque_nm().data(), open_nm_.data(), open_nm_.size());
     for (std::size_t i = 0; i < always_.mean.size(); ++i)
@@ -46,14 +57,21 @@ Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenT
         return std::any_of(model.stated.terms.begin(), model.stated.terms.end(),
                            [&](const Term& term) { return same_name({term}, shape); });
     });
-    const std::vector<double> left = left_by_all();
-    plain_.emplace(bridged_always_, always_.deviation, rms(left));
-    ground_.color(long_color(left, ground_.memory(), rules.beside.color_floor));
-    sigma_ = std::max(rms(ground_.whitened(left)), 1e-12);
+    take_color(like);
     for (const auto& column : bridged_always_) white_always_.push_back(ground_.whitened(column));
     white_.emplace(white_always_, always_.deviation, sigma_);
     target_ = white_->left(ground_.whitened(bridged_open_));
     bridged_open_.shrink_to_fit();
+}
+
+void Lens::take_color(const Lens* like) {
+    std::vector<double> left;
+    if (like == nullptr) left = left_by_all();
+    left_nm_ = like != nullptr ? like->left_nm_ : rms(left);
+    color_ = like != nullptr ? like->color_ : long_color(left, ground_.memory(), rules_.beside.color_floor);
+    plain_.emplace(bridged_always_, always_.deviation, left_nm_);
+    ground_.color(color_);
+    sigma_ = like != nullptr ? like->sigma_ : std::max(rms(ground_.whitened(left)), 1e-12);
 }
 
 // The load that the given terms bring: from a fit beside Coulomb's and viscous friction, to which they would
@@ -127,6 +145,21 @@ std::vector<std::vector<double>> Lens::torque_nm(const Shape& shape) const {
     return columns;
 }
 
+std::vector<double> Lens::target_earlier(std::ptrdiff_t samples) const {
+    std::vector<double> earlier = open_nm_;
+    for (std::size_t s = 0; s < case_.from.size(); ++s) {
+        const auto first = static_cast<std::ptrdiff_t>(case_.from[s]);
+        const auto end =
+            static_cast<std::ptrdiff_t>(s + 1 < case_.from.size() ? case_.from[s + 1] : case_.size());
+        for (std::ptrdiff_t k = first; k < end; ++k) {
+            const auto at = static_cast<std::size_t>(std::clamp(k + samples, first, end - 1));
+            earlier[static_cast<std::size_t>(k)] +=
+                case_.torque_nm[at] - case_.torque_nm[static_cast<std::size_t>(k)];
+        }
+    }
+    return weighed(earlier);
+}
+
 std::vector<double> Lens::weighed(std::span<const double> torque_nm) const {
     return white_->left(ground_.whitened(ground_.bridged(torque_nm)));
 }
@@ -148,6 +181,12 @@ std::vector<double> Lens::plain_values(std::span<const double> explained_nm) con
     std::vector<double> values = plain_->solve(ground_.bridged(left));
     for (std::size_t i = 0; i < values.size(); ++i) values[i] += always_.mean[i];
     return values;
+}
+
+double Lens::plain_left_nm(std::span<const double> explained_nm) const {
+    std::vector<double> left = open_nm_;
+    add_scaled(-1.0, explained_nm.data(), left.data(), left.size());
+    return rms(plain_->left(ground_.bridged(left)));
 }
 
 std::vector<double> Lens::plain_sizes(std::span<const Shape> shapes) const {

@@ -103,10 +103,18 @@ std::vector<OtherLeft> withdraw_on_other(Sums& sums, const Candidate& model, con
         BesideFinding& finding = findings[*worst];
         finding.status = FindingStatus::not_reproduced;
         Hearing(rules, finding.decisions).asked("reproduction.most_left", most, true);
-        finding.reason =
-            fmt::format("it leaves {:.3g} Nm of the validation log, where {:.3g} Nm are left without it",
-                        left[*worst].with_nm, left[*worst].without_nm);
+        finding.reason = not_reproduced_words(left[*worst].without_nm, left[*worst].with_nm);
     }
+}
+
+double left_of_other(Sums& sums, const Candidate& model, const GivenCase& other,
+                     const std::vector<BesideFinding>& findings) {
+    return OtherLog(sums.lens(), model, other).left_nm(believed_of(sums, findings).values, std::nullopt);
+}
+
+std::string not_reproduced_words(double without_nm, double with_nm) {
+    return fmt::format("it leaves {:.3g} Nm of the validation log, where {:.3g} Nm are left without it",
+                       with_nm, without_nm);
 }
 
 }  // namespace ripplenotch

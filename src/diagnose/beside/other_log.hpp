@@ -2,6 +2,7 @@
 #pragma once
 // A log that nothing was fitted to, beside which each finding has to leave no more than without it.
 
+#include <string>
 #include <vector>
 
 #include "diagnose/beside/beside.hpp"
@@ -28,5 +29,11 @@ struct OtherLeft {
 /// Withdraws, one after the other, what leaves more of the other log than is left without it.
 std::vector<OtherLeft> withdraw_on_other(Sums& sums, const Candidate& model, const GivenCase& other,
                                          std::vector<BesideFinding>& findings);
+
+/// rms that is left of the other log with all that is believed of the findings.
+[[nodiscard]] double left_of_other(Sums& sums, const Candidate& model, const GivenCase& other,
+                                   const std::vector<BesideFinding>& findings);
+/// Why a finding is not reproduced.
+[[nodiscard]] std::string not_reproduced_words(double without_nm, double with_nm);
 
 }  // namespace ripplenotch

@@ -173,21 +173,34 @@ double Sums::left_outside(const Names& names) const {
 }
 
 std::vector<double> Sums::residual_outside(const Names& names) const {
-    std::vector<double> residual = lens_.target();
-    if (names.empty()) return residual;
+    return residual_outside(names, lens_.target());
+}
+
+std::vector<double> Sums::residual_outside(const Names& names, std::vector<double> target) const {
+    if (names.empty()) return target;
     const MatrixXd all = products(names);
-    VectorXd all_targets = targets(names, 0);
-    for (std::size_t fold = 1; fold < folds(); ++fold) all_targets += targets(names, fold);
+    std::vector<VectorXd> by_fold;
+    VectorXd all_targets = VectorXd::Zero(all.rows());
+    for (const RowRange& rows : lens_.ground().folds()) {
+        VectorXd sums(all.rows());
+        Index value = 0;
+        for (const std::size_t name : names) {
+            for (const auto& column : columns_[name])
+                sums[value++] = dot(column.data() + rows.first, target.data() + rows.first, rows.count);
+        }
+        all_targets += sums;
+        by_fold.push_back(std::move(sums));
+    }
     for (std::size_t fold = 0; fold < folds(); ++fold) {
-        const VectorXd x = solved(all - products(names, fold), all_targets - targets(names, fold));
+        const VectorXd x = solved(all - products(names, fold), all_targets - by_fold[fold]);
         const RowRange& rows = lens_.ground().folds()[fold];
         Index value = 0;
         for (const std::size_t name : names) {
             for (const auto& column : columns_[name])
-                add_scaled(-x[value++], column.data() + rows.first, residual.data() + rows.first, rows.count);
+                add_scaled(-x[value++], column.data() + rows.first, target.data() + rows.first, rows.count);
         }
     }
-    return residual;
+    return target;
 }
 
 VectorXd Sums::sizes(const Names& names) const {

@@ -35,6 +35,8 @@ class Sums {
     [[nodiscard]] double left_outside(const Names& names) const;
     /// The residual that is so squared, a value per row.
     [[nodiscard]] std::vector<double> residual_outside(const Names& names) const;
+    /// The same of another target, a value per row of the lens.
+    [[nodiscard]] std::vector<double> residual_outside(const Names& names, std::vector<double> target) const;
     /// Sizes, a number per column of the names in order, from all folds.
     [[nodiscard]] Eigen::VectorXd sizes(const Names& names) const;
     /// Sums of all folds, a row and column per column of the names.

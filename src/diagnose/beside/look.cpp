@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/beside/look.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/vectors/dot.hpp"
+#include "diagnose/beside/offset.hpp"
+#include "diagnose/doubt.hpp"
+#include "diagnose/place.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/model/prediction.hpp"
+
+namespace ripplenotch {
+namespace {
+
+Finding finding_of(const Lens& lens, BesideFinding found) {
+    Finding finding;
+    finding.term = found.shape.term;
+    finding.status = found.status;
+    finding.reason = std::move(found.reason);
+    finding.decisions = std::move(found.decisions);
+    finding.size_uncertain = true;
+    finding.evidence.gain = found.gain.gain;
+    finding.evidence.price = found.price;
+    finding.evidence.elsewhere = found.gain.without_best(1) / std::max(found.gain.gain, 1e-300);
+    OutOfFold& outside = finding.out_of_fold.emplace();
+    outside.gain = found.gain.gain;
+    outside.t = found.gain.t;
+    outside.blocks = lens.ground().blocks().size();
+    outside.blocks_positive = found.gain.positive();
+    outside.evenness = found.same.uneven;
+    if (found.rival) {
+        outside.rival = found.rival->term.effect->name;
+        outside.rival_margin = found.rival_margin;
+        finding.alternatives.push_back({outside.rival, found.rival_margin});
+    }
+    return finding;
+}
+
+void set_values(Finding& finding, const BesideValues& values) {
+    finding.term = values.term;
+    finding.values = values.values;
+}
+
+// Its torque along the log, and where that acts.
+void measure(Finding& finding, const Lens& lens, const Model& beside) {
+    const Case& c = lens.looked_at();
+    const auto torque_nm = Prediction(beside, c.motion).added(finding.term);
+    finding.where = place_of(c, torque_nm, finding.term, lens.rules().place);
+    double sum = 0.0, square = 0.0;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+        sum += c.use[k] != 0 ? torque_nm[k] : 0.0;
+        square += c.use[k] != 0 ? torque_nm[k] * torque_nm[k] : 0.0;
+    }
+    const auto samples = static_cast<double>(std::max<std::size_t>(c.used(), 1));
+    finding.evidence.own_nm = std::sqrt(square / samples);
+    finding.evidence.share_nm = std::sqrt(std::max(square / samples - sum / samples * (sum / samples), 0.0));
+}
+
+// Of the given values, from the whitened log with the names taken out.
+std::vector<double> errors_of_given(const Lens& lens) {
+    std::vector<double> errors;
+    const AlwaysOn& columns = lens.columns();
+    std::vector<std::vector<double>> white;
+    for (std::size_t i = 0; i < columns.of_model; ++i)
+        white.push_back(lens.ground().whitened(lens.ground().bridged(columns.torque_nm[i])));
+    for (std::size_t i = 0; i < columns.stated; ++i) {
+        std::vector<std::vector<double>> others;
+        std::vector<double> deviation;
+        for (std::size_t other = 0; other < white.size(); ++other) {
+            if (other == i) continue;
+            others.push_back(white[other]);
+            deviation.push_back(columns.deviation[other]);
+        }
+        const auto own = Ridge(others, deviation, lens.sigma()).left(white[i]);
+        // The log and what is known before it: a value that is stated has next to no error.
+        const double by_log = std::sqrt(dot(own.data(), own.data(), own.size())) /
+                              (lens.rules().beside.interval_factor * lens.sigma());
+        errors.push_back(1.0 / portable::hypot(by_log, 1.0 / columns.deviation[i]));
+    }
+    return errors;
+}
+
+std::vector<double> sum_of(const std::vector<Term>& terms, const Model& model, const Motion& motion) {
+    std::vector<double> sum(motion.size(), 0.0);
+    const Prediction beside(model, motion);
+    for (const Term& term : terms) {
+        const auto torque_nm = beside.added(term);
+        add_scaled(1.0, torque_nm.data(), sum.data(), sum.size());
+    }
+    return sum;
+}
+
+// Above what does not matter, and more than is left beside it above white noise: it may have fed on that.
+bool matters(const OffsetBeside& offset, const Lens& lens, const std::vector<double>& explained_nm) {
+    const double left_nm = lens.plain_left_nm(explained_nm);
+    const double excess_nm = std::sqrt(std::max(left_nm * left_nm - lens.sigma() * lens.sigma(), 0.0));
+    const double least_nm = material_sigma(lens.looked_at(), lens.rules()) * left_nm;
+    return std::abs(offset.values.values.front().value) >= least_nm && offset.own_nm >= excess_nm;
+}
+
+// The zero of the measured torque becomes a term: with all that plain least squares still makes of it.
+void adopt_offset(BesideOutcome& outcome, Finding finding, const Look& look, const Model& beside) {
+    const std::size_t place = look.lens.columns().stated - 1;
+    double& value = *finding.term.values.front();
+    value += std::exchange(outcome.given_values[place], 0.0);
+    finding.values.front().value = value;
+    measure(finding, look.lens, beside);
+    finding.evidence.share_nm = finding.evidence.own_nm;
+    outcome.believed.push_back(finding.term);
+    outcome.findings.push_back(std::move(finding));
+}
+
+}  // namespace
+
+Look::Look(const GivenCase& log, const GivenCase* validation, const Candidate& model,
+           std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work)
+    : lens(log.looked_at, model, log.given, effects, rules, work),
+      sums(lens),
+      named(named_beside(sums, {catalogue().size(), log.given.empty()})),
+      other(named.findings.size()) {
+    if (validation != nullptr) other = withdraw_on_other(sums, model, *validation, named.findings);
+}
+
+std::vector<double> carried_beside(Look& look, const Candidate& model) {
+    std::vector<Term> believed;
+    for (const BesideValues& values : believed_of(look.sums, look.named.findings).values)
+        believed.push_back(values.term);
+    const std::vector<double> explained = sum_of(believed, model.stated, look.lens.looked_at().motion);
+    return carried_nm(look.lens.columns(), look.lens.plain_values(explained));
+}
+
+BesideOutcome outcome_of(Look& look, const GivenCase& log, const Candidate& model,
+                         std::span<const Effect* const> effects) {
+    const Believed believed = believed_of(look.sums, look.named.findings);
+    BesideOutcome outcome;
+    std::vector<Shape> shapes;
+    for (std::size_t i = 0; i < look.named.findings.size(); ++i) {
+        Finding finding = finding_of(look.lens, look.named.findings[i]);
+        const auto place = std::find(believed.place.begin(), believed.place.end(), i);
+        const bool stays = place != believed.place.end();
+        set_values(finding, stays ? believed.values[static_cast<std::size_t>(place - believed.place.begin())]
+                                  : values_beside(look.sums, {look.named.findings[i].shape})[0]);
+        measure(finding, look.lens, model.stated);
+        if (look.other[i].without_nm > 0.0) {
+            finding.validation_before_nm = look.other[i].without_nm;
+            finding.validation_after_nm = look.other[i].with_nm;
+        }
+        if (stays) {
+            outcome.believed.push_back(finding.term);
+            shapes.push_back(look.named.findings[i].shape);
+        }
+        outcome.findings.push_back(std::move(finding));
+    }
+    std::optional<OffsetBeside> offset;
+    if (is_arm_alone(log.given)) offset = offset_beside(look.lens, model, log.given, effects, shapes);
+    std::vector<Term> explained = outcome.believed;
+    if (offset && !matters(*offset, look.lens, sum_of(explained, model.stated, look.lens.looked_at().motion)))
+        offset.reset();
+    if (offset) explained.push_back(offset->values.term);
+    outcome.given_values =
+        look.lens.plain_values(sum_of(explained, model.stated, look.lens.looked_at().motion));
+    outcome.given_values.resize(look.lens.columns().stated);
+    if (offset) {
+        Finding finding = finding_of(look.lens, offset->finding);
+        set_values(finding, offset->values);
+        adopt_offset(outcome, std::move(finding), look, model.stated);
+    }
+    std::stable_partition(outcome.findings.begin(), outcome.findings.end(),
+                          [](const Finding& finding) { return !is_doubtful(finding); });
+    if (!log.given.empty() && look.lens.columns().given <= 2)
+        outcome.given_errors = errors_of_given(look.lens);
+    return outcome;
+}
+
+bool is_arm_alone(std::span<const GivenTerm> given) {
+    const auto is = [](std::string_view name) {
+        return [name](const GivenTerm& term) { return term.name == name; };
+    };
+    return std::any_of(given.begin(), given.end(), is("arm")) &&
+           std::none_of(given.begin(), given.end(), is("simulated"));
+}
+
+}  // namespace ripplenotch
