@@ -122,6 +122,7 @@ Look::Look(const GivenCase& log, const GivenCase* validation, const Candidate& m
       sums(lens),
       named(named_beside(sums, {catalogue().size(), log.given.empty()})),
       other(named.findings.size()) {
+    withdraw_what_may_be_nothing(sums, named.findings);
     if (validation != nullptr) other = withdraw_on_other(sums, model, *validation, named.findings);
 }
 

@@ -29,6 +29,20 @@ std::vector<double> torque_of(const std::vector<BesideValues>& values, const Mod
     return sum;
 }
 
+// By how much of itself the interval of a size reaches over 0; 0 where it does not.
+double reach_beyond_0(const BesideValues& values) {
+    for (const FittedValue& value : values.values) {
+        const Effect& effect = *values.term.effect;
+        const bool is_size = effect.parameters[value.parameter].linear ||
+                             (effect.polar && effect.polar->size == value.parameter);
+        if (!is_size || !value.ci95) continue;
+        if (value.ci95->low > 0.0 || value.ci95->high < 0.0) continue;
+        const double width = value.ci95->high - value.ci95->low;
+        return std::min(value.ci95->high, -value.ci95->low) / std::max(width, 1e-300) + 1e-12;
+    }
+    return 0.0;
+}
+
 // The other log with everything that is always there.
 class OtherLog {
   public:
@@ -79,6 +93,23 @@ Believed believed_of(Sums& sums, const std::vector<BesideFinding>& findings) {
     }
     believed.values = values_beside(sums, shapes);
     return believed;
+}
+
+void withdraw_what_may_be_nothing(Sums& sums, std::vector<BesideFinding>& findings) {
+    while (true) {
+        const Believed believed = believed_of(sums, findings);
+        std::optional<std::size_t> worst;
+        double most = 0.0;
+        for (std::size_t i = 0; i < believed.place.size(); ++i) {
+            const double part = reach_beyond_0(believed.values[i]);
+            if (part <= most) continue;
+            most = part;
+            worst = believed.place[i];
+        }
+        if (!worst) return;
+        findings[*worst].status = FindingStatus::tentative;
+        findings[*worst].reason = "the interval of its size holds 0";
+    }
 }
 
 std::vector<OtherLeft> withdraw_on_other(Sums& sums, const Candidate& model, const GivenCase& other,

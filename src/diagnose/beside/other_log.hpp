@@ -30,6 +30,10 @@ struct OtherLeft {
 std::vector<OtherLeft> withdraw_on_other(Sums& sums, const Candidate& model, const GivenCase& other,
                                          std::vector<BesideFinding>& findings);
 
+/// Puts in doubt what is believed and may be nothing: the interval of its size holds 0. The widest first; the
+/// others are looked at again without it.
+void withdraw_what_may_be_nothing(Sums& sums, std::vector<BesideFinding>& findings);
+
 /// rms that is left of the other log with all that is believed of the findings.
 [[nodiscard]] double left_of_other(Sums& sums, const Candidate& model, const GivenCase& other,
                                    const std::vector<BesideFinding>& findings);
