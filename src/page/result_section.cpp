@@ -89,6 +89,11 @@ bool add_known_table(PageSection& section, const std::string& kind, const std::s
     if (kind == "comparison" && name == "methods") {
         section.tables.push_back(comparison_table(rows));
         add_method_ledgers(section, rows, PageTable(section.tables.back()));
+    } else if (kind == "recommendation" && name == "methods") {
+        section.tables.push_back(comparison_table(rows));
+        section.tables.push_back(table_of(name, rows));
+        section.tables.back().title = "Every value of the methods";
+        section.tables.back().folded = true;
     } else if (kind == "joint" && name == "lines") {
         Json lines = rows;  // amplitudes at each speed are in the figure
         for (Json& line : lines) line.erase("amplitude_by_speed");

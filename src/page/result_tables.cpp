@@ -27,6 +27,9 @@ std::string cell(const Json& row, const char* name) {
 
 std::vector<std::pair<std::string, std::string>> cells_of(const Json& method) {
     std::vector<std::pair<std::string, std::string>> cells;
+    if (const auto meets = method.find("meets"); meets != method.end() && meets->is_boolean())
+        cells.emplace_back("fits", meets->get<bool>() ? "yes" : "no");
+    cells.emplace_back("late at most, ms", cell(method, "longest_delay_ms"));
     if (const auto settle = method.find("settle_ms"); settle != method.end() && settle->is_object())
         cells.emplace_back("settles to 0.5 %, ms", cell(*settle, "0.5"));
     cells.emplace_back("overshoot, %", cell(method, "overshoot_percent"));
@@ -41,8 +44,17 @@ std::vector<std::pair<std::string, std::string>> cells_of(const Json& method) {
     cells.emplace_back("residual, Nm rms", cell(method, "residual_rms_nm"));
     cells.emplace_back("switches", cell(method, "switches"));
     cells.emplace_back("largest jump, Nm", cell(method, "largest_jump_nm"));
-    cells.emplace_back("error, Nm rms", cell(method, "error_rms_nm"));
+    cells.emplace_back("error, Nm rms",
+                       cell(method, method.contains("error_nm") ? "error_nm" : "error_rms_nm"));
     return cells;
+}
+
+// What a label stands for, and why a method is not recommended.
+std::string legend_of(const Json& method, const std::string& spec) {
+    std::string words = spec;
+    if (const auto reasons = method.find("shortfalls"); reasons != method.end() && reasons->is_array())
+        for (const Json& reason : *reasons) words += "; " + value_text(reason);
+    return words;
 }
 
 void drop_empty_columns(PageTable& table) {
@@ -70,7 +82,7 @@ PageTable comparison_table(const Json& methods) {
         const auto found = method.find("method");
         const std::string spec = found != method.end() ? value_text(*found) : "-";
         const std::string label = spec == "none" ? spec : label_of(labels++);
-        if (spec != "none") table.legend.push_back({label, spec});
+        if (spec != "none") table.legend.push_back({label, legend_of(method, spec)});
         table.rows.push_back({label});
         all.push_back(cells_of(method));
         for (const auto& [column, value] : all.back())

@@ -11,7 +11,8 @@
 namespace ripplenotch {
 
 /// The methods of a comparison under the labels A, B, C in the order given (a control keeps its name), with
-/// what each label stands for below; columns that no method fills are left out.
+/// what each label stands for below, and why it does not fit where that was asked; columns that no method
+/// fills are left out.
 [[nodiscard]] PageTable comparison_table(const Json& methods);
 
 /// The design itself: one row a band, with centre frequency and Q of the notch for each order.

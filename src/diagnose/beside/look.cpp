@@ -94,11 +94,30 @@ std::vector<double> sum_of(const std::vector<Term>& terms, const Model& model, c
     return sum;
 }
 
-// Above what does not matter, and more than is left beside it above white noise: it may have fed on that.
-bool matters(const OffsetBeside& offset, const Lens& lens, const std::vector<double>& explained_nm) {
+// The catalogue's friction by load has the load of inertia and gravity. Where it grows with the other
+// frictions' torque as well, as it may in a gear, what is missing keeps its sign as long as the weight does.
+double load_by_friction_nm(const Look& look, const Believed& believed) {
+    double by_load = 0.0, others_nm = 0.0;
+    for (std::size_t i = 0; i < believed.place.size(); ++i) {
+        const Effect& effect = *believed.values[i].term.effect;
+        const Kind kind = kind_of(effect);
+        if (effect.uses_load)
+            by_load += std::abs(believed.values[i].values.front().value);
+        else if (kind == Kind::friction || kind == Kind::speed)
+            others_nm += look.named.findings[believed.place[i]].size_nm;
+    }
+    return by_load * others_nm;
+}
+
+// Above what does not matter, more than is left beside it above white noise (it may have fed on that), and
+// more than twice what a friction by load may make of other frictions.
+bool matters(const OffsetBeside& offset, const Look& look, const Believed& believed,
+             const std::vector<double>& explained_nm) {
+    const Lens& lens = look.lens;
     const double left_nm = lens.plain_left_nm(explained_nm);
     const double excess_nm = std::sqrt(std::max(left_nm * left_nm - lens.sigma() * lens.sigma(), 0.0));
-    const double least_nm = material_sigma(lens.looked_at(), lens.rules()) * left_nm;
+    const double least_nm = std::max(material_sigma(lens.looked_at(), lens.rules()) * left_nm,
+                                     2.0 * load_by_friction_nm(look, believed));
     return std::abs(offset.values.values.front().value) >= least_nm && offset.own_nm >= excess_nm;
 }
 
@@ -159,7 +178,8 @@ BesideOutcome outcome_of(Look& look, const GivenCase& log, const Candidate& mode
     std::optional<OffsetBeside> offset;
     if (is_arm_alone(log.given)) offset = offset_beside(look.lens, model, log.given, effects, shapes);
     std::vector<Term> explained = outcome.believed;
-    if (offset && !matters(*offset, look.lens, sum_of(explained, model.stated, look.lens.looked_at().motion)))
+    if (offset &&
+        !matters(*offset, look, believed, sum_of(explained, model.stated, look.lens.looked_at().motion)))
         offset.reset();
     if (offset) explained.push_back(offset->values.term);
     outcome.given_values =
