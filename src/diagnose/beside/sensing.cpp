@@ -251,17 +251,24 @@ SensorVerdict judged_sensor(const Unsensed& plain, const SensedLook& behind,
     const bool worth = is_worth(gain, finding.evidence.price, lens.rules().beside);
     hearing.asked_price(gain.gain, finding.evidence.price, gain.gain < finding.evidence.price);
     hearing.asked("beside.least_t", gain.t, gain.t < lens.rules().beside.least_t);
+    measure(finding, plain, lens);
+    // What moves the steps of friction alone may be an error of the smoothed motion.
+    const double least_nm = material_sigma(lens.looked_at(), lens.rules()) * lens.sigma();
     if (!worth) {
         finding.status = FindingStatus::tentative;
         finding.reason =
             "what it explains comes from a few parts of the log, or other names explain it as well";
+    } else if (hearing.asked(material_rule(lens.looked_at()), finding.evidence.own_nm / lens.sigma(),
+                             finding.evidence.own_nm < least_nm)) {
+        finding.status = FindingStatus::tentative;
+        finding.reason =
+            "it hardly changes what is given and the model's own: it may mend the form of another finding";
     } else if (hearing.asked("beside.most_uneven", unevenness,
                              unevenness > lens.rules().beside.most_uneven)) {
         finding.status = FindingStatus::tentative;
         finding.reason = fmt::format("it differs by {:.0f} % from part to part of the log",
                                      100.0 * std::min(unevenness, 9.99));
     }
-    measure(finding, plain, lens);
     if (const Effect* rival = rival_of(finding.term, examined))
         look_at_rival(plain, behind, *rival, left, told);
     return told;
