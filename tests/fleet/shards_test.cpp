@@ -21,9 +21,9 @@ ShardRecord record(std::size_t number, std::size_t of) {
 }  // namespace
 
 TEST_CASE("shards hold every log once, in the order of the list, and differ in size by one at most") {
-    for (const std::size_t logs : {1, 2, 7, 100}) {
+    for (const std::size_t logs : {1U, 2U, 7U, 100U}) {
         const Manifest list = list_of(logs);
-        for (const std::size_t of : {1, 2, 3, 7, 100, 101}) {
+        for (const std::size_t of : {1U, 2U, 3U, 7U, 100U, 101U}) {
             std::vector<std::string> all;
             std::size_t least = logs, most = 0;
             for (std::size_t number = 1; number <= of; ++number) {
