@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "diagnose/beside/evidence.hpp"
-#include "model/effects.hpp"
 
 namespace ripplenotch {
 
@@ -13,7 +12,7 @@ std::optional<OffsetBeside> offset_beside(const Lens& lens, const Candidate& mod
                                           std::span<const GivenTerm> given,
                                           std::span<const Effect* const> examined,
                                           std::vector<Shape> believed) {
-    const Effect* const offset = &effects::offset;
+    const Effect* const offset = &find_effect("offset");
     if (std::find(examined.begin(), examined.end(), offset) == examined.end()) return std::nullopt;
     const Lens open(lens, model, given, {&offset, 1}, true);
     Sums sums(open);
