@@ -3,94 +3,185 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <utility>
+#include <algorithm>
 
-#include "export/method_code_parts.hpp"
+#include "export/map_run.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::string_view code = R"c(
-/* Ripple of the joint's torque in Nm: subtract it from the sensor. motor_turns: the motor's angle in turns, 0 where the
-   joint is at the map's zero; the fraction of the turn is enough. joint_deg: the joint's position; only for its own
-   harmonics. torque_nm: the joint's torque; only for the load. */
-static inline @real@ @name@_torque(@real@ speed_deg_s, @real@ motor_turns, @real@ joint_deg, @real@ torque_nm) {
-    enum { orders = @orders@, speeds = @speeds@, directions = @directions@, harmonics = @harmonics@, loads = @loads@,
-           each = speeds + 2 * harmonics + loads };
-    @real@ weight[directions * each];
-    const @real@ size = speed_deg_s < 0 ? -speed_deg_s : speed_deg_s;
-    const @real@ lowest = @name@_speeds[0], highest = @name@_speeds[speeds - 1];
-    const @real@ speed = size < lowest ? lowest : size > highest ? highest : size;
-    @real@ forward = 1, ripple = 0, joint = joint_deg;
-    int d, k, i, above = 0;
-    if (directions == 2) {
-        forward = (@real@)0.5 + (@real@)0.5 * speed_deg_s / @name@_limits[0];
-        forward = forward < 0 ? 0 : forward > 1 ? 1 : forward;
-    }
-    if (@name@_limits[2] > @name@_limits[1]) {
-        const @real@ middle = (@real@)0.5 * (@name@_limits[1] + @name@_limits[2]);
-        joint -= 360 * @name@_floor((joint - middle) / 360 + (@real@)0.5);
-        joint = joint < @name@_limits[1] ? @name@_limits[1] : joint > @name@_limits[2] ? @name@_limits[2] : joint;
-    }
-    joint = (joint - @name@_limits[5]) * (@real@)0.017453292519943295;
-    while (above + 1 < speeds && @name@_speeds[above] < speed) ++above;
-    for (d = 0; d < directions; ++d) {
-        const @real@ share = d == 0 ? forward : 1 - forward;
-        @real@* const w = weight + d * each;
-        for (k = 0; k < each; ++k) w[k] = 0;
-        if (above == 0) {
-            w[0] = share;
-        } else {
-            const @real@ from = @name@_speeds[above - 1];
-            const @real@ along = (speed - from) / (@name@_speeds[above] - from);
-            w[above - 1] = share * (1 - along);
-            w[above] = share * along;
-        }
-        for (k = 0; k < harmonics; ++k) {
-            w[speeds + 2 * k] = share * @cos@((@real@)(k + 1) * joint);
-            w[speeds + 2 * k + 1] = share * @sin@((@real@)(k + 1) * joint);
-        }
-        if (loads == 1) {
-            const @real@ low = @name@_limits[3], high = @name@_limits[4];
-            w[each - 1] = share * (torque_nm < low ? low : torque_nm > high ? high : torque_nm);
-        }
-    }
-    for (i = 0; i < orders; ++i) {
-        const @real@* const z = @name@_values + 2 * i * directions * each;
-        @real@ cosine = 0, sine = 0, c, s, cycles = @name@_orders[i] * motor_turns;
-        for (k = 0; k < directions * each; ++k) {
-            cosine += weight[k] * z[2 * k];
-            sine += weight[k] * z[2 * k + 1];
-        }
-        @name@_on_circle(cycles - @name@_floor(cycles), &c, &s);
-        ripple += cosine * c + sine * s;
-    }
-    return ripple;
-}
+constexpr double slowest_blend_deg_s = 0.1;
 
+constexpr std::string_view along_code = R"c(    const @real@ size = @abs@(speed_deg_s);
+    @real@ along;
+    int at = 0;
+    while (at + 2 < @speeds@ && @name@_speeds[at + 1] < size) ++at;
+    along = (size - @name@_speeds[at]) / (@name@_speeds[at + 1] - @name@_speeds[at]);
+    along = along < 0 ? 0 : along > 1 ? 1 : along;
+)c";
+
+constexpr std::string_view forward_code =
+    R"c(    @real@ forward = (@real@)0.5 + (@real@)0.5 * speed_deg_s / @name@_limits[0];
+)c";
+
+// Whole turns of the joint aside, within what was seen.
+constexpr std::string_view held_code = R"c(    const @real@ from = @name@_limits[1], to = @name@_limits[2];
+    @real@ joint = joint_deg - 360 * @name@_floor((joint_deg - (@real@)0.5 * (from + to)) / 360 + (@real@)0.5);
+    joint = joint < from ? from : joint > to ? to : joint;
+)c";
+
+constexpr std::string_view clamped_code =
+    R"c(    const @real@ {0} = {1} < @name@_limits[{2}] ? @name@_limits[{2}] : {1} > @name@_limits[{3}] ? @name@_limits[{3}] : {1};
 )c";
 
 }  // namespace
 
-std::string map_code(const RippleMap& map, std::string_view name, bool is_float) {
-    const MapForm& form = map.form;
-    const std::array<std::pair<std::string_view, std::string>, 9> fields = {{
-        {"@real@", is_float ? "float" : "double"},
-        {"@name@", std::string(name)},
-        {"@orders@", std::to_string(map.orders.size())},
-        {"@speeds@", std::to_string(form.speeds_deg_s.size())},
-        {"@directions@", std::to_string(form.directions)},
-        {"@harmonics@", std::to_string(form.turn_harmonics)},
-        {"@loads@", form.by_load ? "1" : "0"},
-        {"@cos@", is_float ? "cosf" : "cos"},
-        {"@sin@", is_float ? "sinf" : "sin"},
-    }};
-    std::string text = std::string(turn_code(is_float)) + std::string(code);
-    for (const auto& [mark, value] : fields)
-        for (std::size_t at = text.find(mark); at != std::string::npos;
-             at = text.find(mark, at + value.size()))
-            text.replace(at, mark.size(), value);
+MapTables::MapTables(const RippleMap& map)
+    : speeds(map.form.speeds_deg_s),
+      limits{std::max(map.speeds_deg_s.from, slowest_blend_deg_s),
+             map.positions_deg.from,
+             map.positions_deg.to,
+             map.loads_nm.from,
+             map.loads_nm.to,
+             map.zero_deg,
+             map.temperatures_degc.from,
+             map.temperatures_degc.to} {
+    for (std::size_t c = 0; c < map.form.columns(); ++c) {
+        for (const auto& order : map.values) {
+            amplitudes.push_back(order[c].real());
+            amplitudes.push_back(order[c].imag());
+        }
+    }
+}
+
+MapTables::MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style)
+    : speeds(style.read(reader, "speeds", map.form.speeds_deg_s.size())),
+      limits(style.read(reader, "limits", 8)),
+      amplitudes(style.read(reader, "amplitudes", 2 * map.orders.size() * map.form.columns())) {}
+
+std::string MapCode::arguments(bool with_types, std::string_view torque) const {
+    const MapForm& form = map_.form;
+    std::string text;
+    const auto add = [&](bool is, std::string_view name, std::string_view value) {
+        if (is) text += with_types ? fmt::format("@real@ {}, ", name) : fmt::format("{}, ", value);
+    };
+    add(form.speeds_deg_s.size() > 1 || form.directions > 1, "speed_deg_s", "speed_deg_s");
+    add(form.turn_harmonics > 0, "joint_deg", "joint_deg");
+    add(form.by_load, "torque_nm", torque);
+    add(form.by_temperature, "temperature_degc", "temperature_degc");
+    return text;
+}
+
+std::string MapCode::parameters() const {
+    return std::string("@real@ speed_deg_s, @real@ joint_deg") +
+           (map_.form.by_temperature ? ", @real@ temperature_degc" : "");
+}
+
+std::string MapCode::amplitudes_here(std::string_view torque) const {
+    std::string text;
+    if (map_.form.speeds_deg_s.size() == 1 && map_.form.directions == 1) text += "    (void)speed_deg_s;\n";
+    if (map_.form.turn_harmonics == 0) text += "    (void)joint_deg;\n";
+    if (is_constant()) return text + "    const @real@* const z = @name@_amplitudes;\n";
+    return text + fmt::format("    @real@ z[{}];\n    @name@_at({}z);\n", 2 * map_.orders.size(),
+                              arguments(false, torque));
+}
+
+// What the columns are multiplied by.
+std::string MapCode::factors() const {
+    const MapForm& form = map_.form;
+    std::string text;
+    if (form.directions > 1) text += forward_code;
+    if (form.speeds_deg_s.size() > 1) {
+        text += along_code;
+        const std::size_t mark = text.find("@speeds@");
+        text.replace(mark, 8, std::to_string(form.speeds_deg_s.size()));
+    }
+    if (form.turn_harmonics > 0) {
+        const bool held = map_.positions_deg.to > map_.positions_deg.from;
+        text += held ? std::string(held_code) : "    const @real@ joint = joint_deg;\n";
+        text +=
+            "    const @real@ share = (joint - @name@_limits[5]) / 360;\n    @real@ c1, s1;\n"
+            "    @name@_on_circle(share, &c1, &s1);\n";
+    }
+    for (std::size_t k = 2; k <= form.turn_harmonics; ++k) {
+        text += fmt::format(
+            "    const @real@ c{0} = c1 * c{1} - s1 * s{1};\n    const @real@ s{0} = s1 * c{1} + c1 * "
+            "s{1};\n",
+            k, k - 1);
+    }
+    if (form.by_load) text += fmt::format(fmt::runtime(clamped_code), "load", "torque_nm", 3, 4);
+    if (form.by_temperature) {
+        text += fmt::format(fmt::runtime(clamped_code), "held", "temperature_degc", 6, 7);
+        text += "    const @real@ warmer = held - (@real@)0.5 * (@name@_limits[6] + @name@_limits[7]);\n";
+    }
+    return text;
+}
+
+// A cosine or sine amplitude, as map_run.hpp adds it up.
+std::string MapCode::sum(std::size_t part) const {
+    const MapForm& form = map_.form;
+    const std::size_t parts = 2 * map_.orders.size(), speeds = form.speeds_deg_s.size();
+    std::string text = speeds > 1
+                           ? fmt::format("low[{0}] + along * (low[{1}] - low[{0}])", part, part + parts)
+                           : fmt::format("v[{}]", part);
+    std::size_t at = speeds * parts + part;
+    const auto add = [&](const std::string& factor) {
+        text += fmt::format(" + {} * v[{}]", factor, at);
+        at += parts;
+    };
+    for (std::size_t k = 1; k <= form.turn_harmonics; ++k) {
+        add(fmt::format("c{}", k));
+        add(fmt::format("s{}", k));
+    }
+    if (form.by_load) add("load");
+    if (form.by_temperature) add("warmer");
+    return text;
+}
+
+std::string MapCode::definitions() const {
+    const MapForm& form = map_.form;
+    const MapTables tables(map_);
+    std::string text = style_.array("speeds", tables.speeds) + style_.array("limits", tables.limits) +
+                       style_.array("amplitudes", tables.amplitudes);
+    if (is_constant()) return text;
+    const std::size_t parts = 2 * map_.orders.size(), half = parts * form.columns_a_direction();
+    const bool both = form.directions > 1, by_speed = form.speeds_deg_s.size() > 1;
+    std::string code = fmt::format(
+        "\n/* Of each order the amplitudes of cosine and sine, Nm. */\n"
+        "static inline void @name@_at({}@real@* z) {{\n",
+        arguments(true, ""));
+    // C99 lets declarations follow statements.
+    code += factors();
+    code += both ? fmt::format("    const @real@* v = @name@_amplitudes + (forward > 0 ? 0 : {});\n", half)
+                 : "    const @real@* const v = @name@_amplitudes;\n";
+    if (by_speed)
+        code += fmt::format("    const @real@*{} low = v + {} * at;\n", both ? "" : " const", parts);
+    for (std::size_t i = 0; i < parts; ++i) code += fmt::format("    z[{}] = {};\n", i, sum(i));
+    if (both) {
+        code += fmt::format("    if (forward > 0 && forward < 1) {{\n        v += {0};\n", half);
+        if (by_speed) code += fmt::format("        low += {0};\n        forward = 1 - forward;\n", half);
+        if (!by_speed) code += "        forward = 1 - forward;\n";
+        for (std::size_t i = 0; i < parts; ++i)
+            code += fmt::format("        z[{0}] += forward * ({1} - z[{0}]);\n", i, sum(i));
+        code += "    }\n";
+    }
+    return text + style_.filled(code + "}\n");
+}
+
+std::string order_angles_code(const std::vector<double>& orders, std::string_view turns) {
+    std::string text = "    @real@ ";
+    for (std::size_t i = 0; i < orders.size(); ++i)
+        text += fmt::format("{}c{}, s{}", i > 0 ? ", " : "", i, i);
+    text += ";\n";
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        const std::size_t half = half_of(orders, i);
+        if (half < i) {
+            text += fmt::format("    c{0} = 1 - 2 * s{1} * s{1};\n    s{0} = 2 * c{1} * s{1};\n", i, half);
+        } else {
+            text += fmt::format("    @name@_on_circle({}({}), &c{}, &s{});\n",
+                                orders[i] == 1.0 ? "" : fmt::format("@name@_orders[{}] * ", i), turns, i, i);
+        }
+    }
     return text;
 }
 

@@ -1,16 +1,53 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The C99 function that computes a map.
+// The amplitudes of a map as C: what its form needs, written out.
 
 #include <string>
-#include <string_view>
+#include <vector>
 
+#include "export/method_code_parts.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
 
 namespace ripplenotch {
 
-/// `name`_torque(speed_deg_s, motor_turns, joint_deg, torque_nm), over the arrays `name`_orders, _speeds,
-/// _limits and _values.
-[[nodiscard]] std::string map_code(const RippleMap& map, std::string_view name, bool is_float);
+/// The numbers of a map, as C holds them.
+struct MapTables {
+    std::vector<double> speeds;
+    /// Speed below which the directions blend; least and greatest position, and load; zero; least and
+    /// greatest temperature.
+    std::vector<double> limits;
+    std::vector<double> amplitudes;  ///< by column; in it by order, cosine before sine
+
+    explicit MapTables(const RippleMap& map);
+    /// Those of a header; `map` says how many there are.
+    MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style);
+    MapTables() = default;
+};
+
+/// The C of one map. Functions take what the form needs, so that a compiler has nothing to warn of.
+class MapCode {
+  public:
+    MapCode(const RippleMap& map, const CodeStyle& style) : map_(map), style_(style) {}
+
+    /// Tables, and the function NAME_at where amplitudes are not the same everywhere.
+    [[nodiscard]] std::string definitions() const;
+    /// What a public function is told beside torque and motor angle: "speed_deg_s, joint_deg" with types.
+    [[nodiscard]] std::string parameters() const;
+    /// Lines that declare z[], the amplitudes here, cosine before sine. `torque` is the load's expression.
+    [[nodiscard]] std::string amplitudes_here(std::string_view torque) const;
+
+  private:
+    [[nodiscard]] bool is_constant() const { return map_.form.columns() == 1; }
+    [[nodiscard]] std::string arguments(bool with_types, std::string_view torque) const;
+    [[nodiscard]] std::string factors() const;
+    [[nodiscard]] std::string sum(std::size_t part) const;
+
+    const RippleMap& map_;
+    const CodeStyle& style_;
+};
+
+/// How the orders show at an angle, as lines that set c0, s0, c1, ...; an order twice an earlier one is its
+/// double angle. `turns` is the angle's expression.
+[[nodiscard]] std::string order_angles_code(const std::vector<double>& orders, std::string_view turns);
 
 }  // namespace ripplenotch

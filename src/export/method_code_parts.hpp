@@ -26,7 +26,10 @@ struct CodeStyle {
                                            std::size_t count) const;
 };
 
-/// Sine and cosine of a share of a turn, 0 to 1: of a float by its own series, of a double by the library.
+/// By the keys name and precision. Throws UsageError.
+[[nodiscard]] CodeStyle style_of(const Settings& settings);
+
+/// Sine and cosine of an angle in turns: of a float by its own series, of a double by the library.
 [[nodiscard]] std::string_view turn_code(bool is_float);
 
 template <class Real>
@@ -35,28 +38,25 @@ struct OnCircle {
 };
 
 /// The same, operation by operation.
-[[nodiscard]] inline OnCircle<double> on_circle(double share) {
-    const double angle = 6.283185307179586 * share;
+[[nodiscard]] inline OnCircle<double> on_circle(double turns) {
+    const double angle = 6.283185307179586 * (turns - std::floor(turns));
     return {portable::cos(angle), portable::sin(angle)};
 }
-[[nodiscard]] inline OnCircle<float> on_circle(float share) {
-    const int quarter = static_cast<int>(4.0F * share + 0.5F);
-    const float a = 6.2831853F * (share - 0.25F * static_cast<float>(quarter)), s = a * a;
-    const float sine =
+[[nodiscard]] inline OnCircle<float> on_circle(float turns) {
+    const float quarters = 4.0F * turns;
+    const int quarter = static_cast<int>(quarters + (quarters < 0.0F ? -0.5F : 0.5F));
+    const float a = 1.5707963F * (quarters - static_cast<float>(quarter)), s = a * a;
+    float y =
         a * (1.0F + s * (-1.6666667e-1F + s * (8.3333333e-3F + s * (-1.9841270e-4F + s * 2.7557319e-6F))));
-    const float cosine =
+    float x =
         1.0F +
         s * (-0.5F + s * (4.1666667e-2F + s * (-1.3888889e-3F + s * (2.4801587e-5F - s * 2.7557319e-7F))));
-    switch (quarter & 3) {
-        case 1:
-            return {-sine, cosine};
-        case 2:
-            return {-cosine, -sine};
-        case 3:
-            return {sine, -cosine};
-        default:
-            return {cosine, sine};
+    if ((quarter & 1) != 0) {
+        const float turned = x;
+        x = -y;
+        y = turned;
     }
+    return (quarter & 2) != 0 ? OnCircle<float>{-x, -y} : OnCircle<float>{x, y};
 }
 
 [[nodiscard]] std::string tracking_header(const TrackingDesign& design, const CodeStyle& style);

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Amplitudes of a map as its C computes them, operation by operation, in the header's precision.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "export/map_code.hpp"
+#include "export/method_code_parts.hpp"
+#include "ripplenotch/export/method_code.hpp"
+
+namespace ripplenotch {
+
+/// The place of an earlier order that this one is twice of; its own where there is none.
+template <class Real>
+[[nodiscard]] std::size_t half_of(const std::vector<Real>& orders, std::size_t i) {
+    for (std::size_t j = 0; j < i; ++j)
+        if (orders[i] == 2 * orders[j]) return j;
+    return i;
+}
+
+/// How each order shows at an angle: cosine, sine.
+template <class Real>
+void order_angles(const std::vector<Real>& orders, Real turns, std::vector<Real>& shows) {
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        if (const std::size_t half = half_of(orders, i); half < i) {
+            const Real c = shows[2 * half], s = shows[2 * half + 1];
+            shows[2 * i] = 1 - 2 * s * s;
+            shows[2 * i + 1] = 2 * c * s;
+        } else {
+            const OnCircle<Real> at = on_circle(orders[i] * turns);
+            shows[2 * i] = at.cosine;
+            shows[2 * i + 1] = at.sine;
+        }
+    }
+}
+
+template <class Real>
+class MapRun {
+  public:
+    MapRun(const MapForm& form, std::size_t orders, const MapTables& tables)
+        : form_(form),
+          speeds_(tables.speeds.begin(), tables.speeds.end()),
+          limits_(tables.limits.begin(), tables.limits.end()),
+          table_(tables.amplitudes.begin(), tables.amplitudes.end()),
+          z_(2 * orders),
+          other_(2 * orders) {}
+
+    /// Of each order cosine and sine, Nm.
+    const std::vector<Real>& at(const CodeInput& in) {
+        const Real speed = static_cast<Real>(in.speed_deg_s);
+        find_factors(in);
+        if (form_.directions == 1) {
+            add_up(table_.data(), z_);
+            return z_;
+        }
+        const Real forward = static_cast<Real>(0.5) + static_cast<Real>(0.5) * speed / limits_[0];
+        const std::size_t half = z_.size() * form_.columns_a_direction();
+        add_up(table_.data() + (forward > 0 ? 0 : half), z_);
+        if (!(forward > 0 && forward < 1)) return z_;
+        add_up(table_.data() + half, other_);
+        for (std::size_t i = 0; i < z_.size(); ++i) z_[i] += (1 - forward) * (other_[i] - z_[i]);
+        return z_;
+    }
+
+  private:
+    void find_factors(const CodeInput& in) {
+        factors_.clear();
+        if (speeds_.size() > 1) {
+            const Real size = std::abs(static_cast<Real>(in.speed_deg_s));
+            at_ = 0;
+            while (at_ + 2 < speeds_.size() && speeds_[at_ + 1] < size) ++at_;
+            along_ = std::clamp((size - speeds_[at_]) / (speeds_[at_ + 1] - speeds_[at_]), Real(0), Real(1));
+        }
+        if (form_.turn_harmonics > 0) add_turn(static_cast<Real>(in.joint_deg));
+        if (form_.by_load)
+            factors_.push_back(std::clamp(static_cast<Real>(in.torque_nm), limits_[3], limits_[4]));
+        if (form_.by_temperature) {
+            const Real held = std::clamp(static_cast<Real>(in.temperature_degc), limits_[6], limits_[7]);
+            factors_.push_back(held - static_cast<Real>(0.5) * (limits_[6] + limits_[7]));
+        }
+    }
+    void add_turn(Real joint) {
+        const Real from = limits_[1], to = limits_[2], middle = static_cast<Real>(0.5) * (from + to);
+        if (to > from) {
+            joint -= 360 * std::floor((joint - middle) / 360 + static_cast<Real>(0.5));
+            joint = std::clamp(joint, from, to);
+        }
+        const OnCircle<Real> one = on_circle((joint - limits_[5]) / 360);
+        OnCircle<Real> k = one;
+        for (std::size_t i = 1;; ++i) {
+            factors_.push_back(k.cosine);
+            factors_.push_back(k.sine);
+            if (i == form_.turn_harmonics) return;
+            k = {one.cosine * k.cosine - one.sine * k.sine, one.sine * k.cosine + one.cosine * k.sine};
+        }
+    }
+    void add_up(const Real* v, std::vector<Real>& sums) const {
+        const std::size_t parts = sums.size();
+        const Real* const low = v + parts * at_;
+        for (std::size_t i = 0; i < parts; ++i) {
+            Real sum = speeds_.size() > 1 ? low[i] + along_ * (low[i + parts] - low[i]) : v[i];
+            for (std::size_t k = 0; k < factors_.size(); ++k)
+                sum += factors_[k] * v[(speeds_.size() + k) * parts + i];
+            sums[i] = sum;
+        }
+    }
+
+    MapForm form_;
+    std::vector<Real> speeds_, limits_, table_, z_, other_, factors_;
+    std::size_t at_ = 0;
+    Real along_ = 0;
+};
+
+}  // namespace ripplenotch
