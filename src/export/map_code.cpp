@@ -10,24 +10,24 @@
 namespace ripplenotch {
 namespace {
 
+using Products = std::vector<std::pair<std::string, std::string>>;
+
 constexpr double slowest_blend_deg_s = 0.1;
 
 constexpr std::string_view along_code = R"c(    const @real@ size = @abs@(speed_deg_s);
     @real@ along;
     int at = 0;
     while (at + 2 < @speeds@ && @name@_speeds[at + 1] < size) ++at;
-    along = (size - @name@_speeds[at]) / (@name@_speeds[at + 1] - @name@_speeds[at]);
+    along = (size - @name@_speeds[at]) * @name@_slopes[at];
     along = along < 0 ? 0 : along > 1 ? 1 : along;
 )c";
 
-constexpr std::string_view forward_code =
-    R"c(    @real@ forward = (@real@)0.5 + (@real@)0.5 * speed_deg_s / @name@_limits[0];
-)c";
-
-// Whole turns of the joint aside, within what was seen.
-constexpr std::string_view held_code = R"c(    const @real@ from = @name@_limits[1], to = @name@_limits[2];
-    @real@ joint = joint_deg - 360 * @name@_floor((joint_deg - (@real@)0.5 * (from + to)) / 360 + (@real@)0.5);
-    joint = joint < from ? from : joint > to ? to : joint;
+// Turns of the joint beyond the middle of its range, whole ones aside, within what was seen.
+constexpr std::string_view held_code =
+    R"c(    @real@ joint = @name@_fma(joint_deg, (@real@)0.002777777777777778, @name@_limits[1]);
+    joint -= @name@_nearest(joint);
+    joint = joint < -@name@_limits[2] ? -@name@_limits[2] : joint > @name@_limits[2] ? @name@_limits[2] : joint;
+    joint += @name@_limits[3];
 )c";
 
 constexpr std::string_view clamped_code =
@@ -36,16 +36,22 @@ constexpr std::string_view clamped_code =
 
 }  // namespace
 
-MapTables::MapTables(const RippleMap& map)
-    : speeds(map.form.speeds_deg_s),
-      limits{std::max(map.speeds_deg_s.from, slowest_blend_deg_s),
-             map.positions_deg.from,
-             map.positions_deg.to,
-             map.loads_nm.from,
-             map.loads_nm.to,
-             map.zero_deg,
-             map.temperatures_degc.from,
-             map.temperatures_degc.to} {
+MapTables::MapTables(const RippleMap& map) : speeds(map.form.speeds_deg_s) {
+    for (std::size_t k = 0; k + 1 < speeds.size(); ++k) slopes.push_back(1.0 / (speeds[k + 1] - speeds[k]));
+    if (slopes.empty()) slopes = {0.0};
+    const MapRange& positions = map.positions_deg;
+    const bool held = positions.to > positions.from;
+    const double from_deg = held ? positions.middle() : map.zero_deg;
+    const double middle = map.temperatures_degc.middle();
+    limits = {0.5 / std::max(map.speeds_deg_s.from, slowest_blend_deg_s),
+              -from_deg / 360.0,
+              held ? (positions.to - positions.from) / 720.0 : 0.5,
+              (from_deg - map.zero_deg) / 360.0,
+              map.loads_nm.from,
+              map.loads_nm.to,
+              middle,
+              map.temperatures_degc.from - middle,
+              map.temperatures_degc.to - middle};
     for (std::size_t c = 0; c < map.form.columns(); ++c) {
         for (const auto& order : map.values) {
             amplitudes.push_back(order[c].real());
@@ -56,7 +62,8 @@ MapTables::MapTables(const RippleMap& map)
 
 MapTables::MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style)
     : speeds(style.read(reader, "speeds", map.form.speeds_deg_s.size())),
-      limits(style.read(reader, "limits", 8)),
+      slopes(style.read(reader, "slopes", std::max<std::size_t>(speeds.size(), 2) - 1)),
+      limits(style.read(reader, "limits", 9)),
       amplitudes(style.read(reader, "amplitudes", 2 * map.orders.size() * map.form.columns())) {}
 
 std::string MapCode::arguments(bool with_types, std::string_view torque) const {
@@ -90,29 +97,24 @@ std::string MapCode::amplitudes_here(std::string_view torque) const {
 std::string MapCode::factors() const {
     const MapForm& form = map_.form;
     std::string text;
-    if (form.directions > 1) text += forward_code;
+    if (form.directions > 1)
+        text += "    @real@ forward = @name@_fma(speed_deg_s, @name@_limits[0], (@real@)0.5);\n";
     if (form.speeds_deg_s.size() > 1) {
         text += along_code;
-        const std::size_t mark = text.find("@speeds@");
-        text.replace(mark, 8, std::to_string(form.speeds_deg_s.size()));
+        text.replace(text.find("@speeds@"), 8, std::to_string(form.speeds_deg_s.size()));
     }
-    if (form.turn_harmonics > 0) {
-        const bool held = map_.positions_deg.to > map_.positions_deg.from;
-        text += held ? std::string(held_code) : "    const @real@ joint = joint_deg;\n";
-        text +=
-            "    const @real@ share = (joint - @name@_limits[5]) / 360;\n    @real@ c1, s1;\n"
-            "    @name@_on_circle(share, &c1, &s1);\n";
-    }
+    if (form.turn_harmonics > 0)
+        text += std::string(held_code) + "    @real@ c1, s1;\n    @name@_on_circle(joint, &c1, &s1);\n";
     for (std::size_t k = 2; k <= form.turn_harmonics; ++k) {
         text += fmt::format(
             "    const @real@ c{0} = c1 * c{1} - s1 * s{1};\n    const @real@ s{0} = s1 * c{1} + c1 * "
             "s{1};\n",
             k, k - 1);
     }
-    if (form.by_load) text += fmt::format(fmt::runtime(clamped_code), "load", "torque_nm", 3, 4);
+    if (form.by_load) text += fmt::format(fmt::runtime(clamped_code), "load", "torque_nm", 4, 5);
     if (form.by_temperature) {
-        text += fmt::format(fmt::runtime(clamped_code), "held", "temperature_degc", 6, 7);
-        text += "    const @real@ warmer = held - (@real@)0.5 * (@name@_limits[6] + @name@_limits[7]);\n";
+        text += "    const @real@ beyond = temperature_degc - @name@_limits[6];\n";
+        text += fmt::format(fmt::runtime(clamped_code), "warmer", "beyond", 7, 8);
     }
     return text;
 }
@@ -121,12 +123,11 @@ std::string MapCode::factors() const {
 std::string MapCode::sum(std::size_t part) const {
     const MapForm& form = map_.form;
     const std::size_t parts = 2 * map_.orders.size(), speeds = form.speeds_deg_s.size();
-    std::string text = speeds > 1
-                           ? fmt::format("low[{0}] + along * (low[{1}] - low[{0}])", part, part + parts)
-                           : fmt::format("v[{}]", part);
+    Products products;
+    if (speeds > 1) products.emplace_back("along", fmt::format("low[{}] - low[{}]", part + parts, part));
     std::size_t at = speeds * parts + part;
     const auto add = [&](const std::string& factor) {
-        text += fmt::format(" + {} * v[{}]", factor, at);
+        products.emplace_back(factor, fmt::format("v[{}]", at));
         at += parts;
     };
     for (std::size_t k = 1; k <= form.turn_harmonics; ++k) {
@@ -135,14 +136,14 @@ std::string MapCode::sum(std::size_t part) const {
     }
     if (form.by_load) add("load");
     if (form.by_temperature) add("warmer");
-    return text;
+    return sum_code(fmt::format("{}[{}]", speeds > 1 ? "low" : "v", part), products);
 }
 
 std::string MapCode::definitions() const {
     const MapForm& form = map_.form;
     const MapTables tables(map_);
-    std::string text = style_.array("speeds", tables.speeds) + style_.array("limits", tables.limits) +
-                       style_.array("amplitudes", tables.amplitudes);
+    std::string text = style_.array("speeds", tables.speeds) + style_.array("slopes", tables.slopes) +
+                       style_.array("limits", tables.limits) + style_.array("amplitudes", tables.amplitudes);
     if (is_constant()) return text;
     const std::size_t parts = 2 * map_.orders.size(), half = parts * form.columns_a_direction();
     const bool both = form.directions > 1, by_speed = form.speeds_deg_s.size() > 1;
@@ -162,7 +163,7 @@ std::string MapCode::definitions() const {
         if (by_speed) code += fmt::format("        low += {0};\n        forward = 1 - forward;\n", half);
         if (!by_speed) code += "        forward = 1 - forward;\n";
         for (std::size_t i = 0; i < parts; ++i)
-            code += fmt::format("        z[{0}] += forward * ({1} - z[{0}]);\n", i, sum(i));
+            code += fmt::format("        z[{0}] = @name@_fma(forward, {1} - z[{0}], z[{0}]);\n", i, sum(i));
         code += "    }\n";
     }
     return text + style_.filled(code + "}\n");

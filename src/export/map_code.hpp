@@ -12,9 +12,10 @@ namespace ripplenotch {
 
 /// The numbers of a map, as C holds them.
 struct MapTables {
-    std::vector<double> speeds;
-    /// Speed below which the directions blend; least and greatest position, and load; zero; least and
-    /// greatest temperature.
+    std::vector<double> speeds, slopes;  ///< slopes: 1 / gap to the next speed
+    /// 0.5 / speed below which the directions blend; of the joint in turns: less the middle of its range,
+    /// half of it, that middle beyond zero; least and greatest load; of the temperature the middle, and least
+    /// and greatest beyond it.
     std::vector<double> limits;
     std::vector<double> amplitudes;  ///< by column; in it by order, cosine before sine
 

@@ -43,6 +43,7 @@ class MapRun {
     MapRun(const MapForm& form, std::size_t orders, const MapTables& tables)
         : form_(form),
           speeds_(tables.speeds.begin(), tables.speeds.end()),
+          slopes_(tables.slopes.begin(), tables.slopes.end()),
           limits_(tables.limits.begin(), tables.limits.end()),
           table_(tables.amplitudes.begin(), tables.amplitudes.end()),
           z_(2 * orders),
@@ -56,12 +57,12 @@ class MapRun {
             add_up(table_.data(), z_);
             return z_;
         }
-        const Real forward = static_cast<Real>(0.5) + static_cast<Real>(0.5) * speed / limits_[0];
+        const Real forward = speed * limits_[0] + static_cast<Real>(0.5);
         const std::size_t half = z_.size() * form_.columns_a_direction();
         add_up(table_.data() + (forward > 0 ? 0 : half), z_);
         if (!(forward > 0 && forward < 1)) return z_;
         add_up(table_.data() + half, other_);
-        for (std::size_t i = 0; i < z_.size(); ++i) z_[i] += (1 - forward) * (other_[i] - z_[i]);
+        for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = (1 - forward) * (other_[i] - z_[i]) + z_[i];
         return z_;
     }
 
@@ -72,23 +73,20 @@ class MapRun {
             const Real size = std::abs(static_cast<Real>(in.speed_deg_s));
             at_ = 0;
             while (at_ + 2 < speeds_.size() && speeds_[at_ + 1] < size) ++at_;
-            along_ = std::clamp((size - speeds_[at_]) / (speeds_[at_ + 1] - speeds_[at_]), Real(0), Real(1));
+            along_ = std::clamp((size - speeds_[at_]) * slopes_[at_], Real(0), Real(1));
         }
         if (form_.turn_harmonics > 0) add_turn(static_cast<Real>(in.joint_deg));
         if (form_.by_load)
-            factors_.push_back(std::clamp(static_cast<Real>(in.torque_nm), limits_[3], limits_[4]));
+            factors_.push_back(std::clamp(static_cast<Real>(in.torque_nm), limits_[4], limits_[5]));
         if (form_.by_temperature) {
-            const Real held = std::clamp(static_cast<Real>(in.temperature_degc), limits_[6], limits_[7]);
-            factors_.push_back(held - static_cast<Real>(0.5) * (limits_[6] + limits_[7]));
+            const Real beyond = static_cast<Real>(in.temperature_degc) - limits_[6];
+            factors_.push_back(std::clamp(beyond, limits_[7], limits_[8]));
         }
     }
-    void add_turn(Real joint) {
-        const Real from = limits_[1], to = limits_[2], middle = static_cast<Real>(0.5) * (from + to);
-        if (to > from) {
-            joint -= 360 * std::floor((joint - middle) / 360 + static_cast<Real>(0.5));
-            joint = std::clamp(joint, from, to);
-        }
-        const OnCircle<Real> one = on_circle((joint - limits_[5]) / 360);
+    void add_turn(Real joint_deg) {
+        Real joint = joint_deg * static_cast<Real>(0.002777777777777778) + limits_[1];
+        joint -= nearest(joint);
+        const OnCircle<Real> one = on_circle(std::clamp(joint, -limits_[2], limits_[2]) + limits_[3]);
         OnCircle<Real> k = one;
         for (std::size_t i = 1;; ++i) {
             factors_.push_back(k.cosine);
@@ -109,7 +107,7 @@ class MapRun {
     }
 
     MapForm form_;
-    std::vector<Real> speeds_, limits_, table_, z_, other_, factors_;
+    std::vector<Real> speeds_, slopes_, limits_, table_, z_, other_, factors_;
     std::size_t at_ = 0;
     Real along_ = 0;
 };

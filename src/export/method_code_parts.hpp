@@ -3,8 +3,11 @@
 // One method as C and as the same loops here: a file each.
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -29,8 +32,12 @@ struct CodeStyle {
 /// By the keys name and precision. Throws UsageError.
 [[nodiscard]] CodeStyle style_of(const Settings& settings);
 
-/// Sine and cosine of an angle in turns: of a float by its own series, of a double by the library.
+/// Sine and cosine of an angle in turns, of a float by its own series, of a double by the library; the
+/// nearest whole number; a b + c.
 [[nodiscard]] std::string_view turn_code(bool is_float);
+/// "first + a b + c d", as nested calls; each pair is a product.
+[[nodiscard]] std::string sum_code(std::string first,
+                                   std::span<const std::pair<std::string, std::string>> products);
 
 template <class Real>
 struct OnCircle {
@@ -42,15 +49,17 @@ struct OnCircle {
     const double angle = 6.283185307179586 * (turns - std::floor(turns));
     return {portable::cos(angle), portable::sin(angle)};
 }
+[[nodiscard]] inline double nearest(double value) { return std::floor(value + 0.5); }
+[[nodiscard]] inline float nearest(float value) {
+    return static_cast<float>(static_cast<int>(value + (value < 0.0F ? -0.5F : 0.5F)));
+}
 [[nodiscard]] inline OnCircle<float> on_circle(float turns) {
-    const float quarters = 4.0F * turns;
-    const int quarter = static_cast<int>(quarters + (quarters < 0.0F ? -0.5F : 0.5F));
-    const float a = 1.5707963F * (quarters - static_cast<float>(quarter)), s = a * a;
-    float y =
-        a * (1.0F + s * (-1.6666667e-1F + s * (8.3333333e-3F + s * (-1.9841270e-4F + s * 2.7557319e-6F))));
-    float x =
-        1.0F +
-        s * (-0.5F + s * (4.1666667e-2F + s * (-1.3888889e-3F + s * (2.4801587e-5F - s * 2.7557319e-7F))));
+    const float quarters = 4.0F * turns, a = quarters - nearest(quarters), s = a * a;
+    float y = s * (s * -4.60214921e-3F + 7.96802176e-2F) + -6.45963478e-1F;
+    float x = s * (s * 9.06739898e-4F + -2.08615283e-2F) + 2.5366941e-1F;
+    y = a * (s * y + 1.57079632F);
+    x = s * (s * x + -1.23370055F) + 1.0F;
+    const int quarter = static_cast<int>(nearest(quarters));
     if ((quarter & 1) != 0) {
         const float turned = x;
         x = -y;

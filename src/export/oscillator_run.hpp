@@ -5,7 +5,8 @@
 // It is the filter of filter/ripple_kalman.hpp in other coordinates. There the first state is the torque;
 // here it is torque and ripple together, what the sensor shows. A sample then looks at one state alone, and a
 // cold start knows nothing of how the two share it: its covariance is diagonal, and no digits go into
-// cancelling large correlations.
+// cancelling large correlations. What is forgotten of the amplitudes is taken off how they show, one number
+// for all of them, and brought back into them where that has sunk to a half.
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +20,9 @@
 
 namespace ripplenotch {
 
-/// Places in the header's array of values.
+/// Places in the header's array of values. The torque's rate is per sample.
 struct OscillatorValue {
     enum : std::size_t {
-        step_s,
         noise_nm,
         torque_noise,
         cross_noise,
@@ -55,29 +55,31 @@ class OscillatorRun {
           before_(m_ - 2),
           v_(m_),
           p_(m_ * m_),
-          fastest_order_(*std::max_element(orders_.begin(), orders_.end())) {}
+          slowest_fade_(static_cast<Real>(0.45 / *std::max_element(orders.begin(), orders.end()))) {}
 
     double step(const CodeInput& in) {
         const Real turns = static_cast<Real>(in.motor_turns);
         Real torque = static_cast<Real>(in.torque_nm);
         Real moved = started_ ? turns - turns_ : Real(0);
-        moved -= std::floor(moved + static_cast<Real>(0.5));
-        const Real step = moved * (1 + slip_);
+        moved -= nearest(moved);
+        const Real step = moved * slip_ + moved;
         if (started_) follow_slip(moved);
         look(turns + slipped_, std::abs(step));
         torque -= mapped(in);
         if (started_) {
+            forget(std::abs(step));
             predict(std::abs(step));
             update((torque - origin_) / c_[Value::noise_nm]);
             correct(step);
         } else {
             begin(torque);
         }
+        before_ = h_;
         turns_ = turns;
         Real ripple = 0;
         for (std::size_t i = 2; i < m_; ++i) ripple += h_[i - 2] * x_[i];
         return static_cast<double>(minus_ripple_ ? torque - c_[Value::noise_nm] * ripple
-                                                 : origin_ + c_[Value::noise_nm] * (x_[0] - ripple));
+                                                 : c_[Value::noise_nm] * (x_[0] - ripple) + origin_);
     }
 
   private:
@@ -87,13 +89,13 @@ class OscillatorRun {
     void follow_slip(Real moved) {
         const Real added = moved * slip_ - lost_, slipped = slipped_ + added;
         lost_ = (slipped - slipped_) - added;
-        slipped_ = slipped > 1 ? slipped - 1 : slipped < -1 ? slipped + 1 : slipped;
+        slipped_ = slipped - static_cast<Real>(static_cast<int>(slipped));
     }
     void look(Real turns, Real size) {
         const Real none = static_cast<Real>(0.48), full = static_cast<Real>(0.45);
         order_angles(orders_, turns, h_);
         squares_ = static_cast<Real>(orders_.size());
-        if (!(fastest_order_ * size > full)) return;
+        if (!(size > slowest_fade_)) return;
         for (std::size_t i = 0; i < orders_.size(); ++i) {
             const Real rate = orders_[i] * size;
             if (!(rate > full)) continue;
@@ -121,42 +123,42 @@ class OscillatorRun {
             x_[i] = prior[i % 2];
             p(i, i) = prior[2] * prior[2];
         }
-        before_ = h_;
     }
-    // First state += step * rate + how much each amplitude shows now, times what is kept of it, less how much
-    // it showed before.
+    void forget(Real size) {
+        if (!(c_[Value::turns_to_return] > 0)) return;
+        left_ *= 1 - size * c_[Value::turns_to_return];
+        if (left_ < static_cast<Real>(0.5)) bring_back();
+        for (Real& shows : h_) shows *= left_;
+    }
+    void bring_back() {
+        for (std::size_t i = 2; i < m_; ++i) {
+            x_[i] *= left_;
+            before_[i - 2] /= left_;
+            p(0, i) *= left_;
+            p(1, i) *= left_;
+            for (std::size_t j = i; j < m_; ++j) p(i, j) *= left_ * left_;
+        }
+        left_ = 1;
+    }
+    // First state += rate + how much each amplitude shows now less how much it showed before.
     void predict(Real size) {
-        const Real dt = c_[Value::step_s], share = size * c_[Value::turns_to_memory],
-                   added = 2 * share * share;
-        const bool forgets = c_[Value::turns_to_return] > 0;
-        const Real left = 1 - size * c_[Value::turns_to_return], kept = left > 0 ? left : Real(0);
-        for (std::size_t k = 0; k < before_.size(); ++k)
-            before_[k] = (forgets ? kept * h_[k] : h_[k]) - before_[k];
+        const Real share = size * c_[Value::turns_to_memory], added = 2 * share * share;
+        const Real more = added / (left_ * left_);
+        for (std::size_t k = 0; k < before_.size(); ++k) before_[k] = h_[k] - before_[k];
         for (std::size_t i = 0; i < m_; ++i) {
-            v_[i] = p(0, i) + dt * p(1, i);
+            v_[i] = p(0, i) + p(1, i);
             for (std::size_t k = 2; k < m_; ++k) v_[i] += before_[k - 2] * p(k, i);
         }
-        Real first = v_[0] + dt * v_[1], expected = x_[0] + dt * x_[1];
+        Real first = v_[0] + v_[1], expected = x_[0] + x_[1];
         for (std::size_t k = 2; k < m_; ++k) first += before_[k - 2] * v_[k];
         for (std::size_t k = 2; k < m_; ++k) expected += before_[k - 2] * x_[k];
-        v_[0] = first + added * squares_ + c_[Value::torque_noise];
+        v_[0] = added * squares_ + first + c_[Value::torque_noise];
         v_[1] += c_[Value::cross_noise];
         x_[0] = expected;
         p(1, 1) += c_[Value::rate_noise];
-        if (forgets) forget(kept);
         for (std::size_t i = 2; i < m_; ++i) {
-            v_[i] += added * h_[i - 2];
-            p(i, i) += added;
-        }
-        before_ = h_;
-    }
-    void forget(Real kept) {
-        const Real square = kept * kept;
-        for (std::size_t i = 2; i < m_; ++i) {
-            x_[i] *= kept;
-            v_[i] *= kept;
-            p(1, i) *= kept;
-            for (std::size_t j = i; j < m_; ++j) p(i, j) *= square;
+            v_[i] += more * h_[i - 2];
+            p(i, i) += more;
         }
     }
     void update(Real measured) {
@@ -190,7 +192,7 @@ class OscillatorRun {
         if (!(weights > 0)) return;
         const Real share =
             std::min(static_cast<Real>(0.25) * (size * c_[Value::turns_to_memory]), static_cast<Real>(0.01));
-        slip_ += share * (ahead * surprise_ / (static_cast<Real>(6.283185307179586) * weights)) / step;
+        slip_ += share * (ahead * surprise_) / (static_cast<Real>(6.283185307179586) * weights * step);
         slip_ = std::clamp(slip_, -most, most);
     }
 
@@ -199,7 +201,8 @@ class OscillatorRun {
     std::optional<MapRun<Real>> map_;
     std::size_t m_;
     std::vector<Real> x_, h_, before_, v_, p_;  ///< p_: above the diagonal; v_: its first row before a sample
-    Real fastest_order_;
+    Real slowest_fade_;                         ///< turns a sample at which the first order begins to fade
+    Real left_ = 1;                             ///< of the amplitudes, since they were last brought back
     Real origin_ = 0, turns_ = 0, slip_ = 0, slipped_ = 0, lost_ = 0, surprise_ = 0, squares_ = 0;
     bool started_ = false;
 };

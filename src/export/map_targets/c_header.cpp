@@ -51,9 +51,10 @@ Written write(const RippleMap& map, const Settings& settings, std::span<const st
                       map.form.by_temperature ? ", @real@ temperature_degc" : "");
     std::string body = signature + code.amplitudes_here("torque_nm");
     if (!map.form.by_load) body += "    (void)torque_nm;\n";
-    body += order_angles_code(orders, "motor_turns") + "    return ";
-    for (std::size_t i = 0; i < orders.size(); ++i)
-        body += fmt::format("{0}z[{1}] * c{2} + z[{3}] * s{2}", i > 0 ? " + " : "", 2 * i, i, 2 * i + 1);
+    std::vector<std::pair<std::string, std::string>> products;
+    for (std::size_t i = 1; i < 2 * orders.size(); ++i)
+        products.emplace_back(fmt::format("z[{}]", i), fmt::format("{}{}", i % 2 == 0 ? 'c' : 's', i / 2));
+    body += order_angles_code(orders, "motor_turns") + "    return " + sum_code("z[0] * c0", products);
     return {text + style.filled(body + ";\n}\n#endif  // @NAME@_H\n"), {}};
 }
 

@@ -229,6 +229,7 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
         if (is) raise<UsageError>("method oscillator as code: {} is not written; leave it out", what);
     };
     refuse(p.zero_unknown, "zero=unknown");
+    refuse(p.model.return_turns > 0.0 && p.model.return_turns < 1.0, "a return below one turn");
     refuse(p.scheduled, "gain=scheduled");
     refuse(p.source == MotorAngle::Source::velocity, "angle=velocity");
     refuse(p.rest_nm.has_value(), "rest");
