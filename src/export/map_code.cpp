@@ -14,19 +14,19 @@ using Products = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double slowest_blend_deg_s = 0.1;
 
-constexpr std::string_view along_code = R"c(    const @real@ size = @abs@(speed_deg_s);
-    @real@ along;
+// From -0.5 to 0.5 between two speeds.
+constexpr std::string_view along_code = R"c(    @real@ along;
     int at = 0;
     while (at + 2 < @speeds@ && @name@_speeds[at + 1] < size) ++at;
-    along = (size - @name@_speeds[at]) * @name@_slopes[at];
-    along = along < 0 ? 0 : along > 1 ? 1 : along;
+    along = @name@_fma(size, @name@_slopes[at], @name@_offsets[at]);
+    if (@abs@(along) > (@real@)0.5) along = along < 0 ? (@real@)-0.5 : (@real@)0.5;
 )c";
 
 // Turns of the joint beyond the middle of its range, whole ones aside, within what was seen.
 constexpr std::string_view held_code =
     R"c(    @real@ joint = @name@_fma(joint_deg, (@real@)0.002777777777777778, @name@_limits[1]);
     joint -= @name@_nearest(joint);
-    joint = joint < -@name@_limits[2] ? -@name@_limits[2] : joint > @name@_limits[2] ? @name@_limits[2] : joint;
+    if (@abs@(joint) > @name@_limits[2]) joint = joint < 0 ? -@name@_limits[2] : @name@_limits[2];
     joint += @name@_limits[3];
 )c";
 
@@ -37,8 +37,11 @@ constexpr std::string_view clamped_code =
 }  // namespace
 
 MapTables::MapTables(const RippleMap& map) : speeds(map.form.speeds_deg_s) {
-    for (std::size_t k = 0; k + 1 < speeds.size(); ++k) slopes.push_back(1.0 / (speeds[k + 1] - speeds[k]));
-    if (slopes.empty()) slopes = {0.0};
+    for (std::size_t k = 0; k + 1 < std::max<std::size_t>(speeds.size(), 2); ++k) {
+        const double gap = speeds.size() > 1 ? speeds[k + 1] - speeds[k] : 0.0;
+        slopes.push_back(gap > 0.0 ? 1.0 / gap : 0.0);
+        offsets.push_back(gap > 0.0 ? -0.5 * (speeds[k] + speeds[k + 1]) / gap : 0.0);
+    }
     const MapRange& positions = map.positions_deg;
     const bool held = positions.to > positions.from;
     const double from_deg = held ? positions.middle() : map.zero_deg;
@@ -52,19 +55,38 @@ MapTables::MapTables(const RippleMap& map) : speeds(map.form.speeds_deg_s) {
               middle,
               map.temperatures_degc.from - middle,
               map.temperatures_degc.to - middle};
-    for (std::size_t c = 0; c < map.form.columns(); ++c) {
-        for (const auto& order : map.values) {
-            amplitudes.push_back(order[c].real());
-            amplitudes.push_back(order[c].imag());
+    const std::size_t each = map.form.columns_a_direction();
+    for (std::size_t d = 0; d < map.form.directions; ++d) {
+        for (std::size_t k = 0; k + 1 < speeds.size(); ++k) {
+            const std::size_t c = d * each + k;
+            add(map, [c](const auto& z) { return 0.5 * (z[c] + z[c + 1]); });
+            add(map, [c](const auto& z) { return z[c + 1] - z[c]; });
         }
+        for (std::size_t c = speeds.size() > 1 ? speeds.size() : 0; c < each; ++c)
+            add(map, [at = d * each + c](const auto& z) { return z[at]; });
     }
+}
+
+template <class Of>
+void MapTables::add(const RippleMap& map, const Of& of) {
+    for (const auto& order : map.values) {
+        amplitudes.push_back(of(order).real());
+        amplitudes.push_back(of(order).imag());
+    }
+}
+
+std::size_t MapTables::columns_a_direction(const MapForm& form) {
+    const std::size_t speeds = form.speeds_deg_s.size();
+    return form.columns_a_direction() - speeds + (speeds > 1 ? 2 * (speeds - 1) : 1);
 }
 
 MapTables::MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style)
     : speeds(style.read(reader, "speeds", map.form.speeds_deg_s.size())),
       slopes(style.read(reader, "slopes", std::max<std::size_t>(speeds.size(), 2) - 1)),
+      offsets(style.read(reader, "offsets", slopes.size())),
       limits(style.read(reader, "limits", 9)),
-      amplitudes(style.read(reader, "amplitudes", 2 * map.orders.size() * map.form.columns())) {}
+      amplitudes(style.read(reader, "amplitudes",
+                            2 * map.orders.size() * map.form.directions * columns_a_direction(map.form))) {}
 
 std::string MapCode::arguments(bool with_types, std::string_view torque) const {
     const MapForm& form = map_.form;
@@ -97,8 +119,8 @@ std::string MapCode::amplitudes_here(std::string_view torque) const {
 std::string MapCode::factors() const {
     const MapForm& form = map_.form;
     std::string text;
-    if (form.directions > 1)
-        text += "    @real@ forward = @name@_fma(speed_deg_s, @name@_limits[0], (@real@)0.5);\n";
+    if (form.speeds_deg_s.size() > 1 || form.directions > 1)
+        text += "    const @real@ size = @abs@(speed_deg_s);\n";
     if (form.speeds_deg_s.size() > 1) {
         text += along_code;
         text.replace(text.find("@speeds@"), 8, std::to_string(form.speeds_deg_s.size()));
@@ -124,8 +146,8 @@ std::string MapCode::sum(std::size_t part) const {
     const MapForm& form = map_.form;
     const std::size_t parts = 2 * map_.orders.size(), speeds = form.speeds_deg_s.size();
     Products products;
-    if (speeds > 1) products.emplace_back("along", fmt::format("low[{}] - low[{}]", part + parts, part));
-    std::size_t at = speeds * parts + part;
+    if (speeds > 1) products.emplace_back("along", fmt::format("low[{}]", part + parts));
+    std::size_t at = (speeds > 1 ? 2 * (speeds - 1) : 1) * parts + part;
     const auto add = [&](const std::string& factor) {
         products.emplace_back(factor, fmt::format("v[{}]", at));
         at += parts;
@@ -143,9 +165,10 @@ std::string MapCode::definitions() const {
     const MapForm& form = map_.form;
     const MapTables tables(map_);
     std::string text = style_.array("speeds", tables.speeds) + style_.array("slopes", tables.slopes) +
-                       style_.array("limits", tables.limits) + style_.array("amplitudes", tables.amplitudes);
+                       style_.array("offsets", tables.offsets) + style_.array("limits", tables.limits) +
+                       style_.array("amplitudes", tables.amplitudes);
     if (is_constant()) return text;
-    const std::size_t parts = 2 * map_.orders.size(), half = parts * form.columns_a_direction();
+    const std::size_t parts = 2 * map_.orders.size(), half = parts * MapTables::columns_a_direction(form);
     const bool both = form.directions > 1, by_speed = form.speeds_deg_s.size() > 1;
     std::string code = fmt::format(
         "\n/* Of each order the amplitudes of cosine and sine, Nm. */\n"
@@ -153,17 +176,20 @@ std::string MapCode::definitions() const {
         arguments(true, ""));
     // C99 lets declarations follow statements.
     code += factors();
-    code += both ? fmt::format("    const @real@* v = @name@_amplitudes + (forward > 0 ? 0 : {});\n", half)
+    code += both ? fmt::format("    const @real@* v = @name@_amplitudes + {} * (speed_deg_s < 0);\n", half)
                  : "    const @real@* const v = @name@_amplitudes;\n";
-    if (by_speed)
-        code += fmt::format("    const @real@*{} low = v + {} * at;\n", both ? "" : " const", parts);
+    const std::string low = fmt::format("low = v + {} * at;\n", 2 * parts);
+    if (by_speed) code += (both ? "    const @real@* " : "    const @real@* const ") + low;
     for (std::size_t i = 0; i < parts; ++i) code += fmt::format("    z[{}] = {};\n", i, sum(i));
     if (both) {
-        code += fmt::format("    if (forward > 0 && forward < 1) {{\n        v += {0};\n", half);
-        if (by_speed) code += fmt::format("        low += {0};\n        forward = 1 - forward;\n", half);
-        if (!by_speed) code += "        forward = 1 - forward;\n";
+        code +=
+            "    /* near standstill the directions run into each other */\n"
+            "    const @real@ share = @name@_fma(-size, @name@_limits[0], (@real@)0.5);\n    if (share > 0) "
+            "{\n";
+        code += fmt::format("        v = @name@_amplitudes + {} * !(speed_deg_s < 0);\n", half);
+        if (by_speed) code += "        " + low;
         for (std::size_t i = 0; i < parts; ++i)
-            code += fmt::format("        z[{0}] = @name@_fma(forward, {1} - z[{0}], z[{0}]);\n", i, sum(i));
+            code += fmt::format("        z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);\n", i, sum(i));
         code += "    }\n";
     }
     return text + style_.filled(code + "}\n");

@@ -11,18 +11,28 @@
 namespace ripplenotch {
 
 /// The numbers of a map, as C holds them.
-struct MapTables {
-    std::vector<double> speeds, slopes;  ///< slopes: 1 / gap to the next speed
+class MapTables {
+  public:
+    std::vector<double> speeds;
+    /// Between each speed and the next: 1 / gap, and less the middle times that.
+    std::vector<double> slopes, offsets;
     /// 0.5 / speed below which the directions blend; of the joint in turns: less the middle of its range,
     /// half of it, that middle beyond zero; least and greatest load; of the temperature the middle, and least
     /// and greatest beyond it.
     std::vector<double> limits;
-    std::vector<double> amplitudes;  ///< by column; in it by order, cosine before sine
+    /// By direction and column, in it by order, cosine before sine. In the place of the speeds' columns stand
+    /// for each gap the value in its middle and what it gains across.
+    std::vector<double> amplitudes;
 
     explicit MapTables(const RippleMap& map);
     /// Those of a header; `map` says how many there are.
     MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style);
     MapTables() = default;
+    [[nodiscard]] static std::size_t columns_a_direction(const MapForm& form);
+
+  private:
+    template <class Of>
+    void add(const RippleMap& map, const Of& of);
 };
 
 /// The C of one map. Functions take what the form needs, so that a compiler has nothing to warn of.

@@ -44,6 +44,7 @@ class MapRun {
         : form_(form),
           speeds_(tables.speeds.begin(), tables.speeds.end()),
           slopes_(tables.slopes.begin(), tables.slopes.end()),
+          offsets_(tables.offsets.begin(), tables.offsets.end()),
           limits_(tables.limits.begin(), tables.limits.end()),
           table_(tables.amplitudes.begin(), tables.amplitudes.end()),
           z_(2 * orders),
@@ -53,16 +54,12 @@ class MapRun {
     const std::vector<Real>& at(const CodeInput& in) {
         const Real speed = static_cast<Real>(in.speed_deg_s);
         find_factors(in);
-        if (form_.directions == 1) {
-            add_up(table_.data(), z_);
-            return z_;
-        }
-        const Real forward = speed * limits_[0] + static_cast<Real>(0.5);
-        const std::size_t half = z_.size() * form_.columns_a_direction();
-        add_up(table_.data() + (forward > 0 ? 0 : half), z_);
-        if (!(forward > 0 && forward < 1)) return z_;
-        add_up(table_.data() + half, other_);
-        for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = (1 - forward) * (other_[i] - z_[i]) + z_[i];
+        const std::size_t half = form_.directions == 1 ? 0 : table_.size() / 2;
+        add_up(table_.data() + (speed < 0 ? half : 0), z_);
+        const Real share = static_cast<Real>(0.5) - std::abs(speed) * limits_[0];
+        if (half == 0 || !(share > 0)) return z_;
+        add_up(table_.data() + (speed < 0 ? 0 : half), other_);
+        for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = share * (other_[i] - z_[i]) + z_[i];
         return z_;
     }
 
@@ -73,7 +70,8 @@ class MapRun {
             const Real size = std::abs(static_cast<Real>(in.speed_deg_s));
             at_ = 0;
             while (at_ + 2 < speeds_.size() && speeds_[at_ + 1] < size) ++at_;
-            along_ = std::clamp((size - speeds_[at_]) * slopes_[at_], Real(0), Real(1));
+            along_ = std::clamp(size * slopes_[at_] + offsets_[at_], static_cast<Real>(-0.5),
+                                static_cast<Real>(0.5));
         }
         if (form_.turn_harmonics > 0) add_turn(static_cast<Real>(in.joint_deg));
         if (form_.by_load)
@@ -96,18 +94,18 @@ class MapRun {
         }
     }
     void add_up(const Real* v, std::vector<Real>& sums) const {
-        const std::size_t parts = sums.size();
-        const Real* const low = v + parts * at_;
+        const std::size_t parts = sums.size(), gaps = speeds_.size() - 1;
+        const Real* const low = v + 2 * parts * at_;
+        const Real* const more = v + (gaps > 0 ? 2 * gaps : 1) * parts;
         for (std::size_t i = 0; i < parts; ++i) {
-            Real sum = speeds_.size() > 1 ? low[i] + along_ * (low[i + parts] - low[i]) : v[i];
-            for (std::size_t k = 0; k < factors_.size(); ++k)
-                sum += factors_[k] * v[(speeds_.size() + k) * parts + i];
+            Real sum = gaps > 0 ? along_ * low[i + parts] + low[i] : v[i];
+            for (std::size_t k = 0; k < factors_.size(); ++k) sum += factors_[k] * more[k * parts + i];
             sums[i] = sum;
         }
     }
 
     MapForm form_;
-    std::vector<Real> speeds_, slopes_, limits_, table_, z_, other_, factors_;
+    std::vector<Real> speeds_, slopes_, offsets_, limits_, table_, z_, other_, factors_;
     std::size_t at_ = 0;
     Real along_ = 0;
 };
