@@ -25,7 +25,7 @@ constexpr std::string_view along_code = R"c(    @real@ along;
 // Turns of the joint beyond the middle of its range, whole ones aside, within what was seen.
 constexpr std::string_view held_code =
     R"c(    @real@ joint = @name@_fma(joint_deg, (@real@)0.002777777777777778, @name@_limits[1]);
-    joint -= @name@_nearest(joint);
+    joint = @name@_beside_whole(joint);
     if (@abs@(joint) > @name@_limits[2]) joint = joint < 0 ? -@name@_limits[2] : @name@_limits[2];
     joint += @name@_limits[3];
 )c";
@@ -46,7 +46,7 @@ MapTables::MapTables(const RippleMap& map) : speeds(map.form.speeds_deg_s) {
     const bool held = positions.to > positions.from;
     const double from_deg = held ? positions.middle() : map.zero_deg;
     const double middle = map.temperatures_degc.middle();
-    limits = {0.5 / std::max(map.speeds_deg_s.from, slowest_blend_deg_s),
+    limits = {std::max(map.speeds_deg_s.from, slowest_blend_deg_s),
               -from_deg / 360.0,
               held ? (positions.to - positions.from) / 720.0 : 0.5,
               (from_deg - map.zero_deg) / 360.0,
@@ -129,8 +129,8 @@ std::string MapCode::factors() const {
         text += std::string(held_code) + "    @real@ c1, s1;\n    @name@_on_circle(joint, &c1, &s1);\n";
     for (std::size_t k = 2; k <= form.turn_harmonics; ++k) {
         text += fmt::format(
-            "    const @real@ c{0} = c1 * c{1} - s1 * s{1};\n    const @real@ s{0} = s1 * c{1} + c1 * "
-            "s{1};\n",
+            "    const @real@ c{0} = @name@_fma(c1, c{1}, -s1 * s{1}), s{0} = @name@_fma(s1, c{1}, c1 * "
+            "s{1});\n",
             k, k - 1);
     }
     if (form.by_load) text += fmt::format(fmt::runtime(clamped_code), "load", "torque_nm", 4, 5);
@@ -176,17 +176,21 @@ std::string MapCode::definitions() const {
         arguments(true, ""));
     // C99 lets declarations follow statements.
     code += factors();
-    code += both ? fmt::format("    const @real@* v = @name@_amplitudes + {} * (speed_deg_s < 0);\n", half)
+    // Volatile: a compiler that sees the table would look both sides up and choose each number by itself.
+    code += both ? fmt::format(
+                       "    volatile const int side = speed_deg_s < 0 ? {} : 0;\n"
+                       "    const @real@* v = @name@_amplitudes + side;\n",
+                       half)
                  : "    const @real@* const v = @name@_amplitudes;\n";
     const std::string low = fmt::format("low = v + {} * at;\n", 2 * parts);
     if (by_speed) code += (both ? "    const @real@* " : "    const @real@* const ") + low;
     for (std::size_t i = 0; i < parts; ++i) code += fmt::format("    z[{}] = {};\n", i, sum(i));
     if (both) {
-        code +=
-            "    /* near standstill the directions run into each other */\n"
-            "    const @real@ share = @name@_fma(-size, @name@_limits[0], (@real@)0.5);\n    if (share > 0) "
-            "{\n";
-        code += fmt::format("        v = @name@_amplitudes + {} * !(speed_deg_s < 0);\n", half);
+        code += fmt::format(
+            "    if (size < @name@_limits[0]) {{ /* near standstill the directions run into each other */\n"
+            "        const @real@ share = (@real@)0.5 - (@real@)0.5 * size / @name@_limits[0];\n"
+            "        v = @name@_amplitudes + ({} - side);\n",
+            half);
         if (by_speed) code += "        " + low;
         for (std::size_t i = 0; i < parts; ++i)
             code += fmt::format("        z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);\n", i, sum(i));
@@ -203,7 +207,9 @@ std::string order_angles_code(const std::vector<double>& orders, std::string_vie
     for (std::size_t i = 0; i < orders.size(); ++i) {
         const std::size_t half = half_of(orders, i);
         if (half < i) {
-            text += fmt::format("    c{0} = 1 - 2 * s{1} * s{1};\n    s{0} = 2 * c{1} * s{1};\n", i, half);
+            text += fmt::format(
+                "    s{0} = s{1} + s{1};\n    c{0} = @name@_fma(-s{0}, s{1}, 1);\n    s{0} *= c{1};\n", i,
+                half);
         } else {
             text += fmt::format("    @name@_on_circle({}({}), &c{}, &s{});\n",
                                 orders[i] == 1.0 ? "" : fmt::format("@name@_orders[{}] * ", i), turns, i, i);

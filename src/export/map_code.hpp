@@ -16,7 +16,7 @@ class MapTables {
     std::vector<double> speeds;
     /// Between each speed and the next: 1 / gap, and less the middle times that.
     std::vector<double> slopes, offsets;
-    /// 0.5 / speed below which the directions blend; of the joint in turns: less the middle of its range,
+    /// Speed below which the directions blend; of the joint in turns: less the middle of its range,
     /// half of it, that middle beyond zero; least and greatest load; of the temperature the middle, and least
     /// and greatest beyond it.
     std::vector<double> limits;

@@ -27,8 +27,8 @@ void order_angles(const std::vector<Real>& orders, Real turns, std::vector<Real>
     for (std::size_t i = 0; i < orders.size(); ++i) {
         if (const std::size_t half = half_of(orders, i); half < i) {
             const Real c = shows[2 * half], s = shows[2 * half + 1];
-            shows[2 * i] = 1 - 2 * s * s;
-            shows[2 * i + 1] = 2 * c * s;
+            shows[2 * i] = 1 - (s + s) * s;
+            shows[2 * i + 1] = (s + s) * c;
         } else {
             const OnCircle<Real> at = on_circle(orders[i] * turns);
             shows[2 * i] = at.cosine;
@@ -56,8 +56,9 @@ class MapRun {
         find_factors(in);
         const std::size_t half = form_.directions == 1 ? 0 : table_.size() / 2;
         add_up(table_.data() + (speed < 0 ? half : 0), z_);
-        const Real share = static_cast<Real>(0.5) - std::abs(speed) * limits_[0];
-        if (half == 0 || !(share > 0)) return z_;
+        const Real size = std::abs(speed), half_share = static_cast<Real>(0.5);
+        if (half == 0 || !(size < limits_[0])) return z_;
+        const Real share = half_share - half_share * size / limits_[0];
         add_up(table_.data() + (speed < 0 ? 0 : half), other_);
         for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = share * (other_[i] - z_[i]) + z_[i];
         return z_;
@@ -83,7 +84,7 @@ class MapRun {
     }
     void add_turn(Real joint_deg) {
         Real joint = joint_deg * static_cast<Real>(0.002777777777777778) + limits_[1];
-        joint -= nearest(joint);
+        joint = beside_whole(joint);
         const OnCircle<Real> one = on_circle(std::clamp(joint, -limits_[2], limits_[2]) + limits_[3]);
         OnCircle<Real> k = one;
         for (std::size_t i = 1;; ++i) {

@@ -30,8 +30,11 @@ static inline float @name@_fma(float a, float b, float c) { return fmaf(a, b, c)
 #else
 static inline float @name@_fma(float a, float b, float c) { return a * b + c; }
 #endif
-/* The nearest whole number, of what an int holds. */
-static inline float @name@_nearest(float value) { return (float)(int)(value + (value < 0 ? -0.5f : 0.5f)); }
+/* What is beyond the nearest whole number, which an int has to hold. */
+static inline float @name@_beside_whole(float value) {
+    value -= (float)(int)value;
+    return value - (float)(int)(value + value);
+}
 static inline void @name@_on_circle(float turns, float* cosine, float* sine) {
     const float quarters = 4 * turns;
     const int quarter = (int)(quarters + (quarters < 0 ? -0.5f : 0.5f));
@@ -52,7 +55,7 @@ static inline void @name@_on_circle(float turns, float* cosine, float* sine) {
 
 constexpr std::string_view double_turn = R"c(
 static inline double @name@_fma(double a, double b, double c) { return a * b + c; }
-static inline double @name@_nearest(double value) { return floor(value + 0.5); }
+static inline double @name@_beside_whole(double value) { return value - floor(value + 0.5); }
 static inline void @name@_on_circle(double turns, double* cosine, double* sine) {
     const double angle = 6.283185307179586 * (turns - floor(turns));
     *cosine = cos(angle);

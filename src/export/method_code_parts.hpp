@@ -49,17 +49,20 @@ struct OnCircle {
     const double angle = 6.283185307179586 * (turns - std::floor(turns));
     return {portable::cos(angle), portable::sin(angle)};
 }
-[[nodiscard]] inline double nearest(double value) { return std::floor(value + 0.5); }
-[[nodiscard]] inline float nearest(float value) {
-    return static_cast<float>(static_cast<int>(value + (value < 0.0F ? -0.5F : 0.5F)));
+/// What is beyond the nearest whole number.
+[[nodiscard]] inline double beside_whole(double value) { return value - std::floor(value + 0.5); }
+[[nodiscard]] inline float beside_whole(float value) {
+    value -= static_cast<float>(static_cast<int>(value));
+    return value - static_cast<float>(static_cast<int>(value + value));
 }
 [[nodiscard]] inline OnCircle<float> on_circle(float turns) {
-    const float quarters = 4.0F * turns, a = quarters - nearest(quarters), s = a * a;
+    const float quarters = 4.0F * turns;
+    const int quarter = static_cast<int>(quarters + (quarters < 0.0F ? -0.5F : 0.5F));
+    const float a = quarters - static_cast<float>(quarter), s = a * a;
     float y = s * (s * -4.60214921e-3F + 7.96802176e-2F) + -6.45963478e-1F;
     float x = s * (s * 9.06739898e-4F + -2.08615283e-2F) + 2.5366941e-1F;
     y = a * (s * y + 1.57079632F);
     x = s * (s * x + -1.23370055F) + 1.0F;
-    const int quarter = static_cast<int>(nearest(quarters));
     if ((quarter & 1) != 0) {
         const float turned = x;
         x = -y;

@@ -89,7 +89,8 @@ std::vector<double> values_of(const OscillatorDesign& d) {
     values[Value::cross_noise] = d.step_s * d.cross_noise;
     values[Value::rate_noise] = d.step_s * d.step_s * d.rate_noise;
     values[Value::first_rate_variance] = d.step_s * d.step_s * d.first_rate_variance;
-    values[Value::turns_to_memory] = 1.0 / d.memory_turns;
+    values[Value::amplitude_noise] = std::sqrt(2.0) / d.memory_turns;
+    values[Value::quarter_memory] = 0.25 / d.memory_turns;
     values[Value::jump] = d.jump;
     values[Value::largest_slip] = d.largest_slip;
     values[Value::turns_to_return] = d.return_turns > 0.0 ? 1.0 / d.return_turns : 0.0;

@@ -28,7 +28,8 @@ struct OscillatorValue {
         cross_noise,
         rate_noise,
         first_rate_variance,
-        turns_to_memory,  ///< 1 / memory
+        amplitude_noise,  ///< deviation that a turn of the motor adds to an amplitude
+        quarter_memory,   ///< 0.25 / memory in turns
         jump,
         largest_slip,
         turns_to_return,  ///< 1 / return, 0 for never
@@ -61,7 +62,7 @@ class OscillatorRun {
         const Real turns = static_cast<Real>(in.motor_turns);
         Real torque = static_cast<Real>(in.torque_nm);
         Real moved = started_ ? turns - turns_ : Real(0);
-        moved -= nearest(moved);
+        moved = beside_whole(moved);
         const Real step = moved * slip_ + moved;
         if (started_) follow_slip(moved);
         look(turns + slipped_, std::abs(step));
@@ -142,8 +143,8 @@ class OscillatorRun {
     }
     // First state += rate + how much each amplitude shows now less how much it showed before.
     void predict(Real size) {
-        const Real share = size * c_[Value::turns_to_memory], added = 2 * share * share;
-        const Real more = added / (left_ * left_);
+        const Real strays = size * c_[Value::amplitude_noise], strays_here = strays / left_;
+        const Real added = strays * strays, more = strays_here * strays_here;
         for (std::size_t k = 0; k < before_.size(); ++k) before_[k] = h_[k] - before_[k];
         for (std::size_t i = 0; i < m_; ++i) {
             v_[i] = p(0, i) + p(1, i);
@@ -190,8 +191,7 @@ class OscillatorRun {
             weights += n * n * square;
         }
         if (!(weights > 0)) return;
-        const Real share =
-            std::min(static_cast<Real>(0.25) * (size * c_[Value::turns_to_memory]), static_cast<Real>(0.01));
+        const Real share = std::min(size * c_[Value::quarter_memory], static_cast<Real>(0.01));
         slip_ += share * (ahead * surprise_) / (static_cast<Real>(6.283185307179586) * weights * step);
         slip_ = std::clamp(slip_, -most, most);
     }

@@ -22,7 +22,7 @@ constexpr std::string_view slip_code = R"c(    if (!s->started) s->slip = s->sli
 )c";
 
 // What the model holds for next to impossible is a torque that jumped.
-constexpr std::string_view jump_code = R"c(    if (surprise * surprise > c[6] * c[6] * variance) {
+constexpr std::string_view jump_code = R"c(    if (surprise * surprise > c[7] * c[7] * variance) {
         v0 += surprise * surprise;
         variance += surprise * surprise;
     }
@@ -84,7 +84,7 @@ class StepCode {
     }
 
     void look() {
-        line("    moved -= @name@_nearest(moved);");
+        line("    moved = @name@_beside_whole(moved);");
         text_ += slips_ ? std::string(slip_code) : "    const @real@ size = @abs@(moved);\n";
         text_ += order_angles_code(d_.orders, slips_ ? "motor_turns + s->slipped" : "motor_turns");
         const double fastest = *std::max_element(d_.orders.begin(), d_.orders.end());
@@ -95,7 +95,7 @@ class StepCode {
         if (d_.map) line("    torque_nm -= {};", shown(0, "z"));
     }
     void forget() {
-        line("        s->left *= @name@_fma(-size, c[8], 1);");
+        line("        s->left *= @name@_fma(-size, c[9], 1);");
         line("        if (s->left < (@real@)0.5) @name@_bring_back(s);");
         for (std::size_t i = 2; i < m_; ++i) line("        {} *= s->left;", h(i));
     }
@@ -107,9 +107,10 @@ class StepCode {
         }
     }
     void predict() {
-        line("        const @real@ share = size * c[5], added = 2 * share * share;");
-        line(forgets_ ? "        const @real@ more = added / (s->left * s->left);"
-                      : "        const @real@ more = added;");
+        line("        const @real@ strays = size * c[5], added = strays * strays;");
+        line(forgets_
+                 ? "        const @real@ strays_here = strays / s->left, more = strays_here * strays_here;"
+                 : "        const @real@ more = added;");
         text_ += "        const @real@ ";
         for (std::size_t i = 2; i < m_; ++i)
             text_ += fmt::format("d{} = {} - s->h[{}]{}", i, h(i), i - 2, i + 1 < m_ ? ", " : ";\n");
@@ -158,12 +159,12 @@ class StepCode {
             line("                    weights = @name@_fma((@real@){}, square, weights);", decimal(n * n));
             line("                }}\n            }}");
         }
-        line("            if (weights > 0) {{\n                @real@ of = (@real@)0.25 * share;");
+        line("            if (weights > 0) {{\n                @real@ of = size * c[6];");
         line("                of = of < (@real@)0.01 ? of : (@real@)0.01;");
         line(
             "                s->slip += of * (ahead * (surprise * scale)) / ((@real@)6.283185307179586 * "
             "weights * step);");
-        line("                s->slip = s->slip < -c[7] ? -c[7] : s->slip > c[7] ? c[7] : s->slip;");
+        line("                s->slip = s->slip < -c[8] ? -c[8] : s->slip > c[8] ? c[8] : s->slip;");
         line("            }}\n        }}");
     }
 
