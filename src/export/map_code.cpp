@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <complex>
 
 #include "export/map_run.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -15,7 +17,8 @@ using Products = std::vector<std::pair<std::string, std::string>>;
 constexpr double slowest_blend_deg_s = 0.1;
 
 // From -0.5 to 0.5 between two speeds.
-constexpr std::string_view along_code = R"c(    @real@ along;
+constexpr std::string_view along_code = R"c(    const @real@ size = @abs@(speed_deg_s);
+    @real@ along;
     int at = 0;
     while (at + 2 < @speeds@ && @name@_speeds[at + 1] < size) ++at;
     along = @name@_fma(size, @name@_slopes[at], @name@_offsets[at]);
@@ -27,12 +30,28 @@ constexpr std::string_view held_code =
     R"c(    @real@ joint = @name@_fma(joint_deg, (@real@)0.002777777777777778, @name@_limits[1]);
     joint = @name@_beside_whole(joint);
     if (@abs@(joint) > @name@_limits[2]) joint = joint < 0 ? -@name@_limits[2] : @name@_limits[2];
-    joint += @name@_limits[3];
 )c";
 
 constexpr std::string_view clamped_code =
     R"c(    const @real@ {0} = {1} < @name@_limits[{2}] ? @name@_limits[{2}] : {1} > @name@_limits[{3}] ? @name@_limits[{3}] : {1};
 )c";
+
+// The joint position that its angle is counted from: the middle of what was seen, or the map's zero.
+double counted_from_deg(const RippleMap& map) {
+    const MapRange& seen = map.positions_deg;
+    return seen.to > seen.from ? seen.middle() : map.zero_deg;
+}
+
+// A column behind those of the speeds; those of the joint's turn for an angle so counted.
+std::complex<double> from_middle(const RippleMap& map, const std::vector<std::complex<double>>& z,
+                                 std::size_t at) {
+    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
+    const std::size_t within = at % each - speeds;
+    if (within >= 2 * map.form.turn_harmonics) return z[at];
+    const double angle = static_cast<double>(within / 2 + 1) * (counted_from_deg(map) - map.zero_deg);
+    const double c = portable::cos_degrees(angle), s = portable::sin_degrees(angle);
+    return within % 2 == 0 ? c * z[at] + s * z[at + 1] : c * z[at] - s * z[at - 1];
+}
 
 }  // namespace
 
@@ -44,12 +63,10 @@ MapTables::MapTables(const RippleMap& map) : speeds(map.form.speeds_deg_s) {
     }
     const MapRange& positions = map.positions_deg;
     const bool held = positions.to > positions.from;
-    const double from_deg = held ? positions.middle() : map.zero_deg;
     const double middle = map.temperatures_degc.middle();
     limits = {std::max(map.speeds_deg_s.from, slowest_blend_deg_s),
-              -from_deg / 360.0,
+              -counted_from_deg(map) / 360.0,
               held ? (positions.to - positions.from) / 720.0 : 0.5,
-              (from_deg - map.zero_deg) / 360.0,
               map.loads_nm.from,
               map.loads_nm.to,
               middle,
@@ -62,8 +79,9 @@ MapTables::MapTables(const RippleMap& map) : speeds(map.form.speeds_deg_s) {
             add(map, [c](const auto& z) { return 0.5 * (z[c] + z[c + 1]); });
             add(map, [c](const auto& z) { return z[c + 1] - z[c]; });
         }
-        for (std::size_t c = speeds.size() > 1 ? speeds.size() : 0; c < each; ++c)
-            add(map, [at = d * each + c](const auto& z) { return z[at]; });
+        if (speeds.size() == 1) add(map, [at = d * each](const auto& z) { return z[at]; });
+        for (std::size_t c = speeds.size(); c < each; ++c)
+            add(map, [&, at = d * each + c](const auto& z) { return from_middle(map, z, at); });
     }
 }
 
@@ -84,7 +102,7 @@ MapTables::MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& 
     : speeds(style.read(reader, "speeds", map.form.speeds_deg_s.size())),
       slopes(style.read(reader, "slopes", std::max<std::size_t>(speeds.size(), 2) - 1)),
       offsets(style.read(reader, "offsets", slopes.size())),
-      limits(style.read(reader, "limits", 9)),
+      limits(style.read(reader, "limits", 8)),
       amplitudes(style.read(reader, "amplitudes",
                             2 * map.orders.size() * map.form.directions * columns_a_direction(map.form))) {}
 
@@ -119,8 +137,6 @@ std::string MapCode::amplitudes_here(std::string_view torque) const {
 std::string MapCode::factors() const {
     const MapForm& form = map_.form;
     std::string text;
-    if (form.speeds_deg_s.size() > 1 || form.directions > 1)
-        text += "    const @real@ size = @abs@(speed_deg_s);\n";
     if (form.speeds_deg_s.size() > 1) {
         text += along_code;
         text.replace(text.find("@speeds@"), 8, std::to_string(form.speeds_deg_s.size()));
@@ -133,10 +149,10 @@ std::string MapCode::factors() const {
             "s{1});\n",
             k, k - 1);
     }
-    if (form.by_load) text += fmt::format(fmt::runtime(clamped_code), "load", "torque_nm", 4, 5);
+    if (form.by_load) text += fmt::format(fmt::runtime(clamped_code), "load", "torque_nm", 3, 4);
     if (form.by_temperature) {
-        text += "    const @real@ beyond = temperature_degc - @name@_limits[6];\n";
-        text += fmt::format(fmt::runtime(clamped_code), "warmer", "beyond", 7, 8);
+        text += "    const @real@ beyond = temperature_degc - @name@_limits[5];\n";
+        text += fmt::format(fmt::runtime(clamped_code), "warmer", "beyond", 6, 7);
     }
     return text;
 }
@@ -161,6 +177,18 @@ std::string MapCode::sum(std::size_t part) const {
     return sum_code(fmt::format("{}[{}]", speeds > 1 ? "low" : "v", part), products);
 }
 
+// The amplitudes of one direction, put where `form` says: {0} their place, {1} their value.
+std::string MapCode::side(std::size_t direction, std::string_view indent, std::string_view form) const {
+    const std::size_t parts = 2 * map_.orders.size();
+    std::string text = fmt::format("{}const @real@* const v = @name@_amplitudes + {};\n", indent,
+                                   direction * parts * MapTables::columns_a_direction(map_.form));
+    if (map_.form.speeds_deg_s.size() > 1)
+        text += fmt::format("{}const @real@* const low = v + {} * at;\n", indent, 2 * parts);
+    for (std::size_t i = 0; i < parts; ++i)
+        text += fmt::format("{}{}\n", indent, fmt::format(fmt::runtime(form), i, sum(i)));
+    return text;
+}
+
 std::string MapCode::definitions() const {
     const MapForm& form = map_.form;
     const MapTables tables(map_);
@@ -168,33 +196,23 @@ std::string MapCode::definitions() const {
                        style_.array("offsets", tables.offsets) + style_.array("limits", tables.limits) +
                        style_.array("amplitudes", tables.amplitudes);
     if (is_constant()) return text;
-    const std::size_t parts = 2 * map_.orders.size(), half = parts * MapTables::columns_a_direction(form);
-    const bool both = form.directions > 1, by_speed = form.speeds_deg_s.size() > 1;
     std::string code = fmt::format(
         "\n/* Of each order the amplitudes of cosine and sine, Nm. */\n"
         "static inline void @name@_at({}@real@* z) {{\n",
         arguments(true, ""));
     // C99 lets declarations follow statements.
     code += factors();
-    // Volatile: a compiler that sees the table would look both sides up and choose each number by itself.
-    code += both ? fmt::format(
-                       "    volatile const int side = speed_deg_s < 0 ? {} : 0;\n"
-                       "    const @real@* v = @name@_amplitudes + side;\n",
-                       half)
-                 : "    const @real@* const v = @name@_amplitudes;\n";
-    const std::string low = fmt::format("low = v + {} * at;\n", 2 * parts);
-    if (by_speed) code += (both ? "    const @real@* " : "    const @real@* const ") + low;
-    for (std::size_t i = 0; i < parts; ++i) code += fmt::format("    z[{}] = {};\n", i, sum(i));
-    if (both) {
-        code += fmt::format(
-            "    if (size < @name@_limits[0]) {{ /* near standstill the directions run into each other */\n"
-            "        const @real@ share = (@real@)0.5 - (@real@)0.5 * size / @name@_limits[0];\n"
-            "        v = @name@_amplitudes + ({} - side);\n",
-            half);
-        if (by_speed) code += "        " + low;
-        for (std::size_t i = 0; i < parts; ++i)
-            code += fmt::format("        z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);\n", i, sum(i));
-        code += "    }\n";
+    if (form.directions == 1) {
+        code += side(0, "    ", "z[{0}] = {1};");
+    } else {
+        // Each side by itself: a compiler that sees both in one expression looks both up.
+        code += "    if (speed_deg_s >= @name@_limits[0]) {\n" + side(0, "        ", "z[{0}] = {1};") +
+                "    } else if (speed_deg_s <= -@name@_limits[0]) {\n" +
+                side(1, "        ", "z[{0}] = {1};") +
+                "    } else { /* the directions run into each other */\n"
+                "        const @real@ share = (@real@)0.5 - (@real@)0.5 * speed_deg_s / @name@_limits[0];\n" +
+                "        {\n" + side(0, "            ", "z[{0}] = {1};") + "        }\n" +
+                side(1, "        ", "z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);") + "    }\n";
     }
     return text + style_.filled(code + "}\n");
 }

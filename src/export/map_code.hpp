@@ -16,9 +16,9 @@ class MapTables {
     std::vector<double> speeds;
     /// Between each speed and the next: 1 / gap, and less the middle times that.
     std::vector<double> slopes, offsets;
-    /// Speed below which the directions blend; of the joint in turns: less the middle of its range,
-    /// half of it, that middle beyond zero; least and greatest load; of the temperature the middle, and least
-    /// and greatest beyond it.
+    /// Speed below which the directions blend; of the joint in turns: less the middle of its range, from
+    /// which it is counted, and half of the range; least and greatest load; of the temperature the middle,
+    /// and least and greatest beyond it.
     std::vector<double> limits;
     /// By direction and column, in it by order, cosine before sine. In the place of the speeds' columns stand
     /// for each gap the value in its middle and what it gains across.
@@ -52,6 +52,8 @@ class MapCode {
     [[nodiscard]] std::string arguments(bool with_types, std::string_view torque) const;
     [[nodiscard]] std::string factors() const;
     [[nodiscard]] std::string sum(std::size_t part) const;
+    [[nodiscard]] std::string side(std::size_t direction, std::string_view indent,
+                                   std::string_view form) const;
 
     const RippleMap& map_;
     const CodeStyle& style_;

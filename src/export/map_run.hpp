@@ -54,12 +54,15 @@ class MapRun {
     const std::vector<Real>& at(const CodeInput& in) {
         const Real speed = static_cast<Real>(in.speed_deg_s);
         find_factors(in);
-        const std::size_t half = form_.directions == 1 ? 0 : table_.size() / 2;
-        add_up(table_.data() + (speed < 0 ? half : 0), z_);
-        const Real size = std::abs(speed), half_share = static_cast<Real>(0.5);
-        if (half == 0 || !(size < limits_[0])) return z_;
-        const Real share = half_share - half_share * size / limits_[0];
-        add_up(table_.data() + (speed < 0 ? 0 : half), other_);
+        if (form_.directions == 1) {
+            add_up(table_.data(), z_);
+            return z_;
+        }
+        const std::size_t half = table_.size() / 2;
+        add_up(table_.data() + (speed <= -limits_[0] ? half : 0), z_);
+        if (speed >= limits_[0] || speed <= -limits_[0]) return z_;
+        const Real middle = static_cast<Real>(0.5), share = middle - middle * speed / limits_[0];
+        add_up(table_.data() + half, other_);
         for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = share * (other_[i] - z_[i]) + z_[i];
         return z_;
     }
@@ -76,16 +79,16 @@ class MapRun {
         }
         if (form_.turn_harmonics > 0) add_turn(static_cast<Real>(in.joint_deg));
         if (form_.by_load)
-            factors_.push_back(std::clamp(static_cast<Real>(in.torque_nm), limits_[4], limits_[5]));
+            factors_.push_back(std::clamp(static_cast<Real>(in.torque_nm), limits_[3], limits_[4]));
         if (form_.by_temperature) {
-            const Real beyond = static_cast<Real>(in.temperature_degc) - limits_[6];
-            factors_.push_back(std::clamp(beyond, limits_[7], limits_[8]));
+            const Real beyond = static_cast<Real>(in.temperature_degc) - limits_[5];
+            factors_.push_back(std::clamp(beyond, limits_[6], limits_[7]));
         }
     }
     void add_turn(Real joint_deg) {
         Real joint = joint_deg * static_cast<Real>(0.002777777777777778) + limits_[1];
         joint = beside_whole(joint);
-        const OnCircle<Real> one = on_circle(std::clamp(joint, -limits_[2], limits_[2]) + limits_[3]);
+        const OnCircle<Real> one = on_circle(std::clamp(joint, -limits_[2], limits_[2]));
         OnCircle<Real> k = one;
         for (std::size_t i = 1;; ++i) {
             factors_.push_back(k.cosine);

@@ -63,7 +63,7 @@ constexpr std::string_view step_code = R"c(
    turns, 0 where the joint is at position 0; the fraction of the turn is enough.@more@ */
 static inline @real@ @name@_step(@name@_state* s, @real@ torque_nm, @real@ motor_turns@parameters@) {
     const @real@* const c = @name@_values;
-    @real@ moved = s->started ? motor_turns - s->turns : 0, squares = @NAME@_ORDERS;
+    @real@ moved, squares = @NAME@_ORDERS;
 )c";
 
 constexpr std::string_view back_code = R"c(
@@ -93,6 +93,7 @@ std::vector<double> values_of(const OscillatorDesign& d) {
     values[Value::quarter_memory] = 0.25 / d.memory_turns;
     values[Value::jump] = d.jump;
     values[Value::largest_slip] = d.largest_slip;
+    values[Value::in_noise] = 1.0 / d.noise_nm;
     values[Value::turns_to_return] = d.return_turns > 0.0 ? 1.0 / d.return_turns : 0.0;
     return values;
 }
@@ -146,11 +147,11 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     text += "/* of each order, in units of the noise: cosine, sine, how far off they may be */\n";
     text += style.array("priors", priors);
     text +=
-        "/* noise in Nm; what a sample adds to the variance of torque, to that of torque and rate, of "
-        "rate;\n   "
-        "variance of the rate at the start, 1 / memory in motor turns, jump, largest slip, 1 / turns of "
-        "return "
-        "*/\n";
+        "/* noise in Nm; what a sample adds to the variance of torque, to that of torque and rate, of rate, "
+        "and "
+        "the rate's\n   at the start; deviation that a motor turn adds to an amplitude; 0.25 / memory in "
+        "turns, "
+        "jump, largest slip,\n   1 / turns of return, 1 / noise */\n";
     text += style.array("values", values_of(d)) + style.filled(turn_code(style.is_float));
     if (d.map) text += "\n/* the map that is taken off before */\n" + MapCode(*d.map, style).definitions();
     text += style.filled(state_code);

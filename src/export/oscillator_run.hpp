@@ -33,6 +33,7 @@ struct OscillatorValue {
         jump,
         largest_slip,
         turns_to_return,  ///< 1 / return, 0 for never
+        in_noise,         ///< 1 / noise
         count
     };
 };
@@ -61,7 +62,8 @@ class OscillatorRun {
     double step(const CodeInput& in) {
         const Real turns = static_cast<Real>(in.motor_turns);
         Real torque = static_cast<Real>(in.torque_nm);
-        Real moved = started_ ? turns - turns_ : Real(0);
+        if (!started_) turns_ = turns;
+        Real moved = turns - turns_;
         moved = beside_whole(moved);
         const Real step = moved * slip_ + moved;
         if (started_) follow_slip(moved);
@@ -70,7 +72,7 @@ class OscillatorRun {
         if (started_) {
             forget(std::abs(step));
             predict(std::abs(step));
-            update((torque - origin_) / c_[Value::noise_nm]);
+            update((torque - origin_) * c_[Value::in_noise]);
             correct(step);
         } else {
             begin(torque);

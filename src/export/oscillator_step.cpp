@@ -14,8 +14,8 @@ namespace ripplenotch {
 namespace {
 
 // Added up with what rounding took off before (Kahan): a phase that drifts is not forgotten at rest.
-constexpr std::string_view slip_code = R"c(    if (!s->started) s->slip = s->slipped = s->lost = 0;
-    const @real@ step = @name@_fma(moved, s->slip, moved), size = @abs@(step);
+constexpr std::string_view slip_code =
+    R"c(    const @real@ step = @name@_fma(moved, s->slip, moved), size = @abs@(step);
     const @real@ slip_added = @name@_fma(moved, s->slip, -s->lost), slipped = s->slipped + slip_added;
     s->lost = (slipped - s->slipped) - slip_added;
     s->slipped = slipped - (@real@)(int)slipped;
@@ -84,7 +84,10 @@ class StepCode {
     }
 
     void look() {
-        line("    moved = @name@_beside_whole(moved);");
+        line(slips_ ? "    if (!s->started) {{\n        s->turns = motor_turns;\n        s->slip = "
+                      "s->slipped = s->lost = 0;\n    }}"
+                    : "    if (!s->started) s->turns = motor_turns;");
+        line("    moved = @name@_beside_whole(motor_turns - s->turns);");
         text_ += slips_ ? std::string(slip_code) : "    const @real@ size = @abs@(moved);\n";
         text_ += order_angles_code(d_.orders, slips_ ? "motor_turns + s->slipped" : "motor_turns");
         const double fastest = *std::max_element(d_.orders.begin(), d_.orders.end());
@@ -128,7 +131,7 @@ class StepCode {
     }
     void update() {
         line(
-            "        const @real@ surprise = (torque_nm - s->origin) / c[0] - expected;\n"
+            "        const @real@ surprise = @name@_fma(torque_nm - s->origin, c[10], -expected);\n"
             "        @real@ variance = 1 + v0;");
         if (d_.jump > 0.0) text_ += jump_code;
         line("        const @real@ scale = 1 / variance;");
