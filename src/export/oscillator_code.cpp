@@ -85,7 +85,7 @@ static inline void @name@_bring_back(@name@_state* s) {
 std::vector<double> values_of(const OscillatorDesign& d) {
     std::vector<double> values(Value::count);
     values[Value::noise_nm] = d.noise_nm;
-    values[Value::torque_noise] = d.torque_noise;
+    values[Value::seen_noise] = 1.0 + d.torque_noise;
     values[Value::cross_noise] = d.step_s * d.cross_noise;
     values[Value::rate_noise] = d.step_s * d.step_s * d.rate_noise;
     values[Value::first_rate_variance] = d.step_s * d.step_s * d.first_rate_variance;
@@ -147,11 +147,10 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
     text += "/* of each order, in units of the noise: cosine, sine, how far off they may be */\n";
     text += style.array("priors", priors);
     text +=
-        "/* noise in Nm; what a sample adds to the variance of torque, to that of torque and rate, of rate, "
-        "and "
-        "the rate's\n   at the start; deviation that a motor turn adds to an amplitude; 0.25 / memory in "
-        "turns, "
-        "jump, largest slip,\n   1 / turns of return, 1 / noise */\n";
+        "/* noise in Nm; variance of the sensor and of what a sample adds to the torque; what it adds to "
+        "that of "
+        "torque and\n   rate, of rate, and the rate's at the start; deviation that a motor turn adds to an "
+        "amplitude; 0.25 / memory in\n   turns, jump, largest slip, 1 / turns of return, 1 / noise */\n";
     text += style.array("values", values_of(d)) + style.filled(turn_code(style.is_float));
     if (d.map) text += "\n/* the map that is taken off before */\n" + MapCode(*d.map, style).definitions();
     text += style.filled(state_code);

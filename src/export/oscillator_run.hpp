@@ -24,7 +24,7 @@ namespace ripplenotch {
 struct OscillatorValue {
     enum : std::size_t {
         noise_nm,
-        torque_noise,
+        seen_noise,  ///< of the sensor, which is 1, and what a sample adds to the torque
         cross_noise,
         rate_noise,
         first_rate_variance,
@@ -155,7 +155,7 @@ class OscillatorRun {
         Real first = v_[0] + v_[1], expected = x_[0] + x_[1];
         for (std::size_t k = 2; k < m_; ++k) first += before_[k - 2] * v_[k];
         for (std::size_t k = 2; k < m_; ++k) expected += before_[k - 2] * x_[k];
-        v_[0] = added * squares_ + first + c_[Value::torque_noise];
+        variance_ = added * squares_ + first + c_[Value::seen_noise];
         v_[1] += c_[Value::cross_noise];
         x_[0] = expected;
         p(1, 1) += c_[Value::rate_noise];
@@ -166,15 +166,12 @@ class OscillatorRun {
     }
     void update(Real measured) {
         const Real surprise = measured - x_[0];
-        Real variance = 1 + v_[0];
-        if (c_[Value::jump] > 0 && surprise * surprise > c_[Value::jump] * c_[Value::jump] * variance) {
-            v_[0] += surprise * surprise;
-            variance += surprise * surprise;
-        }
-        const Real scale = 1 / variance;
+        if (c_[Value::jump] > 0 && surprise * surprise > c_[Value::jump] * c_[Value::jump] * variance_)
+            variance_ += surprise * surprise;
+        const Real scale = 1 / variance_;
         surprise_ = surprise * scale;
         for (std::size_t i = 0; i < m_; ++i) {
-            const Real gain = v_[i] * scale;
+            const Real gain = i == 0 ? 1 - scale : v_[i] * scale;
             x_[i] += gain * surprise;
             // Of the first state the rest is the gain itself.
             p(0, i) = gain;
@@ -205,7 +202,8 @@ class OscillatorRun {
     std::vector<Real> x_, h_, before_, v_, p_;  ///< p_: above the diagonal; v_: its first row before a sample
     Real slowest_fade_;                         ///< turns a sample at which the first order begins to fade
     Real left_ = 1;                             ///< of the amplitudes, since they were last brought back
-    Real origin_ = 0, turns_ = 0, slip_ = 0, slipped_ = 0, lost_ = 0, surprise_ = 0, squares_ = 0;
+    Real origin_ = 0, turns_ = 0, slip_ = 0, slipped_ = 0, lost_ = 0, surprise_ = 0, squares_ = 0,
+         variance_ = 0;
     bool started_ = false;
 };
 

@@ -23,7 +23,6 @@ constexpr std::string_view slip_code =
 
 // What the model holds for next to impossible is a torque that jumped.
 constexpr std::string_view jump_code = R"c(    if (surprise * surprise > c[7] * c[7] * variance) {
-        v0 += surprise * surprise;
         variance += surprise * surprise;
     }
 )c";
@@ -119,9 +118,9 @@ class StepCode {
             text_ += fmt::format("d{} = {} - s->h[{}]{}", i, h(i), i - 2, i + 1 < m_ ? ", " : ";\n");
         load();
         for (std::size_t i = 0; i < m_; ++i)
-            line("        @real@ v{} = {};", i,
+            line("        {}@real@ v{} = {};", i == 0 ? "const " : "", i,
                  sum(p(0, i) + " + " + p(1, i), [&](std::size_t k) { return p(k, i); }));
-        line("        v0 = @name@_fma(added, squares, {}) + c[1];",
+        line("        @real@ variance = @name@_fma(added, squares, {}) + c[1];",
              sum("v0 + v1", [](std::size_t k) { return fmt::format("v{}", k); }));
         line("        v1 += c[2];\n        p_1_1 += c[3];");
         line("        const @real@ expected = {};",
@@ -130,13 +129,13 @@ class StepCode {
             line("        v{0} = @name@_fma(more, {1}, v{0});\n        {2} += more;", i, h(i), p(i, i));
     }
     void update() {
-        line(
-            "        const @real@ surprise = @name@_fma(torque_nm - s->origin, c[10], -expected);\n"
-            "        @real@ variance = 1 + v0;");
+        line("        const @real@ surprise = @name@_fma(torque_nm - s->origin, c[10], -expected);");
         if (d_.jump > 0.0) text_ += jump_code;
         line("        const @real@ scale = 1 / variance;");
         for (std::size_t i = 0; i < m_; ++i) {
-            line("        const @real@ g{0} = v{0} * scale;", i);
+            line(
+                i == 0 ? "        const @real@ g0 = 1 - scale;" : "        const @real@ g{0} = v{0} * scale;",
+                i);
             line("        s->x[{0}] = @name@_fma(g{0}, surprise, {1});", i,
                  i == 0 ? std::string("expected") : fmt::format("s->x[{}]", i));
             // Of the first state the rest is the gain itself.
