@@ -25,7 +25,7 @@ METHODS = {
     "oscillator,gear-ratio=100,orders=1:2,output=minus-ripple,slip=0": "angle",
     "oscillator,gear-ratio=100,orders=2,amplitudes=0.5Nm,phases=40deg,jump=12": "angle",
     "oscillator,gear-ratio=100,orders=3:1:2:6": "angle",
-    "oscillator,gear-ratio=100,orders=1:150": "angle",  # beyond half the sample rate in the middle of the swing
+    "oscillator,gear-ratio=100,orders=1:17": "angle",  # beyond half the sample rate in the middle of the swing
     "oscillator,gear-ratio=100,orders=1:2,cosines=0.5:0.3,sines=-0.2:0.1,return=1.5": "map",
     RICH: "map",
     RICH + ",output=minus-ripple,memory=0.4": "map",
