@@ -41,7 +41,11 @@ void add_direction(const RippleMap& map, const MapState& state, double share, st
         weights[at + 1] += share * portable::sin_degrees(static_cast<double>(k) * angle_deg);
     }
     if (map.form.by_load)
-        weights[at] += share * std::clamp(state.load_nm, map.loads_nm.from, map.loads_nm.to);
+        weights[at++] += share * std::clamp(state.load_nm, map.loads_nm.from, map.loads_nm.to);
+    if (map.form.by_temperature && state.temperature_degc) {
+        const MapRange& seen = map.temperatures_degc;
+        weights[at] += share * (std::clamp(*state.temperature_degc, seen.from, seen.to) - seen.middle());
+    }
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ Json form_to_json(const MapForm& form) {
     json["directions"] = form.directions;
     json["turn_harmonics"] = form.turn_harmonics;
     json["by_load"] = form.by_load;
+    if (form.by_temperature) json["by_temperature"] = true;
     return json;
 }
 
@@ -78,6 +79,10 @@ std::string map_text(const MapFit& fit, const Provenance& provenance) {
     json["range"] = {{"speed_deg_s", range_to_json(fit.map.speeds_deg_s)},
                      {"position_deg", range_to_json(fit.map.positions_deg)},
                      {"load_nm", range_to_json(fit.map.loads_nm)}};
+    if (fit.map.form.by_temperature) {
+        json["range"]["temperature_degc"] = range_to_json(fit.map.temperatures_degc);
+        json["temperature_column"] = fit.map.temperature_column;
+    }
     json["orders"] = Json::array();
     for (const Order order : fit.map.orders) list_in(json, "orders").push_back(order.value());
     json["spread_nm"] = fit.map.spread_nm;

@@ -54,6 +54,7 @@ MapForm form_from_json(Fields& fields) {
     form.directions = at_most(fields, "directions", 1, 2);
     form.turn_harmonics = at_most(fields, "turn_harmonics", 0, most_turn_harmonics);
     form.by_load = fields.flag("by_load");
+    form.by_temperature = fields.has("by_temperature") && fields.flag("by_temperature");
     fields.finish();
     return form;
 }
@@ -106,6 +107,10 @@ void map_fields(Fields& fields, MapFit& fit) {
     map.speeds_deg_s = range_at(range, "speed_deg_s");
     map.positions_deg = range_at(range, "position_deg");
     map.loads_nm = range_at(range, "load_nm");
+    if (map.form.by_temperature) {
+        map.temperatures_degc = range_at(range, "temperature_degc");
+        map.temperature_column = fields.text("temperature_column");
+    }
     range.finish();
     for (const double order : rising_at(fields, "orders", 1e-9, 0, most_orders))
         map.orders.emplace_back(order);

@@ -14,6 +14,8 @@ RippleMap flat_map(const RippleMap& map, const Settings& settings) {
     flat.form = {};
     flat.form.speeds_deg_s = {map.speeds_deg_s.middle()};
     const double speed = settings.has("speed") ? settings.number("speed") : map.speeds_deg_s.middle();
+    const auto temperature =
+        settings.has("temperature") ? std::optional(settings.number("temperature")) : std::nullopt;
     const std::string direction = settings.text("direction");
     // The mean over the joint's turn is what is left without its harmonics.
     RippleMap still = map;
@@ -29,7 +31,8 @@ RippleMap flat_map(const RippleMap& map, const Settings& settings) {
         std::complex<double> sum = 0.0;
         for (const double sign : {1.0, -1.0}) {
             if (direction == (sign > 0.0 ? "backward" : "forward")) continue;
-            map_weights(still, {sign * speed, map.positions_deg.middle(), map.loads_nm.middle()}, weights);
+            map_weights(still, {sign * speed, map.positions_deg.middle(), map.loads_nm.middle(), temperature},
+                        weights);
             sum += map_amplitude(still, i, weights);
         }
         flat.values[i] = {direction == "both" ? 0.5 * sum : sum};
@@ -46,6 +49,7 @@ std::vector<std::string> flattened(const RippleMap& map, std::string_view target
     lost(map.form.directions > 1, "the dependence on direction is");
     lost(map.form.turn_harmonics > 0, "harmonics of the joint's turn are");
     lost(map.form.by_load, "the dependence on load is");
+    lost(map.form.by_temperature, "the dependence on temperature is");
     return warnings;
 }
 

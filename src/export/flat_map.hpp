@@ -24,7 +24,14 @@ inline constexpr Key flat_direction_key{.name = "direction",
                                         .choices = flat_directions,
                                         .help = "both: the mean of the two"};
 
-/// The map at one speed and direction, alike at all of them, without the joint's turn, at the middle load.
+inline constexpr Key flat_temperature_key{
+    .name = "temperature",
+    .at_least = -274.0,
+    .at_most = 1000.0,
+    .help = "in degC, whose amplitudes are taken; the middle of the map's"};
+
+/// The map at one speed and direction, alike at all of them, without the joint's turn, at the middle load and
+/// the stated temperature.
 [[nodiscard]] RippleMap flat_map(const RippleMap& map, const Settings& settings);
 
 /// What of the map is not in its flat form, one sentence each.

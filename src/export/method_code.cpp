@@ -21,37 +21,43 @@ constexpr std::array keys = {
         .choices = precisions,
         .help = "of numbers and arithmetic"}};
 
-CodeStyle style_of(const Settings& settings) {
-    CodeStyle style{settings.text("name"), settings.text("precision") == "float"};
-    check_identifier(style.name, "target c-header, name");
-    return style;
-}
-
-// Taylor's series about the nearest quarter of a turn: within 2e-9 but for rounding.
+// Polynomials in the square of the quarter turns beside the nearest whole one, by interpolation at
+// Chebyshev's places: within 2.5e-9 but for rounding. Where a processor has a fused multiplication and
+// addition it is used: that is one instruction for two.
 constexpr std::string_view float_turn = R"c(
-/* The next whole number below, of what an int holds. */
-static inline float @name@_floor(float value) {
-    const int whole = (int)value;
-    return (float)(value < (float)whole ? whole - 1 : whole);
+#if defined FP_FAST_FMAF || defined __FP_FAST_FMAF
+static inline float @name@_fma(float a, float b, float c) { return fmaf(a, b, c); }
+#else
+static inline float @name@_fma(float a, float b, float c) { return a * b + c; }
+#endif
+/* What is beyond the nearest whole number, which an int has to hold. */
+static inline float @name@_beside_whole(float value) {
+    value -= (float)(int)value;
+    return value - (float)(int)(value + value);
 }
-static inline void @name@_on_circle(float share, float* cosine, float* sine) {
-    const int quarter = (int)(4.0f * share + 0.5f);
-    const float a = 6.2831853f * (share - 0.25f * (float)quarter), s = a * a;
-    const float y = a * (1.0f + s * (-1.6666667e-1f + s * (8.3333333e-3f + s * (-1.9841270e-4f + s * 2.7557319e-6f))));
-    const float x = 1.0f + s * (-0.5f + s * (4.1666667e-2f + s * (-1.3888889e-3f + s * (2.4801587e-5f - s * 2.7557319e-7f))));
-    switch (quarter & 3) {
-        case 1: *cosine = -y; *sine = x; break;
-        case 2: *cosine = -x; *sine = -y; break;
-        case 3: *cosine = y; *sine = -x; break;
-        default: *cosine = x; *sine = y; break;
+static inline void @name@_on_circle(float turns, float* cosine, float* sine) {
+    const float quarters = 4 * turns;
+    const int quarter = (int)(quarters + (quarters < 0 ? -0.5f : 0.5f));
+    const float a = quarters - (float)quarter, s = a * a;
+    float y = @name@_fma(s, @name@_fma(s, -4.60214921e-3f, 7.96802176e-2f), -6.45963478e-1f);
+    float x = @name@_fma(s, @name@_fma(s, 9.06739898e-4f, -2.08615283e-2f), 2.5366941e-1f);
+    y = a * @name@_fma(s, y, 1.57079632f);
+    x = @name@_fma(s, @name@_fma(s, x, -1.23370055f), 1.0f);
+    if (quarter & 1) {
+        const float turned = x;
+        x = -y;
+        y = turned;
     }
+    *cosine = quarter & 2 ? -x : x;
+    *sine = quarter & 2 ? -y : y;
 }
 )c";
 
 constexpr std::string_view double_turn = R"c(
-static inline double @name@_floor(double value) { return floor(value); }
-static inline void @name@_on_circle(double share, double* cosine, double* sine) {
-    const double angle = 6.283185307179586 * share;
+static inline double @name@_fma(double a, double b, double c) { return a * b + c; }
+static inline double @name@_beside_whole(double value) { return value - floor(value + 0.5); }
+static inline void @name@_on_circle(double turns, double* cosine, double* sine) {
+    const double angle = 6.283185307179586 * (turns - floor(turns));
     *cosine = cos(angle);
     *sine = sin(angle);
 }
@@ -59,7 +65,18 @@ static inline void @name@_on_circle(double share, double* cosine, double* sine) 
 
 }  // namespace
 
+CodeStyle style_of(const Settings& settings) {
+    CodeStyle style{settings.text("name"), settings.text("precision") == "float"};
+    check_identifier(style.name, "target c-header, name");
+    return style;
+}
+
 std::string_view turn_code(bool is_float) { return is_float ? float_turn : double_turn; }
+
+std::string sum_code(std::string first, std::span<const std::pair<std::string, std::string>> products) {
+    for (const auto& [a, b] : products) first = fmt::format("@name@_fma({}, {}, {})", a, b, first);
+    return first;
+}
 
 std::string CodeStyle::array(std::string_view what, const std::vector<double>& values) const {
     std::string text;
@@ -70,10 +87,11 @@ std::string CodeStyle::array(std::string_view what, const std::vector<double>& v
 }
 
 std::string CodeStyle::filled(std::string_view code) const {
-    const std::array<std::pair<std::string_view, std::string>, 4> fields = {
+    const std::array<std::pair<std::string_view, std::string>, 5> fields = {
         {{"@name@", name},
          {"@NAME@", upper_case(name)},
          {"@real@", is_float ? "float" : "double"},
+         {"@abs@", is_float ? "fabsf" : "fabs"},
          {"@sqrt@", is_float ? "sqrtf" : "sqrt"}}};
     return c_code::filled(std::string(code), fields);
 }

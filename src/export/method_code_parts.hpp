@@ -3,8 +3,11 @@
 // One method as C and as the same loops here: a file each.
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -26,8 +29,15 @@ struct CodeStyle {
                                            std::size_t count) const;
 };
 
-/// Sine and cosine of a share of a turn, 0 to 1: of a float by its own series, of a double by the library.
+/// By the keys name and precision. Throws UsageError.
+[[nodiscard]] CodeStyle style_of(const Settings& settings);
+
+/// Sine and cosine of an angle in turns, of a float by its own series, of a double by the library; the
+/// nearest whole number; a b + c.
 [[nodiscard]] std::string_view turn_code(bool is_float);
+/// "first + a b + c d", as nested calls; each pair is a product.
+[[nodiscard]] std::string sum_code(std::string first,
+                                   std::span<const std::pair<std::string, std::string>> products);
 
 template <class Real>
 struct OnCircle {
@@ -35,28 +45,30 @@ struct OnCircle {
 };
 
 /// The same, operation by operation.
-[[nodiscard]] inline OnCircle<double> on_circle(double share) {
-    const double angle = 6.283185307179586 * share;
+[[nodiscard]] inline OnCircle<double> on_circle(double turns) {
+    const double angle = 6.283185307179586 * (turns - std::floor(turns));
     return {portable::cos(angle), portable::sin(angle)};
 }
-[[nodiscard]] inline OnCircle<float> on_circle(float share) {
-    const int quarter = static_cast<int>(4.0F * share + 0.5F);
-    const float a = 6.2831853F * (share - 0.25F * static_cast<float>(quarter)), s = a * a;
-    const float sine =
-        a * (1.0F + s * (-1.6666667e-1F + s * (8.3333333e-3F + s * (-1.9841270e-4F + s * 2.7557319e-6F))));
-    const float cosine =
-        1.0F +
-        s * (-0.5F + s * (4.1666667e-2F + s * (-1.3888889e-3F + s * (2.4801587e-5F - s * 2.7557319e-7F))));
-    switch (quarter & 3) {
-        case 1:
-            return {-sine, cosine};
-        case 2:
-            return {-cosine, -sine};
-        case 3:
-            return {sine, -cosine};
-        default:
-            return {cosine, sine};
+/// What is beyond the nearest whole number.
+[[nodiscard]] inline double beside_whole(double value) { return value - std::floor(value + 0.5); }
+[[nodiscard]] inline float beside_whole(float value) {
+    value -= static_cast<float>(static_cast<int>(value));
+    return value - static_cast<float>(static_cast<int>(value + value));
+}
+[[nodiscard]] inline OnCircle<float> on_circle(float turns) {
+    const float quarters = 4.0F * turns;
+    const int quarter = static_cast<int>(quarters + (quarters < 0.0F ? -0.5F : 0.5F));
+    const float a = quarters - static_cast<float>(quarter), s = a * a;
+    float y = s * (s * -4.60214921e-3F + 7.96802176e-2F) + -6.45963478e-1F;
+    float x = s * (s * 9.06739898e-4F + -2.08615283e-2F) + 2.5366941e-1F;
+    y = a * (s * y + 1.57079632F);
+    x = s * (s * x + -1.23370055F) + 1.0F;
+    if ((quarter & 1) != 0) {
+        const float turned = x;
+        x = -y;
+        y = turned;
     }
+    return (quarter & 2) != 0 ? OnCircle<float>{-x, -y} : OnCircle<float>{x, y};
 }
 
 [[nodiscard]] std::string tracking_header(const TrackingDesign& design, const CodeStyle& style);

@@ -246,10 +246,10 @@ LoadedCode tracking_loaded(TextReader& reader, const TrackingDesign& d, const Co
     LoadedCode loaded;
     if (style.is_float) {
         auto runner = std::make_shared<Runner<float>>(orders, weights, spread, values, parks);
-        loaded.step = [runner](double torque, double speed) { return runner->step(torque, speed); };
+        loaded.step = [runner](const CodeInput& in) { return runner->step(in.torque_nm, in.speed_deg_s); };
     } else {
         auto runner = std::make_shared<Runner<double>>(orders, weights, spread, values, parks);
-        loaded.step = [runner](double torque, double speed) { return runner->step(torque, speed); };
+        loaded.step = [runner](const CodeInput& in) { return runner->step(in.torque_nm, in.speed_deg_s); };
     }
     return loaded;
 }

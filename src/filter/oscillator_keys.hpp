@@ -5,8 +5,7 @@
 #include <array>
 #include <string_view>
 
-#include "filter/map/map_reach.hpp"
-#include "filter/map/map_settings.hpp"
+#include "filter/map/map_key_list.hpp"
 #include "filter/ripple_keys.hpp"
 
 namespace ripplenotch {
@@ -15,7 +14,7 @@ inline constexpr std::array<std::string_view, 2> oscillator_gains = {"exact", "s
 inline constexpr std::array<std::string_view, 2> oscillator_outputs = {"torque", "minus-ripple"};
 inline constexpr std::array<std::string_view, 2> oscillator_zeros = {"known", "unknown"};
 
-inline constexpr std::array oscillator_keys = {
+inline constexpr std::array oscillator_own_keys = {
     gear_ratio_key,
     orders_key,
     joint_key,
@@ -92,19 +91,8 @@ inline constexpr std::array oscillator_keys = {
         .default_text = "torque",
         .choices = oscillator_outputs,
         .help = "torque: the estimate, smoothed; minus-ripple: the log's own torque less the ripple"},
-    map_key,
-    cosines_key,
-    sines_key,
-    speeds_key,
-    directions_key,
-    turn_harmonics_key,
-    by_load_key,
-    slowest_key,
-    positions_key,
-    loads_key,
-    spread_key,
-    fastest_key,
-    beyond_key,
+};
+inline constexpr std::array oscillator_map_keys = {
     Key{.name = "zero",
         .kind = KeyKind::choice,
         .default_text = "known",
@@ -116,5 +104,8 @@ inline constexpr std::array oscillator_keys = {
         .at_most = 1e6,
         .help = "with a map: motor turns over which what was followed is forgotten towards the map"},
 };
+
+inline constexpr auto oscillator_keys =
+    joined_keys(oscillator_own_keys, ripple_map_keys, oscillator_map_keys);
 
 }  // namespace ripplenotch

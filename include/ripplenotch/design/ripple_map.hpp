@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,15 +16,20 @@ namespace ripplenotch {
 
 /// What the amplitudes of a map are functions of. Each direction has its own columns, in this order: the
 /// amplitude at each speed (linear between them), then a cosine and a sine of one, two, ... times the joint's
-/// angle, then one in proportion to the load.
+/// angle, then one in proportion to the load, then one in proportion to how much warmer the joint is than in
+/// the middle of its range.
 struct MapForm {
     std::vector<double> speeds_deg_s = {0.0};  ///< of |v|, rising; a single one: alike at every speed
     std::size_t directions = 1;                ///< 2: forward (v > 0) and backward have their own amplitudes
     std::size_t turn_harmonics = 0;
     bool by_load = false;
+    bool by_temperature = false;
 
+    /// Places of these within a direction, whether or not there are such columns.
+    [[nodiscard]] std::size_t load_column() const { return speeds_deg_s.size() + 2 * turn_harmonics; }
+    [[nodiscard]] std::size_t temperature_column() const { return load_column() + (by_load ? 1 : 0); }
     [[nodiscard]] std::size_t columns_a_direction() const {
-        return speeds_deg_s.size() + 2 * turn_harmonics + (by_load ? 1 : 0);
+        return temperature_column() + (by_temperature ? 1 : 0);
     }
     [[nodiscard]] std::size_t columns() const { return directions * columns_a_direction(); }
 };
@@ -39,6 +45,8 @@ struct MapState {
     double speed_deg_s = 0.0;   ///< signed
     double position_deg = 0.0;  ///< of the joint, as the log has it
     double load_nm = 0.0;       ///< its torque
+    /// Of what the log calls so; the middle of the map's range where nobody knows it.
+    std::optional<double> temperature_degc = std::nullopt;
 };
 
 /// The ripple is the sum over the orders of Re(z exp(-i n theta)) = Re(z) cos(n theta) + Im(z) sin(n theta),
@@ -50,6 +58,8 @@ struct RippleMap {
     MapForm form;
     double zero_deg = 0.0;                           ///< joint position at which the motor's angle is 0
     MapRange speeds_deg_s, positions_deg, loads_nm;  ///< seen by the logs; held at the edges beyond
+    MapRange temperatures_degc = {};                 ///< the same; 0 to 0 where none was stated
+    std::string temperature_column;                  ///< of the logs, {joint} in the place of a joint's name
     std::vector<std::vector<std::complex<double>>> values;  ///< by order, then by column; Nm
     std::vector<double> spread_nm;  ///< by order: rms by which amplitudes stray from the map in its logs
 };

@@ -3,8 +3,11 @@
 // Methods whose coefficients change while they run, as the numbers that they run on: what an export has to
 // write down.
 
+#include <optional>
 #include <variant>
 #include <vector>
+
+#include "ripplenotch/design/ripple_map.hpp"
 
 namespace ripplenotch {
 
@@ -35,9 +38,12 @@ struct OscillatorDesign {
     double torque_noise = 0.0, cross_noise = 0.0, rate_noise = 0.0;  ///< that a sample adds
     double first_rate_variance = 0.0;
     double memory_turns = 0.0;
-    double jump = 0.0;  ///< 0: never
+    double return_turns = 0.0;  ///< over which amplitudes are forgotten towards 0; 0: never
+    double jump = 0.0;          ///< 0: never
     double largest_slip = 0.0;
     bool minus_ripple = false;
+    /// Taken off before, its angles counted from position 0: the amplitudes are what is beside it.
+    std::optional<RippleMap> map = std::nullopt;
 };
 
 using RunningDesign = std::variant<TrackingDesign, OscillatorDesign>;

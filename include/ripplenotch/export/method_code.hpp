@@ -25,13 +25,19 @@ namespace ripplenotch {
 [[nodiscard]] Written write_method_code(const RunningDesign& design, const Settings& settings,
                                         std::span<const std::string> heading);
 
+/// A sample, as a controller has it.
+struct CodeInput {
+    double torque_nm = 0.0, speed_deg_s = 0.0;
+    double motor_turns = 0.0;  ///< the motor's angle; its fraction is enough
+    double joint_deg = 0.0;
+    double temperature_degc = 0.0;  ///< for a map that depends on it
+};
+
 /// What was written, read back from the bytes alone and run in the target's arithmetic.
 struct LoadedCode {
     std::string arithmetic;  ///< "float32"
-    bool by_angle = false;   ///< its step takes the motor's angle in turns; else the joint's speed in deg/s
-    /// The next sample: torque in Nm and motion as told above; gives the torque without ripple. Copies share
-    /// their state.
-    std::function<double(double torque_nm, double motion)> step;
+    /// The next sample; gives the torque without ripple. Copies share their state.
+    std::function<double(const CodeInput&)> step;
 };
 /// `design` says how many orders there are. Throws DataError that begins with `source`.
 [[nodiscard]] LoadedCode read_method_code(std::string_view bytes, const std::string& source,

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "cli/export/export_code.hpp"
 #include "cli/export/export_map.hpp"
 #include "cli/export/export_text.hpp"
+#include "cli/export/written_file.hpp"
 #include "cli/gear/chosen_method.hpp"
 #include "cli/gear/joint_facts.hpp"
 #include "cli/options/name_list.hpp"
@@ -100,15 +100,11 @@ std::vector<std::string> heading_of(const Provenance& provenance) {
     return lines;
 }
 
-// Reads the file that was written, not the text in memory; a pipe or device cannot be read again, so there it
-// is the text.
 void verify(const Request& request, const Target& target, const Settings& settings, const FilterSet& filters,
-            const std::string& bytes, ExportReport& report) {
-    const bool pipe = !std::filesystem::is_regular_file(request.common.output);
-    const std::string again = pipe ? bytes : read_all(request.common.output);
-    const std::string source = request.common.output == "-" ? "standard output" : request.common.output;
-    const LoadedFilters loaded = target.read(again, source, filters, settings);
-    report.checks = verify_export(filters, loaded, source);
+            const Written& written, ExportReport& report) {
+    const ReadBack again = read_back(written, request.common);
+    const LoadedFilters loaded = target.read(again.bytes, again.source, filters, settings);
+    report.checks = verify_export(filters, loaded, again.source);
     report.arithmetic = arithmetic_name(loaded.bands.front().front().arithmetic);
     report.verified = true;
     report.violations = export_violations(report.checks, request.limits);
@@ -148,9 +144,7 @@ ExitCode run(const Request& request, const std::string& command_line) {
     if (request.band != 0) filters = only_band(filters, request.band);
 
     const Written written = target.write(filters, settings, heading_of(provenance));
-    ByteSink sink(request.common.output, request.common.overwrite(), target.binary);
-    sink.write(written.bytes);
-    sink.finish();
+    write_export(written, request.common, target.binary);
 
     ExportReport report{spec.text(),
                         request.common.output,
@@ -167,17 +161,13 @@ ExitCode run(const Request& request, const std::string& command_line) {
     if (target.usage != nullptr)
         report.usage =
             target.usage(filters, settings, request.common.output == "-" ? "FILE" : request.common.output);
-    say_warnings(request.common, written.warnings);
     if (!report.usage.empty()) say(request.common, report.usage);
-    if (request.verify || request.limits.any())
-        verify(request, target, settings, filters, written.bytes, report);
+    if (request.verify || request.limits.any()) verify(request, target, settings, filters, written, report);
 
     if (request.common.json) {
         write_text("-", export_report_to_json(report, provenance), ByteSink::Overwrite::no);
-    } else if (report.verified && request.common.output != "-") {
-        write_text("-", export_report_to_text(report), ByteSink::Overwrite::no);
-    } else if (report.verified && !request.common.quiet) {
-        talk_lines(export_report_to_text(report));
+    } else if (report.verified) {
+        tell_check(export_report_to_text(report), request.common);
     }
     say_violations(report);
     return report.violations.empty() ? ExitCode::done : ExitCode::limit_violated;

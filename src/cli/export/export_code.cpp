@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <numbers>
 
-#include "cli/talk.hpp"
-#include "ripplenotch/core/files.hpp"
+#include "cli/export/written_file.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/version.hpp"
@@ -21,20 +20,26 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t samples = 1'000'000, block = 10'000;
-constexpr double swing_deg = 80.0, swing_s = 5.0,
-                 fastest_deg_s = swing_deg * 2.0 * std::numbers::pi / swing_s;
+constexpr double swing_s = 5.0, fastest_deg_s = 80.0 * 2.0 * std::numbers::pi / swing_s;
 
 // A joint that swings under a slow torque, with ripple of every order and noise: the same on every machine.
+// With a map it swings where the map was made, no faster than there.
 class Swing {
   public:
-    Swing(const GearAccount& gear, Hertz sample_rate) : gear_(gear), rate_hz_(sample_rate.value()) {}
+    explicit Swing(const CodeExport& request)
+        : gear_(*request.method.gear), rate_hz_(request.sample_rate.value()) {
+        if (request.method.map == nullptr) return;
+        const RippleMap& map = *request.method.map;
+        if (map.speeds_deg_s.to > 0.0) fastest_deg_s_ = std::min(fastest_deg_s_, map.speeds_deg_s.to);
+        position_ = map.positions_deg.middle();
+    }
 
     struct Sample {
         double torque_nm, velocity_deg_s, position_deg, motor_turns;
     };
     Sample at(std::size_t k) {
         const double phase = 2.0 * std::numbers::pi * static_cast<double>(k) / rate_hz_ / swing_s;
-        const double velocity = fastest_deg_s * portable::cos(phase);
+        const double velocity = fastest_deg_s_ * portable::cos(phase);
         // By trapezoids, as the tool adds a velocity up: while the motor is slow it may take that way.
         if (k > 0) position_ += 0.5 * (before_ + velocity) / rate_hz_;
         before_ = velocity;
@@ -57,7 +62,7 @@ class Swing {
     }
 
     const GearAccount& gear_;
-    double rate_hz_;
+    double rate_hz_, fastest_deg_s_ = fastest_deg_s;
     double position_ = 0.0, before_ = 0.0;
     std::uint64_t state_ = 20;
 };
@@ -68,7 +73,7 @@ struct CodeCheck {
 
 CodeCheck run_beside(const CodeExport& request, const LoadedCode& code) {
     CodeCheck check;
-    Swing swing(*request.method.gear, request.sample_rate);
+    Swing swing(request);
     const auto filter = request.method.start(request.sample_rate);
     std::vector<double> torque(block), velocity(block), position(block), out(block), coded(block);
     for (std::size_t first = 0; first < samples; first += block) {
@@ -78,7 +83,7 @@ CodeCheck run_beside(const CodeExport& request, const LoadedCode& code) {
             velocity[k] = now.velocity_deg_s;
             position[k] = now.position_deg;
             const double angle = now.motor_turns - std::floor(now.motor_turns);
-            coded[k] = code.step(now.torque_nm, code.by_angle ? angle : now.velocity_deg_s);
+            coded[k] = code.step({now.torque_nm, now.velocity_deg_s, angle, now.position_deg});
         }
         filter->process({velocity, torque, position}, out);
         for (std::size_t k = 0; k < block; ++k) {
@@ -104,25 +109,17 @@ ExitCode export_code(const CodeExport& request, const std::string& command_line)
     const std::array<std::string, 2> heading = {fmt::format("Made by {} {}:", tool_name, version()),
                                                 command_line};
     const Written written = write_method_code(*design, settings, heading);
-    ByteSink sink(request.common.output, request.common.overwrite(), false);
-    sink.write(written.bytes);
-    sink.finish();
+    write_export(written, request.common);
     if (!request.verify) return ExitCode::done;
-    const bool file = std::filesystem::is_regular_file(request.common.output);
-    const std::string source = request.common.output == "-" ? "standard output" : request.common.output;
-    const LoadedCode code =
-        read_method_code(file ? read_all(request.common.output) : written.bytes, source, *design, settings);
+    const ReadBack again = read_back(written, request.common);
+    const LoadedCode code = read_method_code(again.bytes, again.source, *design, settings);
     const CodeCheck check = run_beside(request, code);
-    const std::string text = fmt::format(
-        "{}: {}, read back and run beside the method over {} samples in {}.\n"
-        "largest output          {:.4g} Nm\n"
-        "largest difference      {:.1e} Nm\n",
-        source, spec.text(), samples, code.arithmetic, check.largest_nm, check.largest_error_nm);
-    if (request.common.output != "-") {
-        write_text("-", text, ByteSink::Overwrite::no);
-    } else if (!request.common.quiet) {
-        talk_lines(text);
-    }
+    tell_check(fmt::format("{}: {}, read back and run beside the method over {} samples in {}.\n"
+                           "largest output          {:.4g} Nm\n"
+                           "largest difference      {:.1e} Nm\n",
+                           again.source, spec.text(), samples, code.arithmetic, check.largest_nm,
+                           check.largest_error_nm),
+               request.common);
     return ExitCode::done;
 }
 

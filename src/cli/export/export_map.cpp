@@ -3,11 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
+#include "cli/export/written_file.hpp"
 #include "cli/gear/joint_facts.hpp"
-#include "cli/talk.hpp"
-#include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/output_name.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/document/map_json.hpp"
@@ -42,23 +39,12 @@ ExitCode export_map(const MapExport& request, const std::string& command_line) {
                                               command_line,
                                               fmt::format("from {}, SHA-256 {}", input.name, input.sha256)};
     const Written written = target.write(map, settings, heading);
-    ByteSink sink(request.common.output, request.common.overwrite(), false);
-    sink.write(written.bytes);
-    sink.finish();
-    say_warnings(request.common, written.warnings);
+    write_export(written, request.common);
     if (!request.verify) return ExitCode::done;
-    // The file that was written, not the text in memory; a pipe cannot be read again.
-    const bool file = std::filesystem::is_regular_file(request.common.output);
-    const std::string source = request.common.output == "-" ? "standard output" : request.common.output;
-    const LoadedMap loaded =
-        target.read(file ? read_all(request.common.output) : written.bytes, source, map, settings);
-    const std::string text =
-        check_text(source, std::string(target.name), loaded, verify_map_export(map, loaded));
-    if (request.common.output != "-") {
-        write_text("-", text, ByteSink::Overwrite::no);
-    } else if (!request.common.quiet) {
-        talk_lines(text);
-    }
+    const ReadBack again = read_back(written, request.common);
+    const LoadedMap loaded = target.read(again.bytes, again.source, map, settings);
+    tell_check(check_text(again.source, std::string(target.name), loaded, verify_map_export(map, loaded)),
+               request.common);
     return ExitCode::done;
 }
 

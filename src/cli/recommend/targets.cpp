@@ -39,8 +39,7 @@ bool TargetChoice::holds(const Contender& method) const {
     if (method.method->name == "map") return maps != nullptr;
     if (filters == nullptr) return false;
     if (method.method->needs_table) return filters->switches;
-    if (method.method->steady == nullptr)
-        return method.map == nullptr && is_code_target(spec.name) && has_code(method.method->name);
+    if (method.method->steady == nullptr) return is_code_target(spec.name) && has_code(method.method->name);
     return !filters->notches_only ||
            std::holds_alternative<std::vector<NotchSpec>>(method.method->steady(method.settings));
 }

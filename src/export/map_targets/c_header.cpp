@@ -2,17 +2,16 @@
 // The whole map as C99: constants and one function, without allocation, in bounded time.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "export/map_code.hpp"
+#include "export/map_run.hpp"
 #include "export/map_targets.hpp"
 #include "export/method_code_parts.hpp"
 #include "export/text.hpp"
 #include "export/text_reader.hpp"
-#include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -26,35 +25,13 @@ constexpr std::array keys = {
         .choices = precisions,
         .help = "of numbers and arithmetic"}};
 
-bool single(const Settings& settings) { return settings.text("precision") == "float"; }
-
-std::string literal(double value, bool is_float) { return is_float ? decimal_float(value) : decimal(value); }
-
-std::string list_of(const std::vector<double>& values, bool is_float) {
-    std::string text;
-    for (const double value : values) text += (text.empty() ? "" : ", ") + literal(value, is_float);
-    return text;
-}
-
-std::vector<double> limits_of(const RippleMap& map) {
-    return {std::max(map.speeds_deg_s.from, 0.1),
-            map.positions_deg.from,
-            map.positions_deg.to,
-            map.loads_nm.from,
-            map.loads_nm.to,
-            map.zero_deg};
-}
-
-std::vector<double> values_of(const RippleMap& map) {
-    std::vector<double> values;
-    for (const auto& order : map.values) {
-        for (const std::complex<double>& z : order) {
-            values.push_back(z.real());
-            values.push_back(z.imag());
-        }
-    }
-    return values;
-}
+constexpr std::string_view torque_code = R"c(
+/* Ripple of the joint's torque in Nm: subtract it from the sensor. motor_turns: the motor's angle in turns, 0 where the
+   joint is at the map's zero; the fraction of the turn is enough. joint_deg: the joint's position; only for its own
+   harmonics. torque_nm: the joint's torque; only for the load. temperature_degc is asked for by a map that depends on
+   it. */
+static inline @real@ @name@_torque(@real@ speed_deg_s, @real@ motor_turns, @real@ joint_deg, @real@ torque_nm@temperature@) {
+)c";
 
 std::vector<double> orders_of(const RippleMap& map) {
     std::vector<double> orders;
@@ -63,74 +40,64 @@ std::vector<double> orders_of(const RippleMap& map) {
 }
 
 Written write(const RippleMap& map, const Settings& settings, std::span<const std::string> heading) {
-    const std::string name = settings.text("name");
-    check_identifier(name, "target c-header, name");
-    const bool is_float = single(settings);
-    const auto array = [&](std::string_view what, const std::vector<double>& values) {
-        return fmt::format("static const {} {}_{}[{}] = {{{}}};\n", is_float ? "float" : "double", name, what,
-                           values.size(), list_of(values, is_float));
-    };
+    const CodeStyle style = style_of(settings);
+    const MapCode code(map, style);
+    const std::vector<double> orders = orders_of(map);
     std::string text = comment_lines(heading, "// ");
-    text += fmt::format("#ifndef {0}_H\n#define {0}_H\n#include <math.h>\n\n", upper_case(name));
-    text += array("orders", orders_of(map)) + array("speeds", map.form.speeds_deg_s) +
-            array("limits", limits_of(map)) + array("values", values_of(map));
-    return {text + map_code(map, name, is_float) + fmt::format("#endif  // {}_H\n", upper_case(name)), {}};
+    text += style.filled("#ifndef @NAME@_H\n#define @NAME@_H\n#include <math.h>\n\n");
+    text += style.array("orders", orders) + style.filled(turn_code(style.is_float)) + code.definitions();
+    std::string signature(torque_code);
+    signature.replace(signature.find("@temperature@"), 13,
+                      map.form.by_temperature ? ", @real@ temperature_degc" : "");
+    std::string body = signature + code.amplitudes_here("torque_nm");
+    if (!map.form.by_load) body += "    (void)torque_nm;\n";
+    std::vector<std::pair<std::string, std::string>> products;
+    for (std::size_t i = 1; i < 2 * orders.size(); ++i)
+        products.emplace_back(fmt::format("z[{}]", i), fmt::format("{}{}", i % 2 == 0 ? 'c' : 's', i / 2));
+    body += order_angles_code(orders, "motor_turns") + "    return " + sum_code("z[0] * c0", products);
+    return {text + style.filled(body + ";\n}\n#endif  // @NAME@_H\n"), {}};
 }
 
-// The function of map_code, operation by operation.
+// The header's function, operation by operation.
 template <class Real>
-double run(const RippleMap& held, const MapState& state) {
-    const double turns = held.gear_ratio.value() * (state.position_deg - held.zero_deg) / 360.0;
-    const auto motor_turns = static_cast<Real>(turns - std::floor(turns));
-    std::vector<double> weights(held.form.columns());
-    map_weights(held,
-                {static_cast<double>(static_cast<Real>(state.speed_deg_s)),
-                 static_cast<double>(static_cast<Real>(state.position_deg)),
-                 static_cast<double>(static_cast<Real>(state.load_nm))},
-                weights);
-    Real ripple = 0;
-    for (std::size_t i = 0; i < held.orders.size(); ++i) {
-        Real cosine = 0, sine = 0;
-        for (std::size_t c = 0; c < weights.size(); ++c) {
-            cosine += static_cast<Real>(weights[c]) * static_cast<Real>(held.values[i][c].real());
-            sine += static_cast<Real>(weights[c]) * static_cast<Real>(held.values[i][c].imag());
-        }
-        Real cycles = static_cast<Real>(held.orders[i].value()) * motor_turns;
-        cycles -= std::floor(cycles);
-        const OnCircle<Real> at = on_circle(cycles);
-        ripple += cosine * at.cosine + sine * at.sine;
+class TorqueRun {
+  public:
+    TorqueRun(const RippleMap& map, const std::vector<double>& orders, const MapTables& tables)
+        : orders_(orders.begin(), orders.end()),
+          shows_(2 * orders.size()),
+          map_(map.form, orders.size(), tables),
+          ratio_(map.gear_ratio.value()),
+          zero_deg_(map.zero_deg),
+          middle_degc_(map.temperatures_degc.middle()) {}
+
+    double operator()(const MapState& state) {
+        const double turns = ratio_ * (state.position_deg - zero_deg_) / 360.0;
+        order_angles(orders_, static_cast<Real>(turns - std::floor(turns)), shows_);
+        const double temperature = state.temperature_degc.value_or(middle_degc_);
+        const auto& z = map_.at({state.load_nm, state.speed_deg_s, turns, state.position_deg, temperature});
+        Real ripple = 0;
+        for (std::size_t i = 0; i < shows_.size(); ++i) ripple += z[i] * shows_[i];
+        return static_cast<double>(ripple);
     }
-    return static_cast<double>(ripple);
-}
+
+  private:
+    std::vector<Real> orders_, shows_;
+    MapRun<Real> map_;
+    double ratio_, zero_deg_, middle_degc_;
+};
 
 LoadedMap read(std::string_view bytes, const std::string& source, const RippleMap& map,
                const Settings& settings) {
-    const std::string name = settings.text("name");
-    const bool is_float = single(settings);
-    TextReader reader(bytes, source, Comments::c, is_float ? Precision::float32 : Precision::float64);
-    const auto numbers = [&](std::string_view what, std::size_t count) {
-        reader.expect(fmt::format("{}_{}[", name, what));
-        return reader.numbers('{', '}', count);
-    };
-    RippleMap found = map;
-    const auto orders = numbers("orders", map.orders.size());
-    found.form.speeds_deg_s = numbers("speeds", map.form.speeds_deg_s.size());
-    const auto limits = numbers("limits", 6);
-    const auto values = numbers("values", 2 * map.orders.size() * map.form.columns());
-    found.speeds_deg_s.from = limits[0];
-    found.positions_deg = {limits[1], limits[2]};
-    found.loads_nm = {limits[3], limits[4]};
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < orders.size(); ++i) {
-        found.orders[i] = Order(orders[i]);
-        for (auto& value : found.values[i]) {
-            value = {values[at], values[at + 1]};
-            at += 2;
-        }
+    const CodeStyle style = style_of(settings);
+    TextReader reader(bytes, source, Comments::c, style.is_float ? Precision::float32 : Precision::float64);
+    const std::vector<double> orders = style.read(reader, "orders", map.orders.size());
+    const MapTables tables(reader, map, style);
+    if (style.is_float) {
+        const auto run = std::make_shared<TorqueRun<float>>(map, orders, tables);
+        return {"float32", map, [run](const MapState& state) { return (*run)(state); }};
     }
-    if (is_float)
-        return {"float32", map, [found](const MapState& state) { return run<float>(found, state); }};
-    return {"float64", map, [found](const MapState& state) { return run<double>(found, state); }};
+    const auto run = std::make_shared<TorqueRun<double>>(map, orders, tables);
+    return {"float64", map, [run](const MapState& state) { return (*run)(state); }};
 }
 
 }  // namespace

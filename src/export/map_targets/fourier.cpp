@@ -20,6 +20,7 @@ constexpr std::string_view weights =
     "weight: of a speed, linear between the speeds of its direction and held beyond; of turn_cosine and "
     "turn_sine k, "
     "cos and sin of k (position - zero); of load, the torque in Nm";
+constexpr std::string_view of_temperature = "; of temperature, degC beyond the middle of its range";
 
 struct Column {
     std::string_view of;
@@ -29,7 +30,8 @@ struct Column {
 Column column_of(const MapForm& form, std::size_t column) {
     const std::size_t within = column % form.columns_a_direction(), speeds = form.speeds_deg_s.size();
     if (within < speeds) return {"speed_deg_s", form.speeds_deg_s[within]};
-    if (within >= speeds + 2 * form.turn_harmonics) return {"load", 1.0};
+    if (form.by_temperature && within == form.temperature_column()) return {"temperature", 1.0};
+    if (within >= form.load_column()) return {"load", 1.0};
     const std::size_t turn = within - speeds;
     return {turn % 2 == 0 ? "turn_cosine" : "turn_sine", static_cast<double>(turn / 2 + 1)};
 }
@@ -58,11 +60,16 @@ std::string rows_of(const RippleMap& map) {
 
 Written write(const RippleMap& map, const Settings&, std::span<const std::string> heading) {
     std::string text = comment_lines(heading, "# ");
-    text += fmt::format("# {}\n# {}\n", explained, weights);
+    text += fmt::format("# {}\n# {}{}\n", explained, weights,
+                        map.form.by_temperature ? of_temperature : std::string_view());
     text += fact("gear_ratio", map.gear_ratio.value()) + fact("zero_deg", map.zero_deg);
     text += fact("slowest_deg_s", map.speeds_deg_s.from) + fact("fastest_deg_s", map.speeds_deg_s.to);
     text += fact("position_from_deg", map.positions_deg.from) + fact("position_to_deg", map.positions_deg.to);
     text += fact("load_from_nm", map.loads_nm.from) + fact("load_to_nm", map.loads_nm.to);
+    if (map.form.by_temperature) {
+        text += fact("temperature_from_degc", map.temperatures_degc.from) +
+                fact("temperature_to_degc", map.temperatures_degc.to);
+    }
     return {text + rows_of(map), {}};
 }
 
@@ -111,6 +118,10 @@ LoadedMap read(std::string_view bytes, const std::string& source, const RippleMa
     found.positions_deg = {fact_in(bytes, "position_from_deg", source),
                            fact_in(bytes, "position_to_deg", source)};
     found.loads_nm = {fact_in(bytes, "load_from_nm", source), fact_in(bytes, "load_to_nm", source)};
+    if (map.form.by_temperature) {
+        found.temperatures_degc = {fact_in(bytes, "temperature_from_degc", source),
+                                   fact_in(bytes, "temperature_to_degc", source)};
+    }
     return {"float64", map, [found](const MapState& state) { return map_torque(found, state); }};
 }
 

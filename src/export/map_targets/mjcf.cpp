@@ -16,7 +16,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array keys = {flat_speed_key, flat_direction_key,
+constexpr std::array keys = {flat_speed_key, flat_direction_key, flat_temperature_key,
                              Key{.name = "joint",
                                  .kind = KeyKind::text,
                                  .default_text = "joint",

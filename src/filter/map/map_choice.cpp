@@ -18,6 +18,7 @@ namespace {
 constexpr double worth_it = 1.05, not_worth_it = 0.01;            // of what is left; of the ripple's energy
 constexpr double spreads_beyond = 3.0, spreads_beyond_too = 2.0;  // of logs without: one order, others
 constexpr double least_gain = 12.0;                               ///< in squares over the noise
+constexpr double least_warming_degc = 1.0;  ///< less tells nothing of what a degree does
 constexpr int surrogates = 40;
 constexpr std::size_t most_harmonics = 3;
 
@@ -65,13 +66,17 @@ struct Trial {
 std::vector<MapForm> forms_for(const MapData& data, bool tied) {
     std::vector<MapForm> forms;
     const bool loaded = data.loads_nm.to > data.loads_nm.from;
+    const bool warms = data.temperatures_degc.to - data.temperatures_degc.from > least_warming_degc;
     for (const std::size_t speeds : {1U, 2U, 3U, 5U}) {
         const std::vector<double> knots = spread_speeds(data.speeds_deg_s, speeds);
         if (knots.size() != speeds) continue;
         for (const std::size_t directions : {1U, 2U}) {
             for (std::size_t harmonics = 0; harmonics <= (tied ? most_harmonics : 0); ++harmonics) {
-                forms.push_back({knots, directions, harmonics, false});
-                if (loaded) forms.push_back({knots, directions, harmonics, true});
+                for (const bool by_load : {false, true}) {
+                    if (by_load && !loaded) continue;
+                    forms.push_back({knots, directions, harmonics, by_load});
+                    if (warms) forms.push_back({knots, directions, harmonics, by_load, true});
+                }
             }
         }
     }

@@ -115,6 +115,7 @@ RippleMap frame_of(const MapData& data, const MapForm& form, double zero_deg) {
     map.speeds_deg_s = data.speeds_deg_s;
     map.positions_deg = data.positions_deg;
     map.loads_nm = data.loads_nm;
+    map.temperatures_degc = data.temperatures_degc;
     return map;
 }
 

@@ -28,6 +28,7 @@ struct MapData {
     std::size_t orders = 0, blocks = 0;
     std::vector<double> mean_noise, energy;  ///< by order: means over the windows of noise and |value|^2
     MapRange speeds_deg_s, positions_deg, loads_nm;
+    MapRange temperatures_degc = {};  ///< 0 to 0 where a log has none
 };
 
 /// Angles count from `zero_deg`.

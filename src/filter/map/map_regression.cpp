@@ -58,13 +58,16 @@ MapRegression::Matrix MapRegression::penalty(const RippleMap& frame) const {
         p(a, b) -= 1.0 / energy;
         p(b, a) -= 1.0 / energy;
     };
+    const auto load_column = static_cast<Eigen::Index>(form.load_column());
+    const auto temperature_column = static_cast<Eigen::Index>(form.temperature_column());
     const double load = std::max(std::abs(frame.loads_nm.from), std::abs(frame.loads_nm.to));
+    const double warmer = 0.5 * (frame.temperatures_degc.to - frame.temperatures_degc.from);
     for (Eigen::Index c = 0; c < columns; ++c) {
         const Eigen::Index within = c % each;
         const bool at_speed = within < speeds;
-        const bool of_load = form.by_load && within + 1 == each;
         double share = at_speed ? any_share : turn_share;
-        if (of_load && load > 0.0) share /= load;
+        if (form.by_load && within == load_column && load > 0.0) share /= load;
+        if (form.by_temperature && within == temperature_column && warmer > 0.0) share /= warmer;
         p(c, c) += 1.0 / (share * share * energy);
         if (at_speed && within + 1 < speeds) alike(c, c + 1);
         if (at_speed && c < each && columns > each) alike(c, c + each);

@@ -19,8 +19,8 @@ struct HeldOut {
 };
 
 /// Ridge regression: of the amplitudes the prior knows that those of neighbouring speeds and of the two
-/// directions differ by about the order's own amplitude, and that those of the joint's turn and of the load
-/// are half of it.
+/// directions differ by about the order's own amplitude, and that those of the joint's turn, of the load and
+/// of the temperature are half of it.
 class MapRegression {
   public:
     MapRegression(const MapData& data, const RippleMap& frame, std::size_t order);

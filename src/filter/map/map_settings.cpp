@@ -43,9 +43,14 @@ std::optional<RippleMap> map_of(std::string_view method, const Settings& setting
     form.directions = whole(settings, "directions");
     form.turn_harmonics = whole(settings, "turn-harmonics");
     form.by_load = settings.number("by-load") > 0.0;
+    form.by_temperature = settings.number("by-temperature") > 0.0;
     map.speeds_deg_s = {settings.number("slowest"), form.speeds_deg_s.back()};
     map.positions_deg = range_of(settings, "positions");
     map.loads_nm = range_of(settings, "loads");
+    map.temperatures_degc = range_of(settings, "temperatures");
+    if (form.by_temperature && !settings.has("temperatures"))
+        raise<UsageError>("method {}: by-temperature=1 needs temperatures, the least and the greatest",
+                          method);
     const std::size_t columns = form.columns(), wanted = columns * ripple.orders.size();
     for (const std::string_view key : {"cosines", "sines"}) {
         const std::size_t given = settings.has(key) ? settings.list(key).size() : 0;
@@ -88,6 +93,10 @@ std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fi
         {"positions", ends_text(map.positions_deg)},
         {"loads", ends_text(map.loads_nm)},
         {"spread", list_text(map.spread_nm)}};
+    if (map.form.by_temperature) {
+        keys.emplace_back("by-temperature", "1");
+        keys.emplace_back("temperatures", ends_text(map.temperatures_degc));
+    }
     if (map.speeds_deg_s.to > 0.0) keys.emplace_back("fastest", shortest(map.speeds_deg_s.to));
     return keys;
 }

@@ -70,7 +70,8 @@ std::string map_form_words(const MapForm& form) {
     if (form.turn_harmonics > 0)
         text += fmt::format(", with {} harmonic{} of the joint's turn", form.turn_harmonics,
                             form.turn_harmonics == 1 ? "" : "s");
-    return text + (form.by_load ? ", and by load" : "");
+    if (form.by_load) text += ", and by load";
+    return text + (form.by_temperature ? ", and by temperature" : "");
 }
 
 std::string map_column_words(const MapForm& form, std::size_t column) {
@@ -84,7 +85,7 @@ std::string map_column_words(const MapForm& form, std::size_t column) {
         what = fmt::format("{} of {} joint angle{}", at % 2 == 0 ? "cosine" : "sine", at / 2 + 1,
                            at / 2 == 0 ? "" : "s");
     } else {
-        what = "per Nm of load";
+        what = form.by_load && within == form.load_column() ? "per Nm of load" : "per degC beyond the middle";
     }
     if (form.directions == 1) return what;
     return (column < each ? "forward, " : "backward, ") + what;

@@ -9,7 +9,8 @@
 namespace ripplenotch {
 
 [[nodiscard]] TrackingDesign tracking_design(const Settings& settings, Hertz sample_rate);
-/// Throws UsageError for settings that only a log has: a map, scheduled gains, angles from the velocity.
+/// Throws UsageError for settings that no code is written for: scheduled gains, angles from the velocity, a
+/// zero to be found.
 [[nodiscard]] OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate);
 
 }  // namespace ripplenotch

@@ -5,9 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include "filter/map/map_reach.hpp"
+#include "filter/map/map_key_list.hpp"
 #include "filter/map/map_runner.hpp"
-#include "filter/map/map_settings.hpp"
 #include "filter/methods/list.hpp"
 
 namespace ripplenotch {
@@ -17,28 +16,8 @@ constexpr Key start_key{.name = "start",
                         .dimension = Dimension::angle,
                         .help = "position at the first row of a log without one, which otherwise passes"};
 
-constexpr Key required(Key key) {
-    key.required = true;
-    return key;
-}
-
-constexpr std::array keys = {gear_ratio_key,
-                             orders_key,
-                             map_key,
-                             required(cosines_key),
-                             required(sines_key),
-                             speeds_key,
-                             directions_key,
-                             turn_harmonics_key,
-                             by_load_key,
-                             slowest_key,
-                             positions_key,
-                             loads_key,
-                             spread_key,
-                             fastest_key,
-                             beyond_key,
-                             angle_key,
-                             start_key};
+constexpr auto keys = joined_keys(std::array{gear_ratio_key, orders_key}, required_map_keys(),
+                                  std::array{angle_key, start_key});
 
 class MapFilter final : public CausalFilter {
   public:

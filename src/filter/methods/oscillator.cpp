@@ -228,7 +228,8 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     const auto refuse = [](bool is, std::string_view what) {
         if (is) raise<UsageError>("method oscillator as code: {} is not written; leave it out", what);
     };
-    refuse(p.map.has_value(), "a map");
+    refuse(p.zero_unknown, "zero=unknown");
+    refuse(p.model.return_turns > 0.0 && p.model.return_turns < 1.0, "a return below one turn");
     refuse(p.scheduled, "gain=scheduled");
     refuse(p.source == MotorAngle::Source::velocity, "angle=velocity");
     refuse(p.rest_nm.has_value(), "rest");
@@ -247,9 +248,11 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     design.rate_noise = noise.rate;
     design.first_rate_variance = p.model.first_rate_variance();
     design.memory_turns = p.model.memory_turns;
+    design.return_turns = p.model.return_turns;
     design.jump = p.model.jump;
     design.largest_slip = p.largest_slip;
     design.minus_ripple = p.minus_ripple;
+    design.map = p.map;
     return design;
 }
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What every export does with the file that it made: writes it, reads it again, tells what came through.
+
+#include <string>
+
+#include "cli/options/options.hpp"
+#include "ripplenotch/export/target.hpp"
+
+namespace ripplenotch {
+
+/// Writes the bytes where they were asked for, and says the warnings.
+void write_export(const Written& written, const CommonOptions& common, bool binary = false);
+
+/// What was written, as it stands in the file; that of a pipe or a device, which cannot be read again, as it
+/// was in memory.
+struct ReadBack {
+    std::string bytes, source;  ///< source: "notch.h", "standard output"
+};
+[[nodiscard]] ReadBack read_back(const Written& written, const CommonOptions& common);
+
+/// What was found out about it: on standard output, unless the file itself went there.
+void tell_check(const std::string& text, const CommonOptions& common);
+
+}  // namespace ripplenotch
