@@ -50,21 +50,30 @@ struct JointFit::Wanted {
     std::size_t turn = 0;  ///< which term of that effect
 };
 
-JointFit::JointFit(const Motion& motion, std::span<const double> torque_nm, const MotionFacts& facts,
-                   std::optional<GearAccount> gear, Hertz rate)
-    : motion_(motion), torque_nm_(torque_nm), facts_(facts), gear_(std::move(gear)), rate_(rate) {
-    if (motion.size() < fewest_samples)
-        raise<DataError>("the log has {} rows; features need at least {}", motion.size(), fewest_samples);
+JointFit::JointFit(const Samples& samples, const MotionFacts& facts, std::optional<GearAccount> gear,
+                   Hertz rate)
+    : motion_(samples.motion),
+      torque_nm_(samples.torque_nm),
+      known_(samples.use),
+      facts_(facts),
+      gear_(std::move(gear)),
+      rate_(rate) {
+    if (motion_.size() < fewest_samples)
+        raise<DataError>("the log has {} rows; features need at least {}", motion_.size(), fewest_samples);
+    const auto known = static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 1));
+    if (known < fewest_samples)
+        raise<DataError>("the speed jumps: {} of {} rows have a motion that is known, and features need {}",
+                         known, motion_.size(), fewest_samples);
     build();
     FitOptions options = fit_options(motion_.size(), linear_iterations);
+    options.use = known_;
     options.errors = false;
     fit_ = fit(model_, motion_, torque_nm_, options);
     refine();
 }
 
 // What needs a first guess of the rest: friction that grows with the load, which is of inertia and weight,
-// and friction that turns over within an angle after each reversal (Dahl). Samples far off, as where the
-// speed jumps, do not count.
+// and friction that turns over within an angle after each reversal (Dahl). Samples far off do not count.
 void JointFit::refine() {
     Model guess = fit_.model;
     if (facts_.both_directions() && load_rms_nm().value_or(0.0) > least_load * facts_.mix.torque_rms_nm) {
@@ -117,8 +126,9 @@ std::vector<unsigned char> JointFit::near_samples() const {
     for (std::size_t k = 0; k < left.size(); ++k) sizes.push_back(std::abs(torque_nm_[k] - left[k]));
     std::vector<double> sorted = sizes;
     const double far = far_deviations * deviations_of_median * median_in(sorted);
-    std::vector<unsigned char> use;
-    for (const double size : sizes) use.push_back(size <= far || !(far > 0.0) ? 1 : 0);
+    std::vector<unsigned char> use = known_;
+    for (std::size_t k = 0; k < use.size(); ++k)
+        if (far > 0.0 && sizes[k] > far) use[k] = 0;
     return use;
 }
 

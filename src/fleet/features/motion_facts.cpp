@@ -17,8 +17,9 @@ double at_share(const std::vector<double>& sorted, double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-std::vector<double> every(const std::vector<double>& values, std::size_t step) {
-    std::vector<double> some;
+template <class Value>
+std::vector<Value> every(std::span<const Value> values, std::size_t step) {
+    std::vector<Value> some;
     for (std::size_t k = 0; k < values.size(); k += step) some.push_back(values[k]);
     return some;
 }
@@ -53,13 +54,14 @@ bool MotionFacts::several_speeds() const {
     return mix.speed_p90_deg_s >= least_speeds * std::max(mix.speed_p10_deg_s, moving_deg_s);
 }
 
-Motion thinned(const Motion& motion, std::vector<double>& torque_nm, std::size_t most) {
-    const std::size_t step = (motion.size() + most - 1) / std::max<std::size_t>(most, 1);
-    if (step <= 1) return motion;
-    torque_nm = every(torque_nm, step);
-    return {Hertz(motion.sample_rate.value() / static_cast<double>(step)), every(motion.time_s, step),
-            every(motion.position_deg, step), every(motion.velocity_deg_s, step),
-            every(motion.acceleration_deg_s2, step)};
+Samples thinned(const Motion& motion, std::span<const double> torque_nm, std::span<const unsigned char> use,
+                std::size_t most) {
+    const std::size_t step = std::max<std::size_t>((motion.size() + most - 1) / most, 1);
+    return {{Hertz(motion.sample_rate.value() / static_cast<double>(step)),
+             every<double>(motion.time_s, step), every<double>(motion.position_deg, step),
+             every<double>(motion.velocity_deg_s, step), every<double>(motion.acceleration_deg_s2, step)},
+            every(torque_nm, step),
+            every(use, step)};
 }
 
 MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm, bool has_position) {

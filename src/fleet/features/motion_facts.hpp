@@ -2,6 +2,9 @@
 #pragma once
 // Internal: what the motion of a log lets be told of the joint.
 
+#include <span>
+#include <vector>
+
 #include "ripplenotch/fleet/feature_line.hpp"
 #include "ripplenotch/model/effect.hpp"
 
@@ -18,8 +21,16 @@ struct MotionFacts {
     [[nodiscard]] bool several_speeds() const;
 };
 
-/// The motion in at most so many samples, evenly spread, and the torque of the same ones.
-[[nodiscard]] Motion thinned(const Motion& motion, std::vector<double>& torque_nm, std::size_t most);
+/// What is fitted: a motion, its torque, and a 1 for each sample that counts.
+struct Samples {
+    Motion motion;
+    std::vector<double> torque_nm;
+    std::vector<unsigned char> use;
+};
+
+/// At most so many samples, evenly spread.
+[[nodiscard]] Samples thinned(const Motion& motion, std::span<const double> torque_nm,
+                              std::span<const unsigned char> use, std::size_t most);
 
 [[nodiscard]] MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm,
                                        bool has_position);

@@ -6,7 +6,6 @@
 #include <numeric>
 #include <random>
 
-#include "fleet/trend/scan.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -139,12 +138,19 @@ std::vector<Regression> regressions(const JointHistory& history, std::span<const
     return all;
 }
 
-std::optional<FoundChange> next_change(const JointHistory& history, const std::vector<Regression>& known,
-                                       double limit, std::uint64_t seed) {
+std::vector<Scan> scans_of(const JointHistory& history, const std::vector<Regression>& known) {
     std::vector<Scan> scans;
     for (std::size_t s = 0; s < known.size(); ++s)
         if (known[s].freedom() >= 4.0) scans.emplace_back(history, history.series[s], known[s]);
     if (auto gain = Scan::of_sensor_gain(history, known)) scans.push_back(std::move(*gain));
+    return scans;
+}
+
+std::optional<FoundChange> next_change(const JointHistory& history, const std::vector<Regression>& known,
+                                       const ScatterOfSeries& scatter, double limit, std::uint64_t seed) {
+    std::vector<Scan> scans = scans_of(history, known);
+    for (Scan& scan : scans)
+        if (const auto found = scatter.find(scan.name()); found != scatter.end()) scan.lean_on(found->second);
     const Scan* best = nullptr;
     for (const Scan& scan : scans)
         if (best == nullptr || scan.largest() > best->largest()) best = &scan;

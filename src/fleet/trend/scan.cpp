@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fleet/trend/change_test.hpp"
+#include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -19,13 +20,23 @@ double squares_of(const std::vector<double>& values) {
     return sum;
 }
 
+// The usual error that its lines state, else the size of the series.
+double unit_of(const Series& series, const Regression& regression) {
+    std::vector<double> errors = series.error;
+    const double usual = median_in(errors);
+    return usual > 0.0 ? usual : std::abs(regression.first_value());
+}
+
 }  // namespace
 
 Scan::Scan(const JointHistory& history, const Series& series, const Regression& regression)
-    : Scan(history, series.rows, regression) {}
+    : Scan(history, series.name, series.rows, unit_of(series, regression), regression) {}
 
-Scan::Scan(const JointHistory& history, std::vector<std::size_t> rows, Regression regression)
-    : rows_(std::move(rows)),
+Scan::Scan(const JointHistory& history, std::string name, std::vector<std::size_t> rows, double unit,
+           Regression regression)
+    : name_(std::move(name)),
+      unit_(unit),
+      rows_(std::move(rows)),
       place_of_row_(history.lines.size(), rows_.size()),
       regression_(std::move(regression)),
       norm_(rows_.size(), 0.0) {
@@ -78,9 +89,19 @@ Scan::Found Scan::look(const std::vector<double>& residual) const {
         most = along_slope * along_slope / slope_norm_;
         found.drift = true;
     }
-    const double rest = std::max(squares - most, 1e-12 * squares);
-    if (rest > 0.0) found.t_squared = most / rest * (regression_.freedom() - 1.0);
+    const double rest = std::max(squares - most, 1e-12 * squares) + known_.freedom * known_.variance;
+    if (rest > 0.0) found.t_squared = most / rest * (regression_.freedom() - 1.0 + known_.freedom);
     return found;
+}
+
+Scatter Scan::scatter() const {
+    const double freedom = regression_.freedom() - 1.0;
+    return {freedom, squares_of(chance_) / freedom / (unit_ * unit_)};
+}
+
+void Scan::lean_on(const Scatter& known) {
+    known_ = {known.freedom, known.variance * unit_ * unit_};
+    largest_ = look(regression_.residual()).t_squared;
 }
 
 double Scan::largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const {
@@ -136,7 +157,7 @@ std::optional<Scan> Scan::of_sensor_gain(const JointHistory& history, const std:
     for (const Condition& condition : history.conditions) columns.push_back(condition.value);
     std::vector<std::size_t> rows(sum.size());
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
-    return Scan(history, rows, Regression(sum, ones, columns));
+    return Scan(history, "all torques", rows, 1.0, Regression(sum, ones, columns));
 }
 
 }  // namespace ripplenotch

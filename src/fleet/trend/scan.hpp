@@ -4,12 +4,19 @@
 // in any order.
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fleet/trend/joint_history.hpp"
 #include "fleet/trend/regression.hpp"
 
 namespace ripplenotch {
+
+/// What is known of a series' scatter beside its own lines, and how many lines that is worth.
+struct Scatter {
+    double freedom = 0.0;
+    double variance = 0.0;  ///< of lines, in squares of Scan::unit()
+};
 
 class Scan {
   public:
@@ -18,6 +25,14 @@ class Scan {
     /// of them by too little. Empty where fewer than three torques are told by every line.
     [[nodiscard]] static std::optional<Scan> of_sensor_gain(const JointHistory& history,
                                                             const std::vector<Regression>& known);
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    /// Of the scatter beside the best change, so that joints of a kind can be held together: the usual error
+    /// of a line as it states it, else the baseline. 0: there is none.
+    [[nodiscard]] double unit() const { return unit_; }
+    [[nodiscard]] Scatter scatter() const;  ///< of its own lines
+    /// From here on a statistic is held against its own scatter and this one together.
+    void lean_on(const Scatter& known);
 
     [[nodiscard]] double largest() const { return largest_; }  ///< t squared, in the order of time
     [[nodiscard]] bool is_drift() const { return drift_; }
@@ -32,10 +47,14 @@ class Scan {
         bool drift = false;
         std::size_t place = 0;
     };
-    Scan(const JointHistory& history, std::vector<std::size_t> rows, Regression regression);
+    Scan(const JointHistory& history, std::string name, std::vector<std::size_t> rows, double unit,
+         Regression regression);
     [[nodiscard]] Found look(const std::vector<double>& residual) const;
     void leave_chance(const Found& found);
 
+    std::string name_;
+    double unit_ = 0.0;
+    Scatter known_;  ///< in its own unit
     std::vector<std::size_t> rows_;
     std::vector<std::size_t> place_of_row_;  ///< in rows_; rows that do not tell the series have rows_.size()
     Regression regression_;
