@@ -101,4 +101,32 @@ MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm
     return facts;
 }
 
+std::size_t samples_after_reversals(const Motion& motion, std::span<const unsigned char> use,
+                                    double most_deg) {
+    std::size_t seen = 0;
+    double way_deg = 0.0;
+    int before = 0;
+    bool reversed = false;
+    for (std::size_t k = 1; k < motion.size(); ++k) {
+        const double speed = motion.velocity_deg_s[k];
+        const int direction = speed > 0.0 ? 1 : speed < 0.0 ? -1 : before;
+        way_deg += std::abs(motion.position_deg[k] - motion.position_deg[k - 1]);
+        if (direction != before) {
+            reversed = before != 0;
+            way_deg = 0.0;
+        }
+        before = direction;
+        if (reversed && use[k] != 0 && way_deg < most_deg) ++seen;
+    }
+    return seen;
+}
+
+void leave_out_start(const Motion& motion, double way_deg, std::vector<unsigned char>& use) {
+    double gone_deg = 0.0;
+    for (std::size_t k = 1; k < use.size() && gone_deg < way_deg; ++k) {
+        gone_deg += std::abs(motion.position_deg[k] - motion.position_deg[k - 1]);
+        use[k - 1] = 0;
+    }
+}
+
 }  // namespace ripplenotch

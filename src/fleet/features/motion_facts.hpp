@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "fleet/features/known_motion.hpp"
 #include "ripplenotch/fleet/feature_line.hpp"
 #include "ripplenotch/model/effect.hpp"
 
@@ -16,6 +17,7 @@ struct MotionFacts {
     double speed_rms_deg_s = 0.0;  ///< of all samples
     double acceleration_rms_rad_s2 = 0.0;
     bool has_position = false;
+    Accelerations accelerations;
 
     [[nodiscard]] bool both_directions() const;
     [[nodiscard]] bool several_speeds() const;
@@ -34,5 +36,12 @@ struct Samples {
 
 [[nodiscard]] MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm,
                                        bool has_position);
+
+/// Samples that count, of less way than that since the joint last reversed.
+[[nodiscard]] std::size_t samples_after_reversals(const Motion& motion, std::span<const unsigned char> use,
+                                                  double most_deg);
+
+/// Before the joint has moved, its friction may stand anywhere: the samples of its first way do not count.
+void leave_out_start(const Motion& motion, double way_deg, std::vector<unsigned char>& use);
 
 }  // namespace ripplenotch

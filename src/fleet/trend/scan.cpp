@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t fewest_before = 5, fewest_after = 3;
 constexpr double least_left_of_step = 0.05;  // of a step, beside conditions and other changes
 constexpr std::size_t fewest_torques = 3;
+constexpr double hardly_chance = 16.0;  // t squared that chance has in one series of fifty
 
 double squares_of(const std::vector<double>& values) {
     double sum = 0.0;
@@ -94,11 +95,6 @@ Scan::Found Scan::look(const std::vector<double>& residual) const {
     return found;
 }
 
-Scatter Scan::scatter() const {
-    const double freedom = regression_.freedom() - 1.0;
-    return {freedom, squares_of(chance_) / freedom / (unit_ * unit_)};
-}
-
 void Scan::lean_on(const Scatter& known) {
     known_ = {known.freedom, known.variance * unit_ * unit_};
     largest_ = look(regression_.residual()).t_squared;
@@ -112,18 +108,18 @@ double Scan::largest_of(const std::vector<std::size_t>& order, std::vector<doubl
     return look(room).t_squared;
 }
 
-// What is left beside the best change is what chance makes of this series: a change would spoil its own
-// yardstick (Ter Braak, 1992).
+// A change would spoil its own yardstick (Ter Braak, 1992), so it is taken out of what chance makes of this
+// series. What chance made itself has to stay, or the yardstick would be too short.
 void Scan::leave_chance(const Found& found) {
-    chance_ = regression_.residual();
-    std::vector<double>& left = chance_;
-    const std::size_t n = left.size();
-    std::vector<double> column(n);
-    if (found.drift)
-        column = slope_;
-    else
+    std::vector<double> column = slope_;
+    const std::size_t n = column.size();
+    if (!found.drift) {
+        column.assign(n, 0.0);
         for (std::size_t i = found.place; i < n; ++i) column[i] = regression_.weights()[i];
-    if (!found.drift) regression_.project(column);
+        regression_.project(column);
+    }
+    chance_ = regression_.residual();
+    std::vector<double> left = chance_;
     double along = 0.0;
     for (std::size_t i = 0; i < n; ++i) along += column[i] * left[i];
     const double norm = squares_of(column);
@@ -133,6 +129,13 @@ void Scan::leave_chance(const Found& found) {
     for (std::size_t i = 1; i < n; ++i) products += left[i] * left[i - 1];
     const double squares = squares_of(left);
     memory_ = squares > 0.0 ? products / squares : 0.0;
+    const bool change = found.t_squared > hardly_chance;
+    if (change) chance_ = std::move(left);
+    const double freedom = regression_.freedom() - (change ? 1.0 : 0.0);
+    scatter_ = {freedom, squares_of(chance_) / freedom / (unit_ * unit_)};
+    // The regression took its share of chance, and takes it of every order once more.
+    const double share = std::sqrt(static_cast<double>(n) / freedom);
+    for (double& one : chance_) one *= share;
 }
 
 std::optional<Scan> Scan::of_sensor_gain(const JointHistory& history, const std::vector<Regression>& known) {

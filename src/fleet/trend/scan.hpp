@@ -27,10 +27,10 @@ class Scan {
                                                             const std::vector<Regression>& known);
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// Of the scatter beside the best change, so that joints of a kind can be held together: the usual error
+    /// Of the scatter, so that joints of a kind can be held together: the usual error
     /// of a line as it states it, else the baseline. 0: there is none.
     [[nodiscard]] double unit() const { return unit_; }
-    [[nodiscard]] Scatter scatter() const;  ///< of its own lines
+    [[nodiscard]] const Scatter& scatter() const { return scatter_; }  ///< of its own lines
     /// From here on a statistic is held against its own scatter and this one together.
     void lean_on(const Scatter& known);
 
@@ -38,7 +38,7 @@ class Scan {
     [[nodiscard]] bool is_drift() const { return drift_; }
     [[nodiscard]] std::size_t row() const { return row_; }   ///< of the joint's lines: first after the step
     [[nodiscard]] double memory() const { return memory_; }  ///< from row to row, beside the best change
-    /// The same of what is left beside the best change, in another order of the joint's rows.
+    /// The same of what chance makes of the series, in another order of the joint's rows.
     [[nodiscard]] double largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const;
 
   private:
@@ -54,12 +54,13 @@ class Scan {
 
     std::string name_;
     double unit_ = 0.0;
-    Scatter known_;  ///< in its own unit
+    Scatter scatter_;
+    Scatter known_;  ///< of others, in the series' unit
     std::vector<std::size_t> rows_;
     std::vector<std::size_t> place_of_row_;  ///< in rows_; rows that do not tell the series have rows_.size()
     Regression regression_;
     std::vector<double> norm_;  ///< squares that are left of a step before each place; 0: it is not looked at
-    std::vector<double> chance_;  ///< residual beside the best change, weighed
+    std::vector<double> chance_;  ///< residual beside the best change, if it is one, weighed
     std::vector<double> slope_;
     double slope_norm_ = 0.0, largest_ = 0.0, memory_ = 0.0;
     bool drift_ = false;
