@@ -97,6 +97,8 @@ void JointFit::refine() {
         no_wind_ = "there is no friction whose change of side could be seen";
     else if (winds(coulomb->term, coulomb->value, options))
         return;
+    const std::vector<unsigned char> moving = moving_samples(motion_, use, facts_.moving_deg_s);
+    if (facts_.both_directions()) options.use = moving;
     options.first_guess = &guess;
     fit_ = fit(model_, motion_, torque_nm_, options);
 }

@@ -12,6 +12,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr double jump_deviations = 8.0, jump_part = 0.02;
+constexpr double usual_per_median = 1.4826;
 constexpr double least_over_noise = 5.0;  // of accelerations, rms
 constexpr double least_change = 1e-3;     // of the speed within a window, or it is rounding
 
@@ -19,6 +20,16 @@ double squares_of(const std::vector<double>& values) {
     double sum = 0.0;
     for (const double value : values) sum += value * value;
     return sum;
+}
+
+// sample_noise() with a median in the place of the rms, which jumps do not change.
+double usual_noise(std::span<const double> values) {
+    std::vector<double> fourth;
+    for (std::size_t k = 4; k < values.size(); ++k)
+        fourth.push_back(std::abs(values[k] - 4.0 * values[k - 1] + 6.0 * values[k - 2] -
+                                  4.0 * values[k - 3] + values[k - 4]));
+    const double usual = usual_per_median * median_in(fourth) / std::sqrt(70.0);
+    return usual > 0.0 ? usual : sample_noise(values);
 }
 
 // Part of `values` that no sum of the columns makes.
@@ -44,7 +55,7 @@ std::vector<unsigned char> rows_of_known_motion(const TraceView& log, const Moti
     std::vector<double> speeds;
     for (const double speed : motion.velocity_deg_s) speeds.push_back(std::abs(speed));
     const double most_deg_s =
-        std::max(jump_deviations * sample_noise(log.velocity_deg_s), jump_part * median_in(speeds));
+        std::max(jump_deviations * usual_noise(log.velocity_deg_s), jump_part * median_in(speeds));
     std::vector<unsigned char> known(log.size(), 1);
     const double window_s = default_smoothing.value();
     std::size_t from = 0, until = 0;  // `until`: rows before it are settled
@@ -69,7 +80,7 @@ Accelerations accelerations_of(const TraceView& log, const Motion& motion,
     }
     const double samples = std::max(1.0, default_smoothing.value() * log.sample_rate.value());
     // Of the slope of a cubic in the middle of so many samples.
-    const double noise = sample_noise(log.velocity_deg_s) * log.sample_rate.value() *
+    const double noise = usual_noise(log.velocity_deg_s) * log.sample_rate.value() *
                          std::sqrt(75.0 / (samples * samples * samples));
     const auto count = static_cast<double>(std::max<std::size_t>(acceleration.size(), 1));
     const double whole = squares_of(acceleration) / count;

@@ -9,7 +9,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr double moving_most_deg_s = 0.5, moving_part = 0.01;  // as a diagnosis counts
-constexpr double least_share = 0.05;                           // of a direction, so that its friction is seen
+constexpr std::size_t fewest_moving = 100;
+constexpr double least_share = 0.05;  // of a direction, so that its friction is seen
 constexpr double least_speeds = 1.5;  // between slow and fast, so that viscous friction is seen
 
 double at_share(const std::vector<double>& sorted, double share) {
@@ -119,6 +120,15 @@ std::size_t samples_after_reversals(const Motion& motion, std::span<const unsign
         if (reversed && use[k] != 0 && way_deg < most_deg) ++seen;
     }
     return seen;
+}
+
+std::vector<unsigned char> moving_samples(const Motion& motion, std::vector<unsigned char> use,
+                                          double moving_deg_s) {
+    std::vector<unsigned char> moving = use;
+    for (std::size_t k = 0; k < moving.size(); ++k)
+        if (!(std::abs(motion.velocity_deg_s[k]) > moving_deg_s)) moving[k] = 0;
+    const auto left = static_cast<std::size_t>(std::count(moving.begin(), moving.end(), 1));
+    return left < fewest_moving ? use : moving;
 }
 
 void leave_out_start(const Motion& motion, double way_deg, std::vector<unsigned char>& use) {

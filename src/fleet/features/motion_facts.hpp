@@ -41,6 +41,11 @@ struct Samples {
 [[nodiscard]] std::size_t samples_after_reversals(const Motion& motion, std::span<const unsigned char> use,
                                                   double most_deg);
 
+/// At rest, friction that has no angle to turn over in may stand anywhere: only samples that move count. All
+/// of them again where the rest is too little to fit.
+[[nodiscard]] std::vector<unsigned char> moving_samples(const Motion& motion, std::vector<unsigned char> use,
+                                                        double moving_deg_s);
+
 /// Before the joint has moved, its friction may stand anywhere: the samples of its first way do not count.
 void leave_out_start(const Motion& motion, double way_deg, std::vector<unsigned char>& use);
 

@@ -21,14 +21,13 @@ double squares_of(const std::vector<double>& values) {
     return sum;
 }
 
-// The usual error that its lines state, else the size of the series.
+}  // namespace
+
 double unit_of(const Series& series, const Regression& regression) {
     std::vector<double> errors = series.error;
     const double usual = median_in(errors);
     return usual > 0.0 ? usual : std::abs(regression.first_value());
 }
-
-}  // namespace
 
 Scan::Scan(const JointHistory& history, const Series& series, const Regression& regression)
     : Scan(history, series.name, series.rows, unit_of(series, regression), regression) {}

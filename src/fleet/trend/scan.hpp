@@ -18,6 +18,10 @@ struct Scatter {
     double variance = 0.0;  ///< of lines, in squares of Scan::unit()
 };
 
+/// The usual error of a line as the lines state it, else the size of the series: what scatters of joints are
+/// compared in. 0: there is none.
+[[nodiscard]] double unit_of(const Series& series, const Regression& regression);
+
 class Scan {
   public:
     Scan(const JointHistory& history, const Series& series, const Regression& regression);
@@ -27,9 +31,7 @@ class Scan {
                                                             const std::vector<Regression>& known);
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    /// Of the scatter, so that joints of a kind can be held together: the usual error
-    /// of a line as it states it, else the baseline. 0: there is none.
-    [[nodiscard]] double unit() const { return unit_; }
+    [[nodiscard]] double unit() const { return unit_; }  ///< unit_of(), 1 of all torques together
     [[nodiscard]] const Scatter& scatter() const { return scatter_; }  ///< of its own lines
     /// From here on a statistic is held against its own scatter and this one together.
     void lean_on(const Scatter& known);

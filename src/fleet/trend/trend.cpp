@@ -27,8 +27,8 @@ std::uint64_t seed_of(const JointHistory& history, std::uint64_t seed, std::size
 }
 
 JointChange told(const JointHistory& history, const std::vector<Regression>& known,
-                 const FoundChange& found) {
-    const std::vector<ChangedSeries> changed = changed_series(history, known, found);
+                 const ScatterOfSeries& scatter, const FoundChange& found) {
+    const std::vector<ChangedSeries> changed = changed_series(history, known, scatter, found);
     JointChange change;
     change.drift = found.drift;
     change.cause = cause_of(history, known, found, changed);
@@ -38,8 +38,12 @@ JointChange told(const JointHistory& history, const std::vector<Regression>& kno
     change.latest = date(found.drift ? history.lines.size() - 1 : found.latest);
     change.p = found.p;
     change.limit = found.limit;
-    change.first_log = history.lines[found.drift ? history.lines.size() - 1 : found.row]->log;
-    change.last_log = history.lines[found.drift || found.row == 0 ? 0 : found.row - 1]->log;
+    const std::size_t first = found.drift ? history.lines.size() - 1 : found.row;
+    const std::size_t last = found.drift || found.row == 0 ? 0 : found.row - 1;
+    change.first_log = history.lines[first]->log;
+    change.first_date = date(first);
+    change.last_log = history.lines[last]->log;
+    change.last_date = date(last);
     std::vector<ChangedSeries> sure = changed;
     std::stable_sort(sure.begin(), sure.end(), [](const ChangedSeries& a, const ChangedSeries& b) {
         return a.extra.t_squared > b.extra.t_squared;
@@ -105,7 +109,7 @@ std::vector<FoundChange> find_changes(const JointHistory& history, const Scatter
         const auto next =
             next_change(history, known, scatter, limit, seed_of(history, options.seed, found.size()));
         if (!next) break;
-        changes.push_back(told(history, known, *next));
+        changes.push_back(told(history, known, scatter, *next));
         found.push_back(*next);
     }
     std::stable_sort(changes.begin(), changes.end(),
