@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_joints = 40, most_courses = 10;
+constexpr std::size_t most_joints = 40;
 constexpr double seconds_a_day = 86400.0, most_deviations = 8.0;
 
 double day_of(const std::string& date, double origin_s) {
@@ -91,7 +91,7 @@ Figure trend_figure(const Trend& trend) {
     for (const JointTrend& joint : trend.joints) {
         for (const JointChange& change : joint.changes) {
             ++alerts;
-            if (shown == most_courses || change.course.empty()) continue;
+            if (shown == most_trend_courses || change.course.empty()) continue;
             ++shown;
             figure.panels.push_back(course_panel(joint, change, origin_s));
         }

@@ -11,6 +11,8 @@ namespace {
 
 Json head_of(const JointTrend& joint) { return {{"robot", joint.robot}, {"joint", joint.joint}}; }
 
+Json page_or_null(const std::string& page) { return page.empty() ? Json(nullptr) : Json(page); }
+
 void add_interval(Json& json, const std::string& name, const Interval& interval) {
     json[name + "_ci95_low"] = six_digits(interval.low);
     json[name + "_ci95_high"] = six_digits(interval.high);
@@ -34,7 +36,9 @@ Json alert_to_json(const JointTrend& joint, const JointChange& change) {
         json["percent"] = six_digits(surest.percent);
     }
     json["last_log_before"] = change.last_log;
+    json["last_page_before"] = page_or_null(change.last_page);
     json["first_log_after"] = change.first_log;
+    json["first_page_after"] = page_or_null(change.first_page);
     return json;
 }
 
@@ -73,8 +77,28 @@ Json joint_to_json(const JointTrend& joint) {
     return json;
 }
 
+// Of the worst alerts, which are those of the joints that stand first.
+void add_courses(const Trend& trend, Json& json) {
+    std::size_t shown = 0;
+    for (const JointTrend& joint : trend.joints) {
+        for (const JointChange& change : joint.changes) {
+            if (change.course.empty() || shown++ >= most_trend_courses) continue;
+            for (const AdjustedValue& value : change.course) {
+                Json one = head_of(joint);
+                one["alert"] = change.date;
+                one["descriptor"] = change.descriptors.front().name;
+                one["date"] = value.date;
+                one["value"] = six_digits(value.value);
+                one["log"] = value.log;
+                one["page"] = page_or_null(value.page);
+                json["courses"].push_back(std::move(one));
+            }
+        }
+    }
+}
+
 void add_lists(const Trend& trend, Json& json) {
-    for (const char* name : {"alerts", "changed", "odd", "joints", "descriptors", "months"})
+    for (const char* name : {"alerts", "courses", "changed", "odd", "joints", "descriptors", "months"})
         json[name] = Json::array();
     for (const JointTrend& joint : trend.joints) {
         for (const JointChange& change : joint.changes) {
@@ -133,6 +157,7 @@ std::string trend_text(const Trend& trend, const Provenance& provenance) {
     json["failed_lines"] = trend.failed;
     json["notes"] = trend.notes;
     add_lists(trend, json);
+    add_courses(trend, json);
     return to_text(json);
 }
 

@@ -9,16 +9,19 @@
 #include "page/json_words.hpp"
 #include "page/key_numbers.hpp"
 #include "page/result_tables.hpp"
+#include "page/trend_tables.hpp"
 #include "ripplenotch/chart/diagnosis_figure.hpp"
 #include "ripplenotch/chart/identification_figure.hpp"
 #include "ripplenotch/chart/map_figure.hpp"
 #include "ripplenotch/chart/table_figure.hpp"
+#include "ripplenotch/chart/trend_figure.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/diagnosis_json.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/document/identification_json.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
+#include "ripplenotch/document/trend_json.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -58,11 +61,17 @@ bool is_ledger(const std::string& kind, const std::string& name) {
     struct Shown {
         std::string_view kind, name;
     };
-    constexpr std::array shown = {Shown{"joint", "lines"},           Shown{"table", "bands"},
-                                  Shown{"metrics", "orders"},        Shown{"metrics", "switches"},
-                                  Shown{"comparison", "methods"},    Shown{"diagnosis", "rounds"},
-                                  Shown{"diagnosis", "faults"},      Shown{"diagnosis", "ambiguous"},
-                                  Shown{"diagnosis", "unexplained"}, Shown{"diagnosis", "undecidable"}};
+    constexpr std::array shown = {Shown{"joint", "lines"},
+                                  Shown{"table", "bands"},
+                                  Shown{"metrics", "orders"},
+                                  Shown{"metrics", "switches"},
+                                  Shown{"comparison", "methods"},
+                                  Shown{"diagnosis", "rounds"},
+                                  Shown{"diagnosis", "faults"},
+                                  Shown{"diagnosis", "ambiguous"},
+                                  Shown{"diagnosis", "unexplained"},
+                                  Shown{"diagnosis", "undecidable"},
+                                  Shown{"trend", "odd"}};
     const bool chosen =
         std::any_of(shown.begin(), shown.end(), [&](const Shown& s) { return s.kind == kind; });
     return chosen && std::none_of(shown.begin(), shown.end(),
@@ -106,6 +115,13 @@ bool add_known_table(PageSection& section, const std::string& kind, const std::s
         section.tables.push_back(table_of(name, rows));
         section.tables.back().title = "Every value of the bands";
         section.tables.back().folded = true;
+    } else if (kind == "trend" && name == "alerts") {
+        section.tables.push_back(alert_table(rows));
+        section.tables.push_back(table_of(name, rows));
+        section.tables.back().title = "Every value of the alerts";
+        section.tables.back().folded = true;
+    } else if (kind == "trend" && name == "courses") {
+        section.tables.push_back(course_table(rows));
     } else if (kind == "metrics" && name == "switches") {
         if (auto drawn = switch_figure(rows)) section.figures.push_back(std::move(*drawn));
         section.tables.push_back(largest_switches(rows));
@@ -169,6 +185,8 @@ PageSection section_of_result(const std::string& text, const std::string& source
             section.figures.push_back(map_figure(source, fit));
     } else if (kind == "table") {
         section.figures.push_back(table_figure(table_from_json(text, source)));
+    } else if (kind == "trend" && json.contains("months")) {
+        section.figures.push_back(trend_figure(trend_from_json(text, source)));
     } else if (diagnosis) {
         section.verdict = diagnosis_sentence(*diagnosis);
         section.figures.push_back(gap_figure(fmt::format("How the gap shrank: {}", source), *diagnosis));

@@ -2,6 +2,7 @@
 """ripplenotch features and merge: a line for each log and joint, shards that are done once, and the same bytes however."""
 
 import csv
+import datetime
 import io
 import json
 import os
@@ -47,14 +48,14 @@ class Case(unittest.TestCase):
         self.assertEqual(len(lines), 1)
         return lines[0]
 
-    def small_fleet(self, logs):
+    def small_fleet(self, logs, most_rows=None):
         """Small logs that differ, and a list of them."""
         first = self.log("base.csv", friction=SHARP, motion=["--motion", "multisine,frequency=0.3Hz,amplitude=60deg,duration=3s"], rate="200Hz")
         rows = first.read_text().splitlines()
         names = []
         for number in range(logs):
-            name = f"R{number % 3}_2026-{1 + number // 28:02}-{1 + number % 28:02}.csv"
-            (self.folder / name).write_text("\n".join([rows[0], *rows[1 + number % 50:]]) + "\n")
+            name = f"R{number % 3}_{datetime.date(2000, 1, 1) + datetime.timedelta(days=number)}.csv"
+            (self.folder / name).write_text("\n".join([rows[0], *rows[1 + number % 50:][:most_rows]]) + "\n")
             names.append(name)
         (self.folder / "list.txt").write_text("\n".join(names) + "\n")
         return names

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The same merged bytes from one process, make, GNU parallel, Snakemake and a real Slurm; each is skipped where it is not installed."""
+"""The same merged bytes from one process, make, GNU parallel, Snakemake and a real Slurm; each is skipped where it is not installed.
+
+With RIPPLENOTCH_FLEET_LOGS=10000 in the environment the fleet has so many logs, of 250 rows each, and what each engine costs is
+printed: seconds of a core, the part of both cores that this is (an idle machine asked for), and milliseconds a log beside one process.
+"""
 
 import os
 import pathlib
@@ -16,27 +20,55 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from test_features import GEAR, MOTION, SHARP, TOOL, Case as FeatureCase  # noqa: E402,F401
 
 SOURCE = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"])
-SHARDS = 8
+LOGS = int(os.environ.get("RIPPLENOTCH_FLEET_LOGS", "20"))
+MANY = LOGS > 100
+SHARDS = 40 if MANY else 8
 OPTIONS = [*GEAR, "--date-from-name", "{robot}_%Y-%m-%d.csv"]
+
+
+def spent(before):
+    after = os.times()
+    return after.children_user + after.children_system - before.children_user - before.children_system
 
 
 class Engine(FeatureCase):
     def setUp(self):
         super().setUp()
-        self.small_fleet(20)
+        self.small_fleet(LOGS, 250 if MANY else None)
         bad = self.folder / "list.txt"
         bad.write_text(bad.read_text() + "missing_2026-05-05.csv\n")
         self.environment = dict(os.environ, RIPPLENOTCH=TOOL, LC_ALL="C.UTF-8", HOME=str(self.folder))
 
+    counts_cpu = True  # its workers are children of this process
+    one_process = None  # bytes of one process and its seconds of a core: the same for each engine
+
     def whole(self):
-        return subprocess.run([TOOL, "features", "--manifest", "list.txt", *OPTIONS], cwd=self.folder, capture_output=True).stdout
+        if Engine.one_process is None:
+            before = os.times()
+            text = subprocess.run([TOOL, "features", "--manifest", "list.txt", *OPTIONS], cwd=self.folder, capture_output=True).stdout
+            Engine.one_process = text, spent(before)
+        return Engine.one_process[0]
+
+    def measured(self, *words):
+        """The engine's first run; what it cost is printed for many logs."""
+        self.whole()
+        before = os.times()
+        done = self.call(*words)
+        cpu, wall = spent(before), os.times().elapsed - before.elapsed
+        if MANY and not self.counts_cpu:
+            print(f"{type(self).__name__}: {LOGS} logs in {SHARDS} shards in {wall:.1f} s", file=sys.stderr, flush=True)
+        elif MANY:
+            more = (cpu - Engine.one_process[1]) / LOGS * 1e3
+            print(f"{type(self).__name__}: {LOGS} logs in {SHARDS} shards: {cpu:.1f} s of a core in {wall:.1f} s, {50 * cpu / wall:.0f} % "
+                  f"of two cores, {more:+.2f} ms a log beside one process ({Engine.one_process[1]:.1f} s)", file=sys.stderr, flush=True)
+        return done
 
     def need(self, *programs):
         for program in programs:
             if shutil.which(program) is None:
                 self.skipTest(f"{program} is not installed")
 
-    def call(self, *words, timeout=300):
+    def call(self, *words, timeout=300 + LOGS):
         return subprocess.run([str(word) for word in words], cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=timeout)
 
     def check(self, done):
@@ -61,7 +93,7 @@ class Make(Engine):
         self.need("make")
         options = " ".join(f"'{word}'" for word in OPTIONS)
         words = ["make", "-j2", "-f", SOURCE / "scripts/fleet/Makefile", f"SHARDS={SHARDS}", f"OPTIONS={options}", f"RIPPLENOTCH={TOOL}"]
-        self.check(self.call(*words))
+        self.check(self.measured(*words))
         before = self.lose_a_shard()
         self.check_resumed(self.call(*words), before)
 
@@ -72,7 +104,7 @@ class GnuParallel(Engine):
         if "GNU" not in subprocess.run(["parallel", "--version"], capture_output=True, text=True).stdout:
             self.skipTest("this parallel is not GNU's")
         words = [SOURCE / "scripts/fleet/gnu-parallel", "list.txt", "shards", SHARDS, "--", *OPTIONS]
-        self.check(self.call(*words))
+        self.check(self.measured(*words))
         before = self.lose_a_shard()
         self.check_resumed(self.call(*words), before)
 
@@ -83,7 +115,7 @@ class Snakemake(Engine):
         options = " ".join(f"'{word}'" for word in OPTIONS)
         words = ["snakemake", "-s", SOURCE / "scripts/fleet/Snakefile", "--profile", SOURCE / "scripts/fleet/profiles/local", "--cores", "2",
                  "--config", f"shards={SHARDS}", f"options={options}", f"tool={TOOL}"]
-        self.check(self.call(*words))
+        self.check(self.measured(*words))
         before = self.lose_a_shard()
         self.check_resumed(self.call(*words), before)
 
@@ -124,6 +156,8 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 
 class Slurm(Engine):
     """A cluster of one node on the loopback, in a folder of its own, gone with the test."""
+
+    counts_cpu = False
 
     def setUp(self):
         self.need("slurmctld", "slurmd", "munged", "sbatch", "scontrol")
@@ -173,7 +207,7 @@ class Slurm(Engine):
 
     def test_the_same_bytes_by_arrays_in_windows_and_only_what_is_missing(self):
         words = [SOURCE / "scripts/fleet/slurm-array", "list.txt", "shards", SHARDS, "--", *OPTIONS]
-        self.check(self.call(*words))
+        self.check(self.measured(*words))
         jobs = self.call("scontrol", "-o", "show", "jobs").stdout
         self.assertGreaterEqual(len(set(re.findall(r"ArrayJobId=(\d+)", jobs))), 2, "eight shards are two windows of five at most")
         before = self.lose_a_shard()

@@ -3,6 +3,7 @@
 // trend.json: what changed in a fleet, as tables that a page shows and others read.
 
 #include <string>
+#include <string_view>
 
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/fleet/trend.hpp"
@@ -17,5 +18,9 @@ namespace ripplenotch {
 
 /// An alert a line, for what reads lines: the fields of "alerts" in trend.json.
 [[nodiscard]] std::string alert_lines(const Trend& trend);
+
+/// Reads back what a picture of it needs: joints with their months, alerts, and the courses of the worst.
+/// Throws DataError that names `source`, the field, what it holds and what was expected.
+[[nodiscard]] Trend trend_from_json(std::string_view text, const std::string& source);
 
 }  // namespace ripplenotch

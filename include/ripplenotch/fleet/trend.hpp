@@ -41,6 +41,8 @@ struct ChangedDescriptor {
 struct AdjustedValue {
     std::string date;
     double value = 0.0;
+    std::string log;
+    std::string page;  ///< address of the log's own report; empty: nobody tells of one
 };
 
 /// How far a joint is from its baseline in a month, in the descriptor that is farthest.
@@ -61,6 +63,8 @@ struct JointChange {
     std::vector<ChangedDescriptor> descriptors;  ///< that took part, the surest first
     std::size_t kin = 0;                ///< other joints of its kind with the same alert within 30 days
     std::string first_log, last_log;    ///< after it, and the last one before
+    std::string first_date, last_date;  ///< of these two logs
+    std::string first_page, last_page;  ///< addresses of their reports; empty: nobody tells of one
     std::vector<AdjustedValue> course;  ///< of the surest descriptor, over all logs
 };
 
@@ -93,6 +97,9 @@ struct Trend {
     TrendOptions options;
     std::vector<std::string> notes;
 };
+
+/// Alerts whose course over all logs is shown: those of the joints that stand first.
+inline constexpr std::size_t most_trend_courses = 10;
 
 /// Fewest lines of a joint that are looked at.
 inline constexpr std::size_t fewest_trend_lines = 10;

@@ -39,7 +39,8 @@ FeatureWork work_of(const FeatureRequest& request) {
 namespace {
 
 void check(const FeatureRequest& request) {
-    if (request.csv && request.ndjson) raise<UsageError>("--csv and --ndjson: one of them");
+    if (request.csv && (request.ndjson || request.common.json))
+        raise<UsageError>("--csv and {}: one of them", request.ndjson ? "--ndjson" : "--json");
     if (request.shard && !request.manifest)
         raise<UsageError>("--shard needs the list that it is cut from: --manifest");
     if (request.shard && request.common.output == "-")
@@ -117,6 +118,7 @@ void attach_output(Options& options, FeatureRequest& request) {
                  "where the lines go; - is standard output; with --shard the folder of the shards");
     options.writes(&request.common.output);
     options.flag("--ndjson", request.ndjson, "one JSON object a line; so it is unless --csv is given");
+    options.flag("--json", request.common.json, "the same: a log of one joint is one JSON object");
     options.flag("--csv", request.csv, "a table with a header instead");
     options.flag("--force", request.common.force, "overwrite existing files");
     options.flag("--no-sync", request.common.no_sync, "do not wait until written files are on the disk");

@@ -70,8 +70,14 @@ std::string without_option(std::string line, std::string_view option) {
 
 }  // namespace
 
+// Neither where the work comes from nor how its lines may be called changes them.
 std::string shard_settings(const std::string& command_line) {
-    return without_option(without_option(command_line, "--manifest"), "--shard");
+    std::string settings = without_option(without_option(command_line, "--manifest"), "--shard") + " ";
+    for (const std::string_view same : {" --json ", " --ndjson "})
+        if (const std::size_t at = settings.find(same); at != std::string::npos)
+            settings.erase(at, same.size() - 1);
+    settings.pop_back();
+    return settings;
 }
 
 std::string lines_of_record(const ShardRecord& record, const std::string& record_name) {

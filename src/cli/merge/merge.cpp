@@ -58,6 +58,7 @@ std::function<ExitCode()> attach(Options& options) {
     CommonOptions& common = request->common;
     options.text("-o,--output", common.output, "FILE", "where the lines go; - is standard output");
     options.writes(&common.output);
+    options.flag("--json", common.json, "one JSON object a line, which is what shards hold: as without it");
     options.flag("--force", common.force, "overwrite existing files");
     options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");

@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
+#include "cli/trend/log_pages.hpp"
 #include "cli/trend/trend_report.hpp"
 #include "ripplenotch/chart/trend_figure.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
@@ -27,6 +28,7 @@ struct Request {
     std::string false_alarms = "1/1000";
     int seed = 1;
     bool ndjson = false;
+    std::optional<std::string> log_page;
 };
 
 // "1/1000" or "0.001"
@@ -53,6 +55,7 @@ std::vector<FeatureLine> read_lines(const Request& request, Provenance& provenan
 ExitCode run(const Request& request, const std::string& command_line) {
     const double rate = rate_of(request.false_alarms);
     if (request.ndjson && request.common.json) raise<UsageError>("--ndjson and --json: one of them");
+    check_page_pattern(request.log_page);
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
     const std::vector<FeatureLine> lines = read_lines(request, provenance);
@@ -60,7 +63,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
         say_warnings(request.common,
                      std::vector{fmt::format("the lines are by version {} of the tool, and this is {}",
                                              lines.front().version, version())});
-    const Trend trend = trend_of(lines, {rate, static_cast<std::uint64_t>(request.seed)});
+    Trend trend = trend_of(lines, {rate, static_cast<std::uint64_t>(request.seed)});
+    add_log_pages(trend, request.log_page);
     const std::string text = trend_report(trend);
     const bool json_file = ends_with_json(request.common.output);
     if (request.common.json || json_file) {
@@ -82,6 +86,9 @@ std::function<ExitCode()> attach(Options& options) {
                  "alerts in a month of a joint that nothing happens to; holds for the whole report");
     options.count("--seed", request->seed, 0, 2147483647, "of the orders that chance is counted by");
     options.flag("--ndjson", request->ndjson, "an alert a line, as JSON");
+    options.text(
+        "--log-page", request->log_page, "PATTERN",
+        "where a log's own report is: '{stem}.html', 'pages/{robot}/{date}.html'; default: beside the log");
     attach_plot(options, request->plot);
     attach_common(options, request->common, {"a trend", ".txt .json .ndjson"});
     return [request, &options] { return run(*request, options.command_line()); };

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "fleet/features/joint_fit.hpp"
+#include "fleet/features/known_motion.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 
@@ -52,10 +53,12 @@ std::optional<GearAccount> gear_of_ripple(const Identification& found,
 
 Features features_of(const TraceView& log, const Identification& found,
                      const std::optional<GearAccount>& stated) {
-    std::vector<double> torque_nm(log.torque_nm.begin(), log.torque_nm.end());
-    const Motion motion = thinned(motion_along(log), torque_nm, most_samples);
-    const MotionFacts facts = motion_facts(motion, torque_nm, log.has_position());
-    const JointFit joint(motion, torque_nm, facts, gear_of_ripple(found, stated), log.sample_rate);
+    const Motion whole = motion_along(log);
+    const std::vector<unsigned char> known = rows_of_known_motion(log, whole);
+    const Samples samples = thinned(whole, log.torque_nm, known, most_samples);
+    MotionFacts facts = motion_facts(samples.motion, samples.torque_nm, log.has_position());
+    facts.accelerations = accelerations_of(log, whole, known);
+    const JointFit joint(samples, facts, gear_of_ripple(found, stated), log.sample_rate);
     Features features{facts.mix, {}};
     features.mix.load_rms_nm = joint.load_rms_nm();
     features.descriptors.push_back(ratio_of(found));

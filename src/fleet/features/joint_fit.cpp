@@ -23,7 +23,10 @@ constexpr double widest_of_torque = 0.02;  // ... or, in torque, of all torque o
 constexpr double widest_phase_deg = 90.0;  // of its interval, from end to end
 constexpr double least_load = 0.1;         // of inertia and weight, of all torque
 constexpr std::size_t fewest_reversals = 2;
-constexpr double far_deviations = 10.0;  // of a residual that is no noise
+constexpr double way_of_start_deg = 1.0;
+constexpr double seen_angles = 1.5;         // after a reversal, of the lost motion ...
+constexpr std::size_t fewest_in_angle = 8;  // ... in which there are so many samples
+constexpr double far_deviations = 10.0;     // of a residual that is no noise
 constexpr double deviations_of_median = 1.4826;
 constexpr int linear_iterations = 3, iterations = 15;
 
@@ -50,21 +53,30 @@ struct JointFit::Wanted {
     std::size_t turn = 0;  ///< which term of that effect
 };
 
-JointFit::JointFit(const Motion& motion, std::span<const double> torque_nm, const MotionFacts& facts,
-                   std::optional<GearAccount> gear, Hertz rate)
-    : motion_(motion), torque_nm_(torque_nm), facts_(facts), gear_(std::move(gear)), rate_(rate) {
-    if (motion.size() < fewest_samples)
-        raise<DataError>("the log has {} rows; features need at least {}", motion.size(), fewest_samples);
+JointFit::JointFit(const Samples& samples, const MotionFacts& facts, std::optional<GearAccount> gear,
+                   Hertz rate)
+    : motion_(samples.motion),
+      torque_nm_(samples.torque_nm),
+      known_(samples.use),
+      facts_(facts),
+      gear_(std::move(gear)),
+      rate_(rate) {
+    if (motion_.size() < fewest_samples)
+        raise<DataError>("the log has {} rows; features need at least {}", motion_.size(), fewest_samples);
+    const auto known = static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 1));
+    if (known < fewest_samples)
+        raise<DataError>("the speed jumps: {} of {} rows have a motion that is known, and features need {}",
+                         known, motion_.size(), fewest_samples);
     build();
     FitOptions options = fit_options(motion_.size(), linear_iterations);
+    options.use = known_;
     options.errors = false;
     fit_ = fit(model_, motion_, torque_nm_, options);
     refine();
 }
 
 // What needs a first guess of the rest: friction that grows with the load, which is of inertia and weight,
-// and friction that turns over within an angle after each reversal (Dahl). Samples far off, as where the
-// speed jumps, do not count.
+// and friction that turns over within an angle after each reversal (Dahl). Samples far off do not count.
 void JointFit::refine() {
     Model guess = fit_.model;
     if (facts_.both_directions() && load_rms_nm().value_or(0.0) > least_load * facts_.mix.torque_rms_nm) {
@@ -85,6 +97,8 @@ void JointFit::refine() {
         no_wind_ = "there is no friction whose change of side could be seen";
     else if (winds(coulomb->term, coulomb->value, options))
         return;
+    const std::vector<unsigned char> moving = moving_samples(motion_, use, facts_.moving_deg_s);
+    if (facts_.both_directions()) options.use = moving;
     options.first_guess = &guess;
     fit_ = fit(model_, motion_, torque_nm_, options);
 }
@@ -107,6 +121,11 @@ bool JointFit::winds(std::size_t place, double friction_nm, FitOptions options) 
         no_wind_ = fmt::format("known to +/- {:.2g} deg only, with a best value of {:.2g}",
                                0.5 * (width->ci95->high - width->ci95->low), width->value);
     if (!no_wind_.empty()) return false;
+    const double angle_deg = seen_angles * width->value;
+    if (const std::size_t seen = samples_after_reversals(motion_, options.use, angle_deg);
+        seen < fewest_in_angle)
+        no_wind_ = fmt::format("{} samples of known motion within {:.2g} deg of a reversal; {} are needed",
+                               seen, angle_deg, fewest_in_angle);
     model_ = open;
     fit_ = wound;
     return true;
@@ -117,8 +136,10 @@ std::vector<unsigned char> JointFit::near_samples() const {
     for (std::size_t k = 0; k < left.size(); ++k) sizes.push_back(std::abs(torque_nm_[k] - left[k]));
     std::vector<double> sorted = sizes;
     const double far = far_deviations * deviations_of_median * median_in(sorted);
-    std::vector<unsigned char> use;
-    for (const double size : sizes) use.push_back(size <= far || !(far > 0.0) ? 1 : 0);
+    std::vector<unsigned char> use = known_;
+    for (std::size_t k = 0; k < use.size(); ++k)
+        if (far > 0.0 && sizes[k] > far) use[k] = 0;
+    if (facts_.mix.travel_deg >= least_travel_deg) leave_out_start(motion_, way_of_start_deg, use);
     return use;
 }
 
@@ -128,7 +149,7 @@ void JointFit::build() {
     model_.gear_ratio = gear_ ? gear_->ratio : GearRatio(1.0);
     add_term("offset");
     const bool moves = facts_.mix.moving_share > 0.0;
-    if (moves) add_term("inertia");
+    if (moves && facts_.accelerations.known) add_term("inertia");
     if (facts_.mix.travel_deg >= least_travel_deg) add_term("gravity");
     if (facts_.both_directions()) {
         add_term(fmt::format("coulomb-friction,width_deg_s={}", width_deg_s));
@@ -167,6 +188,8 @@ Descriptor JointFit::told(const Wanted& wanted, std::string reason) const {
         one.reason = "the motion of this log does not show it";
     } else if (!value->standard_error || !value->ci95 || !std::isfinite(value->value)) {
         one.reason = "this log does not tell it from the other torques";
+    } else if (value->at_bound) {
+        one.reason = fmt::format("the best value is {:g}, the least there is", value->value);
     } else {
         const double half = 0.5 * (value->ci95->high - value->ci95->low);
         const double widest = std::max(widest_of_value * std::abs(value->value),
@@ -214,6 +237,10 @@ std::vector<Descriptor> JointFit::ripple() const {
 std::vector<Descriptor> JointFit::torques() const {
     std::string one_way, one_speed;
     if (!facts_.both_directions()) one_way = "the joint does not move in both directions";
+    if (one_way.empty() && facts_.accelerations.like_friction)
+        one_way =
+            "the joint speeds up in one direction only as much as it slows down in the other, where "
+            "friction and inertia look alike";
     if (one_way.empty() && !facts_.several_speeds())
         one_speed = "the joint moves at one speed, where viscous and Coulomb friction look alike";
     const std::string& friction = one_way.empty() ? one_speed : one_way;
@@ -224,9 +251,10 @@ std::vector<Descriptor> JointFit::torques() const {
     const double moving = std::sqrt(facts_.mix.moving_share);
     const double load_nm = std::max(load_rms_nm().value_or(0.0), 1e-9);
     std::vector<Descriptor> all;
-    all.push_back(told(
-        {"coulomb_friction", "nm", no_wind_.empty() ? "hysteresis" : "coulomb-friction", "torque_nm", moving},
-        friction));
+    all.push_back(told({"coulomb_friction", "nm",
+                        fitted("hysteresis", "torque_nm") != nullptr ? "hysteresis" : "coulomb-friction",
+                        "torque_nm", moving},
+                       friction));
     all.push_back(told({"viscous_friction", "nm_per_deg_s", "viscous-friction", "coefficient_nm_per_deg_s",
                         facts_.speed_rms_deg_s},
                        friction));
@@ -261,7 +289,10 @@ std::optional<double> JointFit::load_rms_nm() const {
     for (const Term& term : fit_.model.terms)
         if (term.effect->bears_load) load.terms.push_back(term);
     if (load.terms.empty()) return std::nullopt;
-    const double load_nm = rms(predict_nm(load, motion_));
+    std::vector<double> torque_nm = predict_nm(load, motion_), known_nm;
+    for (std::size_t k = 0; k < torque_nm.size(); ++k)
+        if (known_[k] != 0) known_nm.push_back(torque_nm[k]);
+    const double load_nm = rms(known_nm);
     return std::isfinite(load_nm) ? std::optional(load_nm) : std::nullopt;
 }
 

@@ -16,8 +16,7 @@ namespace ripplenotch {
 class JointFit {
   public:
     /// All must outlive it. `rate`: of the log, before it was thinned. Throws DataError for too few samples.
-    JointFit(const Motion& motion, std::span<const double> torque_nm, const MotionFacts& facts,
-             std::optional<GearAccount> gear, Hertz rate);
+    JointFit(const Samples& samples, const MotionFacts& facts, std::optional<GearAccount> gear, Hertz rate);
 
     /// Amplitude and phase of each order of the gear; none where there is no gear.
     [[nodiscard]] std::vector<Descriptor> ripple() const;
@@ -43,7 +42,8 @@ class JointFit {
     [[nodiscard]] std::string too_fast(Order order) const;
 
     const Motion& motion_;
-    std::span<const double> torque_nm_;
+    const std::vector<double>& torque_nm_;
+    const std::vector<unsigned char>& known_;
     const MotionFacts& facts_;
     std::optional<GearAccount> gear_;
     Hertz rate_;

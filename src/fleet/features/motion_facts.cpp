@@ -9,7 +9,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr double moving_most_deg_s = 0.5, moving_part = 0.01;  // as a diagnosis counts
-constexpr double least_share = 0.05;                           // of a direction, so that its friction is seen
+constexpr std::size_t fewest_moving = 100;
+constexpr double least_share = 0.05;  // of a direction, so that its friction is seen
 constexpr double least_speeds = 1.5;  // between slow and fast, so that viscous friction is seen
 
 double at_share(const std::vector<double>& sorted, double share) {
@@ -17,8 +18,9 @@ double at_share(const std::vector<double>& sorted, double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-std::vector<double> every(const std::vector<double>& values, std::size_t step) {
-    std::vector<double> some;
+template <class Value>
+std::vector<Value> every(std::span<const Value> values, std::size_t step) {
+    std::vector<Value> some;
     for (std::size_t k = 0; k < values.size(); k += step) some.push_back(values[k]);
     return some;
 }
@@ -53,13 +55,14 @@ bool MotionFacts::several_speeds() const {
     return mix.speed_p90_deg_s >= least_speeds * std::max(mix.speed_p10_deg_s, moving_deg_s);
 }
 
-Motion thinned(const Motion& motion, std::vector<double>& torque_nm, std::size_t most) {
-    const std::size_t step = (motion.size() + most - 1) / std::max<std::size_t>(most, 1);
-    if (step <= 1) return motion;
-    torque_nm = every(torque_nm, step);
-    return {Hertz(motion.sample_rate.value() / static_cast<double>(step)), every(motion.time_s, step),
-            every(motion.position_deg, step), every(motion.velocity_deg_s, step),
-            every(motion.acceleration_deg_s2, step)};
+Samples thinned(const Motion& motion, std::span<const double> torque_nm, std::span<const unsigned char> use,
+                std::size_t most) {
+    const std::size_t step = std::max<std::size_t>((motion.size() + most - 1) / most, 1);
+    return {{Hertz(motion.sample_rate.value() / static_cast<double>(step)),
+             every<double>(motion.time_s, step), every<double>(motion.position_deg, step),
+             every<double>(motion.velocity_deg_s, step), every<double>(motion.acceleration_deg_s2, step)},
+            every(torque_nm, step),
+            every(use, step)};
 }
 
 MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm, bool has_position) {
@@ -97,6 +100,43 @@ MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm
     mix.reversals = reversals_of(motion, facts.moving_deg_s);
     mix.torque_rms_nm = rms_beside_mean(torque_nm);
     return facts;
+}
+
+std::size_t samples_after_reversals(const Motion& motion, std::span<const unsigned char> use,
+                                    double most_deg) {
+    std::size_t seen = 0;
+    double way_deg = 0.0;
+    int before = 0;
+    bool reversed = false;
+    for (std::size_t k = 1; k < motion.size(); ++k) {
+        const double speed = motion.velocity_deg_s[k];
+        const int direction = speed > 0.0 ? 1 : speed < 0.0 ? -1 : before;
+        way_deg += std::abs(motion.position_deg[k] - motion.position_deg[k - 1]);
+        if (direction != before) {
+            reversed = before != 0;
+            way_deg = 0.0;
+        }
+        before = direction;
+        if (reversed && use[k] != 0 && way_deg < most_deg) ++seen;
+    }
+    return seen;
+}
+
+std::vector<unsigned char> moving_samples(const Motion& motion, std::vector<unsigned char> use,
+                                          double moving_deg_s) {
+    std::vector<unsigned char> moving = use;
+    for (std::size_t k = 0; k < moving.size(); ++k)
+        if (!(std::abs(motion.velocity_deg_s[k]) > moving_deg_s)) moving[k] = 0;
+    const auto left = static_cast<std::size_t>(std::count(moving.begin(), moving.end(), 1));
+    return left < fewest_moving ? use : moving;
+}
+
+void leave_out_start(const Motion& motion, double way_deg, std::vector<unsigned char>& use) {
+    double gone_deg = 0.0;
+    for (std::size_t k = 1; k < use.size() && gone_deg < way_deg; ++k) {
+        gone_deg += std::abs(motion.position_deg[k] - motion.position_deg[k - 1]);
+        use[k - 1] = 0;
+    }
 }
 
 }  // namespace ripplenotch

@@ -16,8 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double unlikely_left = 5.0;  // chi square of what a cause leaves over its freedom, in deviations
-constexpr double took_part = 16.0;     // t squared of a descriptor that is named where no cause fits
+constexpr double took_part = 16.0;  // t squared of a descriptor that changed for certain
 
 /// What would change which series: a column a number that is open.
 struct Hypothesis {
@@ -101,7 +100,10 @@ class Namer {
         auto columns = units_where(
             [](const Series& one) { return one.name == "gear_ratio" || is_phase(one) || is_ripple(one); });
         const auto own = units_where([](const Series& one) { return one.name == "gear_ratio"; });
-        if (own.empty()) return;
+        const bool itself = std::any_of(changed_.begin(), changed_.end(), [&](const ChangedSeries& one) {
+            return history_.series[one.series].name == "gear_ratio" && one.extra.t_squared >= took_part;
+        });
+        if (own.empty() || !itself) return;
         list_.push_back({"gear ratio (another gear)", own});
         if (columns.size() > 1) list_.push_back({"gear ratio (another gear)", std::move(columns)});
     }
@@ -134,14 +136,32 @@ MatrixXd correlation_of(const JointHistory& history, const std::vector<Regressio
     return correlation;
 }
 
+// The error of a size by its own scatter and by that of the joint's kin, as the test has it.
+void lean_on(const Scatter& kin, double unit_squared, double freedom, const std::vector<double>& column,
+             Extra& extra) {
+    double squares = 0.0;
+    for (const double value : column) squares += value * value;
+    const double own = extra.error * extra.error * squares;
+    const double both = (freedom * own + kin.freedom * kin.variance * unit_squared) / (freedom + kin.freedom);
+    extra.error *= std::sqrt(both / own);
+    extra.t_squared *= own / both;
+}
+
 }  // namespace
 
 std::vector<ChangedSeries> changed_series(const JointHistory& history, const std::vector<Regression>& known,
-                                          const FoundChange& change) {
+                                          const ScatterOfSeries& scatter, const FoundChange& change) {
     std::vector<ChangedSeries> changed;
     for (std::size_t s = 0; s < known.size(); ++s) {
-        const auto extra = known[s].extra(change_column(history, change, history.series[s].rows));
-        if (extra && extra->error > 0.0) changed.push_back({s, *extra, known[s].first_value()});
+        const Series& series = history.series[s];
+        const auto column = change_column(history, change, series.rows);
+        auto extra = known[s].extra(column);
+        if (!extra || !(extra->error > 0.0)) continue;
+        if (const auto kin = scatter.find(series.name); kin != scatter.end()) {
+            const double unit = unit_of(series, known[s]);
+            lean_on(kin->second, unit * unit, known[s].freedom() - 1.0, known[s].beside(column), *extra);
+        }
+        changed.push_back({s, *extra, known[s].first_value()});
     }
     return changed;
 }
@@ -163,7 +183,8 @@ std::string cause_of(const JointHistory& history, const std::vector<Regression>&
     const double price = portable::log(static_cast<double>(history.lines.size()));
     const Namer namer(history, changed);
     const Hypothesis* best = nullptr;
-    double least = 0.0, left_by_best = 0.0;
+    double least = 0.0;
+    VectorXd left_by_best;
     for (const Hypothesis& one : namer.list()) {
         MatrixXd columns(d, static_cast<Index>(one.columns.size()));
         for (std::size_t c = 0; c < one.columns.size(); ++c)
@@ -174,14 +195,10 @@ std::string cause_of(const JointHistory& history, const std::vector<Regression>&
         if (best != nullptr && score >= least) continue;
         best = &one;
         least = score;
-        left_by_best = left;
+        left_by_best = root.matrixL() * (seen - columns * values);
     }
-    if (best != nullptr) {
-        const double freedom =
-            std::max(1.0, static_cast<double>(d) - static_cast<double>(best->columns.size()));
-        const bool explained = left_by_best < freedom + unlikely_left * std::sqrt(2.0 * freedom);
-        if (explained || left_by_best < 0.1 * seen.squaredNorm()) return best->name;
-    }
+    // By what no other descriptor changed beside it.
+    if (best != nullptr && left_by_best.cwiseAbs2().maxCoeff() < took_part) return best->name;
     std::string words;
     for (const ChangedSeries& one : changed)
         if (one.extra.t_squared >= took_part)

@@ -16,9 +16,10 @@ struct ChangedSeries {
     double baseline = 0.0;
 };
 
-/// Of the series that can tell it.
+/// Of the series that can tell it. `scatter`: what is known of each beside its lines.
 [[nodiscard]] std::vector<ChangedSeries> changed_series(const JointHistory& history,
                                                         const std::vector<Regression>& known,
+                                                        const ScatterOfSeries& scatter,
                                                         const FoundChange& change);
 
 /// The cause that explains the changes with the fewest numbers (by Schwarz's criterion); what took part in

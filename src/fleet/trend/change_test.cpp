@@ -6,7 +6,6 @@
 #include <numeric>
 #include <random>
 
-#include "fleet/trend/scan.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -16,6 +15,7 @@ namespace {
 constexpr std::size_t enough_exceed = 10;  // orders that show as much, after which p is known well enough
 constexpr double hardly_worse = 3.84;      // fall of twice the log-likelihood, 95 % of one degree of freedom
 constexpr double takes_part = 4.0;         // t squared
+constexpr double least_error = 0.7;        // of a line, of the usual one
 
 using RowOrder = std::vector<std::size_t>;
 
@@ -104,6 +104,37 @@ void settle_row(const JointHistory& history, const std::vector<Regression>& know
     }
 }
 
+// How much lines scatter beside what they state, as a variance (DerSimonian and Laird, 1986).
+double variance_beside(const Series& series, const std::vector<double>& errors,
+                       const std::vector<std::vector<double>>& columns) {
+    std::vector<double> weights;
+    double sum = 0.0, squares = 0.0, seen = 0.0;
+    for (const double error : errors) {
+        weights.push_back(1.0 / error);
+        sum += 1.0 / (error * error);
+        squares += 1.0 / (error * error * error * error);
+    }
+    const Regression stated(series.value, weights, columns);
+    for (const double left : stated.residual()) seen += left * left;
+    const double room = sum - squares / sum;
+    return room > 0.0 ? std::max(0.0, (seen - stated.freedom()) / room) : 0.0;
+}
+
+// By the error that a line states and by what joints scatter beside it. A line that states next to none does
+// not count more than twice as much as the usual one.
+std::vector<double> weights_of(const Series& series, const std::vector<std::vector<double>>& columns) {
+    std::vector<double> errors = series.error;
+    const double usual = median_in(errors);
+    if (!(usual > 0.0)) return std::vector<double>(series.error.size(), 1.0);
+    errors = series.error;
+    for (double& error : errors) error = std::max(error > 0.0 ? error : usual, least_error * usual);
+    const double beside = variance_beside(series, errors, columns);
+    std::vector<double> weights;
+    for (const double error : errors)
+        weights.push_back(std::sqrt((usual * usual + beside) / (error * error + beside)));
+    return weights;
+}
+
 }  // namespace
 
 std::vector<double> change_column(const JointHistory& history, const FoundChange& change,
@@ -119,14 +150,7 @@ std::vector<double> change_column(const JointHistory& history, const FoundChange
 std::vector<Regression> regressions(const JointHistory& history, std::span<const FoundChange> known) {
     std::vector<Regression> all;
     for (const Series& series : history.series) {
-        std::vector<double> errors = series.error;
-        const double usual = median_in(errors);
-        std::vector<double> weights, ones(series.rows.size(), 1.0);
-        // A log that tells little counts little; none counts more than twice as much as the usual one.
-        for (const double error : series.error)
-            weights.push_back(usual > 0.0 ? std::sqrt(2.0 * usual * usual / (usual * usual + error * error))
-                                          : 1.0);
-        std::vector<std::vector<double>> columns = {ones};
+        std::vector<std::vector<double>> columns = {std::vector<double>(series.rows.size(), 1.0)};
         for (const Condition& condition : history.conditions) {
             std::vector<double> column;
             for (const std::size_t row : series.rows) column.push_back(condition.value[row]);
@@ -134,17 +158,24 @@ std::vector<Regression> regressions(const JointHistory& history, std::span<const
         }
         for (const FoundChange& change : known)
             columns.push_back(change_column(history, change, series.rows));
-        all.emplace_back(series.value, weights, columns);
+        all.emplace_back(series.value, weights_of(series, columns), columns);
     }
     return all;
 }
 
-std::optional<FoundChange> next_change(const JointHistory& history, const std::vector<Regression>& known,
-                                       double limit, std::uint64_t seed) {
+std::vector<Scan> scans_of(const JointHistory& history, const std::vector<Regression>& known) {
     std::vector<Scan> scans;
     for (std::size_t s = 0; s < known.size(); ++s)
         if (known[s].freedom() >= 4.0) scans.emplace_back(history, history.series[s], known[s]);
     if (auto gain = Scan::of_sensor_gain(history, known)) scans.push_back(std::move(*gain));
+    return scans;
+}
+
+std::optional<FoundChange> next_change(const JointHistory& history, const std::vector<Regression>& known,
+                                       const ScatterOfSeries& scatter, double limit, std::uint64_t seed) {
+    std::vector<Scan> scans = scans_of(history, known);
+    for (Scan& scan : scans)
+        if (const auto found = scatter.find(scan.name()); found != scatter.end()) scan.lean_on(found->second);
     const Scan* best = nullptr;
     for (const Scan& scan : scans)
         if (best == nullptr || scan.largest() > best->largest()) best = &scan;

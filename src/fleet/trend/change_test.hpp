@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "fleet/trend/joint_history.hpp"
+#include "fleet/trend/kin_scatter.hpp"
 #include "fleet/trend/regression.hpp"
+#include "fleet/trend/scan.hpp"
 
 namespace ripplenotch {
 
@@ -31,9 +33,14 @@ struct FoundChange {
 [[nodiscard]] std::vector<Regression> regressions(const JointHistory& history,
                                                   std::span<const FoundChange> known);
 
+/// Every series that has enough lines, and all torques together.
+[[nodiscard]] std::vector<Scan> scans_of(const JointHistory& history, const std::vector<Regression>& known);
+
 /// The likeliest change, if its chance is at most `limit`; and the autocorrelation is kept by blocks.
+/// `scatter`: what is known of each series beside its lines.
 [[nodiscard]] std::optional<FoundChange> next_change(const JointHistory& history,
-                                                     const std::vector<Regression>& known, double limit,
+                                                     const std::vector<Regression>& known,
+                                                     const ScatterOfSeries& scatter, double limit,
                                                      std::uint64_t seed);
 
 }  // namespace ripplenotch

@@ -76,8 +76,10 @@ void tell_courses(const JointHistory& history, std::span<const FoundChange> chan
             const Series& series = history.series[s];
             if (series.name != change.descriptors.front().name) continue;
             for (std::size_t i = 0; i < series.rows.size(); ++i)
-                change.course.push_back(
-                    {*history.lines[series.rows[i]]->date, adjusted[s].baseline + adjusted[s].deviation[i]});
+                change.course.push_back({*history.lines[series.rows[i]]->date,
+                                         adjusted[s].baseline + adjusted[s].deviation[i],
+                                         history.lines[series.rows[i]]->log,
+                                         {}});
         }
     }
 }

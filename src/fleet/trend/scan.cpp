@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fleet/trend/change_test.hpp"
+#include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 constexpr std::size_t fewest_before = 5, fewest_after = 3;
 constexpr double least_left_of_step = 0.05;  // of a step, beside conditions and other changes
 constexpr std::size_t fewest_torques = 3;
+constexpr double hardly_chance = 16.0;  // t squared that chance has in one series of fifty
 
 double squares_of(const std::vector<double>& values) {
     double sum = 0.0;
@@ -21,11 +23,20 @@ double squares_of(const std::vector<double>& values) {
 
 }  // namespace
 
-Scan::Scan(const JointHistory& history, const Series& series, const Regression& regression)
-    : Scan(history, series.rows, regression) {}
+double unit_of(const Series& series, const Regression& regression) {
+    std::vector<double> errors = series.error;
+    const double usual = median_in(errors);
+    return usual > 0.0 ? usual : std::abs(regression.first_value());
+}
 
-Scan::Scan(const JointHistory& history, std::vector<std::size_t> rows, Regression regression)
-    : rows_(std::move(rows)),
+Scan::Scan(const JointHistory& history, const Series& series, const Regression& regression)
+    : Scan(history, series.name, series.rows, unit_of(series, regression), regression) {}
+
+Scan::Scan(const JointHistory& history, std::string name, std::vector<std::size_t> rows, double unit,
+           Regression regression)
+    : name_(std::move(name)),
+      unit_(unit),
+      rows_(std::move(rows)),
       place_of_row_(history.lines.size(), rows_.size()),
       regression_(std::move(regression)),
       norm_(rows_.size(), 0.0) {
@@ -78,9 +89,14 @@ Scan::Found Scan::look(const std::vector<double>& residual) const {
         most = along_slope * along_slope / slope_norm_;
         found.drift = true;
     }
-    const double rest = std::max(squares - most, 1e-12 * squares);
-    if (rest > 0.0) found.t_squared = most / rest * (regression_.freedom() - 1.0);
+    const double rest = std::max(squares - most, 1e-12 * squares) + known_.freedom * known_.variance;
+    if (rest > 0.0) found.t_squared = most / rest * (regression_.freedom() - 1.0 + known_.freedom);
     return found;
+}
+
+void Scan::lean_on(const Scatter& known) {
+    known_ = {known.freedom, known.variance * unit_ * unit_};
+    largest_ = look(regression_.residual()).t_squared;
 }
 
 double Scan::largest_of(const std::vector<std::size_t>& order, std::vector<double>& room) const {
@@ -91,18 +107,18 @@ double Scan::largest_of(const std::vector<std::size_t>& order, std::vector<doubl
     return look(room).t_squared;
 }
 
-// What is left beside the best change is what chance makes of this series: a change would spoil its own
-// yardstick (Ter Braak, 1992).
+// A change would spoil its own yardstick (Ter Braak, 1992), so it is taken out of what chance makes of this
+// series. What chance made itself has to stay, or the yardstick would be too short.
 void Scan::leave_chance(const Found& found) {
-    chance_ = regression_.residual();
-    std::vector<double>& left = chance_;
-    const std::size_t n = left.size();
-    std::vector<double> column(n);
-    if (found.drift)
-        column = slope_;
-    else
+    std::vector<double> column = slope_;
+    const std::size_t n = column.size();
+    if (!found.drift) {
+        column.assign(n, 0.0);
         for (std::size_t i = found.place; i < n; ++i) column[i] = regression_.weights()[i];
-    if (!found.drift) regression_.project(column);
+        regression_.project(column);
+    }
+    chance_ = regression_.residual();
+    std::vector<double> left = chance_;
     double along = 0.0;
     for (std::size_t i = 0; i < n; ++i) along += column[i] * left[i];
     const double norm = squares_of(column);
@@ -112,6 +128,13 @@ void Scan::leave_chance(const Found& found) {
     for (std::size_t i = 1; i < n; ++i) products += left[i] * left[i - 1];
     const double squares = squares_of(left);
     memory_ = squares > 0.0 ? products / squares : 0.0;
+    const bool change = found.t_squared > hardly_chance;
+    if (change) chance_ = std::move(left);
+    const double freedom = regression_.freedom() - (change ? 1.0 : 0.0);
+    scatter_ = {freedom, squares_of(chance_) / freedom / (unit_ * unit_)};
+    // The regression took its share of chance, and takes it of every order once more.
+    const double share = std::sqrt(static_cast<double>(n) / freedom);
+    for (double& one : chance_) one *= share;
 }
 
 std::optional<Scan> Scan::of_sensor_gain(const JointHistory& history, const std::vector<Regression>& known) {
@@ -136,7 +159,7 @@ std::optional<Scan> Scan::of_sensor_gain(const JointHistory& history, const std:
     for (const Condition& condition : history.conditions) columns.push_back(condition.value);
     std::vector<std::size_t> rows(sum.size());
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
-    return Scan(history, rows, Regression(sum, ones, columns));
+    return Scan(history, "all torques", rows, 1.0, Regression(sum, ones, columns));
 }
 
 }  // namespace ripplenotch

@@ -27,8 +27,8 @@ std::uint64_t seed_of(const JointHistory& history, std::uint64_t seed, std::size
 }
 
 JointChange told(const JointHistory& history, const std::vector<Regression>& known,
-                 const FoundChange& found) {
-    const std::vector<ChangedSeries> changed = changed_series(history, known, found);
+                 const ScatterOfSeries& scatter, const FoundChange& found) {
+    const std::vector<ChangedSeries> changed = changed_series(history, known, scatter, found);
     JointChange change;
     change.drift = found.drift;
     change.cause = cause_of(history, known, found, changed);
@@ -38,8 +38,12 @@ JointChange told(const JointHistory& history, const std::vector<Regression>& kno
     change.latest = date(found.drift ? history.lines.size() - 1 : found.latest);
     change.p = found.p;
     change.limit = found.limit;
-    change.first_log = history.lines[found.drift ? history.lines.size() - 1 : found.row]->log;
-    change.last_log = history.lines[found.drift || found.row == 0 ? 0 : found.row - 1]->log;
+    const std::size_t first = found.drift ? history.lines.size() - 1 : found.row;
+    const std::size_t last = found.drift || found.row == 0 ? 0 : found.row - 1;
+    change.first_log = history.lines[first]->log;
+    change.first_date = date(first);
+    change.last_log = history.lines[last]->log;
+    change.last_date = date(last);
     std::vector<ChangedSeries> sure = changed;
     std::stable_sort(sure.begin(), sure.end(), [](const ChangedSeries& a, const ChangedSeries& b) {
         return a.extra.t_squared > b.extra.t_squared;
@@ -93,8 +97,8 @@ std::vector<DescriptorTrend> told_descriptors(const JointHistory& history,
 
 // Each test spends most of the chance that the ones before it have left, so that all of them together have
 // that of the rate.
-std::vector<FoundChange> find_changes(const JointHistory& history, const TrendOptions& options,
-                                      std::vector<JointChange>& changes) {
+std::vector<FoundChange> find_changes(const JointHistory& history, const ScatterOfSeries& scatter,
+                                      const TrendOptions& options, std::vector<JointChange>& changes) {
     std::vector<FoundChange> found;
     double left = std::min(0.5, options.false_alarms * history.months());
     if (!(left > 0.0)) return found;
@@ -102,9 +106,10 @@ std::vector<FoundChange> find_changes(const JointHistory& history, const TrendOp
         const double limit = spent_at_once * left;
         left -= limit;
         const std::vector<Regression> known = regressions(history, found);
-        const auto next = next_change(history, known, limit, seed_of(history, options.seed, found.size()));
+        const auto next =
+            next_change(history, known, scatter, limit, seed_of(history, options.seed, found.size()));
         if (!next) break;
-        changes.push_back(told(history, known, *next));
+        changes.push_back(told(history, known, scatter, *next));
         found.push_back(*next);
     }
     std::stable_sort(changes.begin(), changes.end(),
@@ -112,7 +117,8 @@ std::vector<FoundChange> find_changes(const JointHistory& history, const TrendOp
     return found;
 }
 
-JointTrend trend_of_joint(const JointHistory& history, const TrendOptions& options) {
+JointTrend trend_of_joint(const JointHistory& history, const ScatterOfSeries& scatter,
+                          const TrendOptions& options) {
     JointTrend joint;
     joint.robot = history.robot;
     joint.joint = history.joint;
@@ -131,7 +137,7 @@ JointTrend trend_of_joint(const JointHistory& history, const TrendOptions& optio
         joint.notes.push_back("all its logs are of one moment");
         return joint;
     }
-    const std::vector<FoundChange> found = find_changes(history, options, joint.changes);
+    const std::vector<FoundChange> found = find_changes(history, scatter, options, joint.changes);
     joint.descriptors = told_descriptors(history, found);
     tell_courses(history, found, joint);
     return joint;
@@ -147,8 +153,10 @@ Trend trend_of(std::span<const FeatureLine> lines, const TrendOptions& options) 
     trend.lines = lines.size();
     trend.failed = static_cast<std::size_t>(
         std::count_if(lines.begin(), lines.end(), [](const FeatureLine& line) { return line.failed(); }));
-    for (const JointHistory& history : joint_histories(lines, trend.notes)) {
-        trend.joints.push_back(trend_of_joint(history, options));
+    const std::vector<JointHistory> histories = joint_histories(lines, trend.notes);
+    const std::vector<ScatterOfSeries> scatter = scatter_of_kin(histories);
+    for (std::size_t h = 0; h < histories.size(); ++h) {
+        trend.joints.push_back(trend_of_joint(histories[h], scatter[h], options));
         const JointTrend& joint = trend.joints.back();
         const bool looked_at =
             std::any_of(joint.descriptors.begin(), joint.descriptors.end(),
