@@ -10,19 +10,23 @@
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/document/provenance.hpp"
+#include "ripplenotch/export/joint_mjcf.hpp"
 
 namespace ripplenotch {
 
-/// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one.
+/// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one;
+/// `mjcf` what the improved model was written as, if MuJoCo's.
 [[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
-                                          const Provenance& provenance, const ArmAccount* arm = nullptr);
+                                          const Provenance& provenance, const ArmAccount* arm = nullptr,
+                                          const MjcfAccount* mjcf = nullptr);
 
 /// One of the joints of a log.
 struct DiagnosedJoint {
     std::string joint;
     const Diagnosis& diagnosis;
     const GearAccount& gear;
-    const ArmAccount* arm;  ///< what an arm was given, if one
+    const ArmAccount* arm;              ///< what an arm was given, if one
+    const MjcfAccount* mjcf = nullptr;  ///< what the improved model was written as, if MuJoCo's
 };
 
 /// Schema ripplenotch/diagnoses/1: a list of what write_diagnosis tells of each, with its joint's name.

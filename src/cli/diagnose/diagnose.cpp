@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
+#include "cli/diagnose/improved_mjcf.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
 #include "cli/diagnose/joints_table.hpp"
 #include "cli/gear/joint_methods.hpp"
@@ -31,24 +32,30 @@ std::string rules_text(const DiagnosisRules& rules) {
 }
 
 std::string story(const JointDiagnosis& one, bool explain) {
-    return (one.given.account ? arm_text(*one.given.account) : "") + diagnosis_story(one.diagnosis, explain);
+    return (one.given.account ? arm_text(*one.given.account) : "") + diagnosis_story(one.diagnosis, explain) +
+           (one.mjcf ? mjcf_text(*one.mjcf) : "");
 }
 
-void write_improved(const DiagnoseRequest& request, const JointDiagnosis& one) {
+void write_improved(const DiagnoseRequest& request, JointDiagnosis& one) {
     if (request.common.output == "-") return;
     const std::string path = with_joint(request.common.output, one.joint);
+    if (names_mjcf(path)) {
+        one.mjcf = write_improved_mjcf(request, one, path);
+        return;
+    }
     write_text(path, write_model(improved_model(one.given, one.diagnosis), one.provenance),
                request.common.overwrite());
     say(request.common, fmt::format("the improved model is in {}", path));
 }
 
 ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::string& command_line) {
-    const JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
+    JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
     if (!one.diagnosis.not_accepted.empty()) raise<UsageError>("{}", one.diagnosis.not_accepted.front());
     write_improved(request, one);
     write_text("-",
                request.common.json ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
-                                                     one.given.account ? &*one.given.account : nullptr)
+                                                     one.given.account ? &*one.given.account : nullptr,
+                                                     one.mjcf ? &*one.mjcf : nullptr)
                                    : story(one, request.explain),
                ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, one.provenance, [&] {
@@ -69,8 +76,9 @@ std::string list_of(const std::vector<JointDiagnosis>& all, const std::string& c
     Provenance provenance{{}, command_line};
     std::vector<DiagnosedJoint> joints;
     for (const JointDiagnosis& one : all) {
-        joints.push_back(
-            {one.joint, one.diagnosis, one.gear, one.given.account ? &*one.given.account : nullptr});
+        joints.push_back({one.joint, one.diagnosis, one.gear,
+                          one.given.account ? &*one.given.account : nullptr,
+                          one.mjcf ? &*one.mjcf : nullptr});
         for (const InputRecord& input : one.provenance.inputs) {
             const auto same = [&](const InputRecord& known) { return known.name == input.name; };
             if (std::none_of(provenance.inputs.begin(), provenance.inputs.end(), same))
@@ -139,7 +147,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "exit with 5 unless the log is explained in the end");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common, {"a model", ".json"});
+    attach_common(options, request->common, {"a model", ".json .xml .mjcf"});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 
@@ -151,7 +159,8 @@ const Command commands::diagnose{
     .description =
         "Fits the model to the log, says where they disagree, tries every effect of the catalogue, names and "
         "adds\n"
-        "what is missing, and says what no effect explains. -o takes the improved model.json.\n"
+        "what is missing, and says what no effect explains. -o takes the improved model.json; named .xml or\n"
+        ".mjcf, it is written for MuJoCo, with a list of what has no place there.\n"
         "Example: ripplenotch diagnose log.csv --model model.json --validate other.csv -o improved.json",
     .attach = attach,
 };

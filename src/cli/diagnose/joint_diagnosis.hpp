@@ -4,6 +4,7 @@
 
 #include "cli/diagnose/diagnose_request.hpp"
 #include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/export/joint_mjcf.hpp"
 
 namespace ripplenotch {
 
@@ -14,6 +15,7 @@ struct JointDiagnosis {
     Log log;
     Diagnosis diagnosis;
     Provenance provenance;
+    std::optional<MjcfAccount> mjcf = {};  ///< what the improved model was written as, if MuJoCo's
 
     [[nodiscard]] bool is_conclusive() const;
 };
