@@ -11,6 +11,7 @@
 #include "document/diagnosis_fields.hpp"
 #include "document/gear_fields.hpp"
 #include "document/model_fields.hpp"
+#include "document/written_fields.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -163,18 +164,6 @@ Json arm_json(const ArmAccount& arm) {
     return json;
 }
 
-Json mjcf_json(const MjcfAccount& mjcf) {
-    Json holds = Json::array(), not_held = Json::array();
-    for (const MjcfPart& part : mjcf.holds) holds.push_back({{"effect", part.effect}, {"as", part.words}});
-    for (const MjcfPart& part : mjcf.not_held)
-        not_held.push_back({{"effect", part.effect}, {"reason", part.words}});
-    return {{"file", mjcf.file},
-            {"holds", holds},
-            {"not_held", not_held},
-            {"gap_before_nm", six_digits(mjcf.before_nm)},
-            {"gap_after_nm", six_digits(mjcf.after_nm)}};
-}
-
 // Which rules were asked about each finding and each candidate of the last step.
 Json decisions_json(const Diagnosis& diagnosis) {
     Json list = Json::array();
@@ -189,7 +178,7 @@ Json decisions_json(const Diagnosis& diagnosis) {
 }
 
 void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& gear, const ArmAccount* arm,
-                   const MjcfAccount* mjcf) {
+                   const DiagnosisWritten& written) {
     json["verdict"] = verdict_name(diagnosis.verdict);
     if (!diagnosis.doubt.empty()) json["doubt"] = diagnosis.doubt;
     json["gear"] = gear_to_json(gear);
@@ -214,7 +203,7 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     put_beside(json, diagnosis);
     put_decided(json, diagnosis);
     if (arm != nullptr) json["arm"] = arm_json(*arm);
-    if (mjcf != nullptr) json["mjcf"] = mjcf_json(*mjcf);
+    put_written(json, written);
     json["own_terms"] = baseline_json(diagnosis);
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;
@@ -230,9 +219,9 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
 }  // namespace
 
 std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
-                            const ArmAccount* arm, const MjcfAccount* mjcf) {
+                            const ArmAccount* arm, const DiagnosisWritten& written) {
     Json json = document_head("diagnosis", provenance);
-    put_diagnosis(json, diagnosis, gear, arm, mjcf);
+    put_diagnosis(json, diagnosis, gear, arm, written);
     return to_fitted_text(std::move(json));
 }
 
@@ -241,7 +230,7 @@ std::string write_diagnoses(std::span<const DiagnosedJoint> joints, const Proven
     json["joints"] = Json::array();
     for (const DiagnosedJoint& one : joints) {
         Json entry{{"joint", one.joint}};
-        put_diagnosis(entry, one.diagnosis, one.gear, one.arm, one.mjcf);
+        put_diagnosis(entry, one.diagnosis, one.gear, one.arm, one.written);
         list_in(json, "joints").push_back(std::move(entry));
     }
     return to_fitted_text(std::move(json));

@@ -9,24 +9,31 @@
 #include "ripplenotch/arm/arm_account.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/document/provenance.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
 
 namespace ripplenotch {
 
+/// Files that were written beside a diagnosis, and are told with it.
+struct DiagnosisWritten {
+    const MjcfAccount* mjcf = nullptr;  ///< the improved model in MuJoCo's words
+    const MotionPlan* plan = nullptr;   ///< none is told where nothing was open
+    std::string plan_file = {};
+};
+
 /// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one;
-/// `mjcf` what the improved model was written as, if MuJoCo's.
 [[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
                                           const Provenance& provenance, const ArmAccount* arm = nullptr,
-                                          const MjcfAccount* mjcf = nullptr);
+                                          const DiagnosisWritten& written = {});
 
 /// One of the joints of a log.
 struct DiagnosedJoint {
     std::string joint;
     const Diagnosis& diagnosis;
     const GearAccount& gear;
-    const ArmAccount* arm;              ///< what an arm was given, if one
-    const MjcfAccount* mjcf = nullptr;  ///< what the improved model was written as, if MuJoCo's
+    const ArmAccount* arm;  ///< what an arm was given, if one
+    DiagnosisWritten written = {};
 };
 
 /// Schema ripplenotch/diagnoses/1: a list of what write_diagnosis tells of each, with its joint's name.

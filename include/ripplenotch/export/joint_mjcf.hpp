@@ -27,7 +27,7 @@ struct MjcfWave {
 /// A dcmotor whose lugre is a bristle that slips at `friction_nm`.
 struct MjcfBristle {
     std::string name;  ///< "friction_1"
-    double stiffness_nm_rad = 0.0, friction_nm = 0.0, start_rad = 0.0;
+    double stiffness_nm_rad = 0.0, friction_nm = 0.0;
 };
 
 /// What was written, and what it is worth.
@@ -41,7 +41,7 @@ struct MjcfAccount {
 
 /// What a joint of MuJoCo 3.14 holds of a model, in its units: newton-metres, radians, seconds.
 struct JointMjcf {
-    Model held;  ///< the terms that it holds, for their torque by predict_nm
+    Model held;  ///< the terms that it holds, as it holds them, for their torque by predict_nm
     std::vector<MjcfPart> holds, not_held;
     double inertia_kgm2 = 0.0;
     double damping = 0.0;            ///< Nm per rad/s
@@ -60,7 +60,8 @@ struct JointMjcf {
 [[nodiscard]] JointMjcf joint_mjcf(const Model& model);
 
 /// A file of its own: one body on one hinge of the name `joint`. Friction is made soft so that MuJoCo's rises
-/// where the model's does: torque_nm * clip(v / (1.3 width), -1, 1) in place of tanh(v / width).
+/// where the model's does: tanh(v / width) in two straight steps, frictionloss of the joint and of a tendon
+/// round it, whose sum is the friction.
 /// What a torque sensor shows is qfrc_inverse, plus the force of the actuators ripple_*, less that of
 /// friction_*. `heading` becomes a comment.
 [[nodiscard]] std::string write_mjcf(const JointMjcf& mjcf, std::string_view joint,

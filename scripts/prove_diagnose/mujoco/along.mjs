@@ -23,7 +23,6 @@ for (let i = 0; i < model.nactuator; ++i) {
   mine.push({i, sign: name.startsWith('friction_') ? -1 : 1, state: model.actuator_actadr[i],
              stiffness: model.actuator_dynprm[ndyn * i + 5]});
 }
-if (model.nkey > 0) mujoco.mj_resetDataKeyframe(model, data, 0);
 const torque = [];
 let before = null;
 for (const row of told.rows) {

@@ -4,9 +4,16 @@
 
 #include "cli/diagnose/diagnose_request.hpp"
 #include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/export/joint_mjcf.hpp"
 
 namespace ripplenotch {
+
+/// What --plan wrote.
+struct PlannedMotion {
+    std::string file;
+    std::optional<MotionPlan> plan;  ///< none: nothing is open
+};
 
 struct JointDiagnosis {
     std::string joint;  ///< empty where the log names none
@@ -16,6 +23,7 @@ struct JointDiagnosis {
     Diagnosis diagnosis;
     Provenance provenance;
     std::optional<MjcfAccount> mjcf = {};  ///< what the improved model was written as, if MuJoCo's
+    std::optional<PlannedMotion> planned = {};
 
     [[nodiscard]] bool is_conclusive() const;
 };

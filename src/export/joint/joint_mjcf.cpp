@@ -84,6 +84,7 @@ class Taking {
         } else {
             mjcf_.holds.push_back({std::move(name), std::move(words)});
             mjcf_.held.terms.push_back(term);
+            begin_at_rest(mjcf_.held.terms.back());
         }
     }
     JointMjcf taken() { return std::move(mjcf_); }
@@ -123,16 +124,29 @@ class Taking {
         return "cogging of a dcmotor";
     }
 
+    // MuJoCo 3.14 refuses a keyframe with states of some of several dcmotors.
+    void begin_at_rest(Term& held) {
+        if (held.effect->name != "hysteresis" || start_rad_ == 0.0) return;
+        held.values[2] = 0.0;
+        mjcf_.not_held.push_back(
+            {"hysteresis", fmt::format("its bristle begins at 0; set act of {} to {} rad first",
+                                       mjcf_.bristles.back().name, shortest(to_digits(start_rad_)))});
+    }
+
     // Dahl: the bristle slips at torque_nm and is worn by 63 % after width_deg.
     std::string bristle(const std::vector<double>& v) {
+        start_rad_ = 0.0;
+        if (v[0] == 0.0) return "nothing, of 0 Nm";
         const double width_rad = v[1] / degrees_per_radian;
-        mjcf_.bristles.push_back({fmt::format("friction_{}", mjcf_.bristles.size() + 1), v[0] / width_rad,
-                                  v[0], v[2] * width_rad});
+        start_rad_ = v[2] * width_rad;
+        mjcf_.bristles.push_back(
+            {fmt::format("friction_{}", mjcf_.bristles.size() + 1), v[0] / width_rad, v[0]});
         return "lugre of a dcmotor";
     }
 
     JointMjcf mjcf_;
     GearRatio ratio_;
+    double start_rad_ = 0.0;  // of the last bristle
 };
 
 }  // namespace

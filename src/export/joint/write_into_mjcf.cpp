@@ -13,6 +13,10 @@
 namespace ripplenotch {
 namespace {
 
+// MuJoCo's step turns over where the speed is the acceleration times half of this time (s): five times sooner
+// than without a word, and still slower than two steps of 2 ms, which MuJoCo asks for.
+constexpr std::string_view quick_step = "0.004 1";
+
 struct XmlAttribute {
     std::string_view name, value;
     std::size_t from = 0, to = 0;  ///< of the value in the file
@@ -133,7 +137,9 @@ std::string write_into_mjcf(const JointMjcf& mjcf, std::string_view text, const 
     const std::string motors = mjcf_motors(mjcf, joint, free_ending(mjcf, text, joint));
     if (!motors.empty()) changed.insert(end, "  <actuator>\n" + motors + "  </actuator>\n");
     const std::pair<std::string_view, std::string> values[] = {
-        {"damping", damping_words(mjcf)}, {"frictionloss", shortest(mjcf.frictionloss_nm)}};
+        {"damping", damping_words(mjcf)},
+        {"frictionloss", shortest(mjcf.frictionloss_nm)},
+        {"solreffriction", std::string(quick_step)}};
     changed = with_values(changed, *tag, values);
     // Before the root, behind a declaration, which has to be first.
     const auto root = first_tag(changed, [](const XmlTag& one) { return one.name == "mujoco"; });
