@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Logs that end undecided, the motion that `diagnose --plan` asks for, and what the joint's log along it decides.
 
-The joint is moved by a poor motion: one way, one stroke, 15 degrees to and fro, one speed. Where the diagnosis leaves a tie or
+The joint is moved by a poor motion: one way, one stroke, 15 or 4 degrees to and fro, two near speeds. Where the diagnosis leaves a tie or
 calls a finding unidentifiable, its plan is read from the CSV, the same joint moves along it, and that log alone is diagnosed.
 """
 
@@ -24,17 +24,24 @@ PAIRS = (("offset", "viscous-friction"), ("coulomb-friction", "viscous-friction"
          ("hysteresis", "offset"), ("stribeck-friction", "offset"), ("gravity", "drift"))
 
 
-def one_speed(rng, start_deg, seconds):
-    """To and fro at one speed, never at rest for long and never slow."""
-    travel = motion.Motion(start_deg).rest(0.3)
-    speed, direction = rng.uniform(60.0, 120.0), 1.0
-    while travel.duration_s < seconds - 3.0:
-        travel.speed_to(direction * speed, 0.2).stay(1.2).speed_to(0.0, 0.2)
+def two_speeds(rng, start_deg, seconds):
+    """One way, without a rest, at two speeds that are near each other."""
+    travel = motion.Motion(start_deg)
+    travel.speed_deg_s = rng.uniform(60.0, 90.0)
+    return travel.stay(seconds / 2 - 0.5).speed_to(1.3 * travel.speed_deg_s, 1.0).stay(seconds / 2 - 0.5)
+
+
+def small_swings(rng, start_deg, seconds):
+    """To and fro by 4 degrees."""
+    travel, direction = motion.Motion(start_deg).rest(0.5), 1.0
+    while travel.duration_s < seconds - 2.0:
+        travel.stroke(direction * 4.0, rng.uniform(0.3, 0.8)).rest(rng.uniform(0.1, 0.3))
         direction = -direction
-    return travel.rest(0.3)
+    return travel.rest(seconds - travel.duration_s)
 
 
-POOR = {"one way": motion.one_way, "one stroke": motion.one_stroke, "short travel": motion.short_travel, "one speed": one_speed}
+POOR = {"one way": motion.one_way, "one stroke": motion.one_stroke, "short travel": motion.short_travel, "two speeds": two_speeds,
+        "small swings": small_swings}
 
 
 @dataclasses.dataclass(frozen=True)

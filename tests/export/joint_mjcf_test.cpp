@@ -96,8 +96,8 @@ TEST_CASE("two weights are one, and two lines of an order have names of their ow
 }
 
 TEST_CASE("a second step of friction is told, and so is a bristle that does not begin at rest") {
-    const JointMjcf two =
-        joint_mjcf(model_of({"coulomb-friction,torque_nm=2", "coulomb-friction,torque_nm=1"}));
+    const JointMjcf two = joint_mjcf(model_of(
+        {"coulomb-friction,torque_nm=2,width_deg_s=0.2", "coulomb-friction,torque_nm=1,width_deg_s=0.2"}));
     CHECK(two.frictionloss_nm == 2.0);
     REQUIRE(two.not_held.size() == 1);
     CHECK_THAT(two.not_held[0].words, Contains("one frictionloss"));
@@ -131,8 +131,8 @@ TEST_CASE("a heading cannot end the comment that it stands in") {
 }
 
 TEST_CASE("of a tree one joint's friction and motors change, and nothing else") {
-    const JointMjcf mjcf =
-        joint_mjcf(model_of({"coulomb-friction,torque_nm=2", "ripple,order=1,amplitude_nm=1,phase_deg=0"}));
+    const JointMjcf mjcf = joint_mjcf(model_of(
+        {"coulomb-friction,torque_nm=2,width_deg_s=0.2", "ripple,order=1,amplitude_nm=1,phase_deg=0"}));
     const std::string once = write_into_mjcf(mjcf, tree, "arm.xml", "elbow", {});
     CHECK_THAT(once, Contains("<joint solreffriction") || Contains("<joint frictionloss=\"2\""));
     CHECK_THAT(once, Contains("name='elbow' damping = \"0\"/>"));

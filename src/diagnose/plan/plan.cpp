@@ -15,10 +15,13 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array durations_s = {6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0};
-constexpr int draws = 16, moves = 16;
-constexpr double judged_hz = 100.0;
-constexpr std::size_t most_judged_rows = 4000;
+// How closely is looked, and nothing that is decided by.
+struct Looking {
+    static constexpr std::array durations_s = {6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0};
+    static constexpr int draws = 16, moves = 16;
+    static constexpr Hertz rate{100.0};
+    static constexpr std::size_t most_rows = 4000;
+};
 
 // Every n-th row.
 Motion thinned(const Motion& motion, std::size_t step) {
@@ -43,7 +46,7 @@ class Planning {
         : asked_(asked), limits_(limits), variance_nm2_(variance_nm2) {}
 
     [[nodiscard]] double score(const FourierMotion& motion, Seconds duration) const {
-        const Motion along = make_motion(within(motion, limits_, duration), Hertz(judged_hz));
+        const Motion along = make_motion(within(motion, limits_, duration), Looking::rate);
         double least = std::numeric_limits<double>::infinity();
         for (const AskedTerm& term : asked_)
             least = std::min(least, separation(term, along).squares / variance_nm2_ / term.needed);
@@ -57,8 +60,9 @@ class Planning {
             const double now = score(motion, duration);
             if (now > best.score) best = {std::move(motion), now};
         };
-        for (int k = 0; k < draws; ++k) take(drawn(noise));
-        for (int k = 0; k < moves; ++k) take(moved(best.motion, k < moves / 2 ? 0.3 : 0.1, noise));
+        for (int k = 0; k < Looking::draws; ++k) take(drawn(noise));
+        for (int k = 0; k < Looking::moves; ++k)
+            take(moved(best.motion, k < Looking::moves / 2 ? 0.3 : 0.1, noise));
         return best;
     }
 
@@ -98,17 +102,17 @@ std::optional<MotionPlan> plan_motion(const Diagnosis& diagnosis, const TraceVie
                                       const MotionLimits& limits, const PlanOptions& options) {
     check(limits);
     const Motion whole = motion_along(log, options.smoothing);
-    const std::size_t step = whole.size() / most_judged_rows + 1;
+    const std::size_t step = whole.size() / Looking::most_rows + 1;
     const double variance = diagnosis.gap.noise_floor_nm * diagnosis.gap.noise_floor_nm;
     const std::vector<AskedTerm> asked =
         asked_terms(diagnosis, thinned(whole, step), variance / static_cast<double>(step), enough_gain);
     if (asked.empty()) return std::nullopt;
     // A row that is looked at stands for so many of the log to come.
-    const double judged_variance = variance * judged_hz / options.sample_rate.value();
+    const double judged_variance = variance * Looking::rate.value() / options.sample_rate.value();
     const Planning planning(asked, limits, judged_variance);
     Judged best;
     Seconds duration = options.longest;
-    for (const double seconds : durations_s) {
+    for (const double seconds : Looking::durations_s) {
         if (seconds > options.longest.value()) break;
         const Judged now = planning.best(Seconds(seconds), options.seed);
         if (now.score > best.score) {
@@ -120,7 +124,7 @@ std::optional<MotionPlan> plan_motion(const Diagnosis& diagnosis, const TraceVie
     MotionPlan plan;
     plan.motions = within(best.motion, limits, duration);
     plan.motion = make_motion(plan.motions, options.sample_rate);
-    plan.questions = planning.questions(make_motion(plan.motions, Hertz(judged_hz)), judged_variance);
+    plan.questions = planning.questions(make_motion(plan.motions, Looking::rate), judged_variance);
     plan.decides = best.score >= 1.0;
     return plan;
 }
