@@ -56,7 +56,7 @@ TEST_CASE("friction that one direction cannot tell from an offset is told after 
                 "constant,speed=60deg/s,duration=3s"});
     const Diagnosis before = diagnose(known(), poor.view(), nullptr);
     REQUIRE(before.ambiguous.size() == 1);
-    const PlanOptions options{.sample_rate = 250_Hz};
+    const PlanOptions options{.sample_rate = 250_Hz, .rules = {}};
     const auto plan = plan_motion(before, poor.view(), limits, options);
     REQUIRE(plan);
     CHECK(plan->decides);
@@ -66,7 +66,7 @@ TEST_CASE("friction that one direction cannot tell from an offset is told after 
     CHECK(open == 2);
     for (const PlanQuestion& one : plan->questions) {
         CAPTURE(one.effect, one.rival);
-        CHECK(one.gain >= enough_gain);
+        CHECK(one.gain >= options.rules.advice.plan_gain);
         CHECK((!one.open || one.gain_before < 12.0));
     }
 

@@ -24,6 +24,7 @@ struct PlanOptions {
     std::uint64_t seed = 1;
     Hertz sample_rate{1000.0};
     Seconds smoothing = default_smoothing;
+    DiagnosisRules rules = {};
 };
 
 /// What is to be told from what.
@@ -40,12 +41,10 @@ struct MotionPlan {
     std::vector<std::string> motions;  ///< for make_motion and `simulate --motion`
     Motion motion;                     ///< the same, sampled
     std::vector<PlanQuestion> questions;
-    bool decides = false;  ///< each gain is enough_gain or more
+    bool decides =
+        false;  ///< each gain is rules.advice.plan_gain or more, or of what was told half of what it was
     [[nodiscard]] Seconds duration() const;
 };
-
-/// A gain of which nothing of the judging is left in doubt: a tie is below 12, a price about 30.
-inline constexpr double enough_gain = 2000.0;
 
 /// The shortest motion of some durations up to the longest along which the least gain of all questions is
 /// enough, or else the longest of most. A gain is that of T-optimal design (Atkinson and Fedorov, Biometrika

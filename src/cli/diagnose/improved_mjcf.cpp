@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "cli/diagnose/decided_text.hpp"
 #include "cli/talk.hpp"
 #include "core/rms.hpp"
@@ -74,7 +77,12 @@ std::vector<std::string> heading_of(const JointDiagnosis& one, const MjcfAccount
 
 }  // namespace
 
-bool names_mjcf(std::string_view path) { return path.ends_with(".xml") || path.ends_with(".mjcf"); }
+bool names_mjcf(std::string_view path) {
+    std::string name(path);
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name.ends_with(".xml") || name.ends_with(".mjcf");
+}
 
 MjcfAccount write_improved_mjcf(const DiagnoseRequest& request, const JointDiagnosis& one,
                                 const std::string& path) {

@@ -90,6 +90,7 @@ PlannedMotion plan_for(const DiagnoseRequest& request, const JointDiagnosis& one
     const TraceView log = one.log.trace.view();
     options.sample_rate = Hertz(to_digits(log.sample_rate.value(), 3));
     options.smoothing = request.smoothing;
+    options.rules = rules_of(request);
     planned.plan = plan_motion(one.diagnosis, log, limits_of(*request.limits), options);
     if (planned.plan) write_text(planned.file, csv_of(planned.plan->motion), request.common.overwrite());
     return planned;

@@ -105,7 +105,8 @@ std::optional<MotionPlan> plan_motion(const Diagnosis& diagnosis, const TraceVie
     const std::size_t step = whole.size() / Looking::most_rows + 1;
     const double variance = diagnosis.gap.noise_floor_nm * diagnosis.gap.noise_floor_nm;
     const std::vector<AskedTerm> asked =
-        asked_terms(diagnosis, thinned(whole, step), variance / static_cast<double>(step), enough_gain);
+        asked_terms(diagnosis, thinned(whole, step), variance / static_cast<double>(step),
+                    options.rules.advice.plan_gain);
     if (asked.empty()) return std::nullopt;
     // A row that is looked at stands for so many of the log to come.
     const double judged_variance = variance * Looking::rate.value() / options.sample_rate.value();
