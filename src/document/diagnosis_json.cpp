@@ -11,6 +11,7 @@
 #include "document/diagnosis_fields.hpp"
 #include "document/gear_fields.hpp"
 #include "document/model_fields.hpp"
+#include "document/written_fields.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -176,7 +177,8 @@ Json decisions_json(const Diagnosis& diagnosis) {
     return list;
 }
 
-void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& gear, const ArmAccount* arm) {
+void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& gear, const ArmAccount* arm,
+                   const DiagnosisWritten& written) {
     json["verdict"] = verdict_name(diagnosis.verdict);
     if (!diagnosis.doubt.empty()) json["doubt"] = diagnosis.doubt;
     json["gear"] = gear_to_json(gear);
@@ -201,6 +203,7 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     put_beside(json, diagnosis);
     put_decided(json, diagnosis);
     if (arm != nullptr) json["arm"] = arm_json(*arm);
+    put_written(json, written);
     json["own_terms"] = baseline_json(diagnosis);
     json["samples"] = diagnosis.samples;
     json["samples_used"] = diagnosis.samples_used;
@@ -216,9 +219,9 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
 }  // namespace
 
 std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear, const Provenance& provenance,
-                            const ArmAccount* arm) {
+                            const ArmAccount* arm, const DiagnosisWritten& written) {
     Json json = document_head("diagnosis", provenance);
-    put_diagnosis(json, diagnosis, gear, arm);
+    put_diagnosis(json, diagnosis, gear, arm, written);
     return to_fitted_text(std::move(json));
 }
 
@@ -227,7 +230,7 @@ std::string write_diagnoses(std::span<const DiagnosedJoint> joints, const Proven
     json["joints"] = Json::array();
     for (const DiagnosedJoint& one : joints) {
         Json entry{{"joint", one.joint}};
-        put_diagnosis(entry, one.diagnosis, one.gear, one.arm);
+        put_diagnosis(entry, one.diagnosis, one.gear, one.arm, one.written);
         list_in(json, "joints").push_back(std::move(entry));
     }
     return to_fitted_text(std::move(json));

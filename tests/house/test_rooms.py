@@ -21,7 +21,7 @@ SEES = {
     "survey": {"core", "log", "analysis"},
     "filter": {"core", "log", "analysis", "design"},
     "evaluate": {"core", "filter", "analysis", "design"},
-    "export": {"core", "design"},
+    "export": {"core", "design", "model"},
     "diagnose": {"core", "model", "analysis"},
     "fleet": {"core", "analysis", "model"},
     "figure": {"core"},

@@ -36,6 +36,8 @@ const std::vector<Example> examples = {
      "sweep,amplitude=20deg,from-frequency=0.1Hz,to-frequency=0.6Hz,duration=3s,phase=200deg"},
     {"multisine", "multisine,amplitude=10deg,frequency=0.2Hz,count=4,duration=3s",
      "multisine,amplitude=10deg,frequency=0.2Hz,count=4,duration=3s,phase=180deg"},
+    {"fourier", "fourier,speeds=10deg/s:-4deg/s:3deg/s,duration=3s",
+     "fourier,speeds=-10deg/s:4deg/s:-3deg/s,duration=3s"},
 };
 
 Motion chain(std::vector<std::string> specs, Hertz rate) { return make_motion(specs, rate); }
@@ -239,4 +241,12 @@ TEST_CASE("a sweep ends at its last frequency, and a multisine keeps within its 
         REQUIRE(s.position_deg[k] == Approx(s.position_deg[k + 2000]).margin(1e-9));
     CHECK_THROWS_WITH(make_motion("multisine,amplitude=1deg,frequency=1Hz,count=2.5,duration=1s", 10_Hz),
                       Contains("not a whole number"));
+}
+
+TEST_CASE("a fourier motion begins and ends at rest, and where the odd half-waves say") {
+    const Motion m = make_motion("fourier,speeds=10deg/s:5deg/s:-2deg/s,duration=3s,from=7deg", 1000_Hz);
+    CHECK(m.velocity_deg_s.front() == 0.0);
+    CHECK(m.velocity_deg_s.back() == Approx(0.0).margin(0.02));
+    // An odd half-wave goes 2 T s / (pi k), an even one nowhere.
+    CHECK(m.position_deg.back() == Approx(7.0 + 6.0 / 3.14159265 * (10.0 - 2.0 / 3.0)).margin(1e-4));
 }

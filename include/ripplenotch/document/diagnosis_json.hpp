@@ -9,13 +9,23 @@
 #include "ripplenotch/arm/arm_account.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/diagnose/plan.hpp"
 #include "ripplenotch/document/provenance.hpp"
+#include "ripplenotch/export/joint_mjcf.hpp"
 
 namespace ripplenotch {
 
-/// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one.
+/// Files that were written beside a diagnosis, and are told with it.
+struct DiagnosisWritten {
+    const MjcfAccount* mjcf = nullptr;  ///< the improved model in MuJoCo's words
+    const MotionPlan* plan = nullptr;   ///< none is told where nothing was open
+    std::string plan_file = {};
+};
+
+/// Schema ripplenotch/diagnosis/1. `gear` is that of the model as given; `arm` what an arm was given, if one;
 [[nodiscard]] std::string write_diagnosis(const Diagnosis& diagnosis, const GearAccount& gear,
-                                          const Provenance& provenance, const ArmAccount* arm = nullptr);
+                                          const Provenance& provenance, const ArmAccount* arm = nullptr,
+                                          const DiagnosisWritten& written = {});
 
 /// One of the joints of a log.
 struct DiagnosedJoint {
@@ -23,6 +33,7 @@ struct DiagnosedJoint {
     const Diagnosis& diagnosis;
     const GearAccount& gear;
     const ArmAccount* arm;  ///< what an arm was given, if one
+    DiagnosisWritten written = {};
 };
 
 /// Schema ripplenotch/diagnoses/1: a list of what write_diagnosis tells of each, with its joint's name.

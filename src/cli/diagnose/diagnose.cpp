@@ -8,8 +8,10 @@
 
 #include "cli/command.hpp"
 #include "cli/diagnose/diagnosis_text.hpp"
+#include "cli/diagnose/improved_mjcf.hpp"
 #include "cli/diagnose/joint_diagnosis.hpp"
 #include "cli/diagnose/joints_table.hpp"
+#include "cli/diagnose/planned_motion.hpp"
 #include "cli/gear/joint_methods.hpp"
 #include "cli/talk.hpp"
 #include "cli/text_table.hpp"
@@ -31,25 +33,40 @@ std::string rules_text(const DiagnosisRules& rules) {
 }
 
 std::string story(const JointDiagnosis& one, bool explain) {
-    return (one.given.account ? arm_text(*one.given.account) : "") + diagnosis_story(one.diagnosis, explain);
+    return (one.given.account ? arm_text(*one.given.account) : "") + diagnosis_story(one.diagnosis, explain) +
+           (one.mjcf ? mjcf_text(*one.mjcf) : "") + (one.planned ? plan_text(*one.planned) : "");
 }
 
-void write_improved(const DiagnoseRequest& request, const JointDiagnosis& one) {
+void write_improved(const DiagnoseRequest& request, JointDiagnosis& one) {
+    if (request.plan) one.planned = plan_for(request, one);
     if (request.common.output == "-") return;
     const std::string path = with_joint(request.common.output, one.joint);
+    if (names_mjcf(path)) {
+        one.mjcf = write_improved_mjcf(request, one, path);
+        return;
+    }
     write_text(path, write_model(improved_model(one.given, one.diagnosis), one.provenance),
                request.common.overwrite());
     say(request.common, fmt::format("the improved model is in {}", path));
 }
 
+DiagnosisWritten written_of(const JointDiagnosis& one) {
+    DiagnosisWritten written;
+    if (one.mjcf) written.mjcf = &*one.mjcf;
+    if (one.planned && one.planned->plan) written.plan = &*one.planned->plan;
+    if (one.planned) written.plan_file = one.planned->file;
+    return written;
+}
+
 ExitCode run_one(const DiagnoseRequest& request, GivenSource& given, const std::string& command_line) {
-    const JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
+    JointDiagnosis one = diagnosed_joint(request, std::nullopt, given, command_line);
     if (!one.diagnosis.not_accepted.empty()) raise<UsageError>("{}", one.diagnosis.not_accepted.front());
     write_improved(request, one);
     write_text("-",
-               request.common.json ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
-                                                     one.given.account ? &*one.given.account : nullptr)
-                                   : story(one, request.explain),
+               request.common.json
+                   ? write_diagnosis(one.diagnosis, one.gear, one.provenance,
+                                     one.given.account ? &*one.given.account : nullptr, written_of(one))
+                   : story(one, request.explain),
                ByteSink::Overwrite::no);
     draw_plot(request.plot, request.common, one.provenance, [&] {
         return diagnosis_figure(request.path, one.diagnosis, one.log.trace.view(), request.smoothing);
@@ -69,8 +86,8 @@ std::string list_of(const std::vector<JointDiagnosis>& all, const std::string& c
     Provenance provenance{{}, command_line};
     std::vector<DiagnosedJoint> joints;
     for (const JointDiagnosis& one : all) {
-        joints.push_back(
-            {one.joint, one.diagnosis, one.gear, one.given.account ? &*one.given.account : nullptr});
+        joints.push_back({one.joint, one.diagnosis, one.gear,
+                          one.given.account ? &*one.given.account : nullptr, written_of(one)});
         for (const InputRecord& input : one.provenance.inputs) {
             const auto same = [&](const InputRecord& known) { return known.name == input.name; };
             if (std::none_of(provenance.inputs.begin(), provenance.inputs.end(), same))
@@ -127,6 +144,13 @@ std::function<ExitCode()> attach(Options& options) {
                   "an effect that is not tried; may be given several times");
     options.texts("--accept", request->accept, "NAME",
                   "a finding in doubt that is taken into the model all the same; may be given several times");
+    options.text(
+        "--plan", request->plan, "FILE",
+        "the shortest motion, of 30 s at most, that would decide what the log leaves open: rows of time, "
+        "position and velocity; needs --limits");
+    options.writes(&request->plan);
+    options.text("--limits", request->limits, "KEY=VALUE,...",
+                 "of --plan: speed=90deg/s,acceleration=300deg/s2,range=-90deg:90deg");
     options.flag("--explain", request->explain,
                  "in the story, which rules were asked about each finding, with their numbers and limits");
     options.texts("--rule", request->rules, "NAME=VALUE",
@@ -139,7 +163,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "exit with 5 unless the log is explained in the end");
     attach_plot(options, request->plot);
     attach_log(options, request->log);
-    attach_common(options, request->common, {"a model", ".json"});
+    attach_common(options, request->common, {"a model", ""});
     return [request, &options] { return run(*request, options.command_line()); };
 }
 
@@ -151,7 +175,8 @@ const Command commands::diagnose{
     .description =
         "Fits the model to the log, says where they disagree, tries every effect of the catalogue, names and "
         "adds\n"
-        "what is missing, and says what no effect explains. -o takes the improved model.json.\n"
+        "what is missing, and says what no effect explains. -o takes the improved model.json; named .xml or\n"
+        ".mjcf, it is written for MuJoCo, with a list of what has no place there.\n"
         "Example: ripplenotch diagnose log.csv --model model.json --validate other.csv -o improved.json",
     .attach = attach,
 };

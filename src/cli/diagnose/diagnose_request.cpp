@@ -2,9 +2,11 @@
 #include "cli/diagnose/diagnose_request.hpp"
 
 #include "cli/diagnose/model_from_log.hpp"
+#include "cli/diagnose/planned_motion.hpp"
 #include "cli/gear/joint_methods.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/output_name.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -48,7 +50,9 @@ void check(const DiagnoseRequest& request) {
         raise<UsageError>("--smoothing: {} s is below 0", shortest(request.smoothing.value()));
     for (const std::string& name : request.without) (void)find_effect(name);
     for (const std::string& name : request.accept) (void)find_effect(name);
+    check_output_name(request.common.output, "a model", ".json .xml .mjcf");
     check_joints(request);
+    check_plan(request);
     check_plot(request.plot, request.common);
     if (request.plot.path == "-" && request.common.json)
         raise<UsageError>("--plot - and --json would both go to standard output; name a file with --plot");

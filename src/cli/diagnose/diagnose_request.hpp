@@ -22,6 +22,7 @@ struct DiagnoseRequest {
     GearOptions gear;  ///< a ratio alone, in place of a model
     GivenOptions given;
     std::optional<std::string> validate;
+    std::optional<std::string> plan, limits;  ///< a file; "speed=90deg/s,acceleration=..."
     std::vector<std::string> without, rules, accept;
     bool list_rules = false, explain = false;
     Seconds smoothing = default_smoothing;

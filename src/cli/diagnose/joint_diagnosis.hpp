@@ -4,8 +4,16 @@
 
 #include "cli/diagnose/diagnose_request.hpp"
 #include "ripplenotch/core/gear_account.hpp"
+#include "ripplenotch/diagnose/plan.hpp"
+#include "ripplenotch/export/joint_mjcf.hpp"
 
 namespace ripplenotch {
+
+/// What --plan wrote.
+struct PlannedMotion {
+    std::string file;
+    std::optional<MotionPlan> plan;  ///< none: nothing is open
+};
 
 struct JointDiagnosis {
     std::string joint;  ///< empty where the log names none
@@ -14,6 +22,8 @@ struct JointDiagnosis {
     Log log;
     Diagnosis diagnosis;
     Provenance provenance;
+    std::optional<MjcfAccount> mjcf = {};  ///< what the improved model was written as, if MuJoCo's
+    std::optional<PlannedMotion> planned = {};
 
     [[nodiscard]] bool is_conclusive() const;
 };

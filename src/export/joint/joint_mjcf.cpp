@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// Which attribute of a joint of MuJoCo, or which element on it, an effect is.
+#include "ripplenotch/export/joint_mjcf.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "ripplenotch/core/number.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+struct MjcfReason {
+    std::string_view effect, words;
+};
+constexpr std::array reasons = {
+    MjcfReason{"offset", "the zero of a sensor is no torque on the joint; take it off what the sensor shows"},
+    MjcfReason{"drift", "nothing there follows the time; take it off what the sensor shows"},
+    MjcfReason{"tone", "nothing there follows the time"},
+    MjcfReason{"stribeck-friction",
+               "lugre has it only with a stiffness and a damping of its bristle, which no log here tells"},
+    MjcfReason{"load-friction", "frictionloss does not follow the load"},
+    MjcfReason{"start-stop-ringing", "it is the answer of a controller, which the file has not"},
+    MjcfReason{"velocity-bias", "it is an error of the log's speed"},
+};
+
+std::string why_not(const Effect& effect) {
+    for (const MjcfReason& reason : reasons)
+        if (reason.effect == effect.name) return std::string(reason.words);
+    switch (effect.side) {
+        case Side::ripple:
+            return "cogging has one size and phase at every speed, place and load";
+        case Side::sensor:
+            return "it is the torque sensor's, not the joint's";
+        case Side::converter:
+            return "it is a fault of the log";
+        default:
+            return "it has no place in a joint";
+    }
+}
+
+double turn_rad(double degrees) {
+    return (degrees - 360.0 * std::floor(degrees / 360.0)) / degrees_per_radian;
+}
+
+// amplitude cos(poles q + phase) as amplitude sin(poles q + phase + a quarter of a turn).
+MjcfWave wave_of(std::string name, double amplitude_nm, double poles, double phase_deg) {
+    return {std::move(name), amplitude_nm, poles, turn_rad(phase_deg + 90.0)};
+}
+
+GearRatio ratio_of(const Model& model) {
+    GearRatio ratio = model.gear_ratio;
+    Motion none;
+    for (const Term& term : model.terms)
+        if (term.effect->name == "gear-ratio") term.effect->change_motion(values_of(term), none, ratio);
+    return ratio;
+}
+
+// Two weights on one joint are one.
+void add_weight(JointMjcf& mjcf, double nm, double phase_deg) {
+    const double angle = phase_deg / degrees_per_radian;
+    const double along = mjcf.weight_nm * portable::cos(mjcf.weight_rad) + nm * portable::cos(angle);
+    const double up = mjcf.weight_nm * portable::sin(mjcf.weight_rad) + nm * portable::sin(angle);
+    mjcf.weight_nm = portable::hypot(along, up);
+    mjcf.weight_rad = portable::atan2(up, along);
+}
+
+class Taking {
+  public:
+    explicit Taking(const Model& model) : ratio_(ratio_of(model)) {
+        mjcf_.held.gear_ratio = model.gear_ratio;
+    }
+
+    void take(const Term& term) {
+        std::string words = place_of(term.effect->name, values_of(term));
+        std::string name(term.effect->name);
+        if (words.empty()) {
+            mjcf_.not_held.push_back({std::move(name), why_not(*term.effect)});
+        } else if (words == second_step) {
+            mjcf_.not_held.push_back({std::move(name), std::move(words)});
+        } else {
+            mjcf_.holds.push_back({std::move(name), std::move(words)});
+            mjcf_.held.terms.push_back(term);
+            begin_at_rest(mjcf_.held.terms.back());
+        }
+    }
+    JointMjcf taken() { return std::move(mjcf_); }
+
+  private:
+    static constexpr std::string_view second_step = "a joint has one frictionloss, and the model two steps";
+
+    // Empty: none.
+    std::string place_of(std::string_view name, const std::vector<double>& v) {
+        if (name == "inertia") return mjcf_.inertia_kgm2 += v[0], "armature";
+        if (name == "gravity") return add_weight(mjcf_, v[0], v[1]), "mass and place of the body";
+        if (name == "coulomb-friction") return coulomb(v);
+        if (name == "viscous-friction") return mjcf_.damping += v[0] * degrees_per_radian, "damping";
+        if (name == "quadratic-viscous-friction") {
+            mjcf_.quadratic_damping += v[0] * degrees_per_radian * degrees_per_radian;
+            return "damping, its second number";
+        }
+        if (name == "ripple") return wave("ripple", v, ratio_.value());
+        if (name == "output-ripple") return wave("ripple_output", v, 1.0);
+        if (name == "hysteresis") return bristle(v);
+        if (name == "gear-ratio") return "poles of the cogging";
+        return {};
+    }
+
+    std::string coulomb(const std::vector<double>& v) {
+        if (mjcf_.frictionloss_nm > 0.0) return std::string(second_step);
+        mjcf_.frictionloss_nm = v[0];
+        mjcf_.friction_width_rad_s = v[1] / degrees_per_radian;
+        return "frictionloss";
+    }
+
+    std::string wave(std::string_view kind, const std::vector<double>& v, double ratio) {
+        std::string name = fmt::format("{}_{}", kind, shortest(v[0]));
+        for (const MjcfWave& known : mjcf_.waves)
+            if (known.name == name) name += "_again";
+        mjcf_.waves.push_back(wave_of(std::move(name), v[1], v[0] * ratio, v[2]));
+        return "cogging of a dcmotor";
+    }
+
+    // MuJoCo 3.14 refuses a keyframe with states of some of several dcmotors.
+    void begin_at_rest(Term& held) {
+        if (held.effect->name != "hysteresis" || start_rad_ == 0.0) return;
+        held.values[2] = 0.0;
+        mjcf_.not_held.push_back(
+            {"hysteresis", fmt::format("its bristle begins at 0; set act of {} to {} rad first",
+                                       mjcf_.bristles.back().name, shortest(to_digits(start_rad_)))});
+    }
+
+    // Dahl: the bristle slips at torque_nm and is worn by 63 % after width_deg.
+    std::string bristle(const std::vector<double>& v) {
+        start_rad_ = 0.0;
+        if (v[0] == 0.0) return "nothing, of 0 Nm";
+        const double width_rad = v[1] / degrees_per_radian;
+        start_rad_ = v[2] * width_rad;
+        mjcf_.bristles.push_back(
+            {fmt::format("friction_{}", mjcf_.bristles.size() + 1), v[0] / width_rad, v[0]});
+        return "lugre of a dcmotor";
+    }
+
+    JointMjcf mjcf_;
+    GearRatio ratio_;
+    double start_rad_ = 0.0;  // of the last bristle
+};
+
+}  // namespace
+
+JointMjcf joint_mjcf(const Model& model) {
+    Taking taking(model);
+    for (const Term& term : model.terms) taking.take(term);
+    return taking.taken();
+}
+
+}  // namespace ripplenotch
