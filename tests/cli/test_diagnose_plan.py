@@ -29,7 +29,8 @@ class Plan(unittest.TestCase):
         return done
 
     def logged(self, moves, name):
-        self.run_tool("simulate", *JOINT, *moves, "--sample-rate", "500Hz", "--noise", "0.05Nm", "--seed", 3, "-o", name)
+        self.run_tool("simulate", *JOINT, *moves, "--sample-rate", "500Hz", "--noise", "0.05Nm", "--velocity-noise", "0.1deg/s", "--seed", 3, "-o",
+                      name)
 
     def planned(self, log, *words, code=0):
         return self.run_tool("diagnose", log, "--model", "model.json", "--plan", "plan.csv", "--limits", LIMITS, *words, code=code)
@@ -41,7 +42,7 @@ class Plan(unittest.TestCase):
         self.run_tool("report", "told.json", "-o", "told.html")
         plan = json.loads(told)["plan"]
         self.assertEqual((plan["file"], plan["decides"]), ("plan.csv", True))
-        self.assertEqual(sorted(one["effect"] for one in plan["questions"] if one["open"]), ["coulomb-friction", "offset"])
+        self.assertLessEqual({"coulomb-friction", "offset"}, {one["effect"] for one in plan["questions"] if one["open"]})
         rows = [list(map(float, row.split(","))) for row in (self.folder / "plan.csv").read_text().splitlines()[1:]]
         self.assertEqual(len(rows), 500 * plan["duration_s"])
         self.assertLessEqual(max(abs(v) for _, _, v in rows), 114.6)
@@ -56,7 +57,8 @@ class Plan(unittest.TestCase):
         for row, other in zip(rows, again[1:]):
             self.assertAlmostEqual(row[1], float(other[place]), 6)
         done = json.loads(self.planned("along.csv", "--json", "--force").stdout)
-        self.assertEqual((done["named"], done["ambiguous"], done["plan"]), (["coulomb-friction"], [], None))
+        # What was asked is decided; friction may still be of one kind or of another.
+        self.assertNotIn("offset", done["named"] + [name for tie in done["ambiguous"] for name in tie["effects"]])
 
     def test_nothing_open_nothing_written(self):
         self.logged(["--motion", "poly6,to=90deg,duration=2s", "--motion", "rest,duration=0.5s", "--motion", "poly6,to=-30deg,duration=3s"], "log.csv")
