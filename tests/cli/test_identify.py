@@ -213,6 +213,28 @@ class Doubts(unittest.TestCase):
             self.assertTrue(any(line.endswith("2.csv") for line in lines))
 
 
+class FixedTones(unittest.TestCase):
+    """The shortest sweep of this motion has 2.7 cycles of the first order, which its smooth part takes some of."""
+
+    def found_of(self, folder, *more):
+        log = str(pathlib.Path(folder) / "log.csv")
+        done = run("simulate", "--gear-ratio", "100", "--inertia", "0.992kgm2", "--ripple", "1:0.8Nm:30deg", "--ripple",
+                   "2:0.5Nm", "--motion", "multisine,amplitude=60deg,frequency=0.2Hz,duration=20s", "--sample-rate", "1kHz",
+                   "--noise", "0.05Nm", *more, "-o", log, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return identified(log)
+
+    def test_ripple_where_the_speed_has_an_extremum_is_no_tone_and_a_tone_is_one(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for seed in ("1", "2", "3"):
+                found = self.found_of(folder, "--seed", seed)
+                self.assertEqual([line["order"] for line in found["lines"]], [1, 2], found["verdict"])
+                tone = "tone,frequency_hz=31.7,amplitude_nm=0.05,phase_deg=0"
+                both = self.found_of(folder, "--seed", seed, "--effect", tone)
+                self.assertEqual([line["kind"] for line in both["lines"]], ["order", "order", "tone"], both["verdict"])
+                self.assertAlmostEqual(both["lines"][2]["hz"], 31.7, delta=0.1)
+
+
 class Spectra(unittest.TestCase):
     def test_a_pipe_ends_in_json_with_peaks_floor_window_and_resolution(self):
         done = run("spectrum", "-", "--json", stdin=log_text(72.0, 0.5))

@@ -25,13 +25,15 @@ struct SweepRule {
 
 /// One piece of motion. The vectors have the same length.
 struct Sweep {
-    std::size_t log = 0, first = 0;   ///< where its first sample stands
-    std::vector<double> turns;        ///< output angle in turns; absolute where the log has a position
-    std::vector<double> time_s;       ///< from the piece's middle
-    std::vector<double> torque_nm;    ///< trend removed
-    std::vector<double> value;        ///< torque_nm * weight, in Nm turns
-    std::vector<double> weight;       ///< Hann window in angle times the angle that the sample stands for
-    std::vector<double> share_turns;  ///< angle that a sample stands for
+    std::size_t log = 0, first = 0;       ///< where its first sample stands
+    std::vector<double> turns;            ///< output angle in turns; absolute where the log has a position
+    std::vector<double> time_s;           ///< from the piece's middle
+    std::span<const double> measured_nm;  ///< as the log has it, and as long as the log is there
+    std::vector<double> torque_nm;        ///< trend removed
+    std::vector<double> value;            ///< torque_nm * weight, in Nm turns
+    std::vector<double> weight;           ///< Hann window in angle times the angle that the sample stands for
+    std::vector<double> share_turns;      ///< angle that a sample stands for
+    std::size_t trend_terms = 0;          ///< of the smooth part taken out
     double weight_sum = 0.0, weight_square_sum = 0.0;
     double length_turns = 0.0;
     double duration_s = 0.0;

@@ -159,31 +159,4 @@ void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, Mo
     line.snr = line.amplitude_nm / line.floor_nm;
 }
 
-void subtract(std::vector<Sweep>& sweeps, Axis axis, double place) {
-    for (Sweep& sweep : sweeps) {
-        const auto at = places(sweep, axis);
-        std::vector<double> cosine(at.size()), sine(at.size());
-        double cc = 0.0, cs = 0.0, ss = 0.0, xc = 0.0, xs = 0.0;
-        for (std::size_t k = 0; k < at.size(); ++k) {
-            const double angle = tau * place * at[k];
-            const std::complex<double> phasor = portable::phasor(angle);
-            cosine[k] = phasor.real();
-            sine[k] = phasor.imag();
-            cc += sweep.weight[k] * cosine[k] * cosine[k];
-            cs += sweep.weight[k] * cosine[k] * sine[k];
-            ss += sweep.weight[k] * sine[k] * sine[k];
-            xc += sweep.value[k] * cosine[k];
-            xs += sweep.value[k] * sine[k];
-        }
-        const double determinant = cc * ss - cs * cs;
-        if (!(determinant > 1e-6 * cc * ss)) continue;
-        const double a = (xc * ss - xs * cs) / determinant, b = (xs * cc - xc * cs) / determinant;
-        for (std::size_t k = 0; k < at.size(); ++k) {
-            const double line = a * cosine[k] + b * sine[k];
-            sweep.torque_nm[k] -= line;
-            sweep.value[k] -= sweep.weight[k] * line;
-        }
-    }
-}
-
 }  // namespace ripplenotch

@@ -31,7 +31,4 @@ double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bi
 /// Fills in what the sweeps say about a line at `place`.
 void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, MotionLine& line);
 
-/// Takes a line out of each sweep with the amplitude and phase that it has there.
-void subtract(std::vector<Sweep>& sweeps, Axis axis, double place);
-
 }  // namespace ripplenotch

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analysis/lines/line_evidence.hpp"
+#include "analysis/lines/line_removal.hpp"
 #include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
@@ -132,8 +133,8 @@ LineKind judged(const std::vector<Sweep>& sweeps, const Stack& angle, const Stac
     if (!two_lines) return LineKind::unknown;
     // Two lines, not one seen twice, when each keeps what it explains after the other is taken out.
     std::vector<Sweep> without_order = sweeps, without_tone = sweeps;
-    subtract(without_order, Axis::angle, rivals.order);
-    subtract(without_tone, Axis::time, rivals.hz);
+    subtract(without_order, {Axis::angle, rivals.order});
+    subtract(without_tone, {Axis::time, rivals.hz});
     const double order_left = gain_of(without_tone, angle, rivals.order);
     const double tone_left = gain_of(without_order, time, rivals.hz);
     if (order_left < kept_share * rivals.gain_angle || tone_left < kept_share * rivals.gain_time)
@@ -239,7 +240,12 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
     for (const Sweep& sweep : sweeps) found.turns += sweep.length_turns;
 
     std::vector<double> taken_orders, taken_hz = options.known_hz;
-    for (const double hz : options.known_hz) subtract(sweeps, Axis::time, hz);
+    std::vector<KnownLine> out;
+    const auto take_out = [&](Axis axis, double place) {
+        out.push_back({axis, place});
+        take_out_last(sweeps, out);
+    };
+    for (const double hz : options.known_hz) take_out(Axis::time, hz);
     const double least_amplitude = least_amplitude_of(logs, options.least_share);
     Stacks stacks = stacked(sweeps, options);
     if (options.most_lines > 0) state_resolution(stacks.angle, least_amplitude, options.false_alarm, found);
@@ -263,7 +269,7 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
         if (rest_of_known || of_the_motion || line.amplitude_nm < least_amplitude) continue;
         taken.push_back(place);
         complete(sweeps, stacks, rivals, as_order, options, line);
-        subtract(sweeps, stack.axis, place);
+        take_out(stack.axis, place);
         found.lines.push_back(std::move(line));
         if (found.lines.size() < options.most_lines) stacks = stacked(sweeps, options);
     }

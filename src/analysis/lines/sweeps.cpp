@@ -2,13 +2,11 @@
 #include "ripplenotch/analysis/sweeps.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "analysis/lines/line_removal.hpp"
 #include "core/many_numbers.hpp"
-#include "core/vectors/dot.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 
 namespace ripplenotch {
@@ -37,83 +35,6 @@ std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std
         pieces.push_back({from, to});
     }
     return pieces;
-}
-
-/// The smooth part of a piece: constant, slope, and cosines of m pi u by the recurrence of Chebyshev's
-/// polynomials, at some of its samples; a row of `length` numbers each.
-class TrendRows {
-  public:
-    static constexpr std::size_t length = 256;
-
-    explicit TrendRows(std::size_t terms) : values_(terms * length) {}
-
-    void fill(std::span<const double> place) {
-        std::array<double, length> cosine{}, before{}, now{};
-        for (std::size_t i = 0; i < place.size(); ++i) {
-            row(0)[i] = 1.0;
-            row(1)[i] = place[i] - 0.5;
-            cosine[i] = std::numbers::pi * place[i];
-            before[i] = 1.0;
-        }
-        portable::cos(std::span(cosine).first(place.size()), cosine);
-        now = cosine;
-        for (std::size_t m = 2; m < values_.size() / length; ++m) {
-            for (std::size_t i = 0; i < place.size(); ++i) {
-                row(m)[i] = now[i];
-                const double next = 2.0 * cosine[i] * now[i] - before[i];
-                before[i] = now[i];
-                now[i] = next;
-            }
-        }
-    }
-
-    [[nodiscard]] double* row(std::size_t term) { return values_.data() + term * length; }
-
-  private:
-    std::vector<double> values_;
-};
-
-/// action(first sample, count) for all samples of the sweep, the rows filled with them.
-template <class Action>
-void in_blocks(const Sweep& sweep, TrendRows& rows, const Action& action) {
-    std::array<double, TrendRows::length> place{};
-    for (std::size_t first = 0; first < sweep.turns.size(); first += place.size()) {
-        const std::size_t count = std::min(place.size(), sweep.turns.size() - first);
-        for (std::size_t i = 0; i < count; ++i)
-            place[i] = std::abs(sweep.turns[first + i] - sweep.turns.front()) / sweep.length_turns;
-        rows.fill(std::span(place).first(count));
-        action(first, count);
-    }
-}
-
-/// Takes the smooth part out by least squares under the weights.
-void remove_trend(Sweep& sweep, std::span<const double> torque, const SweepRule& rule) {
-    sweep.torque_nm.assign(torque.begin(), torque.end());
-    sweep.value.resize(torque.size());
-    const auto cosines = std::lround(rule.trend_terms_per_turn * sweep.length_turns);
-    const auto terms = static_cast<std::size_t>(std::max(cosines, 3L)) + 2;
-    const auto n = static_cast<Eigen::Index>(terms);
-    TrendRows rows(terms);
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-    in_blocks(sweep, rows, [&](std::size_t first, std::size_t count) {
-        std::array<double, TrendRows::length> weighed{};
-        for (Eigen::Index a = 0; a < n; ++a) {
-            const double* const row = rows.row(static_cast<std::size_t>(a));
-            for (std::size_t i = 0; i < count; ++i) weighed[i] = sweep.weight[first + i] * row[i];
-            for (Eigen::Index b = 0; b <= a; ++b)
-                normal(a, b) += dot(weighed.data(), rows.row(static_cast<std::size_t>(b)), count);
-            right[a] += dot(weighed.data(), torque.data() + first, count);
-        }
-    });
-    normal.diagonal().array() *= 1.0 + 1e-10;  // line and first cosine are nearly parallel
-    const Eigen::VectorXd trend = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-    in_blocks(sweep, rows, [&](std::size_t first, std::size_t count) {
-        for (std::size_t m = 0; m < terms; ++m)
-            add_scaled(-trend[static_cast<Eigen::Index>(m)], rows.row(m), sweep.torque_nm.data() + first,
-                       count);
-    });
-    for (std::size_t k = 0; k < torque.size(); ++k) sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
 }
 
 /// Speeds that a quarter and three quarters of the weight lie below.
@@ -175,7 +96,10 @@ Sweep make_sweep(const TraceView& log, const SampleRun& span, std::span<const do
     if (!(sweep.weight_sum > 0.0)) return sweep;
     for (std::size_t k = 0; k < n; ++k) sweep.mean_deg_s += sweep.weight[k] * speed[k] / sweep.weight_sum;
     find_quartiles(sweep, speed);
-    remove_trend(sweep, log.torque_nm.subspan(span.first, n), rule);
+    sweep.measured_nm = log.torque_nm.subspan(span.first, n);
+    const auto cosines = std::lround(rule.trend_terms_per_turn * sweep.length_turns);
+    sweep.trend_terms = static_cast<std::size_t>(std::max(cosines, 3L)) + 2;
+    fit_out(sweep, {});
     return sweep;
 }
 
@@ -212,6 +136,7 @@ Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count) {
     };
     Sweep part = sweep;
     part.first += first;
+    part.measured_nm = sweep.measured_nm.subspan(first, count);
     part.turns = cut(sweep.turns);
     part.time_s = cut(sweep.time_s);
     part.torque_nm = cut(sweep.torque_nm);

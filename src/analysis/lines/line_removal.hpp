@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the analysis room: what is known of a sweep's torque, its smooth part and lines, taken out of
+// it.
+
+#include <span>
+#include <vector>
+
+#include "ripplenotch/analysis/stack.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
+
+namespace ripplenotch {
+
+struct KnownLine {
+    Axis axis = Axis::angle;
+    double place = 0.0;  ///< cycles per turn or per second
+};
+
+/// Sets the sweep's torque, and its value, to what the smooth part and the lines leave of the measured
+/// torque: all of them fitted at once, by least squares under the weights. Cost O(n (terms + 2 lines)^2).
+void fit_out(Sweep& sweep, std::span<const KnownLine> lines);
+
+/// Takes a line out of each sweep with the amplitude and phase that it has there, nothing else fitted anew.
+void subtract(std::vector<Sweep>& sweeps, const KnownLine& line);
+
+/// Takes the last of the lines out, those before it being out. A sweep of few cycles cannot tell a line from
+/// its smooth part, nor from a line near by, when one is fitted after the other: there all are fitted at
+/// once. What would be left otherwise stands at the frequency that the line has where the sweep is fastest, a
+/// fixed one.
+void take_out_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines);
+
+}  // namespace ripplenotch
