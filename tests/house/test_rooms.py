@@ -59,7 +59,7 @@ PRIVATE_DOORS = {
     "log/account/account.hpp": ({"filter"}, "a stream goes through the same account as a log that is read whole"),
     "model/carriers.hpp": ({"diagnose"}, "trials along one motion share what is the same in all of them"),
     "model/fit_coordinates.hpp": ({"diagnose"}, "effects that are tried are screened in the coordinates of the fit"),
-    "model/local_motion.hpp": ({"diagnose"}, "the noise of a torque is told as that of a velocity is"),
+    "model/local_motion.hpp": ({"diagnose", "fleet"}, "the noise of a torque is told as that of a velocity is, and so is that of what a descriptor rests on"),
     "model/weighing.hpp": ({"diagnose"}, "effects that are tried are screened by the weights of the fit"),
     "document/diagnosis_fields.hpp": ({"page"}, "values and places of a finding stand on the page as in the document"),
     "document/json.hpp": ({"page"}, "the page shows JSON as tables; the library behind it has one door"),

@@ -55,7 +55,7 @@ Features features_of(const TraceView& log, const Identification& found,
                      const std::optional<GearAccount>& stated) {
     const Motion whole = motion_along(log);
     const std::vector<unsigned char> known = rows_of_known_motion(log, whole);
-    const Samples samples = thinned(whole, log.torque_nm, known, most_samples);
+    const FittedSamples samples = thinned(whole, log.torque_nm, known, most_samples);
     MotionFacts facts = motion_facts(samples.motion, samples.torque_nm, log.has_position());
     facts.accelerations = accelerations_of(log, whole, known);
     const JointFit joint(samples, facts, gear_of_ripple(found, stated), log.sample_rate);

@@ -53,7 +53,7 @@ struct JointFit::Wanted {
     std::size_t turn = 0;  ///< which term of that effect
 };
 
-JointFit::JointFit(const Samples& samples, const MotionFacts& facts, std::optional<GearAccount> gear,
+JointFit::JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear,
                    Hertz rate)
     : motion_(samples.motion),
       torque_nm_(samples.torque_nm),

@@ -16,7 +16,8 @@ namespace ripplenotch {
 class JointFit {
   public:
     /// All must outlive it. `rate`: of the log, before it was thinned. Throws DataError for too few samples.
-    JointFit(const Samples& samples, const MotionFacts& facts, std::optional<GearAccount> gear, Hertz rate);
+    JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear,
+             Hertz rate);
 
     /// Amplitude and phase of each order of the gear; none where there is no gear.
     [[nodiscard]] std::vector<Descriptor> ripple() const;

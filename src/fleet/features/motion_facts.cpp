@@ -55,8 +55,8 @@ bool MotionFacts::several_speeds() const {
     return mix.speed_p90_deg_s >= least_speeds * std::max(mix.speed_p10_deg_s, moving_deg_s);
 }
 
-Samples thinned(const Motion& motion, std::span<const double> torque_nm, std::span<const unsigned char> use,
-                std::size_t most) {
+FittedSamples thinned(const Motion& motion, std::span<const double> torque_nm,
+                      std::span<const unsigned char> use, std::size_t most) {
     const std::size_t step = std::max<std::size_t>((motion.size() + most - 1) / most, 1);
     return {{Hertz(motion.sample_rate.value() / static_cast<double>(step)),
              every<double>(motion.time_s, step), every<double>(motion.position_deg, step),

@@ -24,15 +24,15 @@ struct MotionFacts {
 };
 
 /// What is fitted: a motion, its torque, and a 1 for each sample that counts.
-struct Samples {
+struct FittedSamples {
     Motion motion;
     std::vector<double> torque_nm;
     std::vector<unsigned char> use;
 };
 
 /// At most so many samples, evenly spread.
-[[nodiscard]] Samples thinned(const Motion& motion, std::span<const double> torque_nm,
-                              std::span<const unsigned char> use, std::size_t most);
+[[nodiscard]] FittedSamples thinned(const Motion& motion, std::span<const double> torque_nm,
+                                    std::span<const unsigned char> use, std::size_t most);
 
 [[nodiscard]] MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm,
                                        bool has_position);
