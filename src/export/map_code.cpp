@@ -119,10 +119,7 @@ std::string MapCode::arguments(bool with_types, std::string_view torque) const {
     return text;
 }
 
-std::string MapCode::parameters() const {
-    return std::string("@real@ speed_deg_s, @real@ joint_deg") +
-           (map_.form.by_temperature ? ", @real@ temperature_degc" : "");
-}
+std::string MapCode::parameters() const { return "@real@ speed_deg_s, @real@ joint_deg"; }
 
 std::string MapCode::amplitudes_here(std::string_view torque) const {
     std::string text;

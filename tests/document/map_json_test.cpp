@@ -8,12 +8,16 @@ using namespace ripplenotch;
 
 namespace {
 
-MapFit example() {
+MapFit example(bool by_temperature = false) {
     MapFit fit;
     fit.map.joint = "j4";
     fit.map.gear_ratio = GearRatio(120.0);
     fit.map.orders = {Order(1.0), Order(2.0)};
-    fit.map.form = {{3.5, 60.0}, 2, 1, true};
+    fit.map.form = {{3.5, 60.0}, 2, 1, true, by_temperature};
+    if (by_temperature) {
+        fit.map.temperatures_degc = {18.25, 41.0};
+        fit.map.temperature_column = "{joint}_degc";
+    }
     fit.map.zero_deg = -12.5;
     fit.map.speeds_deg_s = {3.5, 60.0};
     fit.map.positions_deg = {-90.0, 45.0};
@@ -47,9 +51,13 @@ TEST_CASE("map.json reads back as it was written, byte for byte, empty maps too"
     nothing.finding = MapFinding::nothing;
     nothing.conclusive = true;
     nothing.scores = {{1.0, false, 0.1, 0.1, 0.1, 0.0}};
-    for (const MapFit& fit : {example(), nothing}) {
+    for (const MapFit& fit : {example(), example(true), nothing}) {
         const std::string text = map_text(fit, {});
-        CHECK(map_text(map_from_json(text, "map.json"), {}) == text);
+        const MapFit again = map_from_json(text, "map.json");
+        CHECK(map_text(again, {}) == text);
+        CHECK(again.map.form.columns() == fit.map.form.columns());
+        CHECK(again.map.temperatures_degc.to == fit.map.temperatures_degc.to);
+        CHECK(again.map.temperature_column == fit.map.temperature_column);
     }
 }
 

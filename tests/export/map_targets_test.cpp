@@ -41,6 +41,18 @@ RippleMap rich() {
     return map;
 }
 
+RippleMap warm() {
+    RippleMap map = rich();
+    map.form.by_temperature = true;
+    map.temperatures_degc = {18.0, 41.0};
+    for (auto& values : map.values) {
+        values.clear();
+        for (std::size_t c = 0; c < map.form.columns(); ++c)
+            values.emplace_back(0.02 * static_cast<double>(c % 5), 0.03 - 0.01 * static_cast<double>(c % 3));
+    }
+    return map;
+}
+
 struct Through {
     Written written;
     MapCheck check;
@@ -97,6 +109,25 @@ TEST_CASE("what holds the whole map loses nothing of it, and what holds harmonic
         const Through part = through(text, rich());
         CHECK(part.check.not_held_nm > 0.05);
         CHECK(part.written.warnings.size() >= 4);
+    }
+}
+
+TEST_CASE("a map by temperature comes through where it is held, and the others say that it is not") {
+    for (const std::string text : {"fourier", "c-header,precision=double"}) {
+        const Through whole = through(text, warm());
+        CHECK(whole.check.not_held_nm == 0.0);
+        CHECK(whole.check.largest_error_nm < 1e-12);
+        CHECK(whole.written.warnings.empty());
+    }
+    CHECK(through("c-header", warm()).check.largest_error_nm < 1e-5);
+    for (const std::string text : {"beckhoff-ax8000", "lut", "moteus,kt=0.1", "mjcf"}) {
+        INFO(text);
+        const auto cold = through(text + ",temperature=18", warm()),
+                   hot = through(text + ",temperature=41", warm());
+        CHECK_THAT(cold.written.warnings.back(),
+                   Catch::Contains("the dependence on temperature is left out"));
+        CHECK(cold.written.bytes != hot.written.bytes);
+        CHECK(cold.written.bytes == through(text + ",temperature=-20", warm()).written.bytes);
     }
 }
 

@@ -234,7 +234,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
     if (request.log.empty() && (request.log_options.from || request.log_options.to))
         raise<UsageError>("--from and --to: there is no LOG to take rows of");
     Provenance provenance{{}, command_line};
-    const Field field = load_contenders(request.methods, request.gear, provenance);
+    const Field field = load_contenders(methods_at(request.log, request.methods, request.log_options),
+                                        request.gear, provenance);
     if (request.costs.gates.min_attenuation_db && !field.gear) raise_no_gear("--min-attenuation");
     if (field.gear) say(request.common, gear_in_words(*field.gear));
     ComparedCourse course;

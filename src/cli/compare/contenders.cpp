@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "cli/readings/side_column.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/filter/engine.hpp"
 
@@ -33,6 +34,15 @@ std::optional<GearAccount> common_gear(const std::vector<Contender>& contenders)
 }
 
 }  // namespace
+
+std::vector<std::string> methods_at(const std::string& log, std::vector<std::string> methods,
+                                    const LogOptions& options) {
+    if (log.empty()) return methods;
+    ReadOptions read = read_options(options, std::nullopt);
+    read.takes_motor_units = true;
+    for (std::string& method : methods) method = at_log_temperature(method, log, read);
+    return methods;
+}
 
 Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,
                       Provenance& provenance) {

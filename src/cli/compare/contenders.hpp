@@ -21,6 +21,10 @@ struct Field {
     std::optional<GearAccount> gear;
 };
 
+/// The methods as they are on this log: at its temperature, where a map asks for one. The same without a log.
+[[nodiscard]] std::vector<std::string> methods_at(const std::string& log, std::vector<std::string> methods,
+                                                  const LogOptions& options);
+
 /// Throws UsageError when `methods` is empty, and what choose_method and refuse_other_gear throw.
 [[nodiscard]] Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,
                                     Provenance& provenance);

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "cli/readings/readings.hpp"
+#include "cli/readings/side_column.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -64,30 +65,14 @@ void take_date(const ManifestEntry& entry, const Log& log, const FeatureWork& wo
     }
 }
 
-// The mean of a column that is no part of a joint: it is read in the place of the torque.
-double mean_of_column(const std::string& path, std::string column, const std::string& joint,
-                      ReadOptions read) {
-    if (const std::size_t at = column.find("{joint}"); at != std::string::npos) column.replace(at, 7, joint);
-    std::erase_if(read.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
-    read.columns.push_back("torque=" + column);
-    read.units["torque"] = "Nm";  // its numbers as they are
-    if (joint.empty())
-        read.joint.reset();
-    else
-        read.joint = joint;
-    const Log log = read_log_in_part(path, read, most_rows_looked_at);
-    double sum = 0.0;
-    for (const double value : log.trace.torque_nm) sum += value;
-    return sum / static_cast<double>(std::max<std::size_t>(log.trace.size(), 1));
-}
-
 void take_temperature(const ManifestEntry& entry, const FeatureWork& work, FeatureLine& line) {
     if (entry.temperature_degc) {
         line.temperature_degc = entry.temperature_degc, line.temperature_source = "manifest";
     } else if (work.temperature_degc) {
         line.temperature_degc = work.temperature_degc, line.temperature_source = "--temperature";
     } else if (work.temperature_column) {
-        line.temperature_degc = mean_of_column(entry.log, *work.temperature_column, line.joint, work.read);
+        line.temperature_degc = mean_of_side_column(entry.log, *work.temperature_column, line.joint,
+                                                    work.read, most_rows_looked_at);
         line.temperature_source = "column " + *work.temperature_column;
     } else {
         line.temperature_source = "nobody states it; --temperature names a column or a number";

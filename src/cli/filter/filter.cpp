@@ -13,6 +13,7 @@
 #include "cli/filter/filter_work.hpp"
 #include "cli/options/file_claims.hpp"
 #include "cli/options/name_list.hpp"
+#include "cli/readings/side_column.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/output_name.hpp"
@@ -143,6 +144,20 @@ std::size_t threads_of(const FilterRequest& request) {
     return std::clamp(std::thread::hardware_concurrency(), 1U, enough);
 }
 
+MethodRequest method_request(const FilterRequest& request) {
+    return {request.method.empty() ? "switching" : request.method, request.table, request.gear,
+            request.gates.min_attenuation_db.has_value()};
+}
+
+/// The methods of one log: those of all of them, unless a map has to be looked up at this log's temperature.
+std::optional<JointMethods> methods_at_temperature(const FilterRequest& request, const FilterJob& job,
+                                                   const JointMethods& methods) {
+    MethodRequest own = method_request(request);
+    own.method = at_log_temperature(own.method, job.log, request.read_options(methods));
+    return own.method == method_request(request).method ? std::nullopt
+                                                        : std::optional<JointMethods>(JointMethods(own));
+}
+
 /// True when everything is within the limits.
 bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& methods,
              const std::string& command_line) {
@@ -185,11 +200,11 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
 ExitCode run(const FilterRequest& request, const std::string& command_line) {
     check(request);
     hash_inputs(request.metrics || request.common.json || request.plot.wanted());
-    JointMethods methods({request.method.empty() ? "switching" : request.method, request.table, request.gear,
-                          request.gates.min_attenuation_db.has_value()});
+    JointMethods methods(method_request(request));
     bool within = true;
     for (const FilterJob& job : jobs_of(request)) {
-        if (!run_job(request, job, methods, command_line)) within = false;
+        auto own = methods_at_temperature(request, job, methods);
+        if (!run_job(request, job, own ? *own : methods, command_line)) within = false;
     }
     return within ? ExitCode::done : ExitCode::limit_violated;
 }

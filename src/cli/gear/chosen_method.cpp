@@ -89,6 +89,8 @@ std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const
 // The method with a map that says 0 everywhere.
 std::shared_ptr<const Contender> without_ripple(Spec spec) {
     std::erase_if(spec.values, [](const auto& entry) { return entry.first == "fastest"; });
+    if (given(spec, "by-temperature") && !given(spec, "temperature"))
+        spec.values.emplace_back("temperature", "0");
     for (auto& [key, value] : spec.values) {
         if (key != "cosines" && key != "sines") continue;
         std::string zeros = "0";

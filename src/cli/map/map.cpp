@@ -5,16 +5,19 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/map/map_text.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
+#include "cli/readings/side_column.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/map_figure.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/document/map_json.hpp"
+#include "ripplenotch/filter/warm_map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
@@ -28,41 +31,59 @@ struct Request {
     GearOptions gear;
     Degrees zero;
     bool require_conclusive = false;
+    std::optional<std::string> temperature;  ///< column of the logs
 };
 
-std::vector<Log> read_logs(const Request& request, const GearAccount& gear, Provenance& provenance) {
-    ReadOptions read = read_options(request.log, gear);
+/// Logs of one joint, and its temperature at their rows where a column is stated.
+struct Read {
     std::vector<Log> logs;
+    std::vector<std::vector<double>> temperatures_degc;
+};
+
+Read read_logs(const Request& request, const GearAccount& gear, Provenance& provenance) {
+    const ReadOptions options = read_options(request.log, gear);
+    Read read;
     for (const std::string& path : request.logs) {
-        logs.push_back(
-            read_log_in_part(path, read, std::max(most_rows_held / request.logs.size(), most_rows_held / 4)));
-        const Log& log = logs.back();
+        const std::size_t most = std::max(most_rows_held / request.logs.size(), most_rows_held / 4);
+        read.logs.push_back(read_log_in_part(path, options, most));
+        const Log& log = read.logs.back();
+        if (request.temperature) {
+            if (path == "-")
+                raise<UsageError>("--temperature: standard input cannot be read twice; name a file");
+            read.temperatures_degc.push_back(
+                side_column(path, *request.temperature, log.trace.joint, options, most));
+            if (read.temperatures_degc.back().size() != log.trace.size())
+                raise<DataError>("{}: column '{}' has {} numbers at {} rows of the motion", path,
+                                 *request.temperature, read.temperatures_degc.back().size(),
+                                 log.trace.size());
+        }
         say_layout(request.common, log.layout);
         say_warnings(request.common, log.recording.warnings);
         provenance.inputs.push_back(input_record(path));
         provenance.inputs.back().rows = log.recording.rows();
         provenance.recordings.push_back({log.recording});
     }
-    return logs;
+    return read;
 }
 
-MapFit fitted(const std::vector<Log>& logs, const OtherReading& reading, const Request& request,
+MapFit fitted(const Read& read, const OtherReading& reading, const Request& request,
               const GearAccount& gear) {
     std::vector<Trace> traces;
-    for (const Log& log : logs) traces.push_back(read_otherwise(log.trace, reading));
+    for (const Log& log : read.logs) traces.push_back(read_otherwise(log.trace, reading));
     std::vector<TraceView> views;
     for (const Trace& trace : traces) views.push_back(trace.view());
-    return fit_ripple_map(views, gear, request.zero.value());
+    return fit_warm_ripple_map(views, gear, request.zero.value(), read.temperatures_degc);
 }
 
 // A reading under which something turns with the motor is confirmed by that; where two have it, or none of
 // several, nobody knows which one holds.
-MapFit fitted_by_readings(const std::vector<Log>& logs, const Request& request, const GearAccount& gear) {
-    MapFit fit = fitted(logs, {}, request, gear);
+MapFit fitted_by_readings(const Read& read, const Request& request, const GearAccount& gear) {
+    const std::vector<Log>& logs = read.logs;
+    MapFit fit = fitted(read, {}, request, gear);
     std::vector<std::string> rivals;
     for (const OtherReading& reading : open_readings(logs)) {
         if (reading.changes_side) continue;
-        const MapFit other = fitted(logs, reading, request, gear);
+        const MapFit other = fitted(read, reading, request, gear);
         if (other.finding == MapFinding::mapped || fit.finding != MapFinding::mapped)
             rivals.push_back(reading.words);
     }
@@ -84,10 +105,11 @@ ExitCode run(Request& request, const std::string& command_line) {
     const std::optional<GearAccount> gear = choice.of();
     if (!gear) raise_no_gear("map");
     say(request.common, gear_in_words(*gear));
-    const std::vector<Log> logs = read_logs(request, *gear, provenance);
+    const Read read = read_logs(request, *gear, provenance);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
-    MapFit fit = fitted_by_readings(logs, request, *gear);
-    fit.map.joint = logs.front().trace.joint;
+    MapFit fit = fitted_by_readings(read, request, *gear);
+    fit.map.joint = read.logs.front().trace.joint;
+    fit.map.temperature_column = request.temperature.value_or("");
     for (const std::string& note : fit.notes) say(request.common, note);
     const std::string text = map_report(fit, request.logs);
     const bool json_file = ends_with_json(request.common.output);
@@ -113,6 +135,8 @@ std::function<ExitCode()> attach(Options& options) {
     attach_gear(options, request->gear);
     options.quantity("--zero", request->zero, Dimension::angle,
                      "joint position at which the wave generator's angle counts as 0");
+    options.text("--temperature", request->temperature, "COLUMN",
+                 "the joint's temperature: a column in degrees Celsius, {joint} in it for a joint's name");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
     attach_plot(options, request->plot);
@@ -130,7 +154,8 @@ const Command commands::map{
         "Reads logs of one joint and fits the cosine and sine amplitude of each order as a function of "
         "speed, "
         "direction,\n"
-        "the joint's own turn and load: the smallest form that pays on blocks of the logs that were left "
+        "the joint's own turn, load and temperature: the smallest form that pays on blocks of the logs that "
+        "were left "
         "out. "
         "The map is\n"
         "empty where nothing turns with the motor.\n"

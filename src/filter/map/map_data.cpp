@@ -15,7 +15,9 @@ constexpr std::size_t most_blocks = 16;
 constexpr std::size_t least_block = 5;      ///< windows
 constexpr double least_noise_share = 1e-8;  ///< of the energy: a simulation without noise has rounding
 
-std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& gear) {
+// Amplitudes and mean of what `torque_nm` holds along the log.
+std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& gear,
+                                     std::span<const double> torque_nm) {
     std::vector<double> orders;
     for (const Order order : gear.orders) orders.push_back(order.value());
     MotorPath path(MotorAngle(gear.ratio.value(), log.sample_rate.value(), MotorAngle::Source::best, 0.0));
@@ -26,7 +28,7 @@ std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& ge
             path.restart();
         }
         path.next(log.velocity_deg_s[k], log.has_position() ? &log.position_deg[k] : nullptr);
-        windows.add(path, log.torque_nm[k]);
+        windows.add(path, torque_nm[k]);
     }
     return windows.finish();
 }
@@ -81,17 +83,24 @@ void sum_up(MapData& data) {
 
 }  // namespace
 
-MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg) {
+MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
+                 std::span<const std::vector<double>> temperatures_degc) {
     MapData data;
     data.orders = gear.orders.size();
     for (std::size_t l = 0; l < logs.size(); ++l) {
-        for (const RippleWindow& window : windows_of(logs[l], gear)) {
-            MapWindow one = window_of(window, gear, zero_deg);
+        const bool warms = !temperatures_degc.empty();
+        const auto windows = windows_of(logs[l], gear, logs[l].torque_nm);
+        const auto warmth =
+            warms ? windows_of(logs[l], gear, temperatures_degc[l]) : std::vector<RippleWindow>();
+        for (std::size_t i = 0; i < windows.size(); ++i) {
+            MapWindow one = window_of(windows[i], gear, zero_deg);
             one.log = l;
+            if (warms) one.state.temperature_degc = warmth[i].torque_nm;
             const bool first = data.windows.empty();
             widen(data.speeds_deg_s, std::abs(one.state.speed_deg_s), first);
             widen(data.positions_deg, one.state.position_deg, first);
             widen(data.loads_nm, one.state.load_nm, first);
+            if (warms) widen(data.temperatures_degc, *one.state.temperature_degc, first);
             data.windows.push_back(std::move(one));
         }
     }

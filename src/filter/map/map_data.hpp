@@ -31,8 +31,9 @@ struct MapData {
     MapRange temperatures_degc = {};  ///< 0 to 0 where a log has none
 };
 
-/// Angles count from `zero_deg`.
-[[nodiscard]] MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg);
+/// Angles count from `zero_deg`. Temperatures are of each log's rows, or empty where none is stated.
+[[nodiscard]] MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
+                               std::span<const std::vector<double>> temperatures_degc = {});
 
 /// The windows of `data` that are, or are not, of one log; blocks keep their numbers.
 [[nodiscard]] MapData of_log(const MapData& data, std::size_t log, bool is);

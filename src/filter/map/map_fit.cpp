@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/filter/map_fit.hpp"
+#include "ripplenotch/filter/warm_map_fit.hpp"
 
 #include <fmt/format.h>
 
@@ -112,6 +112,11 @@ bool all_agree(const MapFit& fit) {
 }  // namespace
 
 MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg) {
+    return fit_warm_ripple_map(logs, gear, zero_deg, {});
+}
+
+MapFit fit_warm_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
+                           std::span<const std::vector<double>> temperatures_degc) {
     if (logs.empty()) raise<UsageError>("a map needs a log");
     MapFit fit;
     fit.anchored =
@@ -120,7 +125,7 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         raise<DataError>(
             "a log without a position of the joint has no angle that another log shares; map it alone");
     }
-    const MapData data = map_data(logs, gear, zero_deg);
+    const MapData data = map_data(logs, gear, zero_deg, temperatures_degc);
     fit.windows = data.windows.size();
     fit.blocks = data.blocks;
     fit.map.gear_ratio = gear.ratio;

@@ -24,6 +24,25 @@ std::string list_text(const std::vector<double>& values) {
 
 std::string ends_text(const MapRange& range) { return list_text({range.from, range.to}); }
 
+// The same map at this temperature, held where none was seen: a part of the amplitudes at every speed.
+RippleMap at_temperature(const RippleMap& map, double degc) {
+    const MapRange& seen = map.temperatures_degc;
+    const double warmer = std::clamp(degc, seen.from, seen.to) - seen.middle();
+    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
+    RippleMap there = map;
+    there.form.by_temperature = false;
+    for (std::size_t i = 0; i < map.values.size(); ++i) {
+        there.values[i].clear();
+        for (std::size_t c = 0; c < map.values[i].size(); ++c) {
+            const std::size_t within = c % each, column = c - within + map.form.temperature_column();
+            if (within == map.form.temperature_column()) continue;
+            there.values[i].push_back(map.values[i][c] +
+                                      (within < speeds ? warmer * map.values[i][column] : 0.0));
+        }
+    }
+    return there;
+}
+
 std::size_t whole(const Settings& settings, std::string_view key) {
     return static_cast<std::size_t>(settings.number(key));
 }
@@ -65,7 +84,13 @@ std::optional<RippleMap> map_of(std::string_view method, const Settings& setting
             map.values.back().emplace_back(cosines[c], sines[c]);
     }
     map.spread_nm = per_order(method, settings, "spread", ripple, 0.0);
-    return map;
+    if (!form.by_temperature) return map;
+    if (!settings.has("temperature"))
+        raise<UsageError>(
+            "method {}: its map depends on the joint's temperature, and nobody states it; say it in degC, "
+            "temperature=31",
+            method);
+    return at_temperature(map, settings.number("temperature"));
 }
 
 std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fitted) {

@@ -78,7 +78,7 @@ inline constexpr Key temperature_key{
     .name = "temperature",
     .at_least = -274.0,
     .at_most = 1000.0,
-    .help = "of the joint, degC, in the place of the log's column; for a map that depends on it"};
+    .help = "of the joint, degC; for a map that depends on it, by default the mean of the log's column"};
 inline constexpr Key spread_key{.name = "spread",
                                 .kind = KeyKind::list,
                                 .dimension = Dimension::torque,

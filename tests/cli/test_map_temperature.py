@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""Maps of ripple that depends on the joint's temperature: where it enters, how the methods and the exports take it."""
+
+import json
+import math
+import os
+import pathlib
+import random
+import subprocess
+import tempfile
+import unittest
+
+TOOL = os.environ["RIPPLENOTCH"]
+GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
+
+
+def run(*words):
+    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
+
+
+class Warm(unittest.TestCase):
+    """Ripple of 0.8 Nm at 30 degC that grows by 3 % a degree, in logs with a column of the joint's temperature."""
+
+    COLUMN = ["--temperature", "drive_degc"]
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.log, self.map = self.folder / "log.csv", self.folder / "map.json"
+
+    def made(self, *words):
+        done = run("map", *words, *GEAR, "-o", self.map, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(self.map.read_text()), done.stdout
+
+    def write(self, warmth, seed=1, grows=0.03, path=None, column=True):
+        """Returns the slow torque; `warmth` is the temperature from first to last row."""
+        draw, position, before, slow = random.Random(seed), 3.0, None, []
+        with open(path or self.log, "w") as file:
+            file.write("time_s,velocity_deg_s,torque_nm,position_deg" + (",drive_degc" if column else "") + "\n")
+            for k in range(20000):
+                t, degc = k / 1000.0, warmth[0] + (warmth[1] - warmth[0]) * k / 20000
+                v = 80 * math.sin(0.9 * t + seed) + 30 * math.sin(0.37 * t)
+                position += 0.0 if before is None else (before + v) / 2000.0
+                before = v
+                theta = math.radians(100 * position)
+                slow.append(6 * math.sin(0.5 * t))
+                ripple = (1 + grows * (degc - 30)) * (0.8 * math.cos(theta + 0.5) + 0.5 * math.cos(2 * theta))
+                cells = [t, v, slow[-1] + ripple + draw.gauss(0, 0.05), position, degc]
+                file.write(",".join(f"{cell:.6f}" for cell in cells[:5 if column else 4]) + "\n")
+        return slow
+
+    def filtered(self, method, *words, code=0):
+        out = self.folder / "out.csv"
+        done = run("filter", self.log, "--method", method, "-o", out, "--force", *words)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done.stderr if code else [float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
+
+    def left(self, method, slow, *words):
+        out = self.filtered(method, *words)
+        return math.sqrt(sum((a - b) ** 2 for a, b in zip(out, slow, strict=True)) / len(out))
+
+    def test_temperature_enters_where_it_pays_and_comes_back_as_it_was(self):
+        self.write((20, 40))
+        found, text = self.made(self.log, *self.COLUMN)
+        self.assertTrue(found["form"]["by_temperature"])
+        self.assertIn("and by temperature", text)
+        self.assertEqual(found["temperature_column"], "drive_degc")
+        low, high = found["range"]["temperature_degc"]
+        self.assertTrue(20 <= low < 21 and 39 < high <= 40, (low, high))
+        per_degree = [one for one in found["coefficients"] if one["column"] == "per degC beyond the middle"]
+        for one, amplitude, phase in zip(per_degree, (0.8, 0.5), (0.5, 0.0), strict=True):
+            self.assertAlmostEqual(one["cosine_nm"], 0.03 * amplitude * math.cos(phase), delta=2.5 * one["cosine_ci95_nm"])
+            self.assertAlmostEqual(one["sine_nm"], -0.03 * amplitude * math.sin(phase), delta=2.5 * one["sine_ci95_nm"])
+
+    def test_temperature_that_says_nothing_is_not_in_the_map(self):
+        self.write((20, 40), grows=0.0)
+        found, _ = self.made(self.log, *self.COLUMN)
+        self.assertNotIn("by_temperature", found["form"])
+        self.assertNotIn("temperature_degc", found["range"])
+        self.write((30, 30.5))
+        self.assertNotIn("by_temperature", self.made(self.log, *self.COLUMN)[0]["form"])
+
+    def test_the_methods_look_the_map_up_at_the_logs_mean_temperature(self):
+        self.write((20, 40))
+        self.made(self.log, *self.COLUMN)
+        slow = self.write((22, 23), seed=2)
+        self.assertLess(self.left(f"map,map={self.map}", slow), 0.056)  # the noise is 0.05 Nm
+        self.assertLess(self.left(f"oscillator,map={self.map}", slow), 0.03)
+        self.assertGreater(self.left(f"map,map={self.map},temperature=38", slow), 0.2)
+        done = run("compare", self.log, "--method", f"map,map={self.map}", "--method", f"oscillator,map={self.map}")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_log_without_it_is_refused_until_somebody_states_it(self):
+        self.write((20, 40))
+        self.made(self.log, *self.COLUMN)
+        slow = self.write((22, 22), seed=2, column=False)
+        for method in "map", "oscillator":
+            said = self.filtered(f"{method},map={self.map}", code=3)
+            self.assertRegex(said, r"log.csv: read no column 'drive_degc', expected the temperature that .*map.json depends on; state it in the method")
+            self.assertEqual(run("compare", self.log, "--method", f"{method},map={self.map}").returncode, 3)
+        self.assertLess(self.left(f"map,map={self.map},temperature=22", slow), 0.056)
+
+    def test_beyond_what_was_seen_the_edge_holds(self):
+        self.write((20, 40))
+        found, _ = self.made(self.log, *self.COLUMN)
+        self.write((60, 60), seed=2)
+        high = found["range"]["temperature_degc"][1]
+        self.assertEqual(self.filtered(f"map,map={self.map}"), self.filtered(f"map,map={self.map},temperature={high!r}"))
+
+    def test_a_column_that_is_not_there_is_refused_when_the_map_is_made(self):
+        self.write((20, 40))
+        done = run("map", self.log, *GEAR, "--temperature", "nix")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("has no column 'nix'", done.stderr)
+
+    def test_two_logs_of_two_temperatures_make_one_map(self):
+        cold, hot = self.folder / "cold.csv", self.folder / "hot.csv"
+        self.write((18, 19), path=cold)
+        self.write((41, 42), seed=3, path=hot)
+        found, _ = self.made(cold, hot, *self.COLUMN)
+        self.assertTrue(found["form"]["by_temperature"], found["verdict"])
+
+    def test_exports_hold_it_or_say_that_they_do_not(self):
+        self.write((20, 40))
+        self.made(self.log, *self.COLUMN)
+        for to, most in ("c-header,precision=double", 1e-12), ("c-header", 1e-5), ("fourier", 1e-12):
+            done = run("export", self.map, "--to", to, "-o", self.folder / ("a.csv" if to == "fourier" else "a.h"), "--verify", "--force")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertNotIn("temperature", done.stderr)
+            self.assertLess(float(done.stdout.split("largest error")[1].split()[0]), most)
+        held = []
+        for more in "", ",temperature=22", ",temperature=38":
+            done = run("export", self.map, "--to", "lut,entries=16" + more, "-o", self.folder / "a.csv", "--force")
+            self.assertIn("the dependence on temperature is left out", done.stderr)
+            held.append((self.folder / "a.csv").read_text().split("\n")[-6:])
+        self.assertEqual(len({tuple(one) for one in held}), 3)
+        for precision, most in ("double", 1e-12), ("float", 1e-5):
+            done = run("export", "--method", f"oscillator,map={self.map},temperature=25", "--sample-rate", "1kHz", "--to", f"c-header,precision={precision}",
+                       "-o", self.folder / "b.h", "--verify", "--force")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertLess(float(done.stdout.split("largest difference")[1].split()[0]), most)
+
+
+if __name__ == "__main__":
+    unittest.main()
