@@ -32,7 +32,7 @@ struct PlanQuestion {
     std::string effect;        ///< a side of a tie, a finding in doubt, or one that has to be found again
     std::string rival;         ///< what imitates it best along the planned motion; empty: all else together
     bool open = true;          ///< whether the log left it open
-    double gain_before = 0.0;  ///< along the log's own motion
+    double gain_before = 0.0;  ///< along the log's own motion; 0 below 1
     double gain = 0.0;         ///< along the planned one: fall of the squares that only the effect brings, in
                                ///< units of the noise's variance
 };

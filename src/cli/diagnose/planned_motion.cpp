@@ -63,6 +63,8 @@ std::string csv_of(const Motion& motion) {
     return text;
 }
 
+std::string gain_words(double gain) { return gain > 0.0 ? short_number(gain) : "none"; }
+
 }  // namespace
 
 void check_plan(const DiagnoseRequest& request) {
@@ -107,7 +109,7 @@ std::string plan_text(const PlannedMotion& planned) {
         if (!question.open) continue;
         text += fmt::format("plan: {} from {}: gain {}, in this log {}\n", question.effect,
                             question.rival.empty() ? "all else" : question.rival, short_number(question.gain),
-                            short_number(question.gain_before));
+                            gain_words(question.gain_before));
     }
     text += "plan: simulate";
     for (const std::string& words : plan.motions) text += " --motion " + words;

@@ -70,8 +70,10 @@ class Planning {
         std::vector<PlanQuestion> told;
         for (const AskedTerm& term : asked_) {
             const Separation found = separation(term, along);
-            told.push_back({std::string(term.term.effect->name), std::string(found.rival), term.open,
-                            term.gain_before, found.squares / variance_nm2});
+            // Less than a single sample of noise brings is rounding.
+            const double before = term.gain_before < 1.0 ? 0.0 : term.gain_before;
+            told.push_back({std::string(term.term.effect->name), std::string(found.rival), term.open, before,
+                            found.squares / variance_nm2});
         }
         return told;
     }
