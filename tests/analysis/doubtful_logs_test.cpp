@@ -103,8 +103,10 @@ TEST_CASE("two lone lines whose speeds are known badly share no order") {
 }
 
 TEST_CASE("what is known against a log comes first, and takes ratio, orders and certainty with it") {
-    const std::vector<tests::Ripple> ripple{{100.0, 0.8, 0.3}};
-    const std::vector<Trace> logs{at_speed(60.0, GENERATE_COPY(ripple, std::vector<tests::Ripple>{}), {}, 1),
+    // Catch2 2 keeps a reference to a generated vector that is gone by then.
+    const bool in_both = GENERATE(true, false);
+    const std::vector<tests::Ripple> ripple{{100.0, 0.8, 0.3}}, none;
+    const std::vector<Trace> logs{at_speed(60.0, in_both ? ripple : none, {}, 1),
                                   at_speed(90.0, ripple, {}, 2)};
     IdentifyOptions options;
     options.doubts = {{DoubtReason::clock, "the clock is wrong by 1.475"}};
