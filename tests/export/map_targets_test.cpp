@@ -3,6 +3,7 @@
 
 #include "export/map_targets.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -124,8 +125,10 @@ TEST_CASE("a map by temperature comes through where it is held, and the others s
         INFO(text);
         const auto cold = through(text + ",temperature=18", warm()),
                    hot = through(text + ",temperature=41", warm());
-        CHECK_THAT(cold.written.warnings.back(),
-                   Catch::Contains("the dependence on temperature is left out"));
+        CHECK(std::any_of(
+            cold.written.warnings.begin(), cold.written.warnings.end(), [](const std::string& warning) {
+                return warning.find("the dependence on temperature is left out") != std::string::npos;
+            }));
         CHECK(cold.written.bytes != hot.written.bytes);
         CHECK(cold.written.bytes == through(text + ",temperature=-20", warm()).written.bytes);
     }
