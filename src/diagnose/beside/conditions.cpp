@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/beside/ringing.hpp"
 #include "diagnose/hearing.hpp"
 
 namespace ripplenotch {
@@ -18,9 +19,7 @@ using Eigen::VectorXd;
 bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, double price) {
     Names both = rivals;
     both.push_back(own);
-    const OutsideGain gain = outside_gain(sums.residual_outside(rivals), sums.residual_outside(both),
-                                          sums.lens().ground().blocks(), sums.lens().sigma());
-    return is_worth(gain, price, sums.lens().rules().beside);
+    return is_worth(gain_between(sums, rivals, both), price, sums.lens().rules().beside);
 }
 
 // True for a friction of a size below 0. One that is a part of another's curve (quadratic beside viscous
@@ -48,6 +47,7 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
     }
     std::stable_sort(rivals.begin(), rivals.end(),
                      [](const Named& a, const Named& b) { return a.left < b.left; });
+    keep_best_ringing(sums, rivals);
     std::optional<Named> best;
     for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
         Named rival = refined(sums, rivals[i]);

@@ -17,16 +17,14 @@ bool is_friction(const Shape& shape) {
 }
 
 // The scale moved once up or down by this factor where that helps.
-bool move_once(Sums& sums, Named& now, std::size_t name, std::size_t scale, double factor) {
+bool move_once(Sums& sums, Named& now, std::size_t name, const Scale& scale, double factor) {
     const ScaleBounds& bounds = sums.lens().bounds();
-    const Parameter& parameter = sums.shapes()[now.names[name]].term.effect->parameters[scale];
     for (const double by : {factor, 1.0 / factor}) {
-        Shape moved = sums.shapes()[now.names[name]];
-        const double value = *moved.term.values[scale] * by;
-        if (value < bounds.low(parameter) || value > bounds.high(parameter)) continue;
-        moved.term.values[scale] = value;
+        const Shape shape = sums.shapes()[now.names[name]];
+        const double value = value_of(shape, scale) * by;
+        if (value < bounds.low(shape, scale) || value > bounds.high(shape, scale)) continue;
         Named next = now;
-        next.names[name] = sums.place_of(moved);
+        next.names[name] = sums.place_of(moved(shape, scale, value));
         next.left = sums.left_outside(next.names);
         if (next.left < now.left - sums.lens().rules().beside.refine_gain * squared(sums)) {
             now = std::move(next);
@@ -86,7 +84,7 @@ bool is_barred(const Barred& barred, const Shape& shape) {
 Named refined(Sums& sums, Named now) {
     constexpr int most_moves = 6;
     for (std::size_t name = 0; name < now.names.size(); ++name) {
-        for (const std::size_t scale : scales_of(*sums.shapes()[now.names[name]].term.effect)) {
+        for (const Scale& scale : scales_of(sums.shapes()[now.names[name]])) {
             for (const double factor : factors) {
                 for (int move = 0; move < most_moves; ++move) {
                     if (!move_once(sums, now, name, scale, factor)) break;
@@ -103,7 +101,9 @@ Named with_better_names(Sums& sums, Named now, const Barred& barred) {
         for (std::size_t name = 0; name < now.names.size(); ++name) {
             const Names rest = without(now.names, name, name);
             for (std::size_t shape = 0; shape < sums.listed(); ++shape) {
-                if (shape == now.names[name] || !may_stand_beside(sums, rest, shape, barred)) continue;
+                if (shape == now.names[name] || sums.shapes()[shape].ringing ||
+                    !may_stand_beside(sums, rest, shape, barred))
+                    continue;
                 Named other{appended(rest, shape)};
                 other.left = sums.left_outside(other.names);
                 if (other.left < best.left) best = std::move(other);

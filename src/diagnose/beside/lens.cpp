@@ -3,23 +3,35 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "core/vectors/dot.hpp"
 #include "diagnose/beside/color.hpp"
+#include "diagnose/beside/ringing.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-std::vector<double> swelled(const std::vector<double>& column, const Motion& motion, double fastest_deg_s,
-                            bool by_direction, bool by_speed) {
-    std::vector<double> swelling = column;
-    for (std::size_t k = 0; k < column.size(); ++k) {
-        const double v = motion.velocity_deg_s[k];
-        if (by_direction) swelling[k] *= v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
-        if (by_speed) swelling[k] *= std::abs(v) / fastest_deg_s;
+// A pair of columns, a cosine and what is a quarter of a cycle ahead of it, as the gain changes both.
+void ring(const std::vector<std::complex<double>>& gain, std::vector<std::vector<double>>& columns) {
+    std::vector<double> cosine = columns[0], ahead = columns[1];
+    for (std::size_t k = 0; k < gain.size(); ++k) {
+        cosine[k] = gain[k].real() * columns[0][k] + gain[k].imag() * columns[1][k];
+        ahead[k] = gain[k].real() * columns[1][k] - gain[k].imag() * columns[0][k];
     }
-    return swelling;
+    columns.push_back(std::move(cosine));
+    columns.push_back(std::move(ahead));
+}
+
+// The whole catalogue is fitted at once where what rings is broad: its plain ripple is there already.
+bool is_for_all(const Shape& shape) {
+    if (!shape.ringing) return true;
+    const std::vector<Scale> scales = scales_of(shape);
+    return std::any_of(scales.begin(), scales.end(), [&](const Scale& scale) {
+        return scale.of_ringing && parameter_of(shape, scale).unit != "Hz" &&
+               value_of(shape, scale) == broad_damping;
+    });
 }
 
 }  // namespace
@@ -39,7 +51,7 @@ Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenT
       rules_(rules),
       work_(work),
       ground_(looked_at, rules.beside),
-      bounds_(scale_bounds(looked_at, rules.beside)) {
+      bounds_(scale_bounds(looked_at, model.stated.gear_ratio.value(), rules.beside)) {
     if (!given.empty() && case_.motion.carried_nm.empty()) carry(given, model);
     prediction_.emplace(model.stated, case_.motion);
     always_ = always_on(case_, model, given, rules);
@@ -51,7 +63,7 @@ Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenT
         add_scaled(-always_.mean[i], always_.torque_nm[i].data(), open_nm_.data(), open_nm_.size());
     bridged_open_ = ground_.bridged(open_nm_);
     bridged_always_ = bridged(always_.torque_nm);
-    shapes_ = shapes_of(effects, bounds_, model.stated.gear_ratio.value(), ground_.rate_hz());
+    shapes_ = shapes_of(effects, bounds_, ground_.rate_hz());
     // What the model has is always on.
     std::erase_if(shapes_, [&](const Shape& shape) {
         return std::any_of(model.stated.terms.begin(), model.stated.terms.end(),
@@ -100,7 +112,10 @@ std::vector<double> Lens::left_by_all() const {
     Columns all = bridged_always_;
     std::vector<double> deviation = always_.deviation;
     for (const Shape& shape : shapes_) {
-        for (auto& column : bridged(torque_nm(shape))) all.push_back(std::move(column));
+        if (!is_for_all(shape)) continue;
+        Columns own = torque_nm(shape);
+        if (shape.ringing) own.erase(own.begin(), own.begin() + 2);
+        for (auto& column : bridged(own)) all.push_back(std::move(column));
     }
     deviation.resize(all.size(), any_size);
     // The values need fewer rows than their residual.
@@ -136,12 +151,7 @@ std::vector<std::vector<double>> Lens::torque_nm(const Shape& shape) const {
         columns.push_back(prediction_->added(across));
     }
     work_.add(prediction_->applied() - before, case_.size());
-    if (!shape.swelling) return columns;
-    const Columns plain = columns;
-    for (const auto& [by_direction, by_speed] : {std::pair(true, false), {true, true}, {false, true}}) {
-        for (const auto& column : plain)
-            columns.push_back(swelled(column, case_.motion, bounds_.fastest_deg_s, by_direction, by_speed));
-    }
+    if (shape.ringing) ring(ringing_gain(shape, case_.motion, prediction_->model().gear_ratio), columns);
     return columns;
 }
 

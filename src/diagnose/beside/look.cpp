@@ -6,8 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/vectors/dot.hpp"
 #include "diagnose/beside/offset.hpp"
+#include "diagnose/beside/ringing.hpp"
 #include "diagnose/doubt.hpp"
 #include "diagnose/place.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -45,10 +48,9 @@ void set_values(Finding& finding, const BesideValues& values) {
     finding.values = values.values;
 }
 
-// Its torque along the log, and where that acts.
-void measure(Finding& finding, const Lens& lens, const Model& beside) {
+// Where its torque acts along the log, and how large that is.
+void measure(Finding& finding, const Lens& lens, const std::vector<double>& torque_nm) {
     const Case& c = lens.looked_at();
-    const auto torque_nm = Prediction(beside, c.motion).added(finding.term);
     finding.where = place_of(c, torque_nm, finding.term, lens.rules().place);
     double sum = 0.0, square = 0.0;
     for (std::size_t k = 0; k < c.size(); ++k) {
@@ -84,14 +86,54 @@ std::vector<double> errors_of_given(const Lens& lens) {
     return errors;
 }
 
-std::vector<double> sum_of(const std::vector<Term>& terms, const Model& model, const Motion& motion) {
+std::vector<double> sum_of(const std::vector<BesideValues>& believed, const Model& model,
+                           const Motion& motion) {
     std::vector<double> sum(motion.size(), 0.0);
-    const Prediction beside(model, motion);
-    for (const Term& term : terms) {
-        const auto torque_nm = beside.added(term);
+    for (const BesideValues& values : believed) {
+        const auto torque_nm = torque_of(values, model, motion);
         add_scaled(1.0, torque_nm.data(), sum.data(), sum.size());
     }
     return sum;
+}
+
+bool is_resonance(const Lens& lens, const Shape& shape, const BesideValues& values) {
+    const BesideRules& rules = lens.rules().beside;
+    if (lens.bounds().is_ringing_bent(shape)) return false;
+    for (const FittedValue& value : values.ringing_values) {
+        const Parameter& parameter = values.ringing->effect->parameters[value.parameter];
+        if (parameter.left_out != LeftOut::fitted) continue;
+        if (!value.ci95) return false;
+        if (parameter.unit == "Hz" && value.ci95->high > rules.told_ringing * value.value) return false;
+        if (parameter.unit != "Hz" && value.ci95->high > rules.sharp_damping) return false;
+    }
+    return true;
+}
+
+// Of a finding that is not withdrawn.
+std::size_t place_in(const Look& look, const BesideFinding& found) {
+    const Names& names = look.named.now.names;
+    const auto place = std::find_if(names.begin(), names.end(), [&](std::size_t name) {
+        return look.sums.shapes()[name] == found.shape;
+    });
+    return static_cast<std::size_t>(place - names.begin());
+}
+
+// What mends the form of a ripple, as a finding: a resonance where it is sharp and its frequency is told.
+Finding ringing_finding(Look& look, const BesideFinding& found, const BesideValues& values) {
+    const Lens& lens = look.lens;
+    BesideFinding own = found;
+    own.gain = gain_of_ringing(look.sums, look.named.now.names, place_in(look, found));
+    own.price = price_of_ringing(look.sums, look.named.now.names[place_in(look, found)], catalogue().size());
+    own.decisions.clear();
+    own.rival.reset();
+    Finding finding = finding_of(lens, own);
+    finding.term = *values.ringing;
+    finding.values = values.ringing_values;
+    if (found.status == FindingStatus::confirmed && is_resonance(lens, found.shape, values)) return finding;
+    finding.status = FindingStatus::shape_correction;
+    finding.reason = fmt::format("it mends the form of {}, whose size and phase go with the speed",
+                                 shape_name(found.shape));
+    return finding;
 }
 
 // The catalogue's friction by load has the load of inertia and gravity. Where it grows with the other
@@ -127,7 +169,7 @@ void adopt_offset(BesideOutcome& outcome, Finding finding, const Look& look, con
     double& value = *finding.term.values.front();
     value += std::exchange(outcome.given_values[place], 0.0);
     finding.values.front().value = value;
-    measure(finding, look.lens, beside);
+    measure(finding, look.lens, Prediction(beside, look.lens.looked_at().motion).added(finding.term));
     finding.evidence.share_nm = finding.evidence.own_nm;
     outcome.believed.push_back(finding.term);
     outcome.findings.push_back(std::move(finding));
@@ -149,44 +191,54 @@ Look::Look(const GivenCase& log, const GivenCase* validation, const Candidate& m
 }
 
 std::vector<double> carried_beside(Look& look, const Candidate& model) {
-    std::vector<Term> believed;
-    for (const BesideValues& values : believed_of(look.sums, look.named.findings).values)
-        believed.push_back(values.term);
-    const std::vector<double> explained = sum_of(believed, model.stated, look.lens.looked_at().motion);
+    const std::vector<double> explained = sum_of(believed_of(look.sums, look.named.findings).values,
+                                                 model.stated, look.lens.looked_at().motion);
     return carried_nm(look.lens.columns(), look.lens.plain_values(explained));
 }
 
 BesideOutcome outcome_of(Look& look, const GivenCase& log, const Candidate& model,
                          std::span<const Effect* const> effects) {
-    const Believed believed = believed_of(look.sums, look.named.findings);
+    Believed believed = believed_of(look.sums, look.named.findings);
+    const Motion& motion = look.lens.looked_at().motion;
     BesideOutcome outcome;
     std::vector<Shape> shapes;
     for (std::size_t i = 0; i < look.named.findings.size(); ++i) {
-        Finding finding = finding_of(look.lens, look.named.findings[i]);
+        const BesideFinding& found = look.named.findings[i];
         const auto place = std::find(believed.place.begin(), believed.place.end(), i);
         const bool stays = place != believed.place.end();
-        set_values(finding, stays ? believed.values[static_cast<std::size_t>(place - believed.place.begin())]
-                                  : values_beside(look.sums, {look.named.findings[i].shape})[0]);
-        measure(finding, look.lens, model.stated);
+        const BesideValues values =
+            stays ? believed.values[static_cast<std::size_t>(place - believed.place.begin())]
+                  : values_beside(look.sums, {found.shape})[0];
+        Finding finding = finding_of(look.lens, found);
+        set_values(finding, values);
+        const std::vector<double> torque_nm = torque_of(values, model.stated, motion);
+        measure(finding, look.lens, torque_nm);
         if (look.other[i].without_nm > 0.0) {
             finding.validation_before_nm = look.other[i].without_nm;
             finding.validation_after_nm = look.other[i].with_nm;
         }
         if (stays) {
             outcome.believed.push_back(finding.term);
-            shapes.push_back(look.named.findings[i].shape);
+            shapes.push_back(found.shape);
         }
         outcome.findings.push_back(std::move(finding));
+        if (!stays || !values.ringing) continue;
+        Finding ringing = ringing_finding(look, found, values);
+        std::vector<double> more_nm = Prediction(model.stated, motion).added(values.term);
+        for (std::size_t k = 0; k < more_nm.size(); ++k) more_nm[k] = torque_nm[k] - more_nm[k];
+        measure(ringing, look.lens, more_nm);
+        outcome.believed.push_back(ringing.term);
+        outcome.findings.push_back(std::move(ringing));
     }
     std::optional<OffsetBeside> offset;
     if (is_arm_alone(log.given)) offset = offset_beside(look.lens, model, log.given, effects, shapes);
-    std::vector<Term> explained = outcome.believed;
-    if (offset &&
-        !matters(*offset, look, believed, sum_of(explained, model.stated, look.lens.looked_at().motion)))
-        offset.reset();
-    if (offset) explained.push_back(offset->values.term);
-    outcome.given_values =
-        look.lens.plain_values(sum_of(explained, model.stated, look.lens.looked_at().motion));
+    std::vector<double> explained_nm = sum_of(believed.values, model.stated, motion);
+    if (offset && !matters(*offset, look, believed, explained_nm)) offset.reset();
+    if (offset) {
+        believed.values.push_back(offset->values);
+        explained_nm = sum_of(believed.values, model.stated, motion);
+    }
+    outcome.given_values = look.lens.plain_values(explained_nm);
     outcome.given_values.resize(look.lens.columns().stated);
     if (offset) {
         Finding finding = finding_of(look.lens, offset->finding);

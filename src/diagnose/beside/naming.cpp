@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose/beside/naming.hpp"
 
+#include "diagnose/beside/ringing.hpp"
+
 #include <algorithm>
 #include <optional>
 #include <utility>
 
 namespace ripplenotch {
 namespace {
-
-OutsideGain gain_between(const Sums& sums, const Names& without, const Names& with) {
-    return outside_gain(sums.residual_outside(without), sums.residual_outside(with),
-                        sums.lens().ground().blocks(), sums.lens().sigma());
-}
 
 // The best of what may be added, the best first.
 std::vector<Named> finalists(const Sums& sums, const Named& now, const Barred& barred) {
@@ -26,6 +23,7 @@ std::vector<Named> finalists(const Sums& sums, const Named& now, const Barred& b
     }
     std::stable_sort(trials.begin(), trials.end(),
                      [](const Named& a, const Named& b) { return a.left < b.left; });
+    keep_best_ringing(sums, trials);
     trials.resize(std::min(trials.size(), sums.lens().rules().beside.finalists));
     return trials;
 }
@@ -34,7 +32,8 @@ std::optional<Named> one_more(Sums& sums, const Named& now, const Barred& barred
     for (const Named& trial : finalists(sums, now, barred)) {
         const Named next = refined(sums, trial);
         const OutsideGain gain = gain_between(sums, now.names, next.names);
-        if (is_worth(gain, price_of(sums, next.names.back(), effects), sums.lens().rules().beside))
+        if (is_worth(gain, price_of(sums, next.names.back(), effects), sums.lens().rules().beside) &&
+            is_worth_ringing(sums, next.names, next.names.size() - 1, effects))
             return next;
     }
     return std::nullopt;
@@ -66,7 +65,7 @@ Named search_beside(Sums& sums, Named now, const Barred& barred, std::size_t eff
         if (next) {
             next = with_better_names(sums, std::move(*next), barred);
             next = with_better_pair(sums, std::move(*next), barred);
-            now = refined(sums, std::move(*next));
+            now = with_ringing(sums, refined(sums, std::move(*next)), effects);
         }
         sums.forget_but(now.names);
         if (!next) break;
@@ -76,6 +75,7 @@ Named search_beside(Sums& sums, Named now, const Barred& barred, std::size_t eff
         now.left = sums.left_outside(now.names);
         now = refined(sums, std::move(now));
     }
+    now = without_idle_ringing(sums, std::move(now), effects);
     sums.forget_but(now.names);
     return now;
 }

@@ -19,11 +19,10 @@ bool is_in_doubt(FindingStatus status) {
 
 std::vector<double> torque_of(const std::vector<BesideValues>& values, const Model& beside,
                               const Motion& motion, std::optional<std::size_t> but) {
-    const Prediction prediction(beside, motion);
     std::vector<double> sum(motion.size(), 0.0);
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (but && *but == i) continue;
-        const std::vector<double> torque_nm = prediction.added(values[i].term);
+        const std::vector<double> torque_nm = torque_of(values[i], beside, motion);
         add_scaled(1.0, torque_nm.data(), sum.data(), sum.size());
     }
     return sum;
@@ -31,6 +30,7 @@ std::vector<double> torque_of(const std::vector<BesideValues>& values, const Mod
 
 // By how much of itself the interval of a size reaches over 0; 0 where it does not.
 double reach_beyond_0(const BesideValues& values) {
+    if (values.is_told) return 0.0;
     for (const FittedValue& value : values.values) {
         const Effect& effect = *values.term.effect;
         const bool is_size = effect.parameters[value.parameter].linear ||

@@ -25,14 +25,36 @@ bool is_tried(const Effect& effect) {
            !ringing && linear_of(effect) != nullptr;
 }
 
-bool is_resolved(const Shape& shape, const ScaleBounds& bounds, double ratio, double rate_hz) {
+bool is_resolved(const Shape& shape, const ScaleBounds& bounds, double rate_hz) {
     const Effect& effect = *shape.term.effect;
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
         if (effect.parameters[p].left_out != LeftOut::refused) continue;
-        const double cycles = *shape.term.values[p] * (effect.ripple_order ? ratio : 1.0);
+        const double cycles = *shape.term.values[p] * (effect.ripple_order ? bounds.ratio : 1.0);
         if (cycles * bounds.fastest_deg_s / 360.0 >= bounds.rules.resolved * rate_hz) return false;
     }
     return true;
+}
+
+double order_of(const Shape& shape) { return *shape.term.values[*shape.term.effect->ripple_order]; }
+
+// Where a search for what rings begins: among the frequencies that the line passes, sharp and broad.
+std::vector<Shape> ringing_shapes(const Shape& plain, const Effect& effect, const ScaleBounds& bounds) {
+    constexpr double parts[] = {0.1, 0.2, 0.35, 0.6, 1.0}, dampings[] = {0.15, broad_damping};
+    std::vector<Shape> shapes;
+    for (const double damping : dampings) {
+        for (const double part : parts) {
+            Term term{&effect, {}};
+            for (const Parameter& parameter : effect.parameters) term.values.emplace_back(parameter.start);
+            for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+                const Parameter& parameter = effect.parameters[p];
+                if (parameter.name == "order") term.values[p] = order_of(plain);
+                if (parameter.left_out != LeftOut::fitted) continue;
+                term.values[p] = parameter.unit == "Hz" ? part * bounds.fastest_hz(order_of(plain)) : damping;
+            }
+            shapes.push_back({plain.term, std::move(term)});
+        }
+    }
+    return shapes;
 }
 
 std::vector<double> places_of(const Parameter& parameter, bool scale, const ScaleBounds& bounds) {
@@ -91,7 +113,45 @@ std::vector<std::size_t> scales_of(const Effect& effect) {
 }
 
 std::size_t columns_of(const Shape& shape) {
-    return (shape.term.effect->polar ? 2 : 1) * (shape.swelling ? 4 : 1);
+    return (shape.term.effect->polar ? 2 : 1) * (shape.ringing ? 2 : 1);
+}
+
+std::vector<Scale> scales_of(const Shape& shape) {
+    std::vector<Scale> scales;
+    for (const std::size_t p : scales_of(*shape.term.effect)) scales.push_back({false, p});
+    if (!shape.ringing) return scales;
+    const auto& parameters = shape.ringing->effect->parameters;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+        if (parameters[p].left_out == LeftOut::fitted) scales.push_back({true, p});
+    }
+    return scales;
+}
+
+const Parameter& parameter_of(const Shape& shape, const Scale& scale) {
+    return (scale.of_ringing ? *shape.ringing : shape.term).effect->parameters[scale.parameter];
+}
+
+double value_of(const Shape& shape, const Scale& scale) {
+    return *(scale.of_ringing ? *shape.ringing : shape.term).values[scale.parameter];
+}
+
+Shape moved(Shape shape, const Scale& scale, double value) {
+    (scale.of_ringing ? *shape.ringing : shape.term).values[scale.parameter] = value;
+    return shape;
+}
+
+double ScaleBounds::low(const Shape& shape, const Scale& scale) const {
+    const Parameter& parameter = parameter_of(shape, scale);
+    if (!scale.of_ringing) return low(parameter);
+    if (parameter.unit != "Hz") return rules.least_damping;
+    return rules.slowest_ringing * fastest_hz(order_of(shape));
+}
+
+double ScaleBounds::high(const Shape& shape, const Scale& scale) const {
+    const Parameter& parameter = parameter_of(shape, scale);
+    if (!scale.of_ringing) return high(parameter);
+    if (parameter.unit != "Hz") return rules.most_damping;
+    return rules.fastest_ringing * fastest_hz(order_of(shape));
 }
 
 double ScaleBounds::low(const Parameter& scale) const {
@@ -118,8 +178,17 @@ bool ScaleBounds::is_bent(const Shape& shape) const {
     return false;
 }
 
-ScaleBounds scale_bounds(const Case& looked_at, const BesideRules& rules) {
-    ScaleBounds bounds{0.0, looked_at.motion.time_s.back() - looked_at.motion.time_s.front(), rules};
+bool ScaleBounds::is_ringing_bent(const Shape& shape) const {
+    const std::vector<Scale> scales = scales_of(shape);
+    return std::any_of(scales.begin(), scales.end(), [&](const Scale& scale) {
+        if (!scale.of_ringing) return false;
+        const double value = value_of(shape, scale);
+        return value < rules.near_low * low(shape, scale) || value > high(shape, scale) / rules.near_high;
+    });
+}
+
+ScaleBounds scale_bounds(const Case& looked_at, double ratio, const BesideRules& rules) {
+    ScaleBounds bounds{0.0, looked_at.motion.time_s.back() - looked_at.motion.time_s.front(), ratio, rules};
     for (std::size_t k = 0; k < looked_at.size(); ++k) {
         if (looked_at.use[k] != 0)
             bounds.fastest_deg_s =
@@ -128,9 +197,12 @@ ScaleBounds scale_bounds(const Case& looked_at, const BesideRules& rules) {
     return bounds;
 }
 
-std::vector<Shape> shapes_of(std::span<const Effect* const> effects, const ScaleBounds& bounds, double ratio,
+std::vector<Shape> shapes_of(std::span<const Effect* const> effects, const ScaleBounds& bounds,
                              double rate_hz) {
     std::vector<Shape> found;
+    const auto rings = std::find_if(effects.begin(), effects.end(), [](const Effect* effect) {
+        return effect->side == Side::ripple && effect->domain == Domain::frequency;
+    });
     for (const Effect* effect : effects) {
         if (!is_tried(*effect)) continue;
         const std::vector<std::size_t> scales = scales_of(*effect);
@@ -150,13 +222,11 @@ std::vector<Shape> shapes_of(std::span<const Effect* const> effects, const Scale
             }
             shapes = std::move(more);
         }
-        std::erase_if(shapes,
-                      [&](const Shape& shape) { return !is_resolved(shape, bounds, ratio, rate_hz); });
+        std::erase_if(shapes, [&](const Shape& shape) { return !is_resolved(shape, bounds, rate_hz); });
+        found.insert(found.end(), shapes.begin(), shapes.end());
+        if (!effect->ripple_order || rings == effects.end()) continue;
         for (const Shape& shape : shapes) {
-            found.push_back(shape);
-            if (!effect->ripple_order) continue;
-            found.push_back(shape);
-            found.back().swelling = true;
+            for (Shape& ringing : ringing_shapes(shape, **rings, bounds)) found.push_back(std::move(ringing));
         }
     }
     return found;

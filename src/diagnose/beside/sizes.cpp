@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "core/vectors/dot.hpp"
+#include "diagnose/beside/ringing.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -37,11 +39,10 @@ Slopes slopes_of(const Sums& sums, const Names& names, const VectorXd& sizes) {
                        slopes.left.size());
             slopes.columns.push_back(own[c]);
         }
-        for (const std::size_t p : scales_of(*shape.term.effect)) {
-            Shape up = shape, down = shape;
-            up.term.values[p] = *shape.term.values[p] * nudge;
-            down.term.values[p] = *shape.term.values[p] / nudge;
-            const auto above = lens.weighed(up).columns, below = lens.weighed(down).columns;
+        for (const Scale& scale : scales_of(shape)) {
+            const double value = value_of(shape, scale);
+            const auto above = lens.weighed(moved(shape, scale, value * nudge)).columns,
+                       below = lens.weighed(moved(shape, scale, value / nudge)).columns;
             std::vector<double> slope(slopes.left.size(), 0.0);
             const double per_unit = 0.5 / portable::log(nudge);
             for (std::size_t c = 0; c < own.size(); ++c) {
@@ -101,33 +102,72 @@ struct Sized {
     double widened;
 };
 
-void tell_polar(BesideValues& told_values, const Polar& polar, std::size_t place, const Sized& sized) {
-    const double x = sized.size[0], y = sized.size[1], amount = portable::hypot(x, y);
-    const double cosine = amount > 0.0 ? x / amount : 1.0, sine = amount > 0.0 ? y / amount : 0.0;
-    const auto& v = sized.covariance;
-    const double along = v(0, 0) * cosine * cosine + 2.0 * v(0, 1) * cosine * sine + v(1, 1) * sine * sine;
-    const double across = v(0, 0) * sine * sine - 2.0 * v(0, 1) * cosine * sine + v(1, 1) * cosine * cosine;
-    const double phase_deg = portable::atan2(y, x) * degrees_per_radian;
-    const double px = sized.plain[0], py = sized.plain[1];
-    const double turned_deg =
-        portable::atan2(py * cosine - px * sine, px * cosine + py * sine) * degrees_per_radian;
-    told_values.term.values[polar.size] = amount;
-    told_values.term.values[polar.phase] = phase_deg;
-    told_values.values.push_back(told(
-        place, polar.size, amount, sized.widened * std::sqrt(std::max(along, 0.0)), portable::hypot(px, py)));
-    told_values.values.push_back(
-        told(place, polar.phase, phase_deg,
-             sized.widened * std::sqrt(std::max(across, 0.0)) / std::max(amount, 1e-300) * degrees_per_radian,
-             phase_deg + turned_deg));
+using Complex = std::complex<double>;
+
+Complex pair_at(const double* sizes, Index first) { return {sizes[first], sizes[first + 1]}; }
+
+// Deviation of a number that depends on sizes so: Re of the sum of c * dA over pairs A of columns.
+double deviation_of(const Sized& sized, const std::vector<Complex>& slopes) {
+    VectorXd row = VectorXd::Zero(sized.covariance.rows());
+    for (std::size_t pair = 0; pair < slopes.size(); ++pair) {
+        row[static_cast<Index>(2 * pair)] = slopes[pair].real();
+        row[static_cast<Index>(2 * pair + 1)] = -slopes[pair].imag();
+    }
+    return sized.widened * std::sqrt(std::max(row.dot(sized.covariance * row), 0.0));
 }
 
-void tell_scales(BesideValues& told_values, std::size_t place, const Sized& sized, Index first) {
-    const Effect& effect = *told_values.term.effect;
-    for (const std::size_t p : scales_of(effect)) {
-        const double value = *told_values.term.values[p];
+// A complex number as size and phase: `slopes` are its own by each pair of columns, `plain` is what plain
+// least squares makes of it.
+void tell_complex(std::vector<FittedValue>& values, std::size_t place, const Polar& polar, Complex number,
+                  Complex plain, const Sized& sized, std::vector<Complex> slopes) {
+    const double amount = portable::hypot(number.real(), number.imag());
+    const Complex back = amount > 0.0 ? std::conj(number) / amount : Complex(1.0);
+    const Complex turned = plain * back;
+    const double phase_deg = portable::arg(number) * degrees_per_radian;
+    for (Complex& slope : slopes) slope *= back;
+    values.push_back(told(place, polar.size, amount, deviation_of(sized, slopes),
+                          portable::hypot(plain.real(), plain.imag())));
+    // Im z is Re -iz.
+    for (Complex& slope : slopes) slope *= Complex(0.0, -1.0);
+    values.push_back(told(place, polar.phase, phase_deg,
+                          deviation_of(sized, slopes) / std::max(amount, 1e-300) * degrees_per_radian,
+                          phase_deg + portable::arg(turned) * degrees_per_radian));
+}
+
+bool holds_0(const FittedValue& size) { return size.ci95->low <= 0.0 && size.ci95->high >= 0.0; }
+
+void tell_polar(BesideValues& told_values, const Polar& polar, std::size_t place, const Sized& sized) {
+    const Complex all = pair_at(sized.size, 0);
+    tell_complex(told_values.values, place, polar, all, pair_at(sized.plain, 0), sized, {1.0});
+    told_values.is_told = !holds_0(told_values.values.front());
+    told_values.term.values[polar.size] = told_values.values[0].value;
+    told_values.term.values[polar.phase] = told_values.values[1].value;
+}
+
+// Of ripple at standstill the first pair and the second, of which the second rings.
+void tell_ringing(BesideValues& told_values, const Shape& shape, std::size_t place, const Sized& sized) {
+    const Polar& polar = *shape.term.effect->polar;
+    const Complex rings = pair_at(sized.size, 2), all = pair_at(sized.size, 0) + rings;
+    const Complex plain_rings = pair_at(sized.plain, 2), plain_all = pair_at(sized.plain, 0) + plain_rings;
+    tell_complex(told_values.values, place, polar, all, plain_all, sized, {1.0, 1.0});
+    told_values.term.values[polar.size] = told_values.values[0].value;
+    told_values.term.values[polar.phase] = told_values.values[1].value;
+    std::vector<FittedValue> part;
+    tell_complex(part, place, polar, rings, plain_rings, sized, {0.0, 1.0});
+    told_values.is_told = !holds_0(told_values.values.front()) || !holds_0(part.front());
+    const Complex share = rings / all;
+    told_values.ringing = ringing_term(shape, share);
+    tell_complex(told_values.ringing_values, place, ringing_polar(*shape.ringing->effect), share,
+                 plain_rings / plain_all, sized, {-share / all, (1.0 - share) / all});
+}
+
+void tell_scales(BesideValues& told_values, const Shape& shape, std::size_t place, const Sized& sized,
+                 Index first) {
+    for (const Scale& scale : scales_of(shape)) {
+        const double value = value_of(shape, scale);
         const double error = sized.widened * std::sqrt(std::max(sized.covariance(first, first), 0.0));
         ++first;
-        FittedValue fitted{place, p, value, value * error, Interval{}, false};
+        FittedValue fitted{place, scale.parameter, value, value * error, Interval{}, false};
         // Beyond a factor of e^3 nothing is told.
         if (error < 3.0) {
             fitted.ci95 = Interval{value * portable::exp(-normal_95_errors * error),
@@ -136,8 +176,13 @@ void tell_scales(BesideValues& told_values, std::size_t place, const Sized& size
             fitted.standard_error.reset();
             fitted.ci95.reset();
         }
-        told_values.values.push_back(fitted);
+        (scale.of_ringing ? told_values.ringing_values : told_values.values).push_back(fitted);
     }
+}
+
+void put_in_order(std::vector<FittedValue>& values) {
+    std::sort(values.begin(), values.end(),
+              [](const FittedValue& a, const FittedValue& b) { return a.parameter < b.parameter; });
 }
 
 }  // namespace
@@ -146,27 +191,24 @@ std::vector<BesideValues> values_beside(Sums& sums, const std::vector<Shape>& be
     std::vector<BesideValues> told_all;
     if (believed.empty()) return told_all;
     Names names;
-    std::vector<Shape> plain_shapes;
-    for (Shape shape : believed) {
-        shape.swelling = false;
-        plain_shapes.push_back(shape);
-        names.push_back(sums.place_of(shape));
-    }
+    for (const Shape& shape : believed) names.push_back(sums.place_of(shape));
     const VectorXd sizes = sums.sizes(names);
-    const std::vector<double> plain = sums.lens().plain_sizes(plain_shapes);
+    const std::vector<double> plain = sums.lens().plain_sizes(believed);
     const Slopes slopes = slopes_of(sums, names, sizes);
     const MatrixXd covariance = covariance_of(slopes, sums.lens());
     std::size_t size = 0;
     for (std::size_t place = 0; place < names.size(); ++place) {
-        const Shape& shape = plain_shapes[place];
+        const Shape& shape = believed[place];
         const Effect& effect = *shape.term.effect;
         const auto columns = static_cast<Index>(columns_of(shape));
-        const Index all = columns + static_cast<Index>(scales_of(effect).size());
+        const Index all = columns + static_cast<Index>(scales_of(shape).size());
         BesideValues told_values{shape.term, {}};
         const Sized sized{sizes.data() + size, plain.data() + size,
                           covariance.block(slopes.first[place], slopes.first[place], all, all),
                           sums.lens().rules().beside.interval_factor};
-        if (effect.polar) {
+        if (shape.ringing) {
+            tell_ringing(told_values, shape, place, sized);
+        } else if (effect.polar) {
             tell_polar(told_values, *effect.polar, place, sized);
         } else {
             for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
@@ -175,15 +217,23 @@ std::vector<BesideValues> values_beside(Sums& sums, const std::vector<Shape>& be
                 told_values.values.push_back(
                     told(place, p, sized.size[0],
                          sized.widened * std::sqrt(std::max(sized.covariance(0, 0), 0.0)), sized.plain[0]));
+                told_values.is_told = !holds_0(told_values.values.back());
             }
         }
-        tell_scales(told_values, place, sized, columns);
-        std::sort(told_values.values.begin(), told_values.values.end(),
-                  [](const FittedValue& a, const FittedValue& b) { return a.parameter < b.parameter; });
+        tell_scales(told_values, shape, place, sized, columns);
+        put_in_order(told_values.values);
+        put_in_order(told_values.ringing_values);
         told_all.push_back(std::move(told_values));
         size += static_cast<std::size_t>(columns);
     }
     return told_all;
+}
+
+std::vector<double> torque_of(const BesideValues& values, const Model& beside, const Motion& motion) {
+    if (!values.ringing) return Prediction(beside, motion).added(values.term);
+    Model with = beside;
+    with.terms.push_back(*values.ringing);
+    return Prediction(with, motion).added(values.term);
 }
 
 }  // namespace ripplenotch

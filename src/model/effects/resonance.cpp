@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/effects.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -28,6 +29,25 @@ constexpr Parameter parameters[] = {
      .upper = 2.0,
      .logarithmic = true,
      .tried = tried_dampings},
+    {.name = "share",
+     .unit = "",
+     .help = "of the ripple that passes the elastic joint, as a part of the ripple at standstill; the rest "
+             "is as it is",
+     .neutral = 1.0,
+     .start = 1.0,
+     .upper = 1000.0,
+     .left_out = LeftOut::assumed},
+    {.name = "share_phase_deg",
+     .unit = "deg",
+     .help = "by which that part is ahead of the ripple at standstill",
+     .lower = -360.0,
+     .upper = 360.0,
+     .left_out = LeftOut::assumed},
+    {.name = "order",
+     .unit = "",
+     .help = "of the ripple that it changes, in cycles per motor revolution; 0 is every order",
+     .upper = 1000.0,
+     .left_out = LeftOut::assumed},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -39,7 +59,9 @@ constexpr LookAlike look_alikes[] = {
 
 void change_ripple(const Situation& situation, Order order, std::span<const double> values,
                    std::span<std::complex<double>> gain) {
-    if (values[0] >= parameters[0].upper) return;
+    if (values[0] >= parameters[0].upper || !concerns(order, values[4])) return;
+    const bool is_whole = values[2] == 1.0 && values[3] == 0.0;
+    const auto share = portable::polar(values[2], values[3] / degrees_per_radian);
     const double cycles_per_deg = order.value() * situation.ratio.value() / 360.0;
     for (std::size_t k = 0; k < gain.size(); ++k) {
         // In the direction of negative angle the torque's phasor turns backwards: there the response is its
@@ -48,8 +70,16 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
         const double real = 1.0 - u * u, imaginary = 2.0 * values[1] * u;
         const double square = real * real + imaginary * imaginary;
         const auto before = gain[k];
-        gain[k] = {(before.real() * real + before.imag() * imaginary) / square,
-                   (before.imag() * real - before.real() * imaginary) / square};
+        if (is_whole) {
+            gain[k] = {(before.real() * real + before.imag() * imaginary) / square,
+                       (before.imag() * real - before.real() * imaginary) / square};
+            continue;
+        }
+        // 1 + share * (H - 1)
+        const double more = real / square - 1.0, ahead = -imaginary / square;
+        const double x = 1.0 + share.real() * more - share.imag() * ahead,
+                     y = share.real() * ahead + share.imag() * more;
+        gain[k] = {before.real() * x - before.imag() * y, before.real() * y + before.imag() * x};
     }
 }
 
@@ -59,7 +89,8 @@ const Effect effects::resonance{
     .name = "resonance",
     .summary = "the joint's elasticity swells the ripple where the frequency of a line meets it",
     .equation =
-        "ripple * H, H = 1 / (1 - u^2 + 2 i damping u), u = order * gear_ratio * v / 360 / frequency_hz",
+        "ripple * (1 + share * e^(i share_phase_deg) * (H - 1)), H = 1 / (1 - u^2 + 2 i damping u), "
+        "u = order * gear_ratio * v / 360 / frequency_hz",
     .symptom =
         "lines of the ripple in the residual in a band of speed, with a phase that turns by half a cycle "
         "through it",

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/beside/ringing.hpp"
+
+#include <algorithm>
+
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+std::size_t parameter_named(const Effect& effect, std::string_view name) {
+    const auto found = std::find_if(effect.parameters.begin(), effect.parameters.end(),
+                                    [&](const Parameter& parameter) { return parameter.name == name; });
+    return static_cast<std::size_t>(found - effect.parameters.begin());
+}
+
+Names with_plain(const Sums& sums, Names names, std::size_t place) {
+    const Shape plain{sums.shapes()[names[place]].term};
+    const auto& shapes = sums.shapes();
+    names[place] = static_cast<std::size_t>(std::find(shapes.begin(), shapes.end(), plain) - shapes.begin());
+    return names;
+}
+
+}  // namespace
+
+std::vector<std::complex<double>> ringing_gain(const Shape& shape, const Motion& motion, GearRatio ratio) {
+    std::vector<double> values;
+    for (const auto& value : shape.ringing->values) values.push_back(*value);
+    const Order order(*shape.term.values[*shape.term.effect->ripple_order]);
+    std::vector<std::complex<double>> gain(motion.size(), 1.0);
+    shape.ringing->effect->change_ripple({motion, ratio}, order, values, gain);
+    return gain;
+}
+
+Polar ringing_polar(const Effect& effect) {
+    return {parameter_named(effect, "share"), parameter_named(effect, "share_phase_deg")};
+}
+
+Term ringing_term(const Shape& shape, std::complex<double> part) {
+    Term term = *shape.ringing;
+    const Polar polar = ringing_polar(*term.effect);
+    term.values[polar.size] = portable::hypot(part.real(), part.imag());
+    term.values[polar.phase] = portable::arg(part) * degrees_per_radian;
+    return term;
+}
+
+void keep_best_ringing(const Sums& sums, std::vector<Named>& trials) {
+    std::vector<Shape> kept;
+    std::erase_if(trials, [&](const Named& trial) {
+        const Shape& shape = sums.shapes()[trial.names.back()];
+        if (!shape.ringing) return false;
+        if (std::any_of(kept.begin(), kept.end(), [&](const Shape& one) { return same_name(one, shape); }))
+            return true;
+        kept.push_back(shape);
+        return false;
+    });
+}
+
+OutsideGain gain_of_ringing(const Sums& sums, const Names& names, std::size_t place) {
+    return gain_between(sums, with_plain(sums, names, place), names);
+}
+
+bool is_worth_ringing(const Sums& sums, const Names& names, std::size_t place, std::size_t effects) {
+    if (!sums.shapes()[names[place]].ringing) return true;
+    return is_worth(gain_of_ringing(sums, names, place), price_of_ringing(sums, names[place], effects),
+                    sums.lens().rules().beside);
+}
+
+Named with_ringing(Sums& sums, Named now, std::size_t effects) {
+    for (std::size_t place = 0; place < now.names.size(); ++place) {
+        const Shape plain = sums.shapes()[now.names[place]];
+        if (plain.ringing || !plain.term.effect->ripple_order) continue;
+        Named best = now;
+        for (std::size_t shape = 0; shape < sums.listed(); ++shape) {
+            if (!sums.shapes()[shape].ringing || !same_name(sums.shapes()[shape], plain)) continue;
+            Named trial = now;
+            trial.names[place] = shape;
+            trial.left = sums.left_outside(trial.names);
+            if (trial.left < best.left) best = std::move(trial);
+        }
+        if (best.names == now.names) continue;
+        best = refined(sums, std::move(best));
+        if (is_worth_ringing(sums, best.names, place, effects)) now = std::move(best);
+    }
+    return now;
+}
+
+Named without_idle_ringing(Sums& sums, Named now, std::size_t effects) {
+    for (std::size_t place = 0; place < now.names.size(); ++place) {
+        if (is_worth_ringing(sums, now.names, place, effects)) continue;
+        now.names = with_plain(sums, now.names, place);
+        now.left = sums.left_outside(now.names);
+        now = refined(sums, std::move(now));
+    }
+    return now;
+}
+
+}  // namespace ripplenotch

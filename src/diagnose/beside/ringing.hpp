@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Ripple beside a leftover seldom keeps its size: the joint's own elasticity swells and turns it with the
+// speed. What is added to a ripple so must be worth its own price.
+
+#include <complex>
+#include <vector>
+
+#include "diagnose/beside/evidence.hpp"
+#include "diagnose/beside/exchanges.hpp"
+
+namespace ripplenotch {
+
+/// Of the part that rings, a value per sample of the motion; the shape has one.
+[[nodiscard]] std::vector<std::complex<double>> ringing_gain(const Shape& shape, const Motion& motion,
+                                                             GearRatio ratio);
+/// Where a share and its phase are.
+[[nodiscard]] Polar ringing_polar(const Effect& effect);
+/// The term with this part of the ripple at standstill; `part` is complex, ahead of the ripple by its angle.
+[[nodiscard]] Term ringing_term(const Shape& shape, std::complex<double> part);
+
+/// Of trials in their order whose last name rings, the first of each order.
+void keep_best_ringing(const Sums& sums, std::vector<Named>& trials);
+/// True as well of a name that does not ring.
+[[nodiscard]] bool is_worth_ringing(const Sums& sums, const Names& names, std::size_t place,
+                                    std::size_t effects);
+/// What ringing is worth beside the same ripple without it; the name at `place` rings.
+[[nodiscard]] OutsideGain gain_of_ringing(const Sums& sums, const Names& names, std::size_t place);
+/// Ripple that is named gets what rings in it, where that is worth its price.
+[[nodiscard]] Named with_ringing(Sums& sums, Named now, std::size_t effects);
+/// Ripple keeps what rings in it as long as that is worth its price beside the other names.
+[[nodiscard]] Named without_idle_ringing(Sums& sums, Named now, std::size_t effects);
+
+}  // namespace ripplenotch
