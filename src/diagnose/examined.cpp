@@ -14,14 +14,15 @@ bool is_among(std::span<const std::string> names, std::string_view name) {
 }
 
 std::vector<const Effect*> examined(const Model& model, std::span<const std::string> without,
-                                    bool of_position) {
+                                    bool of_position, bool ripple_comes) {
     std::vector<const Effect*> effects;
     for (const Effect* effect : catalogue()) {
         const bool left_out = is_among(without, effect->name);
         // Without ripple in the model there is nothing that these could change.
-        const bool ripple = std::any_of(model.terms.begin(), model.terms.end(), [](const Term& term) {
-            return term.effect->ripple_order.has_value();
-        });
+        const bool ripple =
+            ripple_comes || std::any_of(model.terms.begin(), model.terms.end(), [](const Term& term) {
+                return term.effect->ripple_order.has_value();
+            });
         if (left_out || effect->side == Side::converter || (effect->side == Side::ripple && !ripple) ||
             (!of_position && needs_position(*effect)))
             continue;

@@ -93,7 +93,7 @@ class GivenDiagnosis {
           options_(options),
           rules_(options.rules),
           work_(rules_.search.most_evaluations),
-          effects_(examined(model, options.without, log.has_position())),
+          effects_(examined(model, options.without, log.has_position(), true)),
           whole_{whole_case(log, options.smoothing, rules_.recording), options.given} {
         if (validation == nullptr) return;
         other_.emplace(

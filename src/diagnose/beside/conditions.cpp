@@ -47,7 +47,7 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
     }
     std::stable_sort(rivals.begin(), rivals.end(),
                      [](const Named& a, const Named& b) { return a.left < b.left; });
-    keep_best_ringing(sums, rivals);
+    keep_first_of_each(sums, rivals);
     std::optional<Named> best;
     for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
         Named rival = refined(sums, rivals[i]);

@@ -23,7 +23,7 @@ std::vector<Named> finalists(const Sums& sums, const Named& now, const Barred& b
     }
     std::stable_sort(trials.begin(), trials.end(),
                      [](const Named& a, const Named& b) { return a.left < b.left; });
-    keep_best_ringing(sums, trials);
+    keep_first_of_each(sums, trials);
     trials.resize(std::min(trials.size(), sums.lens().rules().beside.finalists));
     return trials;
 }

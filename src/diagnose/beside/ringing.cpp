@@ -32,25 +32,26 @@ std::vector<std::complex<double>> ringing_gain(const Shape& shape, const Motion&
     return gain;
 }
 
-Polar ringing_polar(const Effect& effect) {
-    return {parameter_named(effect, "share"), parameter_named(effect, "share_phase_deg")};
+Polar direct_of(const Effect& effect) {
+    return {parameter_named(effect, "direct"), parameter_named(effect, "direct_phase_deg")};
 }
 
-Term ringing_term(const Shape& shape, std::complex<double> part) {
+Term ringing_term(const Shape& shape, std::complex<double> direct) {
     Term term = *shape.ringing;
-    const Polar polar = ringing_polar(*term.effect);
-    term.values[polar.size] = portable::hypot(part.real(), part.imag());
-    term.values[polar.phase] = portable::arg(part) * degrees_per_radian;
+    const Polar polar = direct_of(*term.effect);
+    term.values[polar.size] = portable::hypot(direct.real(), direct.imag());
+    term.values[polar.phase] = portable::arg(direct) * degrees_per_radian;
     return term;
 }
 
-void keep_best_ringing(const Sums& sums, std::vector<Named>& trials) {
+void keep_first_of_each(const Sums& sums, std::vector<Named>& trials) {
     std::vector<Shape> kept;
     std::erase_if(trials, [&](const Named& trial) {
         const Shape& shape = sums.shapes()[trial.names.back()];
-        if (!shape.ringing) return false;
-        if (std::any_of(kept.begin(), kept.end(), [&](const Shape& one) { return same_name(one, shape); }))
-            return true;
+        const auto is_kept = [&](const Shape& one) {
+            return same_name(one, shape) && one.ringing.has_value() == shape.ringing.has_value();
+        };
+        if (std::any_of(kept.begin(), kept.end(), is_kept)) return true;
         kept.push_back(shape);
         return false;
     });

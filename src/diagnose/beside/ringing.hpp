@@ -14,13 +14,14 @@ namespace ripplenotch {
 /// Of the part that rings, a value per sample of the motion; the shape has one.
 [[nodiscard]] std::vector<std::complex<double>> ringing_gain(const Shape& shape, const Motion& motion,
                                                              GearRatio ratio);
-/// Where a share and its phase are.
-[[nodiscard]] Polar ringing_polar(const Effect& effect);
-/// The term with this part of the ripple at standstill; `part` is complex, ahead of the ripple by its angle.
-[[nodiscard]] Term ringing_term(const Shape& shape, std::complex<double> part);
+/// Where the ripple that does not pass the elastic joint is told, and its phase.
+[[nodiscard]] Polar direct_of(const Effect& effect);
+/// The term with this part, complex, of what rings.
+[[nodiscard]] Term ringing_term(const Shape& shape, std::complex<double> direct);
 
-/// Of trials in their order whose last name rings, the first of each order.
-void keep_best_ringing(const Sums& sums, std::vector<Named>& trials);
+/// Of trials in their order the first of each last name, of a ripple that which rings and that which does
+/// not.
+void keep_first_of_each(const Sums& sums, std::vector<Named>& trials);
 /// True as well of a name that does not ring.
 [[nodiscard]] bool is_worth_ringing(const Sums& sums, const Names& names, std::size_t place,
                                     std::size_t effects);

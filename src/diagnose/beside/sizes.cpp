@@ -144,21 +144,22 @@ void tell_polar(BesideValues& told_values, const Polar& polar, std::size_t place
     told_values.term.values[polar.phase] = told_values.values[1].value;
 }
 
-// Of ripple at standstill the first pair and the second, of which the second rings.
+// The second pair of columns rings, the first does not.
 void tell_ringing(BesideValues& told_values, const Shape& shape, std::size_t place, const Sized& sized) {
     const Polar& polar = *shape.term.effect->polar;
-    const Complex rings = pair_at(sized.size, 2), all = pair_at(sized.size, 0) + rings;
-    const Complex plain_rings = pair_at(sized.plain, 2), plain_all = pair_at(sized.plain, 0) + plain_rings;
-    tell_complex(told_values.values, place, polar, all, plain_all, sized, {1.0, 1.0});
+    const Complex passing = pair_at(sized.size, 2), direct = pair_at(sized.size, 0);
+    const Complex plain_passing = pair_at(sized.plain, 2), plain_direct = pair_at(sized.plain, 0);
+    tell_complex(told_values.values, place, polar, passing, plain_passing, sized, {0.0, 1.0});
     told_values.term.values[polar.size] = told_values.values[0].value;
     told_values.term.values[polar.phase] = told_values.values[1].value;
-    std::vector<FittedValue> part;
-    tell_complex(part, place, polar, rings, plain_rings, sized, {0.0, 1.0});
-    told_values.is_told = !holds_0(told_values.values.front()) || !holds_0(part.front());
-    const Complex share = rings / all;
-    told_values.ringing = ringing_term(shape, share);
-    tell_complex(told_values.ringing_values, place, ringing_polar(*shape.ringing->effect), share,
-                 plain_rings / plain_all, sized, {-share / all, (1.0 - share) / all});
+    std::vector<FittedValue> both;
+    tell_complex(both, place, polar, direct, plain_direct, sized, {1.0, 0.0});
+    tell_complex(both, place, polar, direct + passing, plain_direct + plain_passing, sized, {1.0, 1.0});
+    told_values.is_told = !holds_0(told_values.values[0]) || !holds_0(both[0]) || !holds_0(both[2]);
+    const Complex part = direct / passing;
+    told_values.ringing = ringing_term(shape, part);
+    tell_complex(told_values.ringing_values, place, direct_of(*shape.ringing->effect), part,
+                 plain_direct / plain_passing, sized, {1.0 / passing, -part / passing});
 }
 
 void tell_scales(BesideValues& told_values, const Shape& shape, std::size_t place, const Sized& sized,

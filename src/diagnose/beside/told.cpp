@@ -2,6 +2,7 @@
 #include "diagnose/beside/told.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "diagnose/beside/shapes.hpp"
@@ -33,23 +34,35 @@ bool has_bent_shape(const Diagnosis& diagnosis, const Finding& finding) {
     });
 }
 
+// What changes a ripple follows the ripple that it changes, and is of no use without it.
+std::vector<Finding>::iterator end_of_unit(std::vector<Finding>::iterator first,
+                                           std::vector<Finding>::iterator end) {
+    const auto rings = [](const Finding& finding) { return finding.term.effect->side == Side::ripple; };
+    return std::find_if_not(first + 1, end, rings);
+}
+
+void append(Candidate& now, std::vector<Finding>::const_iterator first,
+            std::vector<Finding>::const_iterator end) {
+    for (; first != end; ++first) now.stated.terms.push_back(first->term);
+}
+
 // Sizes of all names were fitted at once, so that one may open the gap that another closes: each round takes
 // the name that leaves least. Doubtful ones stay last.
 void put_in_order(std::vector<Finding>& findings, Candidate now, const ModelBench& bench) {
     const auto end = std::find_if(findings.begin(), findings.end(), is_doubtful);
-    for (auto first = findings.begin(); first != end; ++first) {
+    for (auto first = findings.begin(); first != end; first = end_of_unit(first, end)) {
         auto best = first;
         double least_nm = std::numeric_limits<double>::infinity();
-        for (auto next = first; next != end; ++next) {
-            Model with = now.stated;
-            with.terms.push_back(next->term);
-            const double left_nm = rms_of(bench.raw_residual(with), bench.looked_at().use);
+        for (auto next = first; next != end; next = end_of_unit(next, end)) {
+            Candidate with = now;
+            append(with, next, end_of_unit(next, end));
+            const double left_nm = rms_of(bench.raw_residual(with.stated), bench.looked_at().use);
             if (left_nm >= least_nm) continue;
             least_nm = left_nm;
             best = next;
         }
-        std::rotate(first, best, best + 1);
-        now.stated.terms.push_back(first->term);
+        std::rotate(first, best, end_of_unit(best, end));
+        append(now, first, end_of_unit(first, end));
     }
 }
 
@@ -60,19 +73,27 @@ Candidate adopt(Diagnosis& diagnosis, BesideOutcome outcome, const Candidate& mo
     put_in_order(outcome.findings, model, bench);
     Candidate now = model;
     double before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
-    for (Finding& finding : outcome.findings) {
-        finding.gap_before_nm = finding.gap_after_nm = before;
-        finding.evidence.share_sigma = finding.evidence.share_nm / bench.noise().rms_nm;
-        if (!is_doubtful(finding)) {
-            now.open.terms.push_back(finding.term);
-            now.stated.terms.push_back(finding.term);
-            now.prices.push_back(finding.evidence.price);
-            finding.gap_after_nm = before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
+    for (auto first = outcome.findings.begin(); first != outcome.findings.end();) {
+        // The gap of a ripple is told with what changes it.
+        const auto end = end_of_unit(first, outcome.findings.end());
+        const double opened_nm = before;
+        for (auto finding = first; finding != end; ++finding) {
+            if (is_doubtful(*finding)) continue;
+            now.open.terms.push_back(finding->term);
+            now.stated.terms.push_back(finding->term);
+            now.prices.push_back(finding->evidence.price);
         }
-        finding.evidence.raw_gain = static_cast<double>(bench.looked_at().used()) *
-                                    (finding.gap_before_nm * finding.gap_before_nm - before * before);
-        diagnosis.rounds.push_back(std::move(finding));
+        if (!is_doubtful(*first)) before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
+        for (auto finding = first; finding != end; ++finding) {
+            finding->gap_before_nm = finding == first ? opened_nm : before;
+            finding->gap_after_nm = before;
+            finding->evidence.share_sigma = finding->evidence.share_nm / bench.noise().rms_nm;
+            finding->evidence.raw_gain = static_cast<double>(bench.looked_at().used()) *
+                                         (finding->gap_before_nm * finding->gap_before_nm - before * before);
+        }
+        first = end;
     }
+    std::move(outcome.findings.begin(), outcome.findings.end(), std::back_inserter(diagnosis.rounds));
     return now;
 }
 

@@ -29,17 +29,16 @@ constexpr Parameter parameters[] = {
      .upper = 2.0,
      .logarithmic = true,
      .tried = tried_dampings},
-    {.name = "share",
+    {.name = "direct",
      .unit = "",
-     .help = "of the ripple that passes the elastic joint, as a part of the ripple at standstill; the rest "
-             "is as it is",
-     .neutral = 1.0,
-     .start = 1.0,
+     .help =
+         "ripple that does not pass the elastic joint, as a part of what does; 1 at 180 deg is what an error "
+         "of the gear's angle makes",
      .upper = 1000.0,
      .left_out = LeftOut::assumed},
-    {.name = "share_phase_deg",
+    {.name = "direct_phase_deg",
      .unit = "deg",
-     .help = "by which that part is ahead of the ripple at standstill",
+     .help = "by which it is ahead of what passes, at standstill",
      .lower = -360.0,
      .upper = 360.0,
      .left_out = LeftOut::assumed},
@@ -60,8 +59,7 @@ constexpr LookAlike look_alikes[] = {
 void change_ripple(const Situation& situation, Order order, std::span<const double> values,
                    std::span<std::complex<double>> gain) {
     if (values[0] >= parameters[0].upper || !concerns(order, values[4])) return;
-    const bool is_whole = values[2] == 1.0 && values[3] == 0.0;
-    const auto share = portable::polar(values[2], values[3] / degrees_per_radian);
+    const auto direct = portable::polar(values[2], values[3] / degrees_per_radian);
     const double cycles_per_deg = order.value() * situation.ratio.value() / 360.0;
     for (std::size_t k = 0; k < gain.size(); ++k) {
         // In the direction of negative angle the torque's phasor turns backwards: there the response is its
@@ -70,15 +68,7 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
         const double real = 1.0 - u * u, imaginary = 2.0 * values[1] * u;
         const double square = real * real + imaginary * imaginary;
         const auto before = gain[k];
-        if (is_whole) {
-            gain[k] = {(before.real() * real + before.imag() * imaginary) / square,
-                       (before.imag() * real - before.real() * imaginary) / square};
-            continue;
-        }
-        // 1 + share * (H - 1)
-        const double more = real / square - 1.0, ahead = -imaginary / square;
-        const double x = 1.0 + share.real() * more - share.imag() * ahead,
-                     y = share.real() * ahead + share.imag() * more;
+        const double x = real / square + direct.real(), y = -imaginary / square + direct.imag();
         gain[k] = {before.real() * x - before.imag() * y, before.real() * y + before.imag() * x};
     }
 }
@@ -89,7 +79,7 @@ const Effect effects::resonance{
     .name = "resonance",
     .summary = "the joint's elasticity swells the ripple where the frequency of a line meets it",
     .equation =
-        "ripple * (1 + share * e^(i share_phase_deg) * (H - 1)), H = 1 / (1 - u^2 + 2 i damping u), "
+        "ripple * (H + direct * e^(i direct_phase_deg)), H = 1 / (1 - u^2 + 2 i damping u), "
         "u = order * gear_ratio * v / 360 / frequency_hz",
     .symptom =
         "lines of the ripple in the residual in a band of speed, with a phase that turns by half a cycle "
