@@ -174,9 +174,17 @@ std::vector<double> Lens::weighed(std::span<const double> torque_nm) const {
     return white_->left(ground_.whitened(ground_.bridged(torque_nm)));
 }
 
-Lens::Weighed Lens::weighed(const Shape& shape) const {
+Lens::Weighed Lens::weighed(const Shape& shape) const { return weighed(torque_nm(shape)); }
+
+Lens::Weighed Lens::weighed_ringing(const Shape& shape) const {
+    Columns columns = torque_nm(shape);
+    columns.erase(columns.begin(), columns.begin() + 2);
+    return weighed(columns);
+}
+
+Lens::Weighed Lens::weighed(const Columns& torque_nm) const {
     Weighed weighed;
-    for (const auto& column : torque_nm(shape)) {
+    for (const auto& column : torque_nm) {
         const std::vector<double> white = ground_.whitened(ground_.bridged(column));
         weighed.columns.push_back(white_->left(white));
         const double all = rms(white);

@@ -43,6 +43,8 @@ class Lens {
             0.0;  ///< of the whitened columns that the always-on ones leave, of the one of which most is left
     };
     [[nodiscard]] Weighed weighed(const Shape& shape) const;
+    /// The same of the ripple that rings, without the plain one: its last columns.
+    [[nodiscard]] Weighed weighed_ringing(const Shape& shape) const;
     [[nodiscard]] std::vector<double> weighed(std::span<const double> torque_nm) const;
     /// The measured torque less the model's own and the given terms' means, weighed.
     [[nodiscard]] const std::vector<double>& target() const { return target_; }
@@ -74,6 +76,7 @@ class Lens {
     /// What everything at once leaves of the bridged torque.
     [[nodiscard]] std::vector<double> left_by_all() const;
     [[nodiscard]] Columns bridged(const Columns& columns) const;
+    [[nodiscard]] Weighed weighed(const Columns& torque_nm) const;
 
     Case case_;  ///< with what the given terms carry
     const DiagnosisRules& rules_;

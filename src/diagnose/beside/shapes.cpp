@@ -39,7 +39,7 @@ double order_of(const Shape& shape) { return *shape.term.values[*shape.term.effe
 
 // Where a search for what rings begins: among the frequencies that the line passes, sharp and broad.
 std::vector<Shape> ringing_shapes(const Shape& plain, const Effect& effect, const ScaleBounds& bounds) {
-    constexpr double parts[] = {0.1, 0.2, 0.35, 0.6, 1.0}, dampings[] = {0.15, broad_damping};
+    constexpr double parts[] = {0.12, 0.25, 0.5, 1.0}, dampings[] = {0.15, broad_damping};
     std::vector<Shape> shapes;
     for (const double damping : dampings) {
         for (const double part : parts) {

@@ -23,7 +23,18 @@ Sums::Sums(const Lens& lens) : lens_(lens) {
 }
 
 void Sums::add(const Shape& shape) {
-    Lens::Weighed weighed = lens_.weighed(shape);
+    Lens::Weighed weighed;
+    // A ripple that rings has the columns of the plain one, where that is listed.
+    const auto plain =
+        shape.ringing ? std::find(shapes_.begin(), shapes_.end(), Shape{shape.term}) : shapes_.end();
+    if (plain != shapes_.end()) {
+        const auto place = static_cast<std::size_t>(plain - shapes_.begin());
+        weighed = lens_.weighed_ringing(shape);
+        weighed.columns.insert(weighed.columns.begin(), columns_[place].begin(), columns_[place].end());
+        weighed.part = std::max(weighed.part, own_part_[place]);
+    } else {
+        weighed = lens_.weighed(shape);
+    }
     shapes_.push_back(shape);
     own_part_.push_back(weighed.part);
     columns_.push_back(std::move(weighed.columns));
