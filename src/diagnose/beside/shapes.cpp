@@ -52,6 +52,11 @@ std::vector<Shape> ringing_shapes(const Shape& plain, const Effect& effect, cons
                 term.values[p] = parameter.unit == "Hz" ? part * bounds.fastest_hz(order_of(plain)) : damping;
             }
             shapes.push_back({plain.term, std::move(term)});
+            const std::vector<Scale> scales = scales_of(shapes.back());
+            if (std::any_of(scales.begin(), scales.end(), [&](const Scale& scale) {
+                    return value_of(shapes.back(), scale) < bounds.low(shapes.back(), scale);
+                }))
+                shapes.pop_back();
         }
     }
     return shapes;
@@ -144,7 +149,7 @@ double ScaleBounds::low(const Shape& shape, const Scale& scale) const {
     const Parameter& parameter = parameter_of(shape, scale);
     if (!scale.of_ringing) return low(parameter);
     if (parameter.unit != "Hz") return rules.least_damping;
-    return rules.slowest_ringing * fastest_hz(order_of(shape));
+    return std::max(rules.slowest_ringing * fastest_hz(order_of(shape)), rules.least_ringing_hz);
 }
 
 double ScaleBounds::high(const Shape& shape, const Scale& scale) const {
