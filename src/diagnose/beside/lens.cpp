@@ -24,14 +24,16 @@ void ring(const std::vector<std::complex<double>>& gain, std::vector<std::vector
     columns.push_back(std::move(ahead));
 }
 
-// The whole catalogue is fitted at once where what rings is broad: its plain ripple is there already.
-bool is_for_all(const Shape& shape) {
-    if (!shape.ringing) return true;
-    const std::vector<Scale> scales = scales_of(shape);
-    return std::any_of(scales.begin(), scales.end(), [&](const Scale& scale) {
-        return scale.of_ringing && parameter_of(shape, scale).unit != "Hz" &&
-               value_of(shape, scale) == broad_damping;
-    });
+// What the speed and the direction make of a column.
+std::vector<double> swelled(const std::vector<double>& column, const Motion& motion, double fastest_deg_s,
+                            bool by_direction, bool by_speed) {
+    std::vector<double> swelling = column;
+    for (std::size_t k = 0; k < column.size(); ++k) {
+        const double v = motion.velocity_deg_s[k];
+        if (by_direction) swelling[k] *= v > 0.0 ? 1.0 : (v < 0.0 ? -1.0 : 0.0);
+        if (by_speed) swelling[k] *= std::abs(v) / fastest_deg_s;
+    }
+    return swelling;
 }
 
 }  // namespace
@@ -112,9 +114,14 @@ std::vector<double> Lens::left_by_all() const {
     Columns all = bridged_always_;
     std::vector<double> deviation = always_.deviation;
     for (const Shape& shape : shapes_) {
-        if (!is_for_all(shape)) continue;
+        // However a ripple goes with the speed: columns in proportion stand for what rings.
+        if (shape.ringing) continue;
         Columns own = torque_nm(shape);
-        if (shape.ringing) own.erase(own.begin(), own.begin() + 2);
+        const std::size_t plain = shape.term.effect->ripple_order ? own.size() : 0;
+        for (const auto& [by_direction, by_speed] : {std::pair(true, false), {true, true}, {false, true}}) {
+            for (std::size_t c = 0; c < plain; ++c)
+                own.push_back(swelled(own[c], case_.motion, bounds_.fastest_deg_s, by_direction, by_speed));
+        }
         for (auto& column : bridged(own)) all.push_back(std::move(column));
     }
     deviation.resize(all.size(), any_size);
