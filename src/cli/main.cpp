@@ -191,6 +191,7 @@ ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
             fmt::format("{} is given more than once; see {} {} --help", *twice, tool_name, running));
     }
     check_environment();
+    watch_inputs(true);
     hash_inputs(true);
     const ProgressBar bar(words);  // gone before a complaint is printed
     return declared.work();

@@ -13,11 +13,12 @@ namespace ripplenotch {
 namespace {
 
 struct Read {
-    FileState state;
+    FileState state;  ///< when it was first opened
     std::string sha256;
+    bool by_place = false;  ///< read here and there: hashed when somebody asks
 };
 
-std::atomic<bool> wanted = false;
+std::atomic<bool> watched = false, hashed = false;
 std::mutex mutex;
 std::map<std::string, Read>& inputs() {
     static std::map<std::string, Read> all;
@@ -32,32 +33,37 @@ std::string known_hash(const std::string& path) {
 
 }  // namespace
 
-void hash_inputs(bool all) {
-    wanted = all;
+void watch_inputs(bool wanted) {
+    watched = wanted;
+    hashed = hashed && wanted;
     const std::lock_guard lock(mutex);
-    if (!all) inputs().clear();
+    if (!wanted) inputs().clear();
 }
+
+void hash_inputs(bool wanted) { hashed = wanted && watched; }
 
 bool should_hash(const OpenFile& file, std::string_view name) {
     // What comes through standard input is gone when the run ends: no artifact tells its hash.
-    if (!wanted || file.path() == "-") return false;
+    if (!watched || file.path() == "-") return false;
     const std::lock_guard lock(mutex);
-    const auto found = inputs().find(file.path());
-    if (found == inputs().end()) return true;
-    if (file.state().regular && !found->second.state.same_bytes(file.state()))
+    const Read& known = inputs().try_emplace(file.path(), Read{file.state(), {}}).first->second;
+    if (file.state().regular && !known.state.same_bytes(file.state()))
         raise<FileError>(
             "{}: the file is another than when it was read a moment ago; wait until nothing writes to it, or "
             "read a copy",
             name);
-    return false;
+    return hashed && known.sha256.empty() && !known.by_place;
 }
 
 void note_hash(const OpenFile& file, const std::string& sha256) {
     const std::lock_guard lock(mutex);
-    inputs().try_emplace(file.path(), Read{file.state(), sha256});
+    Read& read = inputs().try_emplace(file.path(), Read{file.state(), {}}).first->second;
+    if (read.sha256.empty()) read.sha256 = sha256;
+    read.by_place = sha256.empty();
 }
 
 std::string sha256_as_read(const std::string& path) {
+    if (watched && !hashed) return "";
     const std::string known = known_hash(path);
     return known.empty() ? sha256_of_file(path) : known;
 }

@@ -19,12 +19,17 @@ std::string system_reason() { return std::strerror(errno); }
 FileState FileState::of(int descriptor) {
     struct stat status {};
     if (::fstat(descriptor, &status) != 0) return {};
-    return {status.st_dev, status.st_ino, status.st_size, status.st_mtim, S_ISREG(status.st_mode)};
+    return {status.st_dev,  status.st_ino,  status.st_size,
+            status.st_mtim, status.st_ctim, S_ISREG(status.st_mode)};
 }
 
 bool FileState::same_bytes(const FileState& other) const {
+    const auto same = [](const timespec& a, const timespec& b) {
+        return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+    };
+    // Who writes may set the time of writing back; nobody sets the other.
     return device == other.device && inode == other.inode && size == other.size &&
-           written.tv_sec == other.written.tv_sec && written.tv_nsec == other.written.tv_nsec;
+           same(written, other.written) && same(touched, other.touched);
 }
 
 OpenFile::OpenFile(const std::string& path) : path_(path) {

@@ -19,7 +19,7 @@ struct FileState {
     dev_t device = 0;
     ino_t inode = 0;
     off_t size = 0;
-    timespec written = {};
+    timespec written = {}, touched = {};  ///< its bytes; its bytes, rights, names or times
     bool regular = false;
 
     /// Of an open file; all zero where the system does not tell.

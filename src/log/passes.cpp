@@ -10,6 +10,7 @@
 #include "log/account/account.hpp"
 #include "log/account/unwrap.hpp"
 #include "log/clock/clock_check.hpp"
+#include "log/kept_parts.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
@@ -26,6 +27,7 @@ class LogPasses::Work {
     Layout layout;
     LogFacts facts;
     Recording recording;
+    KeptParts kept{0};
 
   private:
     Account run(const Use& use);
@@ -78,6 +80,7 @@ void LogPasses::Work::look_at(const TraceView& rows) {
 void LogPasses::Work::first(const Use& use) {
     const Account account = run([&](const TraceView& rows) {
         look_at(rows);
+        kept.add(rows);
         use(rows);
     });
     facts.rows = rows_;
@@ -102,7 +105,7 @@ void LogPasses::Work::go_on_from(const Use& logged_use, const Use& use) {
     if (const auto period = wrap_.period()) unwrapper.emplace(*period);
     std::vector<double> continuous;
     JointsPosition joints;
-    static_cast<void>(run([&](const TraceView& logged) {
+    const auto go_on = [&](const TraceView& logged) {
         TraceView rows = logged;
         if (unwrapper) {
             continuous.assign(rows.position_deg.begin(), rows.position_deg.end());
@@ -112,7 +115,11 @@ void LogPasses::Work::go_on_from(const Use& logged_use, const Use& use) {
         logged_use(rows);
         rows.position_deg = joints.of(recording.angle, rows);
         use(rows);
-    }));
+    };
+    if (kept.whole())
+        kept.replay(facts.sample_rate, go_on);
+    else
+        static_cast<void>(run(go_on));
 }
 
 // As read_log compares the clock with the motion: by the joint's position; by the logged one where that is
@@ -145,6 +152,7 @@ LogPasses::LogPasses(std::shared_ptr<const Spool> log, const ReadOptions& option
     : work_(std::make_unique<Work>(std::move(log), options)) {}
 LogPasses::~LogPasses() = default;
 
+void LogPasses::keep_rows(std::size_t most_bytes) { work_->kept = KeptParts(most_bytes / sizeof(double)); }
 void LogPasses::first(const Use& use) { work_->first(use); }
 void LogPasses::second(const Use& use) { work_->second(use); }
 void LogPasses::again(const Use& use) { work_->again(use); }

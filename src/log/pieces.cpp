@@ -12,6 +12,8 @@ namespace {
 
 // Few and long: half a minute at 1 kHz, in which a slow joint still turns and lines stand apart.
 constexpr std::size_t most_pieces = 16;
+// A million rows of time, speed, torque and position: less than what then looks at the pieces takes.
+constexpr std::size_t most_bytes_kept = std::size_t{32} << 20;
 
 /// Takes the rows of its pieces out of rows that go by.
 class PieceTaker {
@@ -59,9 +61,12 @@ class PieceTaker {
 
 }  // namespace
 
-Log read_pieces(const std::shared_ptr<const Spool>& log, const ReadOptions& options, std::size_t most_rows) {
+std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const ReadOptions& options,
+                               std::size_t most_rows) {
     LogPasses passes(log, options);
+    passes.keep_rows(most_bytes_kept);
     passes.first([](const TraceView&) {});
+    if (passes.facts().rows <= most_rows) return std::nullopt;
     Log part;
     PieceTaker taker(passes.facts().rows, most_rows, part.trace);
     passes.second([&](const TraceView& rows) { taker.add(rows); });

@@ -4,14 +4,15 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "ripplenotch/core/spool.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
 
-/// Of a log with more than `most_rows`; read twice. See read_log_in_part.
-[[nodiscard]] Log read_pieces(const std::shared_ptr<const Spool>& log, const ReadOptions& options,
-                              std::size_t most_rows);
+/// Of a log with more than `most_rows`, nothing of a shorter one. See read_log_in_part.
+[[nodiscard]] std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log,
+                                             const ReadOptions& options, std::size_t most_rows);
 
 }  // namespace ripplenotch

@@ -105,9 +105,25 @@ std::vector<Log> joint_by_joint(const Spool& spool, const ReadOptions& options, 
     return logs;
 }
 
+// By the size of the file and of its first rows. Where it is wrong, the log is read once more.
+bool looks_longer(const Spool& spool, const ReadOptions& options, std::size_t rows) {
+    constexpr double margin = 1.2;
+    auto source = spool.open();
+    const auto size = static_cast<double>(source->size());
+    const auto reader = open_log(std::move(source), options);
+    RowBlock block;
+    if (options.range.given() || !reader->next(block)) return false;
+    const double row = static_cast<double>(block.bytes.size()) / static_cast<double>(block.size());
+    return size > margin * static_cast<double>(rows) * row && row > 0.0;
+}
+
 Log in_part(const std::shared_ptr<const Spool>& spool, const ReadOptions& options, std::size_t most_rows) {
+    const bool all = most_rows == all_rows;
+    if (!all && looks_longer(*spool, options, most_rows)) {
+        if (auto pieces = read_pieces(spool, options, most_rows)) return std::move(*pieces);
+    }
     if (auto whole = read_log_if_short(*spool, options, most_rows)) return std::move(*whole);
-    return read_pieces(spool, options, most_rows);
+    return read_pieces(spool, options, most_rows).value();
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ CASES = {
     "spectrum, npy, segments of 4096": ["spectrum", "-", "--segment", "2.048s", "--false-alarm", "1e-6", "-o", "{out}.csv"],
     "track, npy, least squares": ["track", "-", "--orders", "1,2", "--gear-ratio", "40", "-o", "{out}.csv"],
     "track, npy, Vold-Kalman": ["track", "-", "--orders", "1,2", "--gear-ratio", "40", "--method", "vold-kalman", "-o", "{out}.csv"],
+    "identify, CSV with 6 decimals": ["identify", "{log}.csv", "-o", "{out}.txt"],
     "spectrum against order, npy": ["spectrum", "-", "--domain", "order", "-o", "{out}.csv"],
 }
 
@@ -71,7 +72,7 @@ def instructions(words, piped):
 
 
 def per_row(tool, folder, words):
-    """With one thread: how two wait for each other is not the same twice."""
+    """With one thread: how two wait for each other, and who of them does what, is not the same twice."""
     def count(length):
         filled = [word.format(log=folder / str(length), table=folder / "table.json", out=folder / "out") for word in words]
         one_thread = ["--threads", "1"] if words[0] == "filter" else []
@@ -88,6 +89,7 @@ def without_symbols(tool, folder):
 
 
 def measure(tool):
+    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         tool = without_symbols(tool, folder)

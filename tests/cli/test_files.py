@@ -7,6 +7,7 @@ import os
 import pathlib
 import resource
 import shutil
+import signal
 import stat
 import subprocess
 import tempfile
@@ -53,6 +54,16 @@ class Hashes(InFolder):
                 done = self.run_tool(*words, "--json")
                 self.assertEqual(json.loads(done.stdout)["inputs"][0]["sha256"], raw, done.stderr)
 
+    def test_a_result_that_tells_a_hash_has_it_whichever_way_it_is_asked_for(self):
+        raw = self.hash_of("log.csv")
+        for command in (("identify",), ("track", *GEAR), ("spectrum",), ("map", *GEAR), ("compare", *GEAR, *LOWPASS)):
+            for number, output in enumerate((("--json",), ("-o", "NAME"), ("--plot", "NAME"))):
+                name = f"{command[0]}_{number}.json"
+                done = self.run_tool(command[0], "log.csv", *command[1:], *(w.replace("NAME", name) for w in output))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                words = json.loads(done.stdout if output == ("--json",) else (self.folder / name).read_text())
+                self.assertEqual(words["inputs"][0]["sha256"], raw, f"{command} {output}")
+
     def test_of_a_named_pipe_the_hash_is_that_of_what_it_said(self):
         os.mkfifo(self.folder / "pipe")
         raw = (self.folder / "log.csv").read_bytes()
@@ -94,6 +105,69 @@ class ChangingLogs(InFolder):
                 refused += 1
                 self.assertIn("changed while it was read", words)
         self.assertGreater(refused, 0)
+
+
+class LogsThatChangeBetweenPasses(InFolder):
+    """Commands that hash nothing (their result tells no hash) and read a log twice, stopped while they read."""
+
+    COMMANDS = (("identify",), ("info",), ("spectrum", "--segment", "1s", "-o", "out.csv"))
+
+    def setUp(self):
+        super().setUp()
+        # Longer than what is kept from one pass to the next.
+        done = self.run_tool("simulate", *GEAR[:2], "--inertia", "0.4", "--motion", "constant,speed=90deg/s,duration=2500s",
+                             "--sample-rate", "1kHz", "-o", "long.npy")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.size = (self.folder / "long.npy").stat().st_size
+
+    def read_by(self, process):
+        for line in pathlib.Path(f"/proc/{process.pid}/io").read_text().splitlines():
+            if line.startswith("rchar:"):
+                return int(line.split()[1])
+        return 0
+
+    def changed_while_read(self, words, change):
+        """Exit code and message where the process could be stopped within its first pass."""
+        (self.folder / "out.csv").unlink(missing_ok=True)
+        running = subprocess.Popen([TOOL, words[0], "long.npy", *words[1:]], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        try:
+            while running.poll() is None and self.read_by(running) < self.size // 4:
+                pass
+            running.send_signal(signal.SIGSTOP)
+            in_time = running.poll() is None and self.read_by(running) < 3 * self.size // 4
+            if in_time:
+                change(self.folder / "long.npy")
+        finally:
+            running.send_signal(signal.SIGCONT)
+        said = running.communicate()[1]
+        return (running.returncode, said) if in_time else None
+
+    @unittest.skipUnless(pathlib.Path("/proc/self/io").exists(), "no /proc here, which tells how far a process has read")
+    def refuse(self, change):
+        for words in self.COMMANDS:
+            whole = (self.folder / "long.npy").read_bytes()
+            for _ in range(20):
+                found = self.changed_while_read(words, change)
+                (self.folder / "long.npy").write_bytes(whole)
+                if found:
+                    break
+            self.assertIsNotNone(found, f"{words}: never stopped in time")
+            self.assertEqual(found[0], 4, f"{words}: {found[1]}")
+            self.assertIn("changed while it was read", found[1])
+            self.assertFalse((self.folder / "out.csv").exists())
+
+    def test_one_that_is_written_to_in_place_is_refused_though_its_size_and_time_are_as_before(self):
+        def other_bytes(path):
+            before = path.stat()
+            with open(path, "r+b") as log:
+                log.seek(300)
+                log.write(b"\0" * 8)
+            os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+        self.refuse(other_bytes)
+
+    def test_one_that_ends_early_is_refused(self):
+        self.refuse(lambda path: os.truncate(path, self.size // 2))
 
 
 class Collisions(InFolder):

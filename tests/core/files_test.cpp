@@ -128,13 +128,43 @@ TEST_CASE("the hash is that of the bytes that were read") {
     const Folder folder;
     const std::string path = folder.file("log");
     write_all(path, "abc", ByteSink::Overwrite::no);
+    watch_inputs(true);
     hash_inputs(true);
     CHECK(read_all(path) == "abc");
     write_all(path, "what came later", ByteSink::Overwrite::yes);
     CHECK(sha256_as_read(path) == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     CHECK_THROWS_WITH(read_all(path), Contains("another than when it was read"));
-    hash_inputs(false);
+    watch_inputs(false);
     CHECK(read_all(path) == "what came later");
+}
+
+TEST_CASE("a file that is read twice must be the same, though nobody hashes it and its times were set back") {
+    const Folder folder;
+    const std::string path = folder.file("log");
+    write_all(path, "first bytes", ByteSink::Overwrite::no);
+    watch_inputs(true);
+    CHECK(read_all(path) == "first bytes");
+    CHECK(read_all(path) == "first bytes");
+    CHECK(sha256_as_read(path).empty());
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // clocks of files are coarse
+    const auto written = fs::last_write_time(path);
+    std::fstream(path) << "other bytes";
+    fs::last_write_time(path, written);
+    CHECK_THROWS_WITH(read_all(path), Contains("another than when it was read"));
+    watch_inputs(false);
+    CHECK(read_all(path) == "other bytes");
+}
+
+TEST_CASE("who reads half of a file notices no less") {
+    const Folder folder;
+    const std::string path = folder.file("log");
+    write_all(path, std::string(1000, 'x'), ByteSink::Overwrite::no);
+    watch_inputs(true);
+    std::string some(10, '\0');
+    CHECK(ByteSource(path).read(some.data(), some.size()) == some.size());
+    fs::resize_file(path, 500);
+    CHECK_THROWS_WITH(read_all(path), Contains("another than when it was read"));
+    watch_inputs(false);
 }
 
 TEST_CASE("a second pass reads the same file, whatever has its name by then") {

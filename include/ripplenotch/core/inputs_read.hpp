@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a run read: the SHA-256 of a file is that of the bytes that were read, whatever has become of the
-// file.
+// What a run read: a file that is read twice is the same both times, and its SHA-256 is that of the bytes
+// that were read, whatever has become of the file.
 
 #include <string>
 
 namespace ripplenotch {
 
-/// From now on every ByteSource of a file, in this process, hashes what it reads (about a second for a
-/// gigabyte), or none does any longer. Off at the start.
+/// From now on a file that this process opens again must be what it was when it was first opened: one that
+/// was written to, or gave its name to another, is refused with a FileError. Off at the start; off forgets
+/// all.
+void watch_inputs(bool wanted);
+
+/// Of the files watched: from now on every ByteSource hashes what it reads, or none does any longer. It takes
+/// about a second for a gigabyte on a processor with instructions for it, five without: only for runs that
+/// tell.
 void hash_inputs(bool wanted);
 
 /// Of the bytes of `path` as they were first read to their end. Where nobody has read it, it is read now.
-/// Throws FileError.
+/// Empty where inputs are watched and not hashed, for then nothing tells it. Throws FileError.
 [[nodiscard]] std::string sha256_as_read(const std::string& path);
 
 }  // namespace ripplenotch

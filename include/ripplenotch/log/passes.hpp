@@ -42,6 +42,9 @@ class LogPasses {
     LogPasses(const LogPasses&) = delete;
     LogPasses& operator=(const LogPasses&) = delete;
 
+    /// Before the first pass: rows that take no more memory than this are kept for the passes behind it,
+    /// which then do not read again what costs more to read than to keep.
+    void keep_rows(std::size_t most_bytes);
     /// Once, first: rows without a sample rate, their position as it stands in the file. Throws DataError as
     /// read_log does.
     void first(const Use& use);

@@ -18,31 +18,72 @@ double kernel(double x) {
     return portable::exp(SpreadingKernel::beta * (std::sqrt(std::max(0.0, 1.0 - x * x)) - 1.0));
 }
 
+constexpr std::size_t lanes = lane_count, groups = SpreadingKernel::padded / lanes;
+
 /// Even and odd powers apart, so that half as many steps wait for each other.
+template <class Lanes>
+RIPPLENOTCH_INLINED void weigh(const Row* coefficients, double offset, Lanes (&row)[groups]) {
+    const double z = 2.0 * offset - 1.0, square = z * z;
+    Lanes even[groups], odd[groups], term;
+#pragma GCC unroll 3
+    for (std::size_t g = 0; g < groups; ++g) {
+        load(even[g], &coefficients[terms - 2][g * lanes]);
+        load(odd[g], &coefficients[terms - 1][g * lanes]);
+    }
+#pragma GCC unroll 7
+    for (std::size_t d = terms - 2; d > 0; d -= 2) {
+#pragma GCC unroll 3
+        for (std::size_t g = 0; g < groups; ++g) {
+            load(term, &coefficients[d - 2][g * lanes]);
+            even[g] = even[g] * square + term;
+            load(term, &coefficients[d - 1][g * lanes]);
+            odd[g] = odd[g] * square + term;
+        }
+    }
+#pragma GCC unroll 3
+    for (std::size_t g = 0; g < groups; ++g) row[g] = even[g] + odd[g] * z;
+}
+
 struct Weigh {
     template <class Lanes>
     RIPPLENOTCH_INLINED static void run(const Row* coefficients, double offset, double* row) {
-        constexpr std::size_t lanes = lane_count;
-        constexpr std::size_t groups = SpreadingKernel::padded / lanes;
-        const double z = 2.0 * offset - 1.0, square = z * z;
-        Lanes even[groups], odd[groups], term;
+        Lanes weights[groups];
+        weigh(coefficients, offset, weights);
+        for (std::size_t g = 0; g < groups; ++g) store(row + g * lanes, weights[g]);
+    }
+};
+
+struct Spread {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(const Row* coefficients, std::span<const double> where,
+                                        std::span<const double> value, double spacing,
+                                        std::span<double> grid) {
+        const auto n = static_cast<double>(grid.size());
+        const double half = 0.5 * static_cast<double>(SpreadingKernel::width);
+        Lanes weights[groups], cells;
+        for (std::size_t j = 0; j < where.size(); ++j) {
+            const double turns = where[j] * spacing;
+            const double at = (turns - std::floor(turns)) * n;  // 0 <= at <= n
+            const double first = std::ceil(at - half);
+            weigh(coefficients, first - (at - half), weights);
+            auto cell = static_cast<std::size_t>(first < 0.0 ? first + n : first);
+            if (cell + SpreadingKernel::padded <= grid.size()) {
 #pragma GCC unroll 3
-        for (std::size_t g = 0; g < groups; ++g) {
-            load(even[g], &coefficients[terms - 2][g * lanes]);
-            load(odd[g], &coefficients[terms - 1][g * lanes]);
-        }
-#pragma GCC unroll 7
-        for (std::size_t d = terms - 2; d > 0; d -= 2) {
-#pragma GCC unroll 3
-            for (std::size_t g = 0; g < groups; ++g) {
-                load(term, &coefficients[d - 2][g * lanes]);
-                even[g] = even[g] * square + term;
-                load(term, &coefficients[d - 1][g * lanes]);
-                odd[g] = odd[g] * square + term;
+                for (std::size_t g = 0; g < groups; ++g) {
+                    double* const here = grid.data() + cell + g * lanes;
+                    load(cells, here);
+                    cells += weights[g] * value[j];
+                    store(here, cells);
+                }
+                continue;
+            }
+            Row row;
+            for (std::size_t g = 0; g < groups; ++g) store(row.data() + g * lanes, weights[g]);
+            for (std::size_t i = 0; i < SpreadingKernel::width; ++i, ++cell) {
+                if (cell >= grid.size()) cell -= grid.size();
+                grid[cell] += value[j] * row[i];
             }
         }
-#pragma GCC unroll 3
-        for (std::size_t g = 0; g < groups; ++g) store(row + g * lanes, even[g] + odd[g] * z);
     }
 };
 
@@ -77,6 +118,11 @@ SpreadingKernel::SpreadingKernel() {
 
 void SpreadingKernel::at(double offset, Row& row) const {
     in_lanes<Weigh>(coefficients_.data(), offset, row.data());
+}
+
+void SpreadingKernel::spread(std::span<const double> where, std::span<const double> value, double spacing,
+                             std::span<double> grid) const {
+    in_lanes<Spread>(coefficients_.data(), where, value, spacing, grid);
 }
 
 }  // namespace ripplenotch

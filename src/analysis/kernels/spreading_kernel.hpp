@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 namespace ripplenotch {
 
@@ -21,6 +22,10 @@ struct SpreadingKernel {
     /// The kernel at all its points, the first of which lies `offset` grid steps, 0 to 1, inside of its left
     /// end. Each point has a polynomial in the offset, within 1e-12 of the kernel's peak.
     void at(double offset, Row& row) const;
+    /// Adds each value to the points of a grid around its place, weighted by the kernel. The grid goes
+    /// around: `spacing` times a place is turns of it. At least `padded` points.
+    void spread(std::span<const double> where, std::span<const double> value, double spacing,
+                std::span<double> grid) const;
 
   private:
     std::array<Row, terms> coefficients_{};  // by power of 2 offset - 1

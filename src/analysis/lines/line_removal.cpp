@@ -8,6 +8,7 @@
 
 #include "core/linear_algebra.hpp"
 #include "core/many_numbers.hpp"
+#include "core/two_cores.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
@@ -24,7 +25,15 @@ class Rows {
     static constexpr std::size_t length = 256;
 
     Rows(const Sweep& sweep, std::span<const KnownLine> lines)
-        : sweep_(sweep), lines_(lines), values_(count() * length) {}
+        : sweep_(sweep), lines_(lines), values_(count() * length) {
+        const std::size_t n = sweep.turns.size();
+        place_.resize((n + length - 1) / length * length);
+        for (std::size_t k = 0; k < n; ++k)
+            place_[k] = std::abs(sweep.turns[k] - sweep.turns.front()) / sweep.length_turns;
+        cosine_.resize(place_.size());
+        for (std::size_t k = 0; k < place_.size(); ++k) cosine_[k] = std::numbers::pi * place_[k];
+        portable::cos(cosine_, cosine_);
+    }
 
     [[nodiscard]] std::size_t count() const { return sweep_.trend_terms + 2 * lines_.size(); }
     [[nodiscard]] double* row(std::size_t term) { return values_.data() + term * length; }
@@ -34,28 +43,27 @@ class Rows {
     void in_blocks(const Action& action) {
         for (std::size_t first = 0; first < sweep_.turns.size(); first += length) {
             const std::size_t here = std::min(length, sweep_.turns.size() - first);
-            fill_smooth(first, here);
+            fill_smooth(first);
             for (std::size_t i = 0; i < lines_.size(); ++i) fill_line(i, first, here);
             action(first, here);
         }
     }
 
   private:
-    void fill_smooth(std::size_t first, std::size_t here) {
-        std::array<double, length> cosine{}, before{}, now{};
-        for (std::size_t i = 0; i < here; ++i) {
-            const double place =
-                std::abs(sweep_.turns[first + i] - sweep_.turns.front()) / sweep_.length_turns;
-            row(0)[i] = 1.0;
-            row(1)[i] = place - 0.5;
-            cosine[i] = std::numbers::pi * place;
-            before[i] = 1.0;
+    // All `length` of them, used or not: a loop of known length goes by vectors.
+    void fill_smooth(std::size_t first) {
+        const double* const place = place_.data() + first;
+        const double* const cosine = cosine_.data() + first;
+        std::array<double, length> before{}, now{};
+        for (std::size_t i = 0; i < length; ++i) {
+            row(0)[i] = before[i] = 1.0;
+            row(1)[i] = place[i] - 0.5;
+            now[i] = cosine[i];
         }
-        portable::cos(std::span(cosine).first(here), cosine);
-        now = cosine;
         for (std::size_t m = 2; m < sweep_.trend_terms; ++m) {
-            for (std::size_t i = 0; i < here; ++i) {
-                row(m)[i] = now[i];
+            double* const values = row(m);
+            for (std::size_t i = 0; i < length; ++i) {
+                values[i] = now[i];
                 const double next = 2.0 * cosine[i] * now[i] - before[i];
                 before[i] = now[i];
                 now[i] = next;
@@ -75,6 +83,7 @@ class Rows {
     const Sweep& sweep_;
     std::span<const KnownLine> lines_;
     std::vector<double> values_;
+    std::vector<double> place_, cosine_;  ///< from 0 to 1 along the piece, and cosine of pi times that
 };
 
 void subtract_from(Sweep& sweep, const KnownLine& line) {
@@ -124,10 +133,11 @@ void fit_out(Sweep& sweep, std::span<const KnownLine> lines) {
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
     rows.in_blocks([&](std::size_t first, std::size_t count) {
-        std::array<double, Rows::length> weighed{};
+        std::array<double, Rows::length> weight{}, weighed{};
+        std::copy_n(sweep.weight.begin() + static_cast<std::ptrdiff_t>(first), count, weight.begin());
         for (Eigen::Index a = 0; a < n; ++a) {
             const double* const row = rows.row(static_cast<std::size_t>(a));
-            for (std::size_t i = 0; i < count; ++i) weighed[i] = sweep.weight[first + i] * row[i];
+            for (std::size_t i = 0; i < Rows::length; ++i) weighed[i] = weight[i] * row[i];
             for (Eigen::Index b = 0; b <= a; ++b)
                 normal(a, b) += dot(weighed.data(), rows.row(static_cast<std::size_t>(b)), count);
             right[a] += dot(weighed.data(), sweep.torque_nm.data() + first, count);
@@ -149,13 +159,13 @@ void subtract(std::vector<Sweep>& sweeps, const KnownLine& line) {
 }
 
 void take_out_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines) {
-    for (Sweep& sweep : sweeps) {
-        if (clear(sweep, lines)) {
-            subtract_from(sweep, lines.back());
+    on_two_cores(sweeps.size(), [&](std::size_t i) {
+        if (clear(sweeps[i], lines)) {
+            subtract_from(sweeps[i], lines.back());
         } else {
-            fit_out(sweep, lines);
+            fit_out(sweeps[i], lines);
         }
-    }
+    });
 }
 
 }  // namespace ripplenotch

@@ -6,6 +6,7 @@
 
 #include "analysis/lines/line_evidence.hpp"
 #include "analysis/lines/line_removal.hpp"
+#include "core/two_cores.hpp"
 #include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
@@ -148,8 +149,12 @@ struct Stacks {
 };
 
 Stacks stacked(const std::vector<Sweep>& sweeps, const MotionLinesOptions& options) {
-    return {stack_sweeps(sweeps, Axis::angle, options.stack),
-            stack_sweeps(sweeps, Axis::time, options.stack)};
+    Stacks stacks;
+    on_two_cores(2, [&](std::size_t i) {
+        const Axis axis = i == 0 ? Axis::angle : Axis::time;
+        (i == 0 ? stacks.angle : stacks.time) = stack_sweeps(sweeps, axis, options.stack);
+    });
+    return stacks;
 }
 
 // One line looked for: where it stands in both domains, as far as it stands there.

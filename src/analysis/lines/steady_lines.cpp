@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "analysis/lines/tone_family.hpp"
+#include "core/two_cores.hpp"
 #include "ripplenotch/analysis/alias.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -29,7 +30,8 @@ std::vector<StretchLines> measure_stretches(std::span<const TraceView> logs, con
             if (stretch.count >= fewest_samples) found.push_back({i, stretch, {}, {}, 0.0, 0.0});
         }
     }
-    for (StretchLines& one : found) {
+    on_two_cores(found.size(), [&](std::size_t i) {
+        StretchLines& one = found[i];
         const TraceView part = logs[one.log].part(one.stretch.first, one.stretch.count);
         Spectrum spectrum = torque_spectrum(part, {{}, false_alarm / static_cast<double>(found.size())});
         std::stable_sort(spectrum.peaks.begin(), spectrum.peaks.end(),
@@ -39,7 +41,7 @@ std::vector<StretchLines> measure_stretches(std::span<const TraceView> logs, con
         one.humps = std::move(spectrum.humps);
         one.floor_nm = median_of(std::move(spectrum.floor_nm));
         one.bin_hz = spectrum.bin_width.value();
-    }
+    });
     return found;
 }
 

@@ -2,11 +2,13 @@
 #include "ripplenotch/analysis/sweeps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "analysis/lines/line_removal.hpp"
 #include "core/many_numbers.hpp"
+#include "core/two_cores.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 
 namespace ripplenotch {
@@ -37,18 +39,51 @@ std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std
     return pieces;
 }
 
-/// Speeds that a quarter and three quarters of the weight lie below.
-void find_quartiles(Sweep& sweep, std::span<const double> speed) {
-    std::vector<std::pair<double, double>> sorted(speed.size());
-    for (std::size_t k = 0; k < speed.size(); ++k) sorted[k] = {std::abs(speed[k]), sweep.weight[k]};
-    std::sort(sorted.begin(), sorted.end());
-    double sum = 0.0;
-    for (const auto& [value, weight] : sorted) {
-        if (sum < 0.25 * sweep.weight_sum) sweep.slow_deg_s = value;
-        if (sum < 0.75 * sweep.weight_sum) sweep.quick_deg_s = value;
-        sum += weight;
+/// Weight by speed, in steps of speed that are narrow beside its range.
+class SpeedShares {
+  public:
+    SpeedShares(std::span<const double> speed, std::span<const double> weight)
+        : speed_(speed), weight_(weight) {
+        const auto [least, most] = std::minmax_element(
+            speed.begin(), speed.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+        low_ = std::abs(*least);
+        const double range = std::abs(*most) - low_;
+        steps_per_deg_s_ = range > 0.0 ? static_cast<double>(sums_.size()) / range : 0.0;
+        for (std::size_t k = 0; k < speed.size(); ++k) sums_[step_of(speed[k])] += weight[k];
     }
-}
+
+    /// The speed below which lies so much weight.
+    [[nodiscard]] double quantile(double share) const {
+        std::size_t step = 0;
+        double below = 0.0;
+        while (step + 1 < sums_.size() && below + sums_[step] < share) below += sums_[step++];
+        std::vector<std::pair<double, double>> inside;
+        for (std::size_t k = 0; k < speed_.size(); ++k) {
+            if (step_of(speed_[k]) == step) inside.emplace_back(std::abs(speed_[k]), weight_[k]);
+        }
+        auto from = inside.begin(), to = inside.end();
+        while (to - from > 1) {
+            const auto middle = from + (to - from) / 2;
+            std::nth_element(from, middle, to);
+            double slower = 0.0;
+            for (auto one = from; one != middle; ++one) slower += one->second;
+            const bool beyond = below + slower < share;
+            if (beyond) below += slower;
+            (beyond ? from : to) = middle;
+        }
+        return from == inside.end() ? low_ : from->first;
+    }
+
+  private:
+    [[nodiscard]] std::size_t step_of(double speed) const {
+        const auto step = static_cast<std::size_t>((std::abs(speed) - low_) * steps_per_deg_s_);
+        return std::min(step, sums_.size() - 1);
+    }
+
+    std::span<const double> speed_, weight_;
+    double low_ = 0.0, steps_per_deg_s_ = 0.0;
+    std::array<double, 512> sums_{};
+};
 
 /// Hann window over the sweep's own length, times the angle that each sample stands for.
 void weigh(Sweep& sweep) {
@@ -95,7 +130,9 @@ Sweep make_sweep(const TraceView& log, const SampleRun& span, std::span<const do
     weigh(sweep);
     if (!(sweep.weight_sum > 0.0)) return sweep;
     for (std::size_t k = 0; k < n; ++k) sweep.mean_deg_s += sweep.weight[k] * speed[k] / sweep.weight_sum;
-    find_quartiles(sweep, speed);
+    const SpeedShares shares(speed, sweep.weight);
+    sweep.slow_deg_s = shares.quantile(0.25 * sweep.weight_sum);
+    sweep.quick_deg_s = shares.quantile(0.75 * sweep.weight_sum);
     sweep.measured_nm = log.torque_nm.subspan(span.first, n);
     const auto cosines = std::lround(rule.trend_terms_per_turn * sweep.length_turns);
     sweep.trend_terms = static_cast<std::size_t>(std::max(cosines, 3L)) + 2;
@@ -166,12 +203,13 @@ Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule) {
     const std::size_t all = planned.size();
     planned = within_budget(std::move(planned), rule);
     sweeps.pieces_left_out = all - planned.size();
-    for (const Planned& piece : planned) {
-        Sweep sweep =
-            make_sweep(logs[piece.log], piece.span, angles[piece.log].turns, speeds[piece.log], rule);
-        sweep.log = piece.log;
-        if (sweep.weight_sum > 0.0) sweeps.pieces.push_back(std::move(sweep));
-    }
+    sweeps.pieces.resize(planned.size());
+    on_two_cores(planned.size(), [&](std::size_t i) {
+        const auto& [log, span] = planned[i];
+        sweeps.pieces[i] = make_sweep(logs[log], span, angles[log].turns, speeds[log], rule);
+        sweeps.pieces[i].log = log;
+    });
+    std::erase_if(sweeps.pieces, [](const Sweep& sweep) { return !(sweep.weight_sum > 0.0); });
     return sweeps;
 }
 

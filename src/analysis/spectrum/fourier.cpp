@@ -19,7 +19,6 @@
 #include "analysis/kernels/piece_kernel.hpp"
 #include "analysis/kernels/point_kernel.hpp"
 #include "analysis/kernels/power_kernel.hpp"
-#include "analysis/kernels/spreading_kernel.hpp"
 #include "core/many_numbers.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -28,8 +27,6 @@ namespace ripplenotch {
 namespace {
 
 constexpr double tau = 2.0 * std::numbers::pi;
-constexpr std::size_t width = SpreadingKernel::width;
-constexpr double beta = SpreadingKernel::beta;
 
 template <class T>
 using FftwArray = std::unique_ptr<T, decltype(&fftw_free)>;
@@ -74,74 +71,6 @@ fftw_plan plan_for(std::size_t n, PlanKind kind) {
     auto& entry = plans[{n, kind}];
     if (!entry) entry = std::make_unique<Plan>(n, kind);
     return entry->plan;
-}
-
-/// Transform of the kernel at 0, 1, 2, ... steps of phase (radians per half width), by the trapezoid rule in
-/// x = sin t, where the integrand and all its derivatives are negligible at both ends.
-class KernelTransform {
-  public:
-    explicit KernelTransform(double step) : step_(step) {
-        for (std::size_t i = 0; i < nodes; ++i) {
-            const double t = std::numbers::pi / 2.0 * (static_cast<double>(i) + 0.5) / nodes;
-            place_[i] = portable::sin(t);
-            weight_[i] =
-                portable::exp(beta * (portable::cos(t) - 1.0)) * portable::cos(t) * std::numbers::pi / nodes;
-            turn_real_[i] = portable::cos(step * place_[i]);
-            turn_imaginary_[i] = portable::sin(step * place_[i]);
-        }
-    }
-
-    double next() {
-        // Cosines of evenly spaced phases turn by a constant; they are set anew before rounding adds up.
-        if (count_ % 256 == 0) {
-            for (std::size_t i = 0; i < nodes; ++i) {
-                const double phase = step_ * static_cast<double>(count_) * place_[i];
-                real_[i] = weight_[i] * portable::cos(phase);
-                imaginary_[i] = weight_[i] * portable::sin(phase);
-            }
-        }
-        ++count_;
-        double sum = 0.0;
-        for (std::size_t i = 0; i < nodes; ++i) {
-            sum += real_[i];
-            const double real = real_[i] * turn_real_[i] - imaginary_[i] * turn_imaginary_[i];
-            imaginary_[i] = real_[i] * turn_imaginary_[i] + imaginary_[i] * turn_real_[i];
-            real_[i] = real;
-        }
-        return sum;
-    }
-
-  private:
-    static constexpr std::size_t nodes = 40;
-    using Row = std::array<double, nodes>;
-    double step_;
-    std::size_t count_ = 0;
-    Row place_{}, weight_{}, turn_real_{}, turn_imaginary_{}, real_{}, imaginary_{};
-};
-
-/// Adds each value to the `width` grid points around its place, weighted by the kernel.
-void spread(std::span<const double> where, std::span<const double> value, double spacing,
-            std::span<double> grid) {
-    static const SpreadingKernel weights;
-    const auto n = static_cast<double>(grid.size());
-    const double half = static_cast<double>(width) / 2.0;
-    SpreadingKernel::Row row;
-    for (std::size_t j = 0; j < where.size(); ++j) {
-        const double turns = where[j] * spacing;
-        const double at = (turns - std::floor(turns)) * n;  // 0 <= at <= n
-        const double first = std::ceil(at - half);
-        weights.at(first - (at - half), row);
-        auto cell = static_cast<std::size_t>(first < 0.0 ? first + n : first);
-        if (cell + width <= grid.size()) {
-            double* const cells = grid.data() + cell;
-            for (std::size_t i = 0; i < width; ++i) cells[i] += value[j] * row[i];
-            continue;
-        }
-        for (std::size_t i = 0; i < width; ++i, ++cell) {
-            if (cell >= grid.size()) cell -= grid.size();
-            grid[cell] += value[j] * row[i];
-        }
-    }
 }
 
 std::complex<double> unit_phasor(double angle) { return portable::phasor(angle); }
@@ -253,21 +182,6 @@ std::size_t fast_length(std::size_t at_least) {
     std::size_t n = std::max<std::size_t>(at_least, 1);
     while (!smooth(n)) ++n;
     return n;
-}
-
-std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> where,
-                                                     std::span<const double> value, double spacing,
-                                                     std::size_t count) {
-    if (count == 0) return {};
-    std::vector<double> grid(fast_length(std::max<std::size_t>(4 * count, 4 * width)), 0.0);
-    spread(where, value, spacing, grid);
-    auto sums = real_fourier(grid);
-    sums.resize(count);
-    const double half = static_cast<double>(width) / 2.0;
-    const double step = tau * half / static_cast<double>(grid.size());
-    KernelTransform transform(step);
-    for (std::complex<double>& sum : sums) sum /= half * transform.next();
-    return sums;
 }
 
 FourierPoint fourier_point(std::span<const double> where, std::span<const double> value, double frequency) {

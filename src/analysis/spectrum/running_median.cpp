@@ -2,40 +2,78 @@
 #include "analysis/spectrum/running_median.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ripplenotch {
 namespace {
 
-void sort_into(std::vector<double>& sorted, std::span<const double> values) {
-    sorted.assign(values.begin(), values.end());
-    std::sort(sorted.begin(), sorted.end());
+// Ranks kept to each side of the median: four deviations of where the next window of the same noise has its.
+std::size_t ranks_beside(std::size_t count) {
+    return static_cast<std::size_t>(2.0 * std::sqrt(static_cast<double>(count))) + 8;
 }
 
 }  // namespace
 
 void RunningMedian::start(std::size_t first, std::size_t end) {
-    sort_into(sorted_, signal_.subspan(first, end - first));
+    const auto window = signal_.subspan(first, end - first);
+    window_.assign(window.begin(), window.end());
+    const std::size_t middle = window.size() / 2, beside = ranks_beside(window.size());
+    const auto lowest = window_.begin() + static_cast<std::ptrdiff_t>(middle - std::min(middle, beside));
+    const auto highest =
+        window_.begin() + static_cast<std::ptrdiff_t>(std::min(window.size() - 1, middle + beside));
+    std::nth_element(window_.begin(), lowest, window_.end());
+    low_ = *lowest;
+    std::nth_element(lowest, highest, window_.end());
+    high_ = *highest;
+    below_ = std::count_if(window_.begin(), lowest, [this](double value) { return value < low_; });
+    near_.clear();
+    for (const double value : window_) {
+        if (value >= low_ && value <= high_) near_.push_back(value);
+    }
+    std::sort(near_.begin(), near_.end());
 }
 
+// Where values come in no order, a branch on one is guessed wrong every other time: there are none but one.
 void RunningMedian::move_on(std::size_t first, std::size_t end) {
-    sort_into(leaving_, signal_.subspan(first_, first - first_));
-    sort_into(coming_, signal_.subspan(end_, end - end_));
-    staying_.resize(sorted_.size() - leaving_.size());
-    std::set_difference(sorted_.begin(), sorted_.end(), leaving_.begin(), leaving_.end(), staying_.begin());
-    sorted_.resize(staying_.size() + coming_.size());
-    std::merge(staying_.begin(), staying_.end(), coming_.begin(), coming_.end(), sorted_.begin());
+    for (const double value : take_near(signal_.subspan(first_, first - first_), -1))
+        near_.erase(place_of(value));
+    for (const double value : take_near(signal_.subspan(end_, end - end_), 1))
+        near_.insert(place_of(value), value);
+}
+
+std::span<const double> RunningMedian::take_near(std::span<const double> values, std::ptrdiff_t each) {
+    window_.resize(std::max(window_.size(), values.size()));
+    std::size_t taken = 0;
+    std::ptrdiff_t below = 0;
+    for (const double value : values) {
+        window_[taken] = value;
+        below += static_cast<std::ptrdiff_t>(value < low_);
+        taken += static_cast<std::size_t>(value >= low_ && value <= high_);
+    }
+    below_ += each * below;
+    return std::span(window_).first(taken);
+}
+
+std::vector<double>::const_iterator RunningMedian::place_of(double value) const {
+    const double* from = near_.data();
+    for (std::size_t left = near_.size(); left > 0;) {
+        const std::size_t half = (left + 1) / 2;
+        from = from[half - 1] < value ? from + half : from;
+        left -= half;
+    }
+    return near_.begin() + (from - near_.data());
 }
 
 double RunningMedian::at(std::size_t first, std::size_t count) {
     const std::size_t end = first + count;
     const bool onward = first >= first_ && end >= end_;
-    if (onward && first - first_ + end - end_ < count / 2)
-        move_on(first, end);
-    else
-        start(first, end);
+    const bool little = onward && first - first_ + end - end_ < count / 2;
+    if (little) move_on(first, end);
+    const auto rank = [&] { return static_cast<std::ptrdiff_t>(count / 2) - below_; };
+    if (!little || rank() < 0 || rank() >= static_cast<std::ptrdiff_t>(near_.size())) start(first, end);
     first_ = first;
     end_ = end;
-    return sorted_[count / 2];
+    return near_[static_cast<std::size_t>(rank())];
 }
 
 }  // namespace ripplenotch

@@ -153,6 +153,7 @@ std::string logs_in_words(const std::vector<std::string>& logs) {
 ExitCode run(Request& request, const std::string& command_line) {
     check(request);
     check_plot(request.plot, request.common);
+    hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
     std::vector<Identification> found;
     const std::vector<Joint> joints = read_all_joints(request, provenance);

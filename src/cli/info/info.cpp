@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/info/info_text.hpp"
+#include "cli/options/plot_request.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/document/info_json.hpp"
@@ -24,14 +25,13 @@ struct Request {
 
 ExitCode run(const Request& request, const std::string& command_line) {
     const ReadOptions options = request.log.resolve();
-    hash_inputs(request.common.json);
+    hash_where_told(request.common);
     std::vector<LogInfo> logs;
     Provenance provenance{{}, command_line};
     for (const std::string& path : request.paths) {
         logs.push_back(survey_log(path, options));
         const LogInfo& log = logs.back();
-        provenance.inputs.push_back(
-            {path, request.common.json && path != "-" ? sha256_as_read(path) : "", log.rows});
+        provenance.inputs.push_back({path, path == "-" ? "" : sha256_as_read(path), log.rows});
         say(request.common, log.source + ": read as if with " + log.layout.options);
     }
     std::string text;

@@ -100,6 +100,7 @@ MapFit fitted_by_readings(const Read& read, const Request& request, const GearAc
 ExitCode run(Request& request, const std::string& command_line) {
     if (request.log.joint == "all") raise<UsageError>("--joint all: map looks at one joint; name it");
     check_plot(request.plot, request.common);
+    hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
     const GearChoice choice(request.gear);
     const std::optional<GearAccount> gear = choice.of();

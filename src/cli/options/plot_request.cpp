@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/document/figure_json.hpp"
 #include "ripplenotch/figure/figure_kinds.hpp"
 #include "ripplenotch/figure/gnuplot.hpp"
@@ -80,6 +81,10 @@ void check_plot(const PlotRequest& request, const CommonOptions& common) {
     if (!common.force && std::filesystem::exists(path)) {
         raise<FileError>("{}: exists already; choose another name or overwrite it with --force", path);
     }
+}
+
+void hash_where_told(const CommonOptions& common, const PlotRequest& plot) {
+    hash_inputs(common.json || ends_with_json(common.output) || plot.wanted());
 }
 
 void draw_plot(const PlotRequest& request, const CommonOptions& common, const Provenance& provenance,

@@ -32,6 +32,10 @@ void attach_plot(Options& options, PlotRequest& request);
 /// on standard output, FileError for a file that exists and may not be overwritten.
 void check_plot(const PlotRequest& request, const CommonOptions& common);
 
+/// Before any file is read: whether the run will tell what it read, as JSON or in the data of a figure. Only
+/// then are its inputs hashed, which costs more than reading them.
+void hash_where_told(const CommonOptions& common, const PlotRequest& plot = {});
+
 /// Draws what make() gives; does nothing when no plot is asked for. Call it after everything else is written:
 /// without gnuplot it writes the figure's data beside where the picture would be and throws FileError.
 void draw_plot(const PlotRequest& request, const CommonOptions& common, const Provenance& provenance,

@@ -214,6 +214,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     if (!(request.steady.at_least.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
     check_speed_map(request.map);
     check_plot(request.plot, request.common);
+    hash_where_told(request.common, request.plot);
     if (request.map.map &&
         (request.stretch || request.segment || request.peaks || request.domain != "frequency"))
         raise<UsageError>("--map goes with neither --domain, --stretch, --segment nor --peaks");

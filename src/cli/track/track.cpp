@@ -198,6 +198,7 @@ TrackReport report_of(const Request& request, const Prepared& prepared, const st
 ExitCode run(Request& request, const std::string& command_line) {
     check(request);
     check_plot(request.plot, request.common);
+    hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
     read_gear(request, provenance);
     const Log log = read_log_in_part(request.path, read_options(request.log, request.gear));
