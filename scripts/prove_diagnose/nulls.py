@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Logs with nothing hidden in ten kinds of noise and of recording: whatever is named there is false.
+"""Logs with nothing hidden in ten kinds of noise and of recording (held samples in two ways): whatever is named there is false.
 
 Held rows may be named `dropout`, coarse steps `quantization`, since they are there (recordings.BROUGHT).
 """
