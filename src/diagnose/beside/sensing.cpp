@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/normal_errors.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/beside/evidence.hpp"
 #include "diagnose/hearing.hpp"
