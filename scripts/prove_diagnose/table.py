@@ -3,7 +3,7 @@
 
 import statistics
 
-from . import bars, nulls, reach
+from . import bars, nulls, reach, reliability
 
 
 def share(rows, test):
@@ -202,6 +202,7 @@ def blocks(abouts, rows, failed):
         found = {"about": about(abouts, others),
                  "bars": markdown(bars.HEAD, bars.lines([r for r in others if "named" in r], reach.ENOUGH)),
                  "studies": studies(others),
+                 "reliability": markdown(reliability.HEAD, reliability.lines(others)),
                  "wrong": "\n".join(f"* {line}" for line in wrong) or "Nothing."}
     for study, form in APART.items():
         if own := [row for row in rows if row["study"] == study]:

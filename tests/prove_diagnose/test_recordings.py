@@ -5,7 +5,7 @@ import unittest
 
 import prove  # first: it skips without numpy
 import numpy as np
-from prove_diagnose import cases, nulls, plan, recordings, score
+from prove_diagnose import cases, nulls, plan, recordings, reliability, score
 from prove_diagnose.semi import cases as semi_cases, chain, real, table
 
 
@@ -89,6 +89,16 @@ class Nulls(unittest.TestCase):
         self.assertEqual([line[-1] for line in nulls.bar_lines(rows)], ["yes", "yes"])
         self.assertEqual([line[-1] for line in nulls.bar_lines(rows[1200:1300])], ["**no**", "**no**"])
         self.assertEqual([line[1] for line in nulls.lines(rows)], ["300"] * len(nulls.KINDS) + [str(len(rows))])
+
+
+class Reliability(unittest.TestCase):
+    def test_names_are_counted_by_verdict_and_not_those_of_logs_that_are_parts_of_others(self):
+        rows = [{"study": study, "verdict": "explained", "named": ["offset", "lag"], "false": ["lag"] * wrong}
+                for study, wrong in (("single", 0), ("pair", 1), ("variant", 1), ("without", 1))]
+        rows += [{"study": "null", "verdict": "matches", "named": [], "false": []}]
+        lines = reliability.lines(rows)
+        self.assertEqual(lines[0][:5], ["explained", "2", "4", "1", "25.0 %"])
+        self.assertEqual(lines[1], ["matches", "1", "0", "-", "-", "-"])
 
 
 class Arm(unittest.TestCase):
