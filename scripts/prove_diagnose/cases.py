@@ -11,7 +11,7 @@ import zlib
 
 import numpy as np
 
-from . import disturbances, joint, motion, other_formulas, sensor, strengths
+from . import disturbances, joint, motion, nulls, other_formulas, sensor, strengths
 
 SAMPLE_RATE_HZ = 1000.0
 
@@ -138,6 +138,8 @@ def studies(name, seeds, seed0=0):
         count = 2 if name == "pair" else 3
         several = [strengths.draw_several(np.random.default_rng([count, n]), count) for n in numbers]
         return [Case(name, "+".join(labels), n, hidden=tuple(labels)) for n, labels in zip(numbers, several)]
+    if name == "nulls":
+        return [Case(name, "nothing", n, noise=kind.noise, recorded=kind.recorded) for kind in nulls.KINDS for n in numbers]
     if name.startswith("null"):
         return [Case(name, "nothing", n, noise=name.partition(" ")[2] or "white") for n in numbers]
     if name == "outside":

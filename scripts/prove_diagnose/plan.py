@@ -12,8 +12,8 @@ from . import cases, recordings
 # How many of each kind: 5 of each single effect, 40 pairs, 200 logs with nothing hidden, ...
 SEEDS = {"single": 5, "rarer": 2, "pair": 40, "triple": 30, "null": 200, "null ar0.5": 20, "null t4": 20, "outside": 15,
          "outside+single": 5, "formula": 2, "noise": 1, "poor": 1, "variant": 1, "without": 1}
-# Run when asked for: the same logs as another recorder writes them.
-ALL = {**SEEDS, "recorded": 1}
+# Run when asked for: the same logs as another recorder writes them, and nothing hidden in noise of ten kinds.
+ALL = {**SEEDS, "recorded": 1, "nulls": 300}
 
 
 WAYS = tuple(recordings.WAYS)  # of recording the same log
@@ -35,7 +35,9 @@ def planned(names, seeds=None, first=0):
 
 
 def as_recorded(case, way):
-    """The same case as another recorder writes it; a header alone is the case's own."""
+    """The same case as another recorder writes it; a header alone is the case's own, and "" leaves the case as it is."""
+    if not way:
+        return case
     return dataclasses.replace(case, header=way) if way in cases.HEADERS else dataclasses.replace(case, recorded=way)
 
 
@@ -54,12 +56,13 @@ def by_name(name):
 
 def in_table_order(rows):
     """Scores sorted as tables list them: by study, then as the catalogue lists effects, then by number."""
-    kinds = [(c.study, c.label, c.variant, c.motion, c.noise) for name in ALL for c in cases.studies(name, 1)]
+    kinds = [(c.study, c.label, c.variant, c.motion, c.noise, c.recorded if name == "nulls" else "") for name in ALL for c in cases.studies(name, 1)]
     places = {kind: k for k, kind in enumerate(kinds)}
     studies = {name: min(k for k, kind in enumerate(kinds) if kind[0] == name) for name in ALL}
 
     def place(row):
-        kind = (row["study"], row["label"], row["variant"], row["motion"], row["noise"])
+        way = row["recorded"] if row["study"] == "nulls" else ""
+        kind = (row["study"], row["label"], row["variant"], row["motion"], row["noise"], way)
         return places.get(kind, studies[row["study"]]), int(row["case"].rpartition("-")[2])
 
     return sorted(rows, key=place)

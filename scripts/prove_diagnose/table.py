@@ -3,7 +3,8 @@
 
 import statistics
 
-from . import bars, reach
+from . import bars, nulls, reach, reliability
+
 
 def share(rows, test):
     counted = [bool(test(row)) for row in rows if test(row) is not None]
@@ -182,15 +183,28 @@ def of_recorders(abouts, rows, failed):
     return f"{about(abouts, rows)}\n\n{markdown(bars.HEAD, bars.recorded_lines(answered))}\n\n{recorded(answered)}\n\n{wrong}"
 
 
+def of_nulls(abouts, rows, failed):
+    """Nothing hidden in noise of ten kinds: bars, table, what went wrong."""
+    wrong = "\n".join(f"* {failure(row)}" for row in rows if failed(row)) or "Nothing went wrong."
+    named = [row for row in rows if "false" in row]
+    return (f"{about(abouts, rows)}\n\n{markdown(bars.HEAD, nulls.bar_lines(named))}\n\n{markdown(nulls.HEAD, nulls.lines(named))}"
+            f"\n\n{wrong}")
+
+
+APART = {"recorded": of_recorders, "nulls": of_nulls}
+
+
 def blocks(abouts, rows, failed):
     """Every table by the name of its mark in docs/diagnose.md; failed(row) says which cases are listed as wrong."""
-    others, found = [row for row in rows if row["study"] != "recorded"], {}
+    others, found = [row for row in rows if row["study"] not in APART], {}
     if others or not rows:
         wrong = [failure(row) for row in others if failed(row)]
         found = {"about": about(abouts, others),
                  "bars": markdown(bars.HEAD, bars.lines([r for r in others if "named" in r], reach.ENOUGH)),
                  "studies": studies(others),
+                 "reliability": markdown(reliability.HEAD, reliability.lines(others)),
                  "wrong": "\n".join(f"* {line}" for line in wrong) or "Nothing."}
-    if len(others) < len(rows):
-        found["recorded"] = of_recorders(abouts, [row for row in rows if row["study"] == "recorded"], failed)
+    for study, form in APART.items():
+        if own := [row for row in rows if row["study"] == study]:
+            found[study] = form(abouts, own, failed)
     return found

@@ -114,6 +114,11 @@ def scores(program, case, folder, options, methods):
     base, hidden = case.truth()
     acceptable = other_formulas.OTHERS[case.other](case.rng("other")).acceptable if case.other else ()
     logs = write_files(case, folder)
+    if case.study == "nulls":  # names are counted and nothing else
+        row = diagnosed(program, case, folder, options, logs, acceptable)
+        named = row.pop("found")["named"]
+        return {**row, "brought": [name for name in named if name in recordings.BROUGHT.get(case.recorded, ())],
+                "gap": {"closed": None, "as_said": None}}
     train, validate = (measured.Measured(log, strengths.GEAR_RATIO) for log in logs.values())
     floor = floor_nm(program, case, base, hidden, folder)
     row = {}

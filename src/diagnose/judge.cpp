@@ -31,8 +31,24 @@ double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& w
     return total > 0.0 ? (total - most) / total : 0.0;
 }
 
+// A curve over the speed with nothing but a size, such as its square.
+bool is_fixed_curve(const Effect& effect) {
+    return effect.side == Side::joint && effect.domain == Domain::speed &&
+           std::all_of(effect.parameters.begin(), effect.parameters.end(),
+                       [](const Parameter& parameter) { return parameter.linear; });
+}
+
+// By how much the rival is behind. Where something is left, two curves of fixed form that lie nearer to each
+// other than to what is there are not told: the form is neither's.
+double margin_of(const ModelBench& bench, const Candidate& model, const Candidate& other, bool is_form_alone,
+                 bool something_left) {
+    const double behind = other.criterion() - model.criterion();
+    if (!is_form_alone || !something_left || behind <= 0.0) return behind;
+    return std::max(behind - std::max(model.gain_left - bench.samples(), 0.0), 0.0);
+}
+
 void find_rivals(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
-                 std::span<const Effect* const> effects, Finding& finding) {
+                 std::span<const Effect* const> effects, bool something_left, Finding& finding) {
     const DiagnosisRules::JudgeRules& rules = bench.rules().judge;
     const std::size_t most = bench.work().ended() ? 1 : rules.most_rivals;
     std::size_t tried = 0;
@@ -42,7 +58,9 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
         if (trial.gain < rules.rival_gain * finding.evidence.gain - rules.rival_slack || tried++ >= most)
             break;
         const Candidate other = with_trial(bench, fewer, trial);
-        const double margin = other.criterion() - model.criterion();
+        const bool is_form_alone =
+            is_fixed_curve(*trial.start.effect) && is_fixed_curve(*model.stated.terms[term].effect);
+        const double margin = margin_of(bench, model, other, is_form_alone, something_left);
         finding.alternatives.push_back({trial.start.effect->name, margin});
         if (hearing.asked("judge.tie_margin", margin, margin < rules.tie_margin))
             finding.status = FindingStatus::ambiguous;
@@ -91,7 +109,8 @@ std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std:
         const Evidence& evidence = finding.evidence;
         Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);
         doubt_alone(finding, bench, model, term);
-        if (is_trusted(finding)) find_rivals(bench, model, fewer, term, effects, finding);
+        if (is_trusted(finding))
+            find_rivals(bench, model, fewer, term, effects, !unexplained.empty(), finding);
         findings.push_back(std::move(finding));
     }
     const double excess_nm = excess_of(bench, model.stated);

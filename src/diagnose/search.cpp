@@ -92,6 +92,20 @@ void drop_needless(const ModelBench& bench, Candidate& now, std::size_t own_term
     }
 }
 
+// A second term of one name that changes next to nothing mends the form of the first; while it is there,
+// neither shows what it is worth.
+void drop_slight_twins(const ModelBench& bench, Candidate& now, std::size_t own_terms) {
+    for (std::size_t term = now.stated.terms.size(); term-- > own_terms;) {
+        bool has_twin = false;
+        for (std::size_t other = own_terms; other < now.stated.terms.size(); ++other)
+            has_twin =
+                has_twin || (other != term && same_place(now.stated.terms[other], now.stated.terms[term]));
+        if (!has_twin) continue;
+        Candidate fewer = without_term(bench, now, term);
+        if (bench.share(now, fewer) < bench.material_sigma()) now = std::move(fewer);
+    }
+}
+
 bool swap_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
                std::span<const Effect* const> effects) {
     const SearchRules& rules = bench.rules().search;
@@ -175,6 +189,7 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
         drop_needless(bench, now, own_terms);
         add_all();
     }
+    drop_slight_twins(bench, now, own_terms);
     return now;
 }
 

@@ -55,10 +55,29 @@ class Motion(unittest.TestCase):
 
 class Sensor(unittest.TestCase):
     def test_noise_has_the_rms_and_the_memory_that_it_is_named_for(self):
-        for kind, memory in (("white", 0.0), ("ar0.5", 0.5), ("t4", 0.0)):
+        for kind, memory in (("white", 0.0), ("ar0.5", 0.5), ("ar0.9", 0.9), ("ar0.98", 0.98), ("t4", 0.0)):
             values = sensor.noise(np.random.default_rng(3), kind, 200000, 0.06)
             self.assertAlmostEqual(np.std(values), 0.06, delta=0.002)
             self.assertAlmostEqual(np.mean(values[1:] * values[:-1]) / np.var(values), memory, delta=0.02)
+
+    def test_pink_noise_has_the_same_power_in_each_octave(self):
+        powers = np.zeros(10)
+        for seed in range(20):
+            values = sensor.noise(np.random.default_rng(seed), "pink", 40000, 0.06)
+            self.assertLess(abs(np.std(values) - 0.06), 0.03)
+            spectrum = np.abs(np.fft.rfft(values * np.hanning(len(values)))) ** 2
+            powers += [np.sum(spectrum[16 * 2**k : 32 * 2**k]) for k in range(10)]
+        self.assertLess(np.max(powers) / np.min(powers), 1.3)
+
+    def test_a_mixture_has_heavier_tails_and_more_memory_than_white_noise(self):
+        memory, tails = [], []
+        for seed in range(40):
+            values = sensor.noise(np.random.default_rng(seed), "mixture", 20000, 0.06)
+            self.assertAlmostEqual(np.std(values), 0.06, delta=0.03)
+            memory.append(np.mean(values[1:] * values[:-1]) / np.var(values))
+            tails.append(np.mean((values - values.mean()) ** 4) / np.var(values) ** 2)
+        self.assertGreater(np.median(memory), 0.2)
+        self.assertGreater(np.mean(tails), 3.1)
 
     def test_a_case_is_the_same_log_every_time_and_another_for_each_purpose(self):
         case = cases.studies("pair", 1)[0]

@@ -5,7 +5,7 @@ import unittest
 
 import prove  # first: it skips without numpy
 import numpy as np
-from prove_diagnose import cases, plan, recordings
+from prove_diagnose import cases, nulls, plan, recordings, reliability, score
 from prove_diagnose.semi import cases as semi_cases, chain, real, table
 
 
@@ -34,12 +34,71 @@ class Recordings(unittest.TestCase):
         self.assertGreater(np.min(np.diff(jittered.time_s)), 0.0)
         self.assertAlmostEqual(len(jittered.time_s) / len(plain.time_s), 0.97, delta=0.01)
 
+    def test_a_third_of_the_rows_repeats_the_row_before_under_its_own_stamp(self):
+        plain = short("").log("train")
+        rows, torques = (recordings.recorded(plain, short(way), "train") for way in ("held rows", "held torque"))
+        for log in (rows, torques):
+            np.testing.assert_array_equal(log.time_s, plain.time_s)
+            held = np.diff(log.torque_nm) == 0
+            self.assertAlmostEqual(np.mean(held), 1 / 3, delta=0.02)
+        together = np.diff(rows.velocity_deg_s)[np.diff(rows.torque_nm) == 0]
+        self.assertEqual(np.max(np.abs(together)), 0.0)
+        np.testing.assert_array_equal(torques.velocity_deg_s, plain.velocity_deg_s)
+
+    def test_coarse_steps_are_those_of_the_joint_in_both_of_its_logs(self):
+        case, steps = short("coarse steps"), []
+        for purpose in ("train", "validate"):
+            torque = recordings.recorded(case.log(purpose), case, purpose).torque_nm
+            steps.append(np.min(np.diff(np.unique(torque))))
+        self.assertAlmostEqual(steps[0], steps[1], places=9)
+        self.assertTrue(recordings.COARSE_NM[0] <= steps[0] <= recordings.COARSE_NM[1])
+
     def test_the_study_has_37_logs_with_something_hidden_and_finds_each_by_its_name(self):
         planned = [plan.as_recorded(case, "250 Hz") for case in plan.planned(["recorded"], 1, 30)]
         self.assertEqual(len({case.name for case in planned}), 37)
         self.assertTrue(all(case.hidden for case in planned))
         for case in planned[::6]:
             self.assertEqual(plan.by_name(case.name), case)
+
+
+class Nulls(unittest.TestCase):
+    def test_every_kind_has_nothing_hidden_and_is_found_by_its_name(self):
+        planned = plan.planned(["nulls"], 2, 70)
+        self.assertEqual(len({case.name for case in planned}), 2 * len(nulls.KINDS))
+        self.assertEqual({case.hidden for case in planned}, {()})
+        for case in planned:
+            self.assertEqual(plan.by_name(case.name), case)
+
+    def test_what_the_recorder_did_may_be_named_and_nothing_else(self):
+        rounds = [{"effect": name, "status": "confirmed", "parameters": {}} for name in ("dropout", "offset")]
+        found = {"named": ["dropout", "offset"], "rounds": rounds, "ambiguous": []}
+        for way, false in (("held rows", ["offset"]), ("jitter", ["dropout", "offset"])):
+            names = score.names(None, (), [], found, recordings.BROUGHT.get(way, ()))
+            self.assertEqual(names["false"], false)
+
+    def test_the_upper_bound_is_that_of_clopper_and_pearson(self):
+        # 1 - 0.05^(1/300) by hand; 1 of 300: (1-p)^300 + 300 p (1-p)^299 = 0.05 at p = 0.0157.
+        self.assertAlmostEqual(nulls.upper(0, 300), 1 - 0.05 ** (1 / 300), places=9)
+        p = nulls.upper(1, 300)
+        self.assertAlmostEqual((1 - p) ** 300 + 300 * p * (1 - p) ** 299, 0.05, places=9)
+        self.assertEqual(nulls.upper(5, 5), 1.0)
+
+    def test_bars_count_all_kinds_together(self):
+        rows = [{"noise": kind.noise, "recorded": kind.recorded, "false": ["offset"] if (k, number) == (4, 0) else [],
+                 "seconds": 1.0} for k, kind in enumerate(nulls.KINDS) for number in range(300)]
+        self.assertEqual([line[-1] for line in nulls.bar_lines(rows)], ["yes", "yes"])
+        self.assertEqual([line[-1] for line in nulls.bar_lines(rows[1200:1300])], ["**no**", "**no**"])
+        self.assertEqual([line[1] for line in nulls.lines(rows)], ["300"] * len(nulls.KINDS) + [str(len(rows))])
+
+
+class Reliability(unittest.TestCase):
+    def test_names_are_counted_by_verdict_and_not_those_of_logs_that_are_parts_of_others(self):
+        rows = [{"study": study, "verdict": "explained", "named": ["offset", "lag"], "false": ["lag"] * wrong}
+                for study, wrong in (("single", 0), ("pair", 1), ("variant", 1), ("without", 1))]
+        rows += [{"study": "null", "verdict": "matches", "named": [], "false": []}]
+        lines = reliability.lines(rows)
+        self.assertEqual(lines[0][:5], ["explained", "2", "4", "1", "25.0 %"])
+        self.assertEqual(lines[1], ["matches", "1", "0", "-", "-", "-"])
 
 
 class Arm(unittest.TestCase):

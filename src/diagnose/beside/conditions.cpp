@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/beside/form.hpp"
 #include "diagnose/beside/ringing.hpp"
 #include "diagnose/hearing.hpp"
 
@@ -14,21 +15,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-// True when the name is worth its price beside another as well: then the other is not in its place.
-bool stands_beside(const Sums& sums, const Names& rivals, std::size_t own, double price) {
-    Names both = rivals;
-    both.push_back(own);
-    return is_worth(gain_between(sums, rivals, both), price, sums.lens().rules().beside);
-}
-
-// True for a friction of a size below 0. One that is a part of another's curve (quadratic beside viscous
-// friction) may be; what stands for another name by itself may not.
-bool drives(const Sums& sums, const Names& names, std::size_t place) {
-    const Kind kind = kind_of(*sums.shapes()[names[place]].term.effect);
-    return (kind == Kind::friction || kind == Kind::speed) &&
-           sums.sizes(names)[columns_at(sums, names, place).first] <= 0.0;
-}
 
 // The best other name in its place, refined; one that is bent stands in for something else.
 std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price) {
@@ -57,24 +43,6 @@ std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, 
         if (!best || rival.left < best->left) best = std::move(rival);
     }
     return best;
-}
-
-double swing_nm(const Sums& sums, const Names& names, std::size_t place) {
-    const OwnColumns own = columns_at(sums, names, place);
-    const VectorXd all = sums.sizes(names);
-    const auto columns = sums.lens().torque_nm(sums.shapes()[names[place]]);
-    const auto& use = sums.lens().looked_at().use;
-    double sum = 0.0, square = 0.0, count = 0.0;
-    for (std::size_t k = 0; k < use.size(); ++k) {
-        if (use[k] == 0) continue;
-        double torque = 0.0;
-        for (std::size_t c = 0; c < columns.size(); ++c)
-            torque += all[own.first + static_cast<Index>(c)] * columns[c][k];
-        sum += torque;
-        square += torque * torque;
-        count += 1.0;
-    }
-    return std::sqrt(std::max(square / count - sum / count * (sum / count), 0.0));
 }
 
 void doubt(BesideFinding& finding, std::string reason) {
@@ -107,6 +75,17 @@ void look_alone(const Sums& sums, const Names& names, std::size_t place, bool ev
                                             finding.same.uneven_by_speed > rules.evenness.most_uneven))
         doubt(finding, fmt::format("its size differs by {:.0f} % between slow and fast, forth and back",
                                    100.0 * std::min(finding.same.uneven_by_speed, 9.99)));
+}
+
+// Beside a given term other joints' frictions are in the leftover, and may be of any form.
+void look_at_form(const Sums& sums, const Names& names, std::size_t place, std::size_t effects,
+                  BesideFinding& finding) {
+    if (finding.status != FindingStatus::confirmed) return;
+    const DiagnosisRules& rules = sums.lens().rules();
+    const double part = mended_part(sums, names, place, effects);
+    if (part > 0.0 &&
+        Hearing(rules, finding.decisions).asked("beside.shape_part", part, part > rules.beside.shape_part))
+        doubt(finding, "a friction that drives the joint mends its form: it stands in for something else");
 }
 
 void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const std::vector<double>& left,
@@ -231,6 +210,7 @@ std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Jud
         finding.price = price_of(sums, now.names[place], by.effects);
         finding.size_nm = swing_nm(sums, now.names, place);
         look_alone(sums, now.names, place, by.even_by_speed, finding);
+        if (by.even_by_speed) look_at_form(sums, now.names, place, by.effects, finding);
         findings.push_back(std::move(finding));
     }
     look_at_sizes(sums, findings);
