@@ -107,6 +107,8 @@ def reason_to_skip(build, recorded_with):
         return f"the figures are those of '{recorded_with}', this is '{build}'"
     if "avx2" not in pathlib.Path("/proc/cpuinfo").read_text().split():
         return "this processor has no AVX2, so other code runs"
+    if "-AVX2" in os.environ.get("GLIBC_TUNABLES", ""):
+        return "the C library is told to do without AVX2, so other code runs"
     return None
 
 

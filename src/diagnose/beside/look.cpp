@@ -96,9 +96,8 @@ std::vector<double> sum_of(const std::vector<BesideValues>& believed, const Mode
     return sum;
 }
 
-bool is_resonance(const Lens& lens, const Shape& shape, const BesideValues& values) {
+bool is_resonance(const Lens& lens, const BesideValues& values) {
     const BesideRules& rules = lens.rules().beside;
-    if (lens.bounds().is_ringing_bent(shape)) return false;
     for (const FittedValue& value : values.ringing_values) {
         const Parameter& parameter = values.ringing->effect->parameters[value.parameter];
         if (parameter.left_out != LeftOut::fitted) continue;
@@ -129,7 +128,7 @@ Finding ringing_finding(Look& look, const BesideFinding& found, const BesideValu
     Finding finding = finding_of(lens, own);
     finding.term = *values.ringing;
     finding.values = values.ringing_values;
-    if (found.status == FindingStatus::confirmed && is_resonance(lens, found.shape, values)) return finding;
+    if (found.status == FindingStatus::confirmed && is_resonance(lens, values)) return finding;
     finding.status = FindingStatus::shape_correction;
     finding.reason = fmt::format("it mends the form of {}, whose size and phase go with the speed",
                                  shape_name(found.shape));

@@ -63,6 +63,9 @@ OutsideGain gain_of_ringing(const Sums& sums, const Names& names, std::size_t pl
 
 bool is_worth_ringing(const Sums& sums, const Names& names, std::size_t place, std::size_t effects) {
     if (!sums.shapes()[names[place]].ringing) return true;
+    // At a bound it stands in for something else: a burst of noise passed for a ripple of 4 Hz, damped
+    // by 1.5.
+    if (sums.lens().bounds().is_ringing_bent(sums.shapes()[names[place]])) return false;
     return is_worth(gain_of_ringing(sums, names, place), price_of_ringing(sums, names[place], effects),
                     sums.lens().rules().beside);
 }

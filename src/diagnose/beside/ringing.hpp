@@ -22,7 +22,7 @@ namespace ripplenotch {
 /// Of trials in their order the first of each last name, of a ripple that which rings and that which does
 /// not.
 void keep_first_of_each(const Sums& sums, std::vector<Named>& trials);
-/// True as well of a name that does not ring.
+/// True as well of a name that does not ring; false of what rings at a bound of its frequency or damping.
 [[nodiscard]] bool is_worth_ringing(const Sums& sums, const Names& names, std::size_t place,
                                     std::size_t effects);
 /// What ringing is worth beside the same ripple without it; the name at `place` rings.

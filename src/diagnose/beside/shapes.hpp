@@ -65,8 +65,7 @@ struct ScaleBounds {
     /// True when a scale is so near to its bound that the effect stands in for something else. Widths of a
     /// step may be: logs of steady motion do not tell them.
     [[nodiscard]] bool is_bent(const Shape& shape) const;
-    /// The same of what rings: it is no resonance that the log shows, and mends the ripple's form all the
-    /// same.
+    /// The same of what rings.
     [[nodiscard]] bool is_ringing_bent(const Shape& shape) const;
 };
 /// `ratio`: of the gear.
