@@ -102,8 +102,13 @@ Candidate with_findings_beside(Diagnosis& diagnosis, const ModelBench& bench, co
     if (!is_left_above(diagnosis, bench, last)) return last;
     std::optional<GivenCase> validation;
     if (other != nullptr) validation.emplace(GivenCase{*other});
-    BesideOutcome outcome = find_beside({bench.looked_at()}, validation ? &*validation : nullptr, last,
-                                        effects, bench.rules(), bench.work());
+    // What changes ripple was tried in that search, on all of the model's; here it would feed on what is
+    // left.
+    std::vector<const Effect*> tried;
+    std::copy_if(effects.begin(), effects.end(), std::back_inserter(tried),
+                 [](const Effect* effect) { return effect->side != Side::ripple; });
+    BesideOutcome outcome = find_beside({bench.looked_at()}, validation ? &*validation : nullptr, last, tried,
+                                        bench.rules(), bench.work());
     // The search before has told its own doubts.
     std::erase_if(outcome.findings, is_doubtful);
     if (outcome.findings.empty()) return last;
