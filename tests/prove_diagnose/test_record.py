@@ -64,14 +64,14 @@ class Record(unittest.TestCase):
         begun.add(row("single", 3))
         page = pathlib.Path(self.folder.name) / "page.md"
         marks = [f"<!-- made by scripts/prove-diagnose: {name} -->\nold\n<!-- end -->\n"
-                 for name in ("about", "bars", "studies", "wrong")]
+                 for name in ("about", "bars", "reliability", "studies", "wrong")]
         page.write_text("Before.\n" + "Between.\n".join(marks))
         done = prove.prove("--print", str(self.path), "--write", str(page))
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
         text = page.read_text()
         self.assertNotIn("\nold\n", text)
         self.assertTrue(text.startswith("Before.\n<!-- made"))
-        self.assertEqual(text.count("Between."), 3)
+        self.assertEqual(text.count("Between."), 4)
         self.assertIn("| one hidden effect: names exactly right | at least 97 % | 1/1 = 100.0 % |", text)
         self.assertIn(begun.about["commit"], text)
         page.write_text("No marks.\n")
