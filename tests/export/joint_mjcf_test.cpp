@@ -95,6 +95,20 @@ TEST_CASE("two weights are one, and two lines of an order have names of their ow
     CHECK(mjcf.waves[0].name != mjcf.waves[1].name);
 }
 
+TEST_CASE("ripple that a resonance of its own changes is not held without it") {
+    Model model{GearRatio(100.0), {}};
+    for (const char* term :
+         {"ripple,order=1,amplitude_nm=0.2,phase_deg=0", "ripple,order=2,amplitude_nm=0.3,phase_deg=0",
+          "resonance,frequency_hz=30,damping=0.3,direct=1,direct_phase_deg=180,order=2"})
+        model.terms.push_back(parse_term(term));
+    const JointMjcf mjcf = joint_mjcf(model);
+    REQUIRE(mjcf.waves.size() == 1);
+    CHECK(mjcf.waves[0].name == "ripple_1");
+    REQUIRE(mjcf.not_held.size() == 2);
+    CHECK(mjcf.not_held[0].effect == "ripple");
+    CHECK(mjcf.not_held[1].effect == "resonance");
+}
+
 TEST_CASE("a second step of friction is told, and so is a bristle that does not begin at rest") {
     const JointMjcf two = joint_mjcf(model_of(
         {"coulomb-friction,torque_nm=2,width_deg_s=0.2", "coulomb-friction,torque_nm=1,width_deg_s=0.2"}));

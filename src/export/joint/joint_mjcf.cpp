@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -68,13 +69,31 @@ void add_weight(JointMjcf& mjcf, double nm, double phase_deg) {
     mjcf.weight_rad = portable::atan2(up, along);
 }
 
+// Orders of ripple that a resonance of their own changes: without it their size and phase are another's.
+std::vector<double> ringing_orders(const Model& model) {
+    std::vector<double> orders;
+    for (const Term& term : model.terms) {
+        if (term.effect->side != Side::ripple || term.effect->domain != Domain::frequency) continue;
+        for (std::size_t p = 0; p < term.values.size(); ++p) {
+            if (term.effect->parameters[p].name == "order" && *term.values[p] > 0.0)
+                orders.push_back(*term.values[p]);
+        }
+    }
+    return orders;
+}
+
 class Taking {
   public:
-    explicit Taking(const Model& model) : ratio_(ratio_of(model)) {
+    explicit Taking(const Model& model) : ratio_(ratio_of(model)), ringing_orders_(ringing_orders(model)) {
         mjcf_.held.gear_ratio = model.gear_ratio;
     }
 
     void take(const Term& term) {
+        if (term.effect->ripple_order && rings(*term.values[*term.effect->ripple_order])) {
+            mjcf_.not_held.push_back({std::string(term.effect->name),
+                                      "it rings, and cogging has one size and phase at every speed"});
+            return;
+        }
         std::string words = place_of(term.effect->name, values_of(term));
         std::string name(term.effect->name);
         if (words.empty()) {
@@ -90,6 +109,10 @@ class Taking {
     JointMjcf taken() { return std::move(mjcf_); }
 
   private:
+    [[nodiscard]] bool rings(double order) const {
+        return std::find(ringing_orders_.begin(), ringing_orders_.end(), order) != ringing_orders_.end();
+    }
+
     static constexpr std::string_view second_step = "a joint has one frictionloss, and the model two steps";
 
     // Empty: none.
@@ -146,6 +169,7 @@ class Taking {
 
     JointMjcf mjcf_;
     GearRatio ratio_;
+    std::vector<double> ringing_orders_;
     double start_rad_ = 0.0;  // of the last bristle
 };
 
