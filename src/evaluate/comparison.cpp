@@ -18,6 +18,7 @@ constexpr std::size_t block_rows = 4096;
 struct Runner {
     std::unique_ptr<CausalFilter> filter;
     std::vector<double> out;
+    std::span<const double> temperature_degc;  ///< of the whole log, or empty
     double error_squares = 0.0;
     std::optional<SwitchLedger> ledger = std::nullopt;  ///< of a method that switches
 };
@@ -58,7 +59,11 @@ void run_block(std::vector<Runner>& runners, RippleMeter& meter, const TraceView
                std::span<const double> truth_nm) {
     for (Runner& runner : runners) {
         runner.out.resize(block.size());
-        runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg}, runner.out);
+        const auto warmth = runner.temperature_degc.empty()
+                                ? runner.temperature_degc
+                                : runner.temperature_degc.subspan(block.first_row, block.size());
+        runner.filter->process({block.velocity_deg_s, block.torque_nm, block.position_deg, warmth},
+                               runner.out);
         if (runner.ledger) runner.ledger->add(block.time_s, runner.out, runner.filter->switches());
         for (std::size_t k = 0; k < truth_nm.size(); ++k) {
             const double error = runner.out[k] - truth_nm[k];
@@ -149,7 +154,9 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
                          const GearAccount& lines) {
     std::vector<Runner> runners;
     for (const Contender& contender : contenders) {
-        runners.push_back({filter_for(contender, log), {}});
+        runners.push_back({filter_for(contender, log), {}, {}});
+        if (runners.size() <= log.temperatures_degc.size())
+            runners.back().temperature_degc = log.temperatures_degc[runners.size() - 1];
         if (contender.method->needs_table) runners.back().ledger.emplace(log.truth_nm);
     }
     RippleMeter meter(lines.ratio, lines.orders, log.trace.sample_rate, runners.size() + 1);

@@ -19,14 +19,16 @@ void StreamPass::filter(const RowBlock& block, std::vector<std::vector<double>>&
         Lane& lane = lanes_[j];
         note_motion(block.joints[j], lane);
         torque_nm[j].resize(block.size());
-        for (const RunPart& part : parts) filter_part(block, j, part, torque_nm[j]);
+        const auto warmth = lane.run.temperature != nullptr ? lane.run.temperature->next(block.size())
+                                                            : std::span<const double>{};
+        for (const RunPart& part : parts) filter_part(block, j, part, warmth, torque_nm[j]);
         lane.rows += block.size();
         lane.report.held_bad_values += block.held_bad_values;
     }
 }
 
 void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const RunPart& part,
-                             std::vector<double>& torque_nm) {
+                             std::span<const double> temperature_degc, std::vector<double>& torque_nm) {
     Lane& lane = lanes_[joint];
     TraceView rows = view_of(block, joint, part.first, part.count);
     const std::span<double> out = std::span(torque_nm).subspan(part.first, part.count);
@@ -37,7 +39,9 @@ void StreamPass::filter_part(const RowBlock& block, std::size_t joint, const Run
     }
     rows.position_deg = lane.position.of(account_.angle(joint), rows);
     if (part.begins_run && lane.rows + part.first > lane.rows_left_out) lane.run.filter->restart();
-    lane.run.filter->process({rows.velocity_deg_s, rows.torque_nm, rows.position_deg}, out);
+    const auto warmth =
+        temperature_degc.empty() ? temperature_degc : temperature_degc.subspan(part.first, part.count);
+    lane.run.filter->process({rows.velocity_deg_s, rows.torque_nm, rows.position_deg, warmth}, out);
     note_switches(block, lane);
     if (lane.run.meter != nullptr) meter_rows(rows, part.begins_run, out, lane);
 }

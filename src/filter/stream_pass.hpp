@@ -29,8 +29,9 @@ class StreamPass {
         JointsPosition position{};
     };
 
+    /// `temperature_degc`: of the block's rows, or empty.
     void filter_part(const RowBlock& block, std::size_t joint, const RunPart& part,
-                     std::vector<double>& torque_nm);
+                     std::span<const double> temperature_degc, std::vector<double>& torque_nm);
     static void meter_rows(const TraceView& rows, bool begins_run, std::span<const double> torque_nm,
                            Lane& lane);
     static void note_switches(const RowBlock& block, Lane& lane);

@@ -100,6 +100,8 @@ struct ComparedLog {
     TraceView trace;  ///< its sample_rate is what the filters are designed for
     std::span<const double> truth_nm =
         {};  ///< the torque without ripple and noise, row by row, where it is known
+    /// By contender, row by row, degC; no entries, or an empty one, where a method takes none.
+    std::vector<std::span<const double>> temperatures_degc = {};
     /// Sees what each method, counted from 0, makes of each block of the log, in the order of the rows; may
     /// be empty.
     std::function<void(std::size_t method, const TraceView& block, std::span<const double> out_nm,

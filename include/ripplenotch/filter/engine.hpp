@@ -42,10 +42,20 @@ struct StreamReport {
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< of |v|; both 0 without a row
 };
 
-/// What one joint goes through. The meter may be null; it gets two signals, raw and filtered torque.
+/// A column beside the motion, along the rows of the same log.
+class RowValues {
+  public:
+    virtual ~RowValues() = default;
+    /// Of the next `count` rows; valid until the next call. Throws what reading throws.
+    virtual std::span<const double> next(std::size_t count) = 0;
+};
+
+/// What one joint goes through. The meter may be null; it gets two signals, raw and filtered torque. So may
+/// the joint's temperature, degC.
 struct JointRun {
     CausalFilter* filter = nullptr;
     RippleMeter* meter = nullptr;
+    RowValues* temperature = nullptr;
 };
 
 /// One log on its way through a filter, or through one filter for each joint that is read.

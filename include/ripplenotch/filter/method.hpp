@@ -19,9 +19,10 @@
 
 namespace ripplenotch {
 
-/// Consecutive samples of one joint; spans of equal length, position may be empty.
+/// Consecutive samples of one joint; spans of equal length, position and temperature may be empty.
 struct Samples {
     std::span<const double> velocity_deg_s, torque_nm, position_deg;
+    std::span<const double> temperature_degc = {};  ///< of the joint, for methods whose map depends on it
 };
 
 /// One change of filter while running.

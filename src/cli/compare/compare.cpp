@@ -200,9 +200,10 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
     compared.truth_nm = truth;
     if (request.plot.wanted() && !truth.empty())
         compared.watch = [&course](auto&&... all) { course.add(all...); };
+    const auto warmth = temperatures_for(field.contenders, request.log, read, request.common);
+    compared.temperatures_degc.assign(warmth.begin(), warmth.end());
     // The filters are those that the filter command would run.
     compared.trace.sample_rate = log.recording.clock.nominal_rate;
-
     Comparison comparison;
     comparison.on_log = true;
     comparison.rows = log.trace.size();
@@ -218,11 +219,10 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
     comparison.step_nm = request.step_nm.value_or(default_step_nm);
     comparison.ramp_nm_s = request.ramp_nm_s.value_or(default_ramp_nm_s);
     comparison.lines = field.gear;
-    if (!comparison.lines) {
+    if (!comparison.lines)
         say_warnings(request.common,
                      std::vector<std::string>{"no gear ratio is known, so no ripple was measured; "
                                               "give --gear-ratio or --joint-file"});
-    }
     add_methods(comparison, field.contenders, compared, request.common);
     compared.watch = {};  // what is matched is measured more than once
     if (wants_match(request)) add_match_on_log(comparison, request, compared);

@@ -44,6 +44,17 @@ std::vector<std::string> methods_at(const std::string& log, std::vector<std::str
     return methods;
 }
 
+std::vector<std::vector<double>> temperatures_for(std::span<const Contender> contenders,
+                                                  const std::string& log, const ReadOptions& read,
+                                                  const CommonOptions& common) {
+    std::vector<std::vector<double>> all;
+    std::vector<std::string> notes;
+    for (const Contender& contender : contenders) all.push_back(followed_values(contender, log, read, notes));
+    notes.erase(std::unique(notes.begin(), notes.end()), notes.end());
+    say_warnings(common, notes);
+    return all;
+}
+
 Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,
                       Provenance& provenance) {
     if (methods.empty()) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct Field {
 /// The methods as they are on this log: at its temperature, where a map asks for one. The same without a log.
 [[nodiscard]] std::vector<std::string> methods_at(const std::string& log, std::vector<std::string> methods,
                                                   const LogOptions& options);
+/// By contender, the temperature that it follows at the rows that read_log_in_part gives; empty for others.
+/// Says how many cells were none.
+[[nodiscard]] std::vector<std::vector<double>> temperatures_for(std::span<const Contender> contenders,
+                                                                const std::string& log,
+                                                                const ReadOptions& read,
+                                                                const CommonOptions& common);
 
 /// Throws UsageError when `methods` is empty, and what choose_method and refuse_other_gear throw.
 [[nodiscard]] Field load_contenders(const std::vector<std::string>& methods, const GearOptions& gear,

@@ -182,8 +182,15 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
         writer = std::move(watching);
     }
     std::vector<JointRun> runs;
-    for (JointWork& work : works) runs.push_back({work.filter.get(), work.meter ? &*work.meter : nullptr});
+    std::vector<std::unique_ptr<FollowedRows>> followed;
+    for (JointWork& work : works) {
+        followed.push_back(followed_rows(*work.method, job.log, read));
+        runs.push_back({work.filter.get(), work.meter ? &*work.meter : nullptr, followed.back().get()});
+    }
     std::vector<StreamReport> reports = stream.run(runs, writer.get(), threads_of(request));
+    for (const auto& rows : followed) {
+        if (rows) say_warnings(request.common, rows->notes());
+    }
     bool within = true;
     for (std::size_t j = 0; j < works.size(); ++j) {
         works[j].metrics.stream = std::move(reports[j]);

@@ -24,11 +24,8 @@ std::string value_of(const Spec& spec, std::string_view key) {
     return at == spec.values.end() ? "" : at->second;
 }
 
-}  // namespace
-
-// It is read in the place of the torque.
-std::vector<double> side_column(const std::string& path, std::string column, const std::string& joint,
-                                ReadOptions read, std::size_t most_rows) {
+// The column is read in the place of the torque.
+ReadOptions beside(std::string& column, const std::string& joint, ReadOptions read) {
     if (const std::size_t at = column.find(joint_mark); at != std::string::npos)
         column.replace(at, joint_mark.size(), joint);
     std::erase_if(read.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
@@ -38,7 +35,33 @@ std::vector<double> side_column(const std::string& path, std::string column, con
         read.joint.reset();
     else
         read.joint = joint;
-    return read_log_in_part(path, read, most_rows).trace.torque_nm;
+    return read;
+}
+
+std::string joint_of(const RippleMap& map, const ReadOptions& read) {
+    return read.joint.value_or(names_joint(map.temperature_column) ? map.joint : "");
+}
+
+bool follows_rows(const Contender& method) {
+    return method.map != nullptr && method.map->form.by_temperature &&
+           method.settings.has("temperature-of") && method.settings.text("temperature-of") == "rows";
+}
+
+ReadOptions held(ReadOptions read) {
+    read.hold_bad_values = true;
+    return read;
+}
+
+std::string held_in_words(const std::string& log, const std::string& column, std::size_t cells) {
+    return fmt::format("{}: column '{}': {} {} without a temperature; the row before counts", log, column,
+                       cells, cells == 1 ? "cell" : "cells");
+}
+
+}  // namespace
+
+std::vector<double> side_column(const std::string& path, std::string column, const std::string& joint,
+                                ReadOptions read, std::size_t most_rows) {
+    return read_log_in_part(path, beside(column, joint, std::move(read)), most_rows).trace.torque_nm;
 }
 
 double mean_of_side_column(const std::string& path, const std::string& column, const std::string& joint,
@@ -62,13 +85,58 @@ std::string at_log_temperature(const std::string& method, const std::string& log
             "read twice; {}",
             spec.name, path, column, remedy);
     try {
-        const std::string joint = read.joint.value_or(names_joint(column) ? map.joint : "");
-        const double degc = mean_of_side_column(log, column, joint, read);
-        return fmt::format("{},temperature={}", method, shortest(std::round(1000.0 * degc) / 1000.0));
+        const double degc = mean_of_side_column(log, column, joint_of(map, read), held(read));
+        return fmt::format("{},temperature={},temperature-of=rows", method,
+                           shortest(std::round(1000.0 * degc) / 1000.0));
     } catch (const UsageError&) {
         raise<DataError>("{}: read no column '{}', expected the temperature that {} depends on; {}", log,
                          column, path, remedy);
     }
+}
+
+FollowedRows::FollowedRows(const std::string& path, std::string column, const ReadOptions& side)
+    : path_(path), column_(std::move(column)), reader_(open_log(path, side)) {}
+
+std::span<const double> FollowedRows::next(std::size_t count) {
+    values_.clear();
+    while (values_.size() < count) {
+        const std::vector<double>& column = block_.joints.front().torque_nm;
+        if (used_ == column.size()) {
+            used_ = 0;
+            if (!reader_->next(block_))
+                raise<DataError>(
+                    "{}: column '{}' ends before the log does; read a copy that nobody writes to", path_,
+                    column_);
+            held_ += block_.held_bad_values;
+            continue;
+        }
+        const std::size_t taken = std::min(count - values_.size(), column.size() - used_);
+        const auto from = column.begin() + static_cast<std::ptrdiff_t>(used_);
+        values_.insert(values_.end(), from, from + static_cast<std::ptrdiff_t>(taken));
+        used_ += taken;
+    }
+    return values_;
+}
+
+std::vector<std::string> FollowedRows::notes() const {
+    return held_ == 0 ? std::vector<std::string>{} : std::vector{held_in_words(path_, column_, held_)};
+}
+
+std::unique_ptr<FollowedRows> followed_rows(const Contender& method, const std::string& log,
+                                            const ReadOptions& read) {
+    if (!follows_rows(method)) return nullptr;
+    std::string column = method.map->temperature_column;
+    const ReadOptions side = held(beside(column, joint_of(*method.map, read), read));
+    return std::make_unique<FollowedRows>(log, column, side);
+}
+
+std::vector<double> followed_values(const Contender& method, const std::string& log, const ReadOptions& read,
+                                    std::vector<std::string>& notes) {
+    if (!follows_rows(method)) return {};
+    std::string column = method.map->temperature_column;
+    Log side = read_log_in_part(log, held(beside(column, joint_of(*method.map, read), read)));
+    if (side.held_bad_values > 0) notes.push_back(held_in_words(log, column, side.held_bad_values));
+    return std::move(side.trace.torque_nm);
 }
 
 }  // namespace ripplenotch

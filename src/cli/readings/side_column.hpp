@@ -2,9 +2,13 @@
 #pragma once
 // A column of a log that is no part of the motion: the joint's temperature.
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "ripplenotch/evaluate/contender.hpp"
+#include "ripplenotch/filter/engine.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
@@ -21,9 +25,33 @@ namespace ripplenotch {
                                          std::size_t most_rows = most_rows_held);
 
 /// A method as --method takes it, with the temperature of this log behind it where its map depends on one and
-/// the text states none: the mean of the column that the map was made by. Throws DataError, naming log,
-/// column and remedy, where the log has none.
+/// the text states none: the mean of the column that the map was made by, and the word to follow that column
+/// row by row. Throws DataError, naming log, column and remedy, where the log has none.
 [[nodiscard]] std::string at_log_temperature(const std::string& method, const std::string& log,
                                              const ReadOptions& read);
+
+/// The temperature that a method follows row by row, beside the rows that open_log gives of the same log. A
+/// cell without a number is the one before it.
+class FollowedRows final : public RowValues {
+  public:
+    FollowedRows(const std::string& path, std::string column, const ReadOptions& side);
+    std::span<const double> next(std::size_t count) override;
+    /// One sentence about cells without a number, if there were any.
+    [[nodiscard]] std::vector<std::string> notes() const;
+
+  private:
+    std::string path_, column_;
+    std::unique_ptr<LogReader> reader_;
+    RowBlock block_;
+    std::vector<double> values_;
+    std::size_t used_ = 0, held_ = 0;
+};
+/// Null where the method follows none.
+[[nodiscard]] std::unique_ptr<FollowedRows> followed_rows(const Contender& method, const std::string& log,
+                                                          const ReadOptions& read);
+/// The same at the rows at which read_log_in_part gives the motion; empty where the method follows none.
+/// `notes`: gets the sentence of FollowedRows.
+[[nodiscard]] std::vector<double> followed_values(const Contender& method, const std::string& log,
+                                                  const ReadOptions& read, std::vector<std::string>& notes);
 
 }  // namespace ripplenotch

@@ -36,8 +36,8 @@ double largest_amplitude(const RippleMap& map, std::size_t order) {
     return largest;
 }
 
-MapMean::MapMean(RippleMap map, double noise_nm)
-    : runner_(std::move(map)), noise_nm_(noise_nm), found_(runner_.map().orders.size()) {}
+MapMean::MapMean(RippleMap map, double noise_nm, std::optional<RippleMap> warming)
+    : runner_(std::move(map), std::move(warming)), noise_nm_(noise_nm), found_(runner_.map().orders.size()) {}
 
 void MapMean::restart(bool seek) noexcept {
     seeks_ = seek;

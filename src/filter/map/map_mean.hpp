@@ -4,6 +4,7 @@
 // the motor's angle is not known, the map is laid over what the filter found in the first turn.
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "filter/map/map_runner.hpp"
@@ -19,7 +20,9 @@ namespace ripplenotch {
 class MapMean {
   public:
     /// The map counts its angles from position 0; `noise_nm` is the unit of the filter.
-    MapMean(RippleMap map, double noise_nm);
+    MapMean(RippleMap map, double noise_nm, std::optional<RippleMap> warming = std::nullopt);
+    /// Before ripple() of a row that tells the joint's temperature.
+    void warm(double degc) noexcept { runner_.warm(degc); }
 
     /// Before the first sample of a run. One that seeks says 0 until the motor has turned once.
     void restart(bool seek) noexcept;

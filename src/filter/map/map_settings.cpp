@@ -2,7 +2,9 @@
 #include "filter/map/map_settings.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "filter/map/map_runner.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/filter/map_keys.hpp"
@@ -24,33 +26,13 @@ std::string list_text(const std::vector<double>& values) {
 
 std::string ends_text(const MapRange& range) { return list_text({range.from, range.to}); }
 
-// The same map at this temperature, held where none was seen: a part of the amplitudes at every speed.
-RippleMap at_temperature(const RippleMap& map, double degc) {
-    const MapRange& seen = map.temperatures_degc;
-    const double warmer = std::clamp(degc, seen.from, seen.to) - seen.middle();
-    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
-    RippleMap there = map;
-    there.form.by_temperature = false;
-    for (std::size_t i = 0; i < map.values.size(); ++i) {
-        there.values[i].clear();
-        for (std::size_t c = 0; c < map.values[i].size(); ++c) {
-            const std::size_t within = c % each, column = c - within + map.form.temperature_column();
-            if (within == map.form.temperature_column()) continue;
-            there.values[i].push_back(map.values[i][c] +
-                                      (within < speeds ? warmer * map.values[i][column] : 0.0));
-        }
-    }
-    return there;
-}
-
 std::size_t whole(const Settings& settings, std::string_view key) {
     return static_cast<std::size_t>(settings.number(key));
 }
 
-}  // namespace
-
-std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
-                                const RippleOrders& ripple) {
+// As the keys state it; empty without cosines.
+std::optional<RippleMap> stated_map(std::string_view method, const Settings& settings,
+                                    const RippleOrders& ripple) {
     if (!settings.has("cosines") && !settings.has("sines")) return std::nullopt;
     RippleMap map;
     map.gear_ratio = GearRatio(ripple.gear_ratio);
@@ -84,13 +66,28 @@ std::optional<RippleMap> map_of(std::string_view method, const Settings& setting
             map.values.back().emplace_back(cosines[c], sines[c]);
     }
     map.spread_nm = per_order(method, settings, "spread", ripple, 0.0);
-    if (!form.by_temperature) return map;
+    return map;
+}
+
+}  // namespace
+
+std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
+                                const RippleOrders& ripple) {
+    std::optional<RippleMap> map = stated_map(method, settings, ripple);
+    if (!map || !map->form.by_temperature) return map;
     if (!settings.has("temperature"))
         raise<UsageError>(
             "method {}: its map depends on the joint's temperature, and nobody states it; say it in degC, "
             "temperature=31",
             method);
-    return at_temperature(map, settings.number("temperature"));
+    return at_temperature(*map, settings.number("temperature"));
+}
+
+std::optional<RippleMap> warming_map_of(std::string_view method, const Settings& settings,
+                                        const RippleOrders& ripple) {
+    if (settings.text("temperature-of") != "rows") return std::nullopt;
+    std::optional<RippleMap> map = stated_map(method, settings, ripple);
+    return map && map->form.by_temperature ? std::move(map) : std::nullopt;
 }
 
 std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fitted) {

@@ -2,6 +2,7 @@
 #pragma once
 // Keys of the methods that subtract a map.
 
+#include <array>
 #include <optional>
 #include <string_view>
 
@@ -79,6 +80,13 @@ inline constexpr Key temperature_key{
     .at_least = -274.0,
     .at_most = 1000.0,
     .help = "of the joint, degC; for a map that depends on it, by default the mean of the log's column"};
+inline constexpr std::array<std::string_view, 2> temperature_of_choices = {"stated", "rows"};
+inline constexpr Key temperature_of_key{
+    .name = "temperature-of",
+    .kind = KeyKind::choice,
+    .default_text = "stated",
+    .choices = temperature_of_choices,
+    .help = "rows: the temperature is that of each row, and the stated one where a row has none"};
 inline constexpr Key spread_key{.name = "spread",
                                 .kind = KeyKind::list,
                                 .dimension = Dimension::torque,
@@ -87,7 +95,11 @@ inline constexpr Key spread_key{.name = "spread",
 
 /// The map that the keys hold, counted from position 0; empty without cosines. Throws UsageError when there
 /// are more or fewer values than orders and form ask for.
+/// A map that depends on the temperature is the one at the temperature stated.
 [[nodiscard]] std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
                                               const RippleOrders& ripple);
+/// The same at any temperature; empty where none of a row counts.
+[[nodiscard]] std::optional<RippleMap> warming_map_of(std::string_view method, const Settings& settings,
+                                                      const RippleOrders& ripple);
 
 }  // namespace ripplenotch

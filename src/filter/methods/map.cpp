@@ -21,13 +21,14 @@ constexpr auto keys = joined_keys(std::array{gear_ratio_key, orders_key}, requir
 
 class MapFilter final : public CausalFilter {
   public:
-    MapFilter(RippleMap map, const MotorAngle& angle, const MapReach& reach, bool has_start)
-        : runner_(std::move(map)), angle_(angle), reach_(reach), has_start_(has_start) {}
+    MapFilter(MapRunner runner, const MotorAngle& angle, const MapReach& reach, bool has_start)
+        : runner_(std::move(runner)), angle_(angle), reach_(reach), has_start_(has_start) {}
 
     void process(const Samples& in, std::span<double> out) override {
         for (std::size_t k = 0; k < out.size(); ++k) {
             angle_.next(in.velocity_deg_s[k], in.position_deg.empty() ? nullptr : &in.position_deg[k]);
             reach_.next(angle_.step_turns());
+            if (!in.temperature_degc.empty()) runner_.warm(in.temperature_degc[k]);
             runner_.at(in.velocity_deg_s[k], angle_.turns(), in.torque_nm[k]);
             // Without either, nobody knows where the motor stands.
             const bool tied = has_start_ || !in.position_deg.empty();
@@ -55,8 +56,9 @@ std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate,
     RippleMap map = map_in(settings);
     const MotorAngle angle(map.gear_ratio.value(), sample_rate.value(), angle_source(settings),
                            settings.has("start") ? settings.number("start") : 0.0);
-    return std::make_unique<MapFilter>(std::move(map), angle, MapReach("map", settings, sample_rate.value()),
-                                       settings.has("start"));
+    MapRunner runner(std::move(map), warming_map_of("map", settings, ripple_orders("map", settings)));
+    return std::make_unique<MapFilter>(std::move(runner), angle,
+                                       MapReach("map", settings, sample_rate.value()), settings.has("start"));
 }
 
 FrozenFilter frozen(const Settings& settings, Hertz, const CandidateTable*, DegPerSec) {

@@ -43,7 +43,8 @@ struct Plan {
     double largest_offset_deg_s = 0.0, largest_slip = 0.0;
     double sample_rate_hz = 0.0;
     double noise_nm = 0.0;
-    std::optional<RippleMap> map;  ///< mean of the amplitudes
+    std::optional<RippleMap> map;      ///< mean of the amplitudes
+    std::optional<RippleMap> warming;  ///< the same at each row's temperature
     bool zero_unknown = false;
     std::optional<MapReach> reach;  ///< of the map
 };
@@ -76,6 +77,7 @@ void plan_priors(Plan& p, const Settings& settings) {
 void plan_map(Plan& p, const Settings& settings) {
     p.map = map_of("oscillator", settings, p.ripple);
     if (!p.map) return;
+    p.warming = warming_map_of("oscillator", settings, p.ripple);
     p.zero_unknown = settings.text("zero") == "unknown";
     p.reach.emplace("oscillator", settings, p.sample_rate_hz);
     p.model.return_turns = settings.number("return");
@@ -127,7 +129,7 @@ class OscillatorFilter final : public CausalFilter {
           schedule_(plan_.scheduled ? std::make_unique<GainSchedule>(plan_.model) : nullptr),
           cold_(plan_.model, plan_.cold, schedule_.get()),
           warm_(plan_.model, plan_.warm, schedule_.get()) {
-        if (plan_.map) mean_.emplace(*plan_.map, plan_.noise_nm);
+        if (plan_.map) mean_.emplace(*plan_.map, plan_.noise_nm, plan_.warming);
     }
 
     void process(const Samples& in, std::span<double> out) override {
@@ -137,6 +139,7 @@ class OscillatorFilter final : public CausalFilter {
             if (plan_.reach) plan_.reach->next(angle_.step_turns());
             const bool tied = position != nullptr || plan_.has_start;
             if (mean_ && !started_) mean_->restart(plan_.zero_unknown || !tied);
+            if (mean_ && !in.temperature_degc.empty()) mean_->warm(in.temperature_degc[k]);
             const double mapped_nm =
                 mean_ ? mean_->ripple(in.velocity_deg_s[k], in.torque_nm[k], angle_) : 0.0;
             const double beside_nm = in.torque_nm[k] - mapped_nm;
@@ -233,6 +236,7 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     refuse(p.scheduled, "gain=scheduled");
     refuse(p.source == MotorAngle::Source::velocity, "angle=velocity");
     refuse(p.rest_nm.has_value(), "rest");
+    refuse(p.warming.has_value(), "temperature-of=rows: the code takes one temperature, which");
     for (const double order : p.ripple.orders) {
         if (order == std::floor(order)) continue;
         raise<UsageError>(
