@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <csignal>
@@ -228,6 +229,10 @@ ExitCode run(const Words& words) {
 }  // namespace ripplenotch
 
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+    // What one thread has freed another may take: with a heap each `identify` goes beyond its 64 MiB.
+    ::mallopt(M_ARENA_MAX, 1);
+#endif
     // "| head" must end us quietly even where the parent process has SIGPIPE ignored.
     std::signal(SIGPIPE, SIG_DFL);
     ripplenotch::hold_closed_streams();
