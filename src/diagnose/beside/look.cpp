@@ -96,13 +96,16 @@ std::vector<double> sum_of(const std::vector<BesideValues>& believed, const Mode
     return sum;
 }
 
-bool is_resonance(const Lens& lens, const BesideValues& values) {
+// Sharp, told, and among the frequencies that the line has.
+bool is_resonance(const Lens& lens, const Shape& shape, const BesideValues& values) {
     const BesideRules& rules = lens.rules().beside;
     for (const FittedValue& value : values.ringing_values) {
         const Parameter& parameter = values.ringing->effect->parameters[value.parameter];
         if (parameter.left_out != LeftOut::fitted) continue;
         if (!value.ci95) return false;
-        if (parameter.unit == "Hz" && value.ci95->high > rules.told_ringing * value.value) return false;
+        if (parameter.unit == "Hz" && (value.ci95->high > rules.told_ringing * value.value ||
+                                       value.value > lens.bounds().fastest_hz(order_of(shape))))
+            return false;
         if (parameter.unit != "Hz" && value.ci95->high > rules.sharp_damping) return false;
     }
     return true;
@@ -128,7 +131,7 @@ Finding ringing_finding(Look& look, const BesideFinding& found, const BesideValu
     Finding finding = finding_of(lens, own);
     finding.term = *values.ringing;
     finding.values = values.ringing_values;
-    if (found.status == FindingStatus::confirmed && is_resonance(lens, values)) return finding;
+    if (found.status == FindingStatus::confirmed && is_resonance(lens, found.shape, values)) return finding;
     finding.status = FindingStatus::shape_correction;
     finding.reason = fmt::format("it mends the form of {}, whose size and phase go with the speed",
                                  shape_name(found.shape));

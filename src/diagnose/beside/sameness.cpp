@@ -85,9 +85,9 @@ void weigh_speeds(const Sums& sums, const Names& names, std::size_t place, Samen
     Index value = 0;
     for (std::size_t i = 0; i < names.size(); ++i) {
         for (const auto& column : sums.weighed(names[i])) {
-            add_scaled(-sizes[value], column.data(), left.data(), left.size());
+            add_scaled(-sizes[value], column->data(), left.data(), left.size());
             if (value >= own.first && value < own.first + own.count)
-                add_scaled(sizes[value], column.data(), torque.data(), torque.size());
+                add_scaled(sizes[value], column->data(), torque.data(), torque.size());
             ++value;
         }
     }

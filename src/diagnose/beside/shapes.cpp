@@ -35,29 +35,25 @@ bool is_resolved(const Shape& shape, const ScaleBounds& bounds, double rate_hz) 
     return true;
 }
 
-double order_of(const Shape& shape) { return *shape.term.values[*shape.term.effect->ripple_order]; }
-
-// Where a search for what rings begins: among the frequencies that the line passes, sharp and broad.
+// Where a search for what rings begins: among the frequencies that the line passes.
 std::vector<Shape> ringing_shapes(const Shape& plain, const Effect& effect, const ScaleBounds& bounds) {
-    constexpr double parts[] = {0.12, 0.25, 0.5, 1.0}, dampings[] = {0.15, broad_damping};
+    constexpr double parts[] = {0.12, 0.25, 0.5, 1.0}, usual_damping = 0.3;
     std::vector<Shape> shapes;
-    for (const double damping : dampings) {
-        for (const double part : parts) {
-            Term term{&effect, {}};
-            for (const Parameter& parameter : effect.parameters) term.values.emplace_back(parameter.start);
-            for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
-                const Parameter& parameter = effect.parameters[p];
-                if (parameter.name == "order") term.values[p] = order_of(plain);
-                if (parameter.left_out != LeftOut::fitted) continue;
-                term.values[p] = parameter.unit == "Hz" ? part * bounds.fastest_hz(order_of(plain)) : damping;
-            }
-            shapes.push_back({plain.term, std::move(term)});
-            const std::vector<Scale> scales = scales_of(shapes.back());
-            if (std::any_of(scales.begin(), scales.end(), [&](const Scale& scale) {
-                    return value_of(shapes.back(), scale) < bounds.low(shapes.back(), scale);
-                }))
-                shapes.pop_back();
+    for (const double part : parts) {
+        Term term{&effect, {}};
+        for (const Parameter& parameter : effect.parameters) {
+            const bool is_scale = parameter.left_out == LeftOut::fitted;
+            const double scale =
+                parameter.unit == "Hz" ? part * bounds.fastest_hz(order_of(plain)) : usual_damping;
+            term.values.emplace_back(
+                is_scale ? scale : (parameter.name == "order" ? order_of(plain) : parameter.start));
         }
+        Shape shape{plain.term, std::move(term)};
+        const std::vector<Scale> scales = scales_of(shape);
+        if (std::all_of(scales.begin(), scales.end(), [&](const Scale& scale) {
+                return value_of(shape, scale) >= bounds.low(shape, scale);
+            }))
+            shapes.push_back(std::move(shape));
     }
     return shapes;
 }
@@ -76,6 +72,8 @@ std::vector<double> places_of(const Parameter& parameter, bool scale, const Scal
 }
 
 }  // namespace
+
+double order_of(const Shape& shape) { return *shape.term.values[*shape.term.effect->ripple_order]; }
 
 Kind kind_of(const Effect& effect) {
     if (effect.domain == Domain::order) return Kind::order;

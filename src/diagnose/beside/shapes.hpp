@@ -30,9 +30,6 @@ struct Scale {
     std::size_t parameter = 0;
 };
 
-/// Damping of a broad ringing, at which a search begins.
-inline constexpr double broad_damping = 0.5;
-
 [[nodiscard]] Kind kind_of(const Effect& effect);
 /// True when the effect's torque acts against the motion, so that a size below 0 is another's.
 [[nodiscard]] bool is_against_motion(const Effect& effect);
@@ -48,6 +45,8 @@ inline constexpr double broad_damping = 0.5;
 [[nodiscard]] double value_of(const Shape& shape, const Scale& scale);
 /// The same shape with this number moved.
 [[nodiscard]] Shape moved(Shape shape, const Scale& scale, double value);
+/// Of a ripple.
+[[nodiscard]] double order_of(const Shape& shape);
 /// Columns of its torque.
 [[nodiscard]] std::size_t columns_of(const Shape& shape);
 

@@ -35,9 +35,9 @@ Slopes slopes_of(const Sums& sums, const Names& names, const VectorXd& sizes) {
         const auto& own = sums.weighed(name);
         slopes.first.push_back(static_cast<Index>(slopes.columns.size()));
         for (std::size_t c = 0; c < own.size(); ++c) {
-            add_scaled(-sizes[size + static_cast<Index>(c)], own[c].data(), slopes.left.data(),
+            add_scaled(-sizes[size + static_cast<Index>(c)], own[c]->data(), slopes.left.data(),
                        slopes.left.size());
-            slopes.columns.push_back(own[c]);
+            slopes.columns.push_back(*own[c]);
         }
         for (const Scale& scale : scales_of(shape)) {
             const double value = value_of(shape, scale);

@@ -23,26 +23,31 @@ Sums::Sums(const Lens& lens) : lens_(lens) {
 }
 
 void Sums::add(const Shape& shape) {
-    Lens::Weighed weighed;
-    // A ripple that rings has the columns of the plain one, where that is listed.
+    std::vector<Column> columns;
+    double part = 0.0;
+    const auto take = [&](Lens::Weighed weighed) {
+        part = std::max(part, weighed.part);
+        for (auto& column : weighed.columns)
+            columns.push_back(std::make_shared<const std::vector<double>>(std::move(column)));
+    };
     const auto plain =
         shape.ringing ? std::find(shapes_.begin(), shapes_.end(), Shape{shape.term}) : shapes_.end();
     if (plain != shapes_.end()) {
         const auto place = static_cast<std::size_t>(plain - shapes_.begin());
-        weighed = lens_.weighed_ringing(shape);
-        weighed.columns.insert(weighed.columns.begin(), columns_[place].begin(), columns_[place].end());
-        weighed.part = std::max(weighed.part, own_part_[place]);
+        columns = columns_[place];
+        part = own_part_[place];
+        take(lens_.weighed_ringing(shape));
     } else {
-        weighed = lens_.weighed(shape);
+        take(lens_.weighed(shape));
     }
     shapes_.push_back(shape);
-    own_part_.push_back(weighed.part);
-    columns_.push_back(std::move(weighed.columns));
+    own_part_.push_back(part);
+    columns_.push_back(std::move(columns));
     std::vector<VectorXd> targets;
     for (const RowRange& fold : lens_.ground().folds()) {
         VectorXd sums(static_cast<Index>(columns_.back().size()));
         for (Index c = 0; c < sums.size(); ++c)
-            sums[c] = dot(columns_.back()[static_cast<std::size_t>(c)].data() + fold.first,
+            sums[c] = dot(columns_.back()[static_cast<std::size_t>(c)]->data() + fold.first,
                           lens_.target().data() + fold.first, fold.count);
         targets.push_back(std::move(sums));
     }
@@ -91,8 +96,8 @@ const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
         MatrixXd sums(static_cast<Index>(columns_[a].size()), static_cast<Index>(columns_[b].size()));
         for (Index r = 0; r < sums.rows(); ++r) {
             for (Index c = 0; c < sums.cols(); ++c)
-                sums(r, c) = dot(columns_[a][static_cast<std::size_t>(r)].data() + fold.first,
-                                 columns_[b][static_cast<std::size_t>(c)].data() + fold.first, fold.count);
+                sums(r, c) = dot(columns_[a][static_cast<std::size_t>(r)]->data() + fold.first,
+                                 columns_[b][static_cast<std::size_t>(c)]->data() + fold.first, fold.count);
         }
         entry->second.push_back(std::move(sums));
     }
@@ -197,7 +202,7 @@ std::vector<double> Sums::residual_outside(const Names& names, std::vector<doubl
         Index value = 0;
         for (const std::size_t name : names) {
             for (const auto& column : columns_[name])
-                sums[value++] = dot(column.data() + rows.first, target.data() + rows.first, rows.count);
+                sums[value++] = dot(column->data() + rows.first, target.data() + rows.first, rows.count);
         }
         all_targets += sums;
         by_fold.push_back(std::move(sums));
@@ -208,7 +213,7 @@ std::vector<double> Sums::residual_outside(const Names& names, std::vector<doubl
         Index value = 0;
         for (const std::size_t name : names) {
             for (const auto& column : columns_[name])
-                add_scaled(-x[value++], column.data() + rows.first, target.data() + rows.first, rows.count);
+                add_scaled(-x[value++], column->data() + rows.first, target.data() + rows.first, rows.count);
         }
     }
     return target;

@@ -4,6 +4,7 @@
 // for each fold.
 
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -44,9 +45,9 @@ class Sums {
     [[nodiscard]] Eigen::MatrixXd products(const Names& names, std::size_t fold) const;
     [[nodiscard]] Eigen::VectorXd targets(const Names& names, std::size_t fold) const;
     [[nodiscard]] std::size_t folds() const { return lens_.ground().folds().size(); }
-    [[nodiscard]] const std::vector<std::vector<double>>& weighed(std::size_t shape) const {
-        return columns_[shape];
-    }
+    /// Shared: a ripple that rings has those of the plain one.
+    using Column = std::shared_ptr<const std::vector<double>>;
+    [[nodiscard]] const std::vector<Column>& weighed(std::size_t shape) const { return columns_[shape]; }
 
   private:
     using ByFold = std::vector<Eigen::MatrixXd>;
@@ -57,7 +58,7 @@ class Sums {
 
     const Lens& lens_;
     std::vector<Shape> shapes_;
-    std::vector<std::vector<std::vector<double>>> columns_;
+    std::vector<std::vector<Column>> columns_;
     std::vector<double> own_part_;  ///< of the whitened columns that is outside the always-on ones
     std::vector<std::vector<Eigen::VectorXd>> targets_;  ///< by shape and fold
     std::vector<double> target_squares_;                 ///< by fold
