@@ -123,9 +123,11 @@ std::size_t place_in(const Look& look, const BesideFinding& found) {
 // What mends the form of a ripple, as a finding: a resonance where it is sharp and its frequency is told.
 Finding ringing_finding(Look& look, const BesideFinding& found, const BesideValues& values) {
     const Lens& lens = look.lens;
+    const Names& names = look.named.now.names;
+    const std::size_t place = place_in(look, found);
     BesideFinding own = found;
-    own.gain = gain_of_ringing(look.sums, look.named.now.names, place_in(look, found));
-    own.price = price_of_ringing(look.sums, look.named.now.names[place_in(look, found)], catalogue().size());
+    own.gain = gain_of_ringing(look.sums, names, place);
+    own.price = price_of_ringing(look.sums, names[place], catalogue().size());
     own.decisions.clear();
     own.rival.reset();
     Finding finding = finding_of(lens, own);

@@ -70,12 +70,13 @@ Named search_beside(Sums& sums, Named now, const Barred& barred, std::size_t eff
         sums.forget_but(now.names);
         if (!next) break;
     }
+    // A ripple that does not ring after all has to be worth its own price.
+    now = without_idle_ringing(sums, std::move(now), effects);
     while (const auto name = needless(sums, now, effects)) {
         now.names.erase(now.names.begin() + static_cast<std::ptrdiff_t>(*name));
         now.left = sums.left_outside(now.names);
         now = refined(sums, std::move(now));
     }
-    now = without_idle_ringing(sums, std::move(now), effects);
     sums.forget_but(now.names);
     return now;
 }
