@@ -18,6 +18,17 @@ def wilson(right, count, z=1.959964):
     return max(0.0, middle - half), min(1.0, middle + half)
 
 
+def line(text, asked, answers, low=0.0, high=1.0):
+    """A row of the tables of what was asked: how many of the answers are true, and whether their share is in the bounds."""
+    answers = [bool(answer) for answer in answers]
+    if not answers:
+        return [text, asked, "no logs", "-", "-"]
+    right, count = sum(answers), len(answers)
+    least, most = wilson(right, count)
+    return [text, asked, f"{right}/{count} = {100 * right / count:.1f} %", f"{100 * least:.1f} to {100 * most:.1f} %",
+            "yes" if low <= right / count <= high else "**no**"]
+
+
 @dataclasses.dataclass(frozen=True)
 class Bar:
     """A share that should lie between `low` and `high`; test(row) is True, False or None (not counted), or a list of such."""
@@ -32,14 +43,8 @@ class Bar:
 
     def line(self, rows):
         answers = [self.test(row) for row in rows if row["study"] in self.studies and self.also(row)]
-        flat = [bool(a) for answer in answers for a in (answer if isinstance(answer, list) else [answer]) if a is not None]
-        if not flat:
-            return [self.text, self.asked, "no logs", "-", "-"]
-        right, count = sum(flat), len(flat)
-        low, high = wilson(right, count)
-        met = self.low <= right / count <= self.high
-        return [self.text, self.asked, f"{right}/{count} = {100 * right / count:.1f} %",
-                f"{100 * low:.1f} to {100 * high:.1f} %", "yes" if met else "**no**"]
+        flat = [a for answer in answers for a in (answer if isinstance(answer, list) else [answer]) if a is not None]
+        return line(self.text, self.asked, flat, self.low, self.high)
 
 
 def held(row):

@@ -126,15 +126,6 @@ def trial(program, case, keep=None):
     return row
 
 
-def bar(text, asked, answers, low):
-    if not answers:
-        return [text, asked, "no logs", "-", "-"]
-    right, count = sum(answers), len(answers)
-    least, most = bars.wilson(right, count)
-    return [text, asked, f"{right}/{count} = {100 * right / count:.1f} %", f"{100 * least:.1f} to {100 * most:.1f} %",
-            "yes" if right / count >= low else "**no**"]
-
-
 def share(rows, key):
     return f"{sum(bool(row.get(key)) for row in rows)}/{len(rows)}"
 
@@ -143,10 +134,10 @@ def blocks(about, rows):
     rows = sorted((row for row in rows if "error" not in row), key=lambda row: row["case"])
     undecided = [row for row in rows if row["undecided"]]
     head = table.markdown(bars.HEAD, [
-        bar("undecided, and decided after one planned motion", "at least 95 %", [bool(row.get("decided")) for row in undecided], 0.95),
-        bar("the same: names exactly right then", "-", [bool(row.get("exact")) for row in undecided], 0.95),
-        bar("the same: no false name", "-", [not row.get("false") for row in undecided], 0.95),
-        bar("planned motion of at most 30 s", "each", [row.get("duration_s", 99.0) <= LONGEST_S + 0.01 for row in undecided], 1.0)])
+        bars.line("undecided, and decided after one planned motion", "at least 95 %", [bool(row.get("decided")) for row in undecided], 0.95),
+        bars.line("the same: names exactly right then", "-", [bool(row.get("exact")) for row in undecided], 0.95),
+        bars.line("the same: no false name", "-", [not row.get("false") for row in undecided], 0.95),
+        bars.line("planned motion of at most 30 s", "each", [row.get("duration_s", 99.0) <= LONGEST_S + 0.01 for row in undecided], 1.0)])
     lines = []
     for kind in POOR:
         for label in sorted({row["label"] for row in undecided if row["motion"] == kind}):

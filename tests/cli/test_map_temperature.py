@@ -4,37 +4,18 @@
 import ctypes
 import json
 import math
-import os
-import pathlib
 import random
 import shutil
 import subprocess
-import tempfile
 import unittest
 
-TOOL = os.environ["RIPPLENOTCH"]
-GEAR = ["--gear-ratio", "100", "--orders", "1,2"]
+from test_map import GEAR, Case, run
 
 
-def run(*words):
-    return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
-
-
-class Warm(unittest.TestCase):
+class Warm(Case):
     """Ripple of 0.8 Nm at 30 degC that grows by 3 % a degree, in logs with a column of the joint's temperature."""
 
     COLUMN = ["--temperature", "drive_degc"]
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.log, self.map = self.folder / "log.csv", self.folder / "map.json"
-
-    def made(self, *words):
-        done = run("map", *words, *GEAR, "-o", self.map, "--force")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads(self.map.read_text()), done.stdout
 
     def write(self, warmth, seed=1, grows=0.03, path=None, column=True):
         """Returns the slow torque; `warmth` is the temperature from first to last row, or of a row by its number."""

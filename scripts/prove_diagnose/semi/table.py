@@ -15,31 +15,20 @@ def held(rows):
     return [p["beyond"] <= 1.0 for row in rows for p in row["parameters"] if p["beyond"] is not None]
 
 
-def line(text, asked, answers, low=0.0, high=1.0):
-    answers = [bool(answer) for answer in answers]
-    if not answers:
-        return [text, asked, "no logs", "-", "-"]
-    right, count = sum(answers), len(answers)
-    least, most = bars.wilson(right, count)
-    met = low <= right / count <= high
-    return [text, asked, f"{right}/{count} = {100 * right / count:.1f} %", f"{100 * least:.1f} to {100 * most:.1f} %",
-            "yes" if met else "**no**"]
-
-
 def bar_lines(rows):
     hidden = [row for row in rows if hides(row)]
     large = [row for row in hidden if row["least"] >= ENOUGH]
     stribeck = [row for row in hidden if row["label"] == "coulomb-friction+stribeck-friction"]
     nothing = [row for row in rows if not hides(row)]
     return [
-        line("names exactly right, each hidden effect 0.7 times the leftover or more", "at least 95 %",
+        bars.line("names exactly right, each hidden effect 0.7 times the leftover or more", "at least 95 %",
              [r["exact"] for r in hidden], 0.95),
-        line("the same, each 1.5 times or more", "at least 97 %", [r["exact"] for r in large], 0.97),
-        line("Coulomb with Stribeck friction", "at least 90 %", [r["exact"] for r in stribeck], 0.9),
-        line("a false name, of all logs", "at most 0.5 %", [r["false"] for r in rows], 0.0, 0.005),
-        line("nothing hidden, or a disturbance outside the catalogue: no name", "each", [not r["named"] for r in nothing], 1.0),
-        line("offered: named, or a side of a tie", "at least 98 %", [r["offered"] for r in hidden], 0.98),
-        line("95 % interval holds the truth", "90 to 98 %", held(hidden), 0.9, 0.98),
+        bars.line("the same, each 1.5 times or more", "at least 97 %", [r["exact"] for r in large], 0.97),
+        bars.line("Coulomb with Stribeck friction", "at least 90 %", [r["exact"] for r in stribeck], 0.9),
+        bars.line("a false name, of all logs", "at most 0.5 %", [r["false"] for r in rows], 0.0, 0.005),
+        bars.line("nothing hidden, or a disturbance outside the catalogue: no name", "each", [not r["named"] for r in nothing], 1.0),
+        bars.line("offered: named, or a side of a tie", "at least 98 %", [r["offered"] for r in hidden], 0.98),
+        bars.line("95 % interval holds the truth", "90 to 98 %", held(hidden), 0.9, 0.98),
     ]
 
 
