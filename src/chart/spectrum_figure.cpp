@@ -98,6 +98,9 @@ Figure spectrum_figure(const std::string& source, std::span<const ShownSpectrum>
         figure.sentence += fmt::format(", of which the first {} are shown", most_spectrum_panels);
     figure.sentence += humps_in_words(spectra);
     figure.sentence += ".";
+    if (std::any_of(spectra.begin(), spectra.end(), [](const ShownSpectrum& s) { return s.smears_orders; }))
+        figure.sentence +=
+            " The speed changes: what turns with the joint is a line by order (--domain order), not here.";
     return figure;
 }
 

@@ -30,6 +30,15 @@ struct Searched {
     std::vector<RefusedCandidate> refused;
 };
 
+// The noise beside the last model, and that model fitted with it. What the search could not explain before is
+// in the noise that it began with.
+void measure_noise(Searched& found, const Case& c, Work& work, const DiagnosisRules& rules) {
+    found.noise = noise_floor(c, found.last.stated, found.last.open, rules);
+    found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules);
+    found.bench->settle_on(found.last.stated);
+    found.last = found.bench->fitted(found.last.open, found.last.stated, found.last.prices);
+}
+
 Searched search_case(const Case& c, const Model& model, std::span<const Effect* const> effects, Work& work,
                      const DiagnosisRules& rules) {
     const std::size_t own = model.terms.size();
@@ -39,16 +48,17 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
     found.first = baseline(rough, model);
     found.last = found.first;
     for (std::size_t look = 0; look < rules.noise_floor.most_looks; ++look) {
-        found.noise = noise_floor(c, found.last.stated, found.last.open, rules);
-        found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules);
-        ModelBench& bench = *found.bench;
-        bench.settle_on(found.last.stated);
-        const Candidate start = bench.fitted(found.last.open, found.last.stated, found.last.prices);
+        measure_noise(found, c, work, rules);
+        const Candidate start = found.last;
         if (look == 0) found.first = start;
-        found.last = search(bench, start, own, effects, found.refused);
-        const double left = std::sqrt(found.last.gain_left / bench.samples());
-        if (look > 0 && found.last.stated.terms.size() == start.stated.terms.size()) break;
-        if (work.is_over()) break;
+        found.last = search(*found.bench, start, own, effects, found.refused);
+        const double left = std::sqrt(found.last.gain_left / found.bench->samples());
+        const bool found_more = found.last.stated.terms.size() > start.stated.terms.size();
+        if (look > 0 && !found_more) break;
+        if (work.is_over()) {
+            if (found_more) measure_noise(found, c, work, rules);
+            break;
+        }
         if (left > rules.noise_floor.was_too_large && found.last.stated.terms.size() == own) break;
     }
     return found;
@@ -151,15 +161,10 @@ Searched search_straight(Case& whole, Case& part, const Model& model, std::span<
     found.bench.reset();
     for (std::size_t k = 0; k < part.size(); ++k)
         part.motion.position_deg[k] = whole.motion.position_deg[part.row[k]];
-    found.noise = noise_floor(part, found.last.stated, found.last.open, rules);
-    found.bench = std::make_unique<ModelBench>(part, found.noise, work, rules);
-    found.bench->settle_on(found.last.stated);
-    const auto again = [&](const Candidate& model_now) {
-        return found.bench->fitted(model_now.open, model_now.stated, model_now.prices);
-    };
-    found.first = again(found.first);
+    measure_noise(found, part, work, rules);
+    found.first = found.bench->fitted(found.first.open, found.first.stated, found.first.prices);
     found.refused.clear();
-    found.last = search(*found.bench, again(found.last), model.terms.size(), effects, found.refused);
+    found.last = search(*found.bench, found.last, model.terms.size(), effects, found.refused);
     return found;
 }
 

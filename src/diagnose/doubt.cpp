@@ -15,6 +15,7 @@
 #include "diagnose/hearing.hpp"
 #include "diagnose/leftover.hpp"
 #include "diagnose/search.hpp"
+#include "diagnose/wandering.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -133,6 +134,9 @@ Doubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::size_t
     const Unevenness uneven = unevenness(bench, model.stated, term);
     if (hearing.asked("evenness.most_uneven", uneven.part, uneven.part > bench.rules().evenness.most_uneven))
         return {FindingStatus::tentative, uneven_words(uneven)};
+    const auto above = above_wandering(bench, model.stated, term, evidence.raw_gain);
+    if (above && hearing.asked("wandering.least_above", *above, *above < bench.rules().wandering.least_above))
+        return {FindingStatus::tentative, "the log wanders nearly as slowly, and nearly as far, without it"};
     return {};
 }
 

@@ -72,6 +72,8 @@ std::string spectra_text(const std::string& joint, const std::vector<StretchSpec
         entry["rows"] = one.stretch.count;
         entry["duration_s"] = one.stretch.duration.value();
         entry["speed_deg_s"] = one.stretch.speed.value();
+        entry["turning_deg_s"] = one.stretch.turning_deg_s;
+        entry["turning_spread_deg_s"] = one.stretch.turning_spread_deg_s;
         entry["pieces"] = one.spectrum.pieces;
         entry["piece_duration_s"] = one.spectrum.piece_duration.value();
         entry["bin_width_hz"] = one.spectrum.bin_width.value();

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 
 #include "ripplenotch/analysis/steady.hpp"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
 #include "analysis/traces.hpp"
 #include "support/catch.hpp"
 
@@ -74,4 +79,23 @@ TEST_CASE("a moving mean keeps a straight line as it is") {
     for (std::size_t k = 0; k < line.size(); ++k) line[k] = 2.0 + 3.0 * static_cast<double>(k);
     const auto mean = moving_mean(line, 9);
     for (std::size_t k = 0; k < line.size(); ++k) CHECK_THAT(mean[k], WithinAbs(line[k], 1e-9));
+}
+
+TEST_CASE("the speed over the angle turned leaves rests out, and tells a swing from a steady turn") {
+    const auto of = [](const std::function<double(double)>& speed_deg_s) {
+        return whole_log(tests::make_trace({.seconds = 8.0, .speed_deg_s = speed_deg_s}).view());
+    };
+    const Stretch turn = of([](double t) { return t < 3.0 ? 0.0 : -30.0; });
+    CHECK(turn.turning_deg_s == Approx(30.0));
+    CHECK(turn.turning_spread_deg_s == Approx(0.0).margin(1e-6));
+    CHECK_FALSE(turn.smears_orders());
+    // Of a sine of size 1: the mean of sin^2 over that of |sin| is pi / 4, and 2 / 3 that of |sin|^3.
+    const Stretch swing = of([](double t) { return 40.0 * std::sin(std::numbers::pi * t); });
+    CHECK(swing.turning_deg_s == Approx(40.0 * std::numbers::pi / 4.0).epsilon(1e-3));
+    CHECK(swing.turning_spread_deg_s ==
+          Approx(40.0 * std::sqrt(2.0 / 3.0 - std::numbers::pi * std::numbers::pi / 16.0)).epsilon(1e-3));
+    CHECK(swing.smears_orders());
+    const Stretch rest = of([](double) { return 0.0; });
+    CHECK(rest.turning_deg_s == 0.0);
+    CHECK_FALSE(rest.smears_orders());
 }

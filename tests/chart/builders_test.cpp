@@ -62,7 +62,9 @@ TEST_CASE("a spectrum's figure names its peaks and keeps their height, even of a
     const auto highest = std::max_element(spectrum.amplitude_nm.begin(), spectrum.amplitude_nm.end());
     CHECK(top_of(panel.curves[0]).y == *highest);
     CHECK(axis_text(panel.x) == "frequency, Hz");
-    CHECK_THAT(figure.sentence, Contains("2 lines"));
+    CHECK_THAT(figure.sentence, Contains("2 lines") && !Contains("--domain order"));
+    const ShownSpectrum smeared{"", &spectrum, true};
+    CHECK_THAT(spectrum_figure("log.csv", {&smeared, 1}).sentence, Contains("--domain order"));
 }
 
 TEST_CASE("more steady stretches than panels are counted, not hidden") {

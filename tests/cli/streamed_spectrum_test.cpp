@@ -183,6 +183,8 @@ void check_same(const std::string& path, const ReadOptions& options, double segm
     CHECK(same(streamed.stretch.duration.value(), stretch.duration.value()));
     CHECK(same(streamed.stretch.speed.value(), stretch.speed.value()));
     CHECK(same(streamed.stretch.speed_error_deg_s, stretch.speed_error_deg_s));
+    CHECK(same(streamed.stretch.turning_deg_s, stretch.turning_deg_s));
+    CHECK(same(streamed.stretch.turning_spread_deg_s, stretch.turning_spread_deg_s));
     check_same(streamed.spectrum, torque_spectrum(whole.trace.view(), spectrum));
 }
 

@@ -2,7 +2,11 @@
 // Each thing that speaks against a finding, alone, with the rule that is told for it.
 #include "diagnose/doubt.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "bench_fixture.hpp"
+#include "diagnose/wandering.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -126,4 +130,37 @@ TEST_CASE("a slight finding beside a far larger one of its kind may only mend it
     Finding larger = named("viscous-friction,coefficient_nm_per_deg_s=0.003", 6.0);
     doubt_for_size(larger, findings, standard);
     CHECK(larger.status == FindingStatus::confirmed);
+}
+
+TEST_CASE("what the log does by itself, nearly as slowly, speaks against a slow finding") {
+    const auto above = [](double wander_nm) {
+        Trace log = plain_log(joint_with({offset}), 56);
+        const auto rows = static_cast<double>(log.torque_nm.size());
+        // Three to eight half periods over the log.
+        for (std::size_t k = 0; k < log.torque_nm.size(); ++k) {
+            for (double half_periods = 3.0; half_periods <= 8.0; half_periods += 1.0)
+                log.torque_nm[k] +=
+                    wander_nm * std::cos(std::numbers::pi * half_periods * static_cast<double>(k) / rows);
+        }
+        const TestBench on(case_of(log));
+        const Candidate model = on.fitted(joint_with({offset}));
+        // The offset's own square, as if the model could not do without it.
+        const double gain_nm2 = 0.4 * 0.4 * on.bench.samples();
+        return above_wandering(on.bench, model.stated, 3, gain_nm2);
+    };
+    const auto quiet = above(0.0), wandering = above(0.3);
+    REQUIRE(quiet);
+    REQUIRE(wandering);
+    CHECK(*quiet > 20.0 * standard.wandering.least_above);
+    // Six waves of twelve, each of half the square of its amplitude: 2 * (0.4 / 0.3)^2 * 2, less what
+    // friction takes.
+    CHECK(*wandering > 7.0);
+    CHECK(*wandering < 15.0);
+}
+
+TEST_CASE("friction is no slow finding, however slowly the log wanders") {
+    const std::string_view friction = "coulomb-friction,torque_nm=0.5,width_deg_s=0.2";
+    const TestBench on(case_of(plain_log(joint_with({friction}), 57)));
+    const Candidate model = on.fitted(joint_with({friction}));
+    CHECK_FALSE(above_wandering(on.bench, model.stated, 3, 1.0));
 }

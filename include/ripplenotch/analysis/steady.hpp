@@ -27,6 +27,10 @@ struct Stretch {
     DegPerSec speed;  ///< signed mean: change of position over time where there is one, else mean velocity
     double speed_error_deg_s = 0.0;  ///< standard error of that mean
     bool rest = false;               ///< standstill
+    /// Mean and standard deviation of the speed's size over the angle that is turned: rests do not count.
+    double turning_deg_s = 0.0, turning_spread_deg_s = 0.0;
+    /// True where the speed changes so much that what turns with the joint is no line over frequency.
+    [[nodiscard]] bool smears_orders() const { return turning_spread_deg_s > 0.1 * turning_deg_s; }
 };
 
 /// Speeds up to this are standstill: SteadyRule::rest_percent of the log's highest smoothed speed, or what
@@ -55,6 +59,7 @@ class StretchMeter {
     void end_block();
     void speed_from_velocity(Stretch& stretch) const;
     void speed_from_position(Stretch& stretch) const;
+    void turning_speed(Stretch& stretch) const;
 
     std::size_t count_;
     double mean_s_, mean_position_deg_;
@@ -62,6 +67,7 @@ class StretchMeter {
     std::size_t rows_ = 0, block_ = 0;
     double first_s_ = 0.0, last_s_ = 0.0, block_sum_ = 0.0, sum_ = 0.0, square_ = 0.0;
     double tt_ = 0.0, tp_ = 0.0, pp_ = 0.0;
+    double speeds_ = 0.0, squares_ = 0.0, cubes_ = 0.0;  ///< of the speed's size
 };
 
 /// Mean of `values` over `width` samples around each (odd width; shorter at the ends). O(n).

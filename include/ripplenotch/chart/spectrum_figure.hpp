@@ -17,6 +17,7 @@ namespace ripplenotch {
 struct ShownSpectrum {
     std::string name;  ///< "stretch 2, 60 deg/s"; empty for the whole log
     const Spectrum* spectrum = nullptr;
+    bool smears_orders = false;  ///< as Stretch::smears_orders
 };
 
 /// Lines that get their name in a spectrum, strongest first.

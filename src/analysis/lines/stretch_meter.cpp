@@ -13,6 +13,10 @@ void StretchMeter::add(const TraceView& rows) {
     has_position_ = rows.has_position();
     for (std::size_t k = 0; k < rows.size(); ++k) {
         block_sum_ += rows.velocity_deg_s[k];
+        const double speed = std::abs(rows.velocity_deg_s[k]);
+        speeds_ += speed;
+        squares_ += speed * speed;
+        cubes_ += speed * speed * speed;
         // A stretch of fewer rows than blocks has empty ones.
         for (++rows_; block_ < blocks && rows_ >= end_of(block_); block_sum_ = 0.0) end_block();
         if (!has_position_) continue;
@@ -51,11 +55,19 @@ void StretchMeter::speed_from_position(Stretch& stretch) const {
     stretch.speed_error_deg_s = std::sqrt(left / (tt_ / n) / 10.0);
 }
 
+void StretchMeter::turning_speed(Stretch& stretch) const {
+    if (!(speeds_ > 0.0)) return;
+    const double mean = squares_ / speeds_;
+    stretch.turning_deg_s = mean;
+    stretch.turning_spread_deg_s = std::sqrt(std::max(0.0, cubes_ / speeds_ - mean * mean));
+}
+
 Stretch StretchMeter::stretch(Hertz rate, const SteadyRule& rule) const {
     Stretch stretch;
     stretch.count = count_;
     stretch.duration = Seconds(count_ == 0 ? 0.0 : last_s_ - first_s_ + 1.0 / rate.value());
     speed_from_velocity(stretch);
+    turning_speed(stretch);
     if (!has_position_) return stretch;
     const DegPerSec from_velocity = stretch.speed;
     speed_from_position(stretch);

@@ -104,7 +104,7 @@ Figure frequency_figure(const std::string& source, const std::vector<StretchSpec
     for (const StretchSpectrum& one : spectra) {
         const std::string name =
             one.number ? fmt::format("Stretch {}, {:.4g} deg/s", *one.number, one.stretch.speed.value()) : "";
-        shown.push_back({name, &one.spectrum});
+        shown.push_back({name, &one.spectrum, one.stretch.smears_orders()});
     }
     return spectrum_figure(source, shown);
 }

@@ -112,6 +112,11 @@ std::string frequency_peaks(const std::vector<StretchSpectrum>& spectra) {
                             counted(s.peaks.size(), "line"), humps, one.stretch.duration.value(),
                             s.resolution.value(), median_floor(s.floor_nm));
         text += line_table(s.peaks) + hump_table(s.humps);
+        if (one.stretch.smears_orders())
+            text += fmt::format(
+                "The speed changes ({:.3g} deg/s, give or take {:.2g}, over the angle turned), so that "
+                "what turns with the\njoint is no line here: --domain order counts it by output turn.\n",
+                one.stretch.turning_deg_s, one.stretch.turning_spread_deg_s);
     }
     return text;
 }

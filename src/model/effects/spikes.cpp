@@ -140,7 +140,7 @@ std::optional<DetectedFault> detect(const LoggedTorque& log, const FaultRules& r
         far += outliers.is_far(k) ? 1U : 0U;
     }
     // Spikes stand apart from the noise; heavy tails go on from it.
-    if (sizes_nm.size() < rules.fewest_spikes || 2 * far < sizes_nm.size()) return std::nullopt;
+    if (far < rules.fewest_spikes || 2 * far < sizes_nm.size()) return std::nullopt;
     const double per_sample =
         static_cast<double>(sizes_nm.size()) / static_cast<double>(log.torque_nm.size());
     const double size_nm = median_of(sizes_nm);
