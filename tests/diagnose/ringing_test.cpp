@@ -132,7 +132,7 @@ TEST_CASE("a broad turn of the ripple with the speed is no resonance, and the ga
 }
 
 TEST_CASE("ripple that keeps its size has nothing that rings") {
-    for (const std::uint64_t seed : {33, 34, 35}) {
+    for (const std::uint64_t seed : {33U, 34U, 35U}) {
         const Diagnosis found = diagnosed({passing}, seed);
         INFO(told(found));
         CHECK(found.named == std::vector<std::string>{"ripple"});

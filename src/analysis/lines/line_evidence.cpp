@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 #include "analysis/lines/place_error.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
@@ -14,7 +13,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double tau = 2.0 * std::numbers::pi;
 constexpr double recurrence_chance = 0.01;
 constexpr double most_of_log = 0.6;
 
