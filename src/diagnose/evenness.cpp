@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -28,9 +27,7 @@ struct Torques {
 };
 
 Torques torques_of(const ModelBench& bench, const Model& stated, std::size_t term) {
-    Model removed = stated;
-    removed.terms.erase(removed.terms.begin() + static_cast<std::ptrdiff_t>(term));
-    const auto added = Prediction(removed, bench.looked_at().motion).added(stated.terms[term]);
+    const auto added = bench.torque_of(stated, term);
     Torques torques;
     torques.left_nm = bench.cleared_residual(stated);
     for (const std::size_t k : bench.rows()) torques.finding_nm.push_back(added[k]);

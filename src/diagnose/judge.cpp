@@ -8,7 +8,6 @@
 #include "diagnose/hearing.hpp"
 #include "diagnose/place.hpp"
 #include "diagnose/search.hpp"
-#include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -101,10 +100,7 @@ std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std:
     const Candidate model = bench.with_errors(found);
     for (std::size_t term = own_terms; term < model.stated.terms.size(); ++term) {
         const Candidate fewer = without_term(bench, model, term);
-        Model removed = model.stated;
-        removed.terms.erase(removed.terms.begin() + static_cast<std::ptrdiff_t>(term));
-        const auto torque_nm = Prediction(removed, bench.looked_at().motion).added(model.stated.terms[term]);
-        Finding finding = finding_of(bench, model, fewer, term, torque_nm);
+        Finding finding = finding_of(bench, model, fewer, term, bench.torque_of(model.stated, term));
         // It was worth its price when it was added; beside later ones it may be worth less.
         const Evidence& evidence = finding.evidence;
         Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);

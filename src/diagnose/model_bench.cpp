@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "ripplenotch/model/prediction.hpp"
+
 namespace ripplenotch {
 
 double material_sigma(const Case& looked_at, const DiagnosisRules& rules) {
@@ -52,6 +54,12 @@ Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::v
                    .errors = false,
                    .weighing = &weighing_,
                    .carriers = &carriers_});
+}
+
+std::vector<double> ModelBench::torque_of(const Model& stated, std::size_t term) const {
+    Model others = stated;
+    others.terms.erase(others.terms.begin() + static_cast<std::ptrdiff_t>(term));
+    return Prediction(others, case_.motion).added(stated.terms[term]);
 }
 
 Candidate ModelBench::with_errors(Candidate model) const {

@@ -60,6 +60,8 @@ class ModelBench {
     [[nodiscard]] std::vector<double> raw_residual(const Model& stated) const;
     /// The same without what errors of the measured motion can explain; an entry per row().
     [[nodiscard]] std::vector<double> cleared_residual(const Model& stated) const;
+    /// What this term of the model adds to all its others, in Nm; an entry per sample, counted or not.
+    [[nodiscard]] std::vector<double> torque_of(const Model& stated, std::size_t term) const;
 
     /// rms torque that `with` explains beyond `without`, in units of the noise's rms.
     [[nodiscard]] double share(const Candidate& with, const Candidate& without) const;

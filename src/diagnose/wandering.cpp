@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "ripplenotch/core/portable_math.hpp"
-#include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -28,9 +27,7 @@ double held_nm2(const ModelBench& bench, const std::vector<double>& torque_nm, s
 }
 
 bool is_slow(const ModelBench& bench, const Model& stated, std::size_t term) {
-    Model removed = stated;
-    removed.terms.erase(removed.terms.begin() + static_cast<std::ptrdiff_t>(term));
-    const auto added = Prediction(removed, bench.looked_at().motion).added(stated.terms[term]);
+    const auto added = bench.torque_of(stated, term);
     std::vector<double> torque_nm;
     double all_nm2 = 0.0, slow_nm2 = 0.0;
     for (const std::size_t k : bench.rows()) {

@@ -87,7 +87,7 @@ TEST_CASE("the speed over the angle turned leaves rests out, and tells a swing f
     };
     const Stretch turn = of([](double t) { return t < 3.0 ? 0.0 : -30.0; });
     CHECK(turn.turning_deg_s == Approx(30.0));
-    CHECK(turn.turning_spread_deg_s == Approx(0.0).margin(1e-6));
+    CHECK(turn.turning_spread_deg_s == Approx(0.0).margin(0.02));  // the jump looks like a little noise
     CHECK_FALSE(turn.smears_orders());
     // Of a sine of size 1: the mean of sin^2 over that of |sin| is pi / 4, and 2 / 3 that of |sin|^3.
     const Stretch swing = of([](double t) { return 40.0 * std::sin(std::numbers::pi * t); });
@@ -98,4 +98,21 @@ TEST_CASE("the speed over the angle turned leaves rests out, and tells a swing f
     const Stretch rest = of([](double) { return 0.0; });
     CHECK(rest.turning_deg_s == 0.0);
     CHECK_FALSE(rest.smears_orders());
+    CHECK(of([](double t) { return std::sin(20.0 * t); }).turning_deg_s == 0.0);  // four degrees at most
+}
+
+TEST_CASE("noise of the velocity is no change of speed") {
+    const double speed_deg_s = GENERATE(0.0, 2.0, 60.0), noise_deg_s = GENERATE(0.5, 5.0);
+    CAPTURE(speed_deg_s, noise_deg_s);
+    Trace trace = tests::make_trace({.seconds = 10.0, .speed_deg_s = [&](double) { return speed_deg_s; }});
+    tests::Noise noise(8);
+    for (double& v : trace.velocity_deg_s) v += noise_deg_s * noise();
+    const Stretch stretch = whole_log(trace.view());
+    CHECK_FALSE(stretch.smears_orders());
+    if (speed_deg_s < 5.0 * noise_deg_s) {
+        CHECK(stretch.turning_deg_s == 0.0);
+        return;
+    }
+    CHECK_THAT(stretch.turning_deg_s, WithinAbs(speed_deg_s, 0.1 * noise_deg_s));
+    CHECK(stretch.turning_spread_deg_s < 0.3 * noise_deg_s);
 }

@@ -27,10 +27,13 @@ struct Stretch {
     DegPerSec speed;  ///< signed mean: change of position over time where there is one, else mean velocity
     double speed_error_deg_s = 0.0;  ///< standard error of that mean
     bool rest = false;               ///< standstill
-    /// Mean and standard deviation of the speed's size over the angle that is turned: rests do not count.
+    /// Mean and standard deviation of the speed's size over the angle that is turned: rests do not count, and
+    /// white noise of the velocity is taken off. 0 where hardly anything is turned.
     double turning_deg_s = 0.0, turning_spread_deg_s = 0.0;
+    static constexpr double largest_spread =
+        0.1;  ///< of the mean, beyond which a line of an order is smeared
     /// True where the speed changes so much that what turns with the joint is no line over frequency.
-    [[nodiscard]] bool smears_orders() const { return turning_spread_deg_s > 0.1 * turning_deg_s; }
+    [[nodiscard]] bool smears_orders() const { return turning_spread_deg_s > largest_spread * turning_deg_s; }
 };
 
 /// Speeds up to this are standstill: SteadyRule::rest_percent of the log's highest smoothed speed, or what
@@ -59,7 +62,7 @@ class StretchMeter {
     void end_block();
     void speed_from_velocity(Stretch& stretch) const;
     void speed_from_position(Stretch& stretch) const;
-    void turning_speed(Stretch& stretch) const;
+    void turning_speed(Stretch& stretch, Hertz rate) const;
 
     std::size_t count_;
     double mean_s_, mean_position_deg_;
@@ -68,6 +71,8 @@ class StretchMeter {
     double first_s_ = 0.0, last_s_ = 0.0, block_sum_ = 0.0, sum_ = 0.0, square_ = 0.0;
     double tt_ = 0.0, tp_ = 0.0, pp_ = 0.0;
     double speeds_ = 0.0, squares_ = 0.0, cubes_ = 0.0;  ///< of the speed's size
+    double velocity_deg_s_ = 0.0, change_deg_s_ = 0.0;   ///< of the last row, and from the one before it
+    double bends_deg_s_ = 0.0;                           ///< sum of the sizes of changes of that change
 };
 
 /// Mean of `values` over `width` samples around each (odd width; shorter at the ends). O(n).

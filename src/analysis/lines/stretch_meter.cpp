@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "ripplenotch/analysis/steady.hpp"
 
 namespace ripplenotch {
+
+namespace {
+constexpr double least_turned_deg = 10.0;  // less than this is a joint that holds its place
+constexpr double least_over_noise = 5.0;   // a mean speed within so many deviations of the noise is none
+}  // namespace
 
 void StretchMeter::add(const TraceView& rows) {
     if (rows.size() == 0) return;
@@ -13,6 +19,10 @@ void StretchMeter::add(const TraceView& rows) {
     has_position_ = rows.has_position();
     for (std::size_t k = 0; k < rows.size(); ++k) {
         block_sum_ += rows.velocity_deg_s[k];
+        const double change = rows.velocity_deg_s[k] - velocity_deg_s_;
+        if (rows_ >= 2) bends_deg_s_ += std::abs(change - change_deg_s_);
+        change_deg_s_ = change;
+        velocity_deg_s_ = rows.velocity_deg_s[k];
         const double speed = std::abs(rows.velocity_deg_s[k]);
         speeds_ += speed;
         squares_ += speed * speed;
@@ -55,11 +65,17 @@ void StretchMeter::speed_from_position(Stretch& stretch) const {
     stretch.speed_error_deg_s = std::sqrt(left / (tt_ / n) / 10.0);
 }
 
-void StretchMeter::turning_speed(Stretch& stretch) const {
-    if (!(speeds_ > 0.0)) return;
-    const double mean = squares_ / speeds_;
+/// Moments of the speed's size weighted by that size. White noise of variance s adds s to the mean square,
+/// and three times s times the mean to the mean cube. It is read from second differences, whose variance is 6
+/// s, by their mean size: a single jump must not count, nor a smooth course.
+void StretchMeter::turning_speed(Stretch& stretch, Hertz rate) const {
+    if (rows_ < 3 || !(speeds_ / rate.value() >= least_turned_deg)) return;
+    const double bend = bends_deg_s_ / static_cast<double>(rows_ - 2);
+    const double noise = bend * bend * std::numbers::pi / 12.0;
+    const double mean = (squares_ - static_cast<double>(rows_) * noise) / speeds_;
+    if (!(mean > least_over_noise * std::sqrt(noise))) return;
     stretch.turning_deg_s = mean;
-    stretch.turning_spread_deg_s = std::sqrt(std::max(0.0, cubes_ / speeds_ - mean * mean));
+    stretch.turning_spread_deg_s = std::sqrt(std::max(0.0, cubes_ / speeds_ - 3.0 * noise - mean * mean));
 }
 
 Stretch StretchMeter::stretch(Hertz rate, const SteadyRule& rule) const {
@@ -67,7 +83,7 @@ Stretch StretchMeter::stretch(Hertz rate, const SteadyRule& rule) const {
     stretch.count = count_;
     stretch.duration = Seconds(count_ == 0 ? 0.0 : last_s_ - first_s_ + 1.0 / rate.value());
     speed_from_velocity(stretch);
-    turning_speed(stretch);
+    turning_speed(stretch, rate);
     if (!has_position_) return stretch;
     const DegPerSec from_velocity = stretch.speed;
     speed_from_position(stretch);
