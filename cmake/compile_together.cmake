@@ -2,7 +2,7 @@
 # unnamed namespaces meets where they are compiled together, so files that use one name for two things, kernels and entries
 # of registries stay alone. Off, a small change is compiled sooner, and a file shows what it forgot to include.
 option(RIPPLENOTCH_COMPILE_TOGETHER "Compile files of a folder together" ON)
-set(RIPPLENOTCH_FILES_TOGETHER 8)
+set(RIPPLENOTCH_FILES_TOGETHER 24)
 
 # ripplenotch_compile_together(target file...): files of one folder, of which those named in ALONE are left out.
 function(ripplenotch_compile_together target)
@@ -17,7 +17,7 @@ function(ripplenotch_compile_together target)
         endif()
         math(EXPR group "${count} / ${RIPPLENOTCH_FILES_TOGETHER}")
         math(EXPR count "${count} + 1")
-        string(MAKE_C_IDENTIFIER ${folder} folder)
+        string(MAKE_C_IDENTIFIER "${folder}" folder)
         set_source_files_properties(${file} PROPERTIES UNITY_GROUP ${folder}_${group})
     endforeach()
 endfunction()

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t none = static_cast<std::size_t>(-1);
 using EvennessRules = DiagnosisRules::EvennessRules;
 
-struct Sums {
+struct PlaceSums {
     double samples = 0.0, left = 0.0, torque = 0.0, both = 0.0, square = 0.0;
 };
 
@@ -40,11 +40,12 @@ Torques torques_of(const ModelBench& bench, const Model& stated, std::size_t ter
 }
 
 // `place`: of each row; none for those that do not count.
-std::vector<Sums> sums_of(const Torques& torques, const std::vector<std::size_t>& place, std::size_t count) {
-    std::vector<Sums> sums(count);
+std::vector<PlaceSums> sums_of(const Torques& torques, const std::vector<std::size_t>& place,
+                               std::size_t count) {
+    std::vector<PlaceSums> sums(count);
     for (std::size_t r = 0; r < place.size(); ++r) {
         if (place[r] == none) continue;
-        Sums& sum = sums[place[r]];
+        PlaceSums& sum = sums[place[r]];
         sum.samples += 1.0;
         sum.left += torques.left_nm[r];
         sum.torque += torques.finding_nm[r];
@@ -58,7 +59,7 @@ std::vector<Sums> sums_of(const Torques& torques, const std::vector<std::size_t>
 double between(const Torques& torques, double least_sigma, const std::vector<std::size_t>& place,
                std::size_t count) {
     double off = 0.0, places = 0.0;
-    for (const Sums& sum : sums_of(torques, place, count)) {
+    for (const PlaceSums& sum : sums_of(torques, place, count)) {
         const double variance = torques.variance_nm2;
         if (sum.square < torques.telling_nm2 ||
             sum.square < least_sigma * least_sigma * variance * sum.samples)
@@ -73,7 +74,7 @@ double between(const Torques& torques, double least_sigma, const std::vector<std
 // A torque that changes only where rows do not count is a constant in those that do, which may be anything.
 bool only_constant(const Torques& torques) {
     if (!torques.changes) return false;
-    const Sums sum = sums_of(torques, std::vector<std::size_t>(torques.finding_nm.size(), 0), 1)[0];
+    const PlaceSums sum = sums_of(torques, std::vector<std::size_t>(torques.finding_nm.size(), 0), 1)[0];
     return sum.square - sum.torque * sum.torque / sum.samples < torques.telling_nm2;
 }
 
@@ -81,7 +82,7 @@ bool only_constant(const Torques& torques) {
 double within(const Torques& torques, double telling_deviations, const std::vector<std::size_t>& place,
               std::size_t count) {
     double off = 0.0, all = 0.0, chance = 0.0;
-    for (const Sums& sum : sums_of(torques, place, count)) {
+    for (const PlaceSums& sum : sums_of(torques, place, count)) {
         if (sum.samples < 2.0) continue;
         const double square = sum.square - sum.torque * sum.torque / sum.samples;
         const double both = sum.both - sum.torque * sum.left / sum.samples;

@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr const MapTarget* list[] = {
+constexpr const MapTarget* every_map_target[] = {
 #define MAP_TARGET(name) &map_target_list::name,
 #include "export/map_targets/map_targets.def"
 #undef MAP_TARGET
@@ -25,7 +25,7 @@ constexpr int places = 2000;
 
 }  // namespace
 
-std::span<const MapTarget* const> map_targets() { return list; }
+std::span<const MapTarget* const> map_targets() { return every_map_target; }
 
 const MapTarget& find_map_target(std::string_view name) {
     std::vector<std::string> known;

@@ -9,14 +9,14 @@
 
 namespace ripplenotch {
 namespace {
-constexpr const Target* list[] = {
+constexpr const Target* every_target[] = {
 #define TARGET(name) &targets::name,
 #include "export/targets/targets.def"
 #undef TARGET
 };
 }  // namespace
 
-std::span<const Target* const> export_targets() { return list; }
+std::span<const Target* const> export_targets() { return every_target; }
 
 std::vector<std::string_view> targets_that(bool Target::*trait, bool value) {
     std::vector<std::string_view> names;

@@ -13,17 +13,12 @@ using Catch::Contains;
 using Catch::Matchers::StartsWith;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using tests::identify_all;
 
 namespace {
 
 const std::vector<tests::Tone> family{
     {20.04, 0.3, 0.1}, {30.06, 0.25, 1.0}, {40.08, 0.4, 2.0}, {50.10, 0.2, 3.0}};
-
-Identification identify_all(const std::vector<Trace>& traces, const IdentifyOptions& options = {}) {
-    std::vector<TraceView> views;
-    for (const Trace& trace : traces) views.push_back(trace.view());
-    return identify(views, options);
-}
 
 Trace at_speed(double speed, std::vector<tests::Ripple> ripple, std::vector<tests::Tone> tones,
                std::uint32_t seed, bool position = true) {

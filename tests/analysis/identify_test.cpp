@@ -11,6 +11,7 @@ using namespace ripplenotch;
 using Catch::Contains;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using tests::identify_all;
 
 namespace {
 
@@ -26,12 +27,6 @@ Trace at_speed(double speed, std::uint32_t seed, double seconds = 5.0,
                               .tones = std::move(tones),
                               .noise_nm = noise,
                               .seed = seed});
-}
-
-Identification identify_all(const std::vector<Trace>& traces, const IdentifyOptions& options = {}) {
-    std::vector<TraceView> views;
-    for (const Trace& trace : traces) views.push_back(trace.view());
-    return identify(views, options);
 }
 
 std::vector<const Line*> lines_of(const Identification& found, LineKind kind) {

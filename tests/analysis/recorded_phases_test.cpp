@@ -10,6 +10,7 @@
 using namespace ripplenotch;
 using Catch::Contains;
 using Catch::Matchers::WithinAbs;
+using tests::identify_all;
 
 namespace {
 
@@ -36,12 +37,6 @@ Trace record(const Run& run, double speed_deg_s = 0.0) {
                                      .seed = run.seed});
     for (double& angle : trace.position_deg) angle += run.start_deg + run.zero_deg;
     return trace;
-}
-
-Identification identify_all(const std::vector<Trace>& traces) {
-    std::vector<TraceView> views;
-    for (const Trace& trace : traces) views.push_back(trace.view());
-    return identify(views, {});
 }
 
 std::vector<Disagreement> about_phase(const Identification& found) {

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch::tests {
@@ -80,6 +81,12 @@ inline Trace make_trace(const TraceRecipe& recipe) {
         if (recipe.position) trace.position_deg.push_back(angle);
     }
     return trace;
+}
+
+inline Identification identify_all(const std::vector<Trace>& traces, const IdentifyOptions& options = {}) {
+    std::vector<TraceView> views;
+    for (const Trace& trace : traces) views.push_back(trace.view());
+    return identify(views, options);
 }
 
 }  // namespace ripplenotch::tests

@@ -14,10 +14,10 @@ namespace {
 
 const std::string three_dh = "a_m,alpha_deg,d_m,theta_deg\n0,90,0.3,0\n0.4,0,0,0\n0.3,0,0,0\n";
 
-struct Recorded {
+struct RecordedArm {
     std::vector<Trace> joints;
 
-    Recorded(const Chain& chain, unsigned seed) {
+    RecordedArm(const Chain& chain, unsigned seed) {
         const auto motions = fourier_motions(chain.size(), 12.0, 100.0, seed, 60.0);
         const auto links = random_links(chain.size(), 5);
         for (std::size_t j = 0; j < chain.size(); ++j) {
@@ -37,7 +37,7 @@ struct Recorded {
     }
 };
 
-ArmFitOptions quick() {
+ArmFitOptions barely_pulled() {
     ArmFitOptions options;
     options.smoothing = Seconds(0.12);
     options.pull = 1e-3;
@@ -56,8 +56,8 @@ std::vector<double> sum_of(const GivenTerm& term, const std::vector<double>& val
 TEST_CASE("links of fitted columns give the same torque, along the log of the fit and along another",
           "[arm]") {
     const Chain chain = chain_of_dh("three.csv", three_dh);
-    const Recorded log(chain, 3), other(chain, 8);
-    const ArmFit fit = fit_arm(chain, log.view(), quick());
+    const RecordedArm log(chain, 3), other(chain, 8);
+    const ArmFit fit = fit_arm(chain, log.view(), barely_pulled());
     for (const ArmKnowledge knowledge : {ArmKnowledge::other_joints, ArmKnowledge::pull}) {
         for (std::size_t joint = 0; joint < 3; ++joint) {
             GivenTerm term = arm_term(chain, fit, log.view(), joint, knowledge);
@@ -66,7 +66,7 @@ TEST_CASE("links of fitted columns give the same torque, along the log of the fi
                 values[v] += term.deviation[v] * (0.3 * static_cast<double>(v % 5) - 0.5);
             const ArmValues stated = arm_values(chain, fit, joint, values, knowledge);
             CHECK(stated.links.size() == 30);
-            for (const Recorded* recorded : {&log, &other}) {
+            for (const RecordedArm* recorded : {&log, &other}) {
                 term = arm_term(chain, fit, recorded->view(), joint, knowledge);
                 const auto by_columns = sum_of(term, values);
                 const auto by_links = stated_torque(chain, stated, fit.smoothing, recorded->view(), joint);
@@ -84,14 +84,14 @@ TEST_CASE("links of fitted columns give the same torque, along the log of the fi
 
 TEST_CASE("values for another joint are refused", "[arm]") {
     const Chain chain = chain_of_dh("three.csv", three_dh);
-    const Recorded log(chain, 3);
-    const ArmFit fit = fit_arm(chain, log.view(), quick());
+    const RecordedArm log(chain, 3);
+    const ArmFit fit = fit_arm(chain, log.view(), barely_pulled());
     CHECK_THROWS_AS(arm_values(chain, fit, 1, std::vector<double>(30, 0.0)), UsageError);
 }
 
 TEST_CASE("a nuisance is an offset, and friction of the widths that the fit has", "[arm]") {
     const Chain chain = chain_of_dh("three.csv", three_dh);
-    const Recorded log(chain, 3);
+    const RecordedArm log(chain, 3);
     const auto only = [&](const ArmNuisance& nuisance) {
         return nuisance_torque(chain, nuisance, log.joints[1].view(), 1);
     };

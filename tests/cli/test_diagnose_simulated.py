@@ -147,13 +147,23 @@ class Simulated(unittest.TestCase):
         self.assertIn("outside what sim.csv spans", done.stderr)
         self.assertLess(found["samples"], len(self.rows) - 190)
 
+    def test_a_name_alone_is_that_of_a_column(self):
+        ratio = ["--gear-ratio", "100", "--json"]
+        for more in ("", ",scale=1"):
+            short, long = (self.run_tool("diagnose", "log.csv", "--simulated", simulated + more, *ratio)
+                           for simulated in ("tau_model_nm", "column,name=tau_model_nm"))
+            self.assertEqual(short.returncode, 0, short.stderr)
+            self.assertEqual(json.loads(short.stdout)["gap"], json.loads(long.stdout)["gap"])
+
     def test_refusals_say_what_is_wrong(self):
         ratio = ["--gear-ratio", "100"]
         for words, code, part in (
                 (["--simulated", "column,name=tau", *ratio], 2, "no column 'tau'"),
                 (["--simulated", "column,name=torque_nm", *ratio], 3, "is the measured torque"),
                 (["--simulated", "column,name=tau_model_nm"], 2, "--gear-ratio is missing"),
-                (["--simulated", "torque", *ratio], 2, "neither column,name=NAME nor log"),
+                (["--simulated", "tau", *ratio], 2, "no column 'tau'"),
+                (["--simulated", "log.csv", *ratio], 2, "--simulated log,file=log.csv,column=NAME"),
+                (["--simulated", "colum,name=tau_model_nm", *ratio], 2, "neither column,name=NAME nor log"),
                 (ratio, 2, "--model is missing")):
             done = self.run_tool("diagnose", "log.csv", *words)
             self.assertEqual(done.returncode, code, done.stderr)

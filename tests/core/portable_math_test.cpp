@@ -19,7 +19,7 @@ using namespace ripplenotch;
 using namespace ripplenotch::testing;
 
 namespace {
-constexpr double radians = std::numbers::pi / 180.0;
+constexpr double degree_rad = std::numbers::pi / 180.0;
 }
 
 TEST_CASE("cosine and sine in degrees are exact at multiples of 90 degrees") {
@@ -40,10 +40,11 @@ TEST_CASE("cosine and sine in degrees agree with the C library within 3e-16 of f
     std::uniform_real_distribution<double> angle(-360.0, 360.0);
     for (int i = 0; i < 20000; ++i) {
         const double a = angle(engine);
-        // The argument in radians is rounded: its own half unit in the last place is part of the tolerance.
-        const double slack = 3e-16 + 0.5e-15 * std::abs(a * radians);
-        CHECK(std::abs(portable::cos_degrees(a) - std::cos(a * radians)) < slack);
-        CHECK(std::abs(portable::sin_degrees(a) - std::sin(a * radians)) < slack);
+        // The argument in radians is rounded: its own half unit in the last place is part of the
+        // tolerance.
+        const double slack = 3e-16 + 0.5e-15 * std::abs(a * degree_rad);
+        CHECK(std::abs(portable::cos_degrees(a) - std::cos(a * degree_rad)) < slack);
+        CHECK(std::abs(portable::sin_degrees(a) - std::sin(a * degree_rad)) < slack);
     }
 }
 

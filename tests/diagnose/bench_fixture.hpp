@@ -9,12 +9,6 @@
 
 namespace ripplenotch::fixture {
 
-inline Model joint_with(std::initializer_list<std::string_view> terms) {
-    Model model = joint();
-    for (const std::string_view term : terms) model.terms.push_back(parse_term(term));
-    return model;
-}
-
 inline Case case_of(const Trace& log) {
     return whole_case(log.view(), default_smoothing, standard.recording);
 }
@@ -24,6 +18,12 @@ inline Trace plain_log(const Model& truth, std::uint64_t seed) {
     Trace log = logged(truth, tour(), seed);
     log.velocity_deg_s = tour().velocity_deg_s;
     return log;
+}
+
+/// The whole tour of a joint that its model explains.
+inline const Case& along_tour() {
+    static const Case c = case_of(plain_log(joint(), 60));
+    return c;
 }
 
 /// The bench and what has to outlive it. The noise is known, so that no test waits for it to be measured.

@@ -53,6 +53,9 @@ inline const Motion& strokes() {
     return motion;
 }
 
+inline constexpr std::string_view offset = "offset,torque_nm=0.4";
+inline constexpr std::string_view viscous = "viscous-friction,coefficient_nm_per_deg_s=0.006";
+
 /// Inertia and two orders of ripple.
 inline Model joint() {
     Model model{GearRatio(100.0), {}};
@@ -60,6 +63,18 @@ inline Model joint() {
                             "ripple,order=2,amplitude_nm=0.45,phase_deg=-60"}) {
         model.terms.push_back(parse_term(term));
     }
+    return model;
+}
+
+inline Model model_of(std::initializer_list<const char*> terms) {
+    Model model{GearRatio(100.0), {}};
+    for (const char* term : terms) model.terms.push_back(parse_term(term));
+    return model;
+}
+
+inline Model joint_with(std::initializer_list<std::string_view> terms) {
+    Model model = joint();
+    for (const std::string_view term : terms) model.terms.push_back(parse_term(term));
     return model;
 }
 

@@ -14,8 +14,6 @@ using namespace ripplenotch::fixture;
 
 namespace {
 
-constexpr std::string_view offset = "offset,torque_nm=0.4";
-
 Evidence sound() {
     return {.gain = 5e4,
             .price = 25.0,

@@ -8,11 +8,7 @@
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;
 
-namespace {
-
-constexpr std::string_view viscous = "viscous-friction,coefficient_nm_per_deg_s=0.006";
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("an effect that is there has the same size early and late, slow and fast, forth and back") {
     const TestBench on(case_of(plain_log(joint_with({viscous}), 51)));

@@ -13,11 +13,6 @@ using namespace ripplenotch::fixture;
 
 namespace {
 
-const Case& along_tour() {
-    static const Case c = case_of(plain_log(joint(), 60));
-    return c;
-}
-
 std::vector<double> noise(std::uint64_t seed) {
     std::vector<double> values(along_tour().size(), 0.0);
     add_white_noise(values, noise_nm, seed, NoiseChannel::torque);

@@ -16,12 +16,6 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-Model joint_with(std::initializer_list<std::string_view> hidden) {
-    Model truth = joint();
-    for (const auto term : hidden) truth.terms.push_back(parse_term(term));
-    return truth;
-}
-
 void tell(const Diagnosis& found) {
     for (const Finding& finding : found.rounds) {
         UNSCOPED_INFO(finding.term.effect->name << " " << status_name(finding.status) << " "

@@ -10,11 +10,6 @@ using namespace ripplenotch::fixture;
 
 namespace {
 
-const Case& along_tour() {
-    static const Case c = case_of(plain_log(joint(), 59));
-    return c;
-}
-
 template <class Function>
 Place placed(const Case& c, const Function& torque_at, std::string_view term = "offset,torque_nm=1") {
     std::vector<double> torque_nm;

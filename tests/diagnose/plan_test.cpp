@@ -31,7 +31,7 @@ Trace log_of(const Model& model, const std::vector<std::string>& motions) {
     return trace;
 }
 
-Model joint(const std::string& hidden) {
+Model joint_hiding(const std::string& hidden) {
     Model model{GearRatio(100.0), {}};
     for (const std::string& spec : {std::string("inertia,inertia_kgm2=0.4"),
                                     std::string("ripple,order=1,amplitude_nm=0.6,phase_deg=20"), hidden})
@@ -48,7 +48,7 @@ Model known() {
 }  // namespace
 
 TEST_CASE("friction that one direction cannot tell from an offset is told after the planned motion") {
-    const Model truth = joint("coulomb-friction,torque_nm=0.6,width_deg_s=0.2");
+    const Model truth = joint_hiding("coulomb-friction,torque_nm=0.6,width_deg_s=0.2");
     // Three speeds, one way, and never a rest.
     const Trace poor = log_of(
         truth, {"constant,speed=40deg/s,duration=3s", "ramp,from-speed=40deg/s,to-speed=90deg/s,duration=1s",

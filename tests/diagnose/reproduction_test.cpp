@@ -10,9 +10,6 @@ using namespace ripplenotch::fixture;
 
 namespace {
 
-constexpr std::string_view offset = "offset,torque_nm=0.4";
-constexpr std::string_view viscous = "viscous-friction,coefficient_nm_per_deg_s=0.006";
-
 struct Reproduced {
     std::vector<Finding> findings;
     Candidate kept;

@@ -10,16 +10,11 @@
 namespace ripplenotch {
 namespace {
 
+using fixture::model_of;
 using fixture::strokes;
 
-Model model_of(std::initializer_list<const char*> terms) {
-    Model model{GearRatio(100.0), {}};
-    for (const char* term : terms) model.terms.push_back(parse_term(term));
-    return model;
-}
-
 // Weight of the arm along and across.
-std::vector<GivenTerm> arm() {
+std::vector<GivenTerm> hanging_arm() {
     GivenTerm term{"arm", {{}, {}}, {0.0, 0.0}, {100.0, 100.0}};
     for (std::size_t k = 0; k < strokes().size(); ++k) {
         const double angle_deg =
@@ -33,7 +28,7 @@ std::vector<GivenTerm> arm() {
 Diagnosis diagnosed(std::initializer_list<const char*> hidden, std::uint64_t seed,
                     std::vector<std::string> without = {}) {
     Trace log = fixture::logged(model_of(hidden), strokes(), seed);
-    const auto given = arm();
+    const auto given = hanging_arm();
     for (std::size_t k = 0; k < log.torque_nm.size(); ++k)
         log.torque_nm[k] += 12.0 * given[0].torque_nm[0][k] + 3.0 * given[0].torque_nm[1][k];
     return diagnose(Model{GearRatio(100.0), {}}, log.view(), nullptr,
@@ -48,7 +43,7 @@ std::vector<const Finding*> findings_of(const Diagnosis& found, std::string_view
     return findings;
 }
 
-std::string told(const Diagnosis& found) {
+std::string values_told(const Diagnosis& found) {
     std::string text;
     for (const Finding& finding : found.rounds) {
         text += std::string(finding.term.effect->name) + " " + std::string(status_name(finding.status));
@@ -104,7 +99,7 @@ TEST_CASE("an error of the gear's angle makes no ripple at standstill and H - 1 
 TEST_CASE("beside an arm ripple of which a part rings is named with its resonance") {
     const Diagnosis found = diagnosed(
         {passing, "resonance,frequency_hz=24,damping=0.2,direct=0.6,direct_phase_deg=150,order=2"}, 31);
-    INFO(told(found));
+    INFO(values_told(found));
     CHECK(found.named == std::vector<std::string>{"ripple", "resonance"});
     const auto ripples = findings_of(found, "ripple"), rings = findings_of(found, "resonance");
     REQUIRE((ripples.size() == 1 && rings.size() == 1));
@@ -123,7 +118,7 @@ TEST_CASE("beside an arm ripple of which a part rings is named with its resonanc
 
 TEST_CASE("a broad turn of the ripple with the speed is no resonance, and the gap closes all the same") {
     const Diagnosis found = diagnosed({passing, "resonance,frequency_hz=30,damping=0.9,order=2"}, 32);
-    INFO(told(found));
+    INFO(values_told(found));
     CHECK(found.named == std::vector<std::string>{"ripple"});
     const auto rings = findings_of(found, "resonance");
     REQUIRE(rings.size() == 1);
@@ -134,7 +129,7 @@ TEST_CASE("a broad turn of the ripple with the speed is no resonance, and the ga
 TEST_CASE("ripple that keeps its size has nothing that rings") {
     for (const std::uint64_t seed : {33U, 34U, 35U}) {
         const Diagnosis found = diagnosed({passing}, seed);
-        INFO(told(found));
+        INFO(values_told(found));
         CHECK(found.named == std::vector<std::string>{"ripple"});
         CHECK(findings_of(found, "resonance").empty());
     }
@@ -143,7 +138,7 @@ TEST_CASE("ripple that keeps its size has nothing that rings") {
 TEST_CASE("without resonance in the list ripple is named as far as one line goes") {
     const Diagnosis found =
         diagnosed({passing, "resonance,frequency_hz=60,damping=0.3,order=2"}, 36, {"resonance"});
-    INFO(told(found));
+    INFO(values_told(found));
     CHECK(findings_of(found, "resonance").empty());
     CHECK(std::count(found.named.begin(), found.named.end(), "ripple") == 1);
 }

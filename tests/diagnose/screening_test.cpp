@@ -14,7 +14,7 @@ namespace {
 
 using Effects = std::vector<const Effect*>;
 
-Effects few() {
+Effects four_effects() {
     return {&find_effect("offset"), &find_effect("gravity"), &find_effect("coulomb-friction"),
             &find_effect("delay")};
 }
@@ -25,7 +25,7 @@ TEST_CASE("what is hidden is ranked first, with about the gain that a fit of the
     const Model truth = joint_with({"coulomb-friction,torque_nm=0.4,width_deg_s=0.2"});
     const TestBench on(case_of(plain_log(truth, 73)));
     const Candidate without = on.fitted(joint());
-    const auto trials = screen(on.bench, without, few());
+    const auto trials = screen(on.bench, without, four_effects());
     REQUIRE(!trials.empty());
     CHECK(trials[0].start.effect->name == "coulomb-friction");
     for (std::size_t i = 1; i < trials.size(); ++i) CHECK(trials[i].score() <= trials[i - 1].score());
@@ -37,8 +37,8 @@ TEST_CASE("where nothing is missing no trial is worth its price, and a rarer fal
     rules.screening.false_alarm = 0.0001;
     const Trace log = plain_log(joint(), 74);
     const TestBench on(case_of(log)), strict(case_of(log), rules);
-    const auto trials = screen(on.bench, on.fitted(joint()), few());
-    const auto dearer = screen(strict.bench, strict.fitted(joint()), few());
+    const auto trials = screen(on.bench, on.fitted(joint()), four_effects());
+    const auto dearer = screen(strict.bench, strict.fitted(joint()), four_effects());
     REQUIRE(!trials.empty());
     REQUIRE(trials.size() == dearer.size());
     for (const Trial& trial : trials) CHECK(trial.score() < 0.0);
@@ -48,7 +48,7 @@ TEST_CASE("where nothing is missing no trial is worth its price, and a rarer fal
 TEST_CASE("a screening beside the same model is kept, but not for other effects, and not after settling") {
     TestBench on(case_of(plain_log(joint(), 75)));
     const Candidate model = on.fitted(joint());
-    const Effects effects = few();
+    const Effects effects = four_effects();
     CHECK(!on.bench.screened(model.stated, effects));
     const auto first = screen(on.bench, model, effects);
     const auto kept = on.bench.screened(model.stated, effects);

@@ -10,7 +10,7 @@ using namespace ripplenotch::fixture;
 
 namespace {
 
-std::vector<const Effect*> few() {
+std::vector<const Effect*> three_effects() {
     return {&find_effect("offset"), &find_effect("viscous-friction"), &find_effect("tone")};
 }
 
@@ -23,7 +23,7 @@ Found found_in(const Model& truth, const DiagnosisRules& rules = standard) {
     TestBench on(case_of(plain_log(truth, 58)), rules);
     const Candidate start = baseline(on.bench, opened(joint()));
     Found found;
-    const Candidate last = search(on.bench, start, 3, few(), found.refused);
+    const Candidate last = search(on.bench, start, 3, three_effects(), found.refused);
     for (std::size_t term = 3; term < last.stated.terms.size(); ++term)
         found.names.emplace_back(last.stated.terms[term].effect->name);
     for (const RefusedCandidate& candidate : found.refused) {

@@ -12,6 +12,7 @@
 namespace ripplenotch {
 namespace {
 
+using fixture::model_of;
 using fixture::strokes;
 
 double other_deg(double t) {
@@ -40,12 +41,6 @@ std::vector<double> arms_torque(const std::vector<GivenTerm>& given, const std::
     return sum;
 }
 
-Model model_of(std::initializer_list<const char*> terms) {
-    Model model{GearRatio(100.0), {}};
-    for (const char* term : terms) model.terms.push_back(parse_term(term));
-    return model;
-}
-
 // The ripple that the user knows, what is hidden, and an arm of 12, 3 Nm and 0.4 kgm2, all behind the sensor.
 Trace measured(std::initializer_list<const char*> hidden, std::uint64_t seed) {
     Model truth = model_of(
@@ -62,7 +57,7 @@ Diagnosis diagnosed(const Trace& log) {
     return diagnose(model_of({"ripple,order=1", "ripple,order=2"}), log.view(), nullptr, {.given = arm()});
 }
 
-std::string told(const Diagnosis& diagnosis) {
+std::string told_with_values(const Diagnosis& diagnosis) {
     std::string text = std::string(verdict_name(diagnosis.verdict)) + "\n";
     for (const Finding& finding : diagnosis.rounds) {
         text += std::string(finding.term.effect->name) + " " + std::string(status_name(finding.status)) +
@@ -113,7 +108,7 @@ TEST_CASE("a torque taken through a model's sensors is the model's own torque wi
 
 TEST_CASE("beside an arm nothing is named where nothing is hidden") {
     const Diagnosis found = diagnosed(measured({}, 11));
-    INFO(told(found));
+    INFO(told_with_values(found));
     CHECK(found.named.empty());
     CHECK(found.verdict == DiagnosisVerdict::matches);
 }
@@ -122,7 +117,7 @@ TEST_CASE("a delay acts on the arm's torque as well, and is told with its time")
     for (const double delay_s : {0.0062, -0.0045}) {
         const std::string term = "delay,delay_s=" + std::to_string(delay_s);
         const Diagnosis found = diagnosed(measured({term.c_str()}, 12));
-        INFO(told(found));
+        INFO(told_with_values(found));
         REQUIRE(named(found) == std::vector<std::string>{"delay"});
         check_holds(finding_of(found, "delay").values[0], delay_s);
         // A tenth of a millisecond of the arm's fastest change is less than the noise.
@@ -134,21 +129,21 @@ TEST_CASE("a delay acts on the arm's torque as well, and is told with its time")
 TEST_CASE("a delay does not hide friction beside it") {
     const Diagnosis found =
         diagnosed(measured({"delay,delay_s=0.005", "coulomb-friction,torque_nm=0.8,width_deg_s=0.5"}, 13));
-    INFO(told(found));
+    INFO(told_with_values(found));
     CHECK(named(found) == std::vector<std::string>{"coulomb-friction", "delay"});
     check_holds(finding_of(found, "delay").values[0], 0.005);
 }
 
 TEST_CASE("a lag is told from a delay by what it makes of the ripple") {
     const Diagnosis found = diagnosed(measured({"lag,time_constant_s=0.005"}, 14));
-    INFO(told(found));
+    INFO(told_with_values(found));
     REQUIRE(named(found) == std::vector<std::string>{"lag"});
     check_holds(finding_of(found, "lag").values[0], 0.005);
 }
 
 TEST_CASE("an offset beside an arm is a finding with its interval, and with friction it is one of two") {
     const Diagnosis alone = diagnosed(measured({"offset,torque_nm=0.4"}, 15));
-    INFO(told(alone));
+    INFO(told_with_values(alone));
     REQUIRE(named(alone) == std::vector<std::string>{"offset"});
     check_holds(finding_of(alone, "offset").values[0], 0.4);
     // What is a finding is nobody's nuisance any more.
@@ -158,7 +153,7 @@ TEST_CASE("an offset beside an arm is a finding with its interval, and with fric
     CHECK(nuisance->value == 0.0);
     const Diagnosis both =
         diagnosed(measured({"offset,torque_nm=-0.6", "coulomb-friction,torque_nm=0.8,width_deg_s=0.5"}, 16));
-    INFO(told(both));
+    INFO(told_with_values(both));
     CHECK(named(both) == std::vector<std::string>{"coulomb-friction", "offset"});
 }
 
@@ -170,7 +165,7 @@ TEST_CASE("where the arm may hold a constant torque there is no offset to be tol
     given[0].deviation.push_back(100.0);
     const Diagnosis found =
         diagnose(model_of({"ripple,order=1", "ripple,order=2"}), log.view(), nullptr, {.given = given});
-    INFO(told(found));
+    INFO(told_with_values(found));
     CHECK(found.named.empty());
     CHECK(found.gap.after_nm < 1.05 * found.gap.noise_floor_nm);
 }
@@ -178,7 +173,7 @@ TEST_CASE("where the arm may hold a constant torque there is no offset to be tol
 TEST_CASE("the residual is what the improved model, its sensor and the arm leave") {
     const Trace log = measured({"delay,delay_s=0.005", "offset,torque_nm=0.5"}, 18);
     const Diagnosis found = diagnosed(log);
-    INFO(told(found));
+    INFO(told_with_values(found));
     REQUIRE(named(found) == std::vector<std::string>{"delay", "offset"});
     std::vector<double> values;
     for (const GivenValue& value : found.given) {

@@ -8,7 +8,7 @@ using namespace ripplenotch;
 
 namespace {
 
-MapFit example(bool by_temperature = false) {
+MapFit example_map(bool by_temperature = false) {
     MapFit fit;
     fit.map.joint = "j4";
     fit.map.gear_ratio = GearRatio(120.0);
@@ -51,7 +51,7 @@ TEST_CASE("map.json reads back as it was written, byte for byte, empty maps too"
     nothing.finding = MapFinding::nothing;
     nothing.conclusive = true;
     nothing.scores = {{1.0, false, 0.1, 0.1, 0.1, 0.0}};
-    for (const MapFit& fit : {example(), example(true), nothing}) {
+    for (const MapFit& fit : {example_map(), example_map(true), nothing}) {
         const std::string text = map_text(fit, {});
         const MapFit again = map_from_json(text, "map.json");
         CHECK(map_text(again, {}) == text);
@@ -62,7 +62,7 @@ TEST_CASE("map.json reads back as it was written, byte for byte, empty maps too"
 }
 
 TEST_CASE("a map that cannot be one is refused with its field") {
-    const std::string good = map_text(example(), {});
+    const std::string good = map_text(example_map(), {});
     const auto with = [&good](const std::string& from, const std::string& to) {
         std::string text = good;
         const std::size_t at = text.find(from);

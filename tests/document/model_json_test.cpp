@@ -16,7 +16,7 @@ Model read(const std::string& effects, const std::string& gear_ratio = "100") {
                       "m.json");
 }
 
-std::string refusal(const std::string& effects, const std::string& gear_ratio = "100") {
+std::string model_refusal(const std::string& effects, const std::string& gear_ratio = "100") {
     try {
         (void)read(effects, gear_ratio);
     } catch (const DataError& error) {
@@ -61,21 +61,21 @@ TEST_CASE("a parameter left out or null is to be fitted, not 0") {
 TEST_CASE("a model without effects is a model") { CHECK(read("[]").terms.empty()); }
 
 TEST_CASE("a wrong model is refused with file, place, value and what was expected") {
-    CHECK_THAT(refusal(R"([{"effect": "riple"}])"),
+    CHECK_THAT(model_refusal(R"([{"effect": "riple"}])"),
                Contains("m.json: effects[0].effect") && Contains("did you mean ripple?"));
-    CHECK_THAT(refusal(R"([{"effect": "ripple", "ordre": 1}])"),
+    CHECK_THAT(model_refusal(R"([{"effect": "ripple", "ordre": 1}])"),
                Contains("m.json: effects[0].ordre") && Contains("not a known field"));
-    CHECK_THAT(refusal(R"([{"effect": "offset"}, {"effect": "ripple", "amplitude_nm": -0.1}])"),
+    CHECK_THAT(model_refusal(R"([{"effect": "offset"}, {"effect": "ripple", "amplitude_nm": -0.1}])"),
                Contains("m.json: effects[1].amplitude_nm is -0.1") && Contains("between 0 and 100000 Nm"));
-    CHECK_THAT(refusal(R"([{"effect": "ripple", "order": "1"}])"),
+    CHECK_THAT(model_refusal(R"([{"effect": "ripple", "order": "1"}])"),
                Contains("effects[0].order is \"1\", expected a number"));
-    CHECK_THAT(refusal(R"([{"order": 1}])"), Contains("m.json: effects[0].effect is missing"));
-    CHECK_THAT(refusal(R"(["ripple"])"), Contains("effects[0] is not an object"));
-    CHECK_THAT(refusal(R"({"effect": "ripple"})"), Contains("m.json: effects is not a list"));
-    CHECK_THAT(refusal("[]", "0"), Contains("m.json: gear_ratio is 0") && Contains("above 0"));
-    CHECK_THAT(refusal("[]", "1e6"), Contains("at most 100000"));
-    CHECK_THAT(refusal("[]", "null"), Contains("gear_ratio is missing"));
-    CHECK_THAT(refusal("[], \"gear\": 3"), Contains("m.json: gear is not a known field"));
+    CHECK_THAT(model_refusal(R"([{"order": 1}])"), Contains("m.json: effects[0].effect is missing"));
+    CHECK_THAT(model_refusal(R"(["ripple"])"), Contains("effects[0] is not an object"));
+    CHECK_THAT(model_refusal(R"({"effect": "ripple"})"), Contains("m.json: effects is not a list"));
+    CHECK_THAT(model_refusal("[]", "0"), Contains("m.json: gear_ratio is 0") && Contains("above 0"));
+    CHECK_THAT(model_refusal("[]", "1e6"), Contains("at most 100000"));
+    CHECK_THAT(model_refusal("[]", "null"), Contains("gear_ratio is missing"));
+    CHECK_THAT(model_refusal("[], \"gear\": 3"), Contains("m.json: gear is not a known field"));
 }
 
 TEST_CASE("a simulation is read back as it was written, and refused by who cannot read its column") {

@@ -27,7 +27,7 @@ const Provenance provenance{{}, "ripplenotch design"};
 std::string paper_json() { return table_to_json(CandidateTable::design(paper_spec()), provenance); }
 
 // What loading says about a table that was tampered with.
-std::string refusal(const std::function<void(Json&)>& tamper) {
+std::string table_refusal(const std::function<void(Json&)>& tamper) {
     Json json = Json::parse(paper_json());
     tamper(json);
     try {
@@ -89,45 +89,46 @@ TEST_CASE("a table has the fields that other commands rely on") {
 }
 
 TEST_CASE("a table that was edited by hand is refused where it no longer adds up") {
-    CHECK_THAT(refusal([](Json& t) { t["bands"][2]["notches"][0]["q"] = 1.0; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][2]["notches"][0]["q"] = 1.0; }),
                Contains("table.json: bands[2].notches[0].sos[0]") && Contains("design"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][2]["notches"][0]["sos"][5] = 1.01; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][2]["notches"][0]["sos"][5] = 1.01; }),
                Contains("bands[2].notches[0].sos[5] is 1.01"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][2]["notches"][0]["sos"][3] = 2.0; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][2]["notches"][0]["sos"][3] = 2.0; }),
                Contains("sos[3] is 2"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][2]["notches"][0]["sos"].erase(0); }),
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][2]["notches"][0]["sos"].erase(0); }),
                Contains("5 numbers, expected 6"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][2]["dc_delay_ms"] = 1.0; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][2]["dc_delay_ms"] = 1.0; }),
                Contains("bands[2].dc_delay_ms is 1"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][2]["settle_ms"] = 1.0; }), Contains("settle_ms is 1"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][2]["overshoot_percent"] = 7.0; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][2]["settle_ms"] = 1.0; }), Contains("settle_ms is 1"));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][2]["overshoot_percent"] = 7.0; }),
                Contains("overshoot_percent is 7"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][2]["worst_attenuation_db"][1] = 90.0; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][2]["worst_attenuation_db"][1] = 90.0; }),
                Contains("worst_attenuation_db[1] is 90"));
-    CHECK_THAT(refusal([](Json& t) { t["sample_rate_hz"] = 2000.0; }), Contains("sos"));
-    CHECK_THAT(refusal([](Json& t) { t["sample_rate_hz"] = 15.0; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["sample_rate_hz"] = 2000.0; }), Contains("sos"));
+    CHECK_THAT(table_refusal([](Json& t) { t["sample_rate_hz"] = 15.0; }),
                Contains("half the sample rate, 7.5 Hz"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"].erase(0); }), Contains("numbered 2"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"] = Json::array(); }), Contains("no speed bands"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][0]["notches"].erase(0); }), Contains("table.json: bands[0]"));
-    CHECK_THAT(refusal([](Json& t) { t["orders"] = {1.0, 3.0}; }), Contains("expected order 3"));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"].erase(0); }), Contains("numbered 2"));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"] = Json::array(); }), Contains("no speed bands"));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][0]["notches"].erase(0); }),
+               Contains("table.json: bands[0]"));
+    CHECK_THAT(table_refusal([](Json& t) { t["orders"] = {1.0, 3.0}; }), Contains("expected order 3"));
 }
 
 TEST_CASE("a table with a missing, unknown or mistyped field is refused by the field's name") {
-    CHECK_THAT(refusal([](Json& t) { t.erase("gear_ratio"); }), Contains("gear_ratio is missing"));
-    CHECK_THAT(refusal([](Json& t) { t["colour"] = "red"; }), Contains("colour is not a known field"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][1]["colour"] = "red"; }), Contains("bands[1].colour"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][1]["notches"][0]["colour"] = 1; }),
+    CHECK_THAT(table_refusal([](Json& t) { t.erase("gear_ratio"); }), Contains("gear_ratio is missing"));
+    CHECK_THAT(table_refusal([](Json& t) { t["colour"] = "red"; }), Contains("colour is not a known field"));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][1]["colour"] = "red"; }), Contains("bands[1].colour"));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][1]["notches"][0]["colour"] = 1; }),
                Contains("notches[0].colour"));
-    CHECK_THAT(refusal([](Json& t) { t["below_first_band"] = "stop"; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["below_first_band"] = "stop"; }),
                Contains("below_first_band is \"stop\", expected one of pass, hold, fade"));
-    CHECK_THAT(refusal([](Json& t) { t["width"] = "wide"; }), Contains("analog, digital"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"] = 3; }), Contains("bands is not a list"));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][0] = 3; }), Contains("bands[0] is not an object"));
-    CHECK_THAT(refusal([](Json& t) { t["orders"][0] = "one"; }), Contains("orders holds \"one\""));
-    CHECK_THAT(refusal([](Json& t) { t["bands"][0]["notches"][0]["q"] = "wide"; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["width"] = "wide"; }), Contains("analog, digital"));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"] = 3; }), Contains("bands is not a list"));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][0] = 3; }), Contains("bands[0] is not an object"));
+    CHECK_THAT(table_refusal([](Json& t) { t["orders"][0] = "one"; }), Contains("orders holds \"one\""));
+    CHECK_THAT(table_refusal([](Json& t) { t["bands"][0]["notches"][0]["q"] = "wide"; }),
                Contains("expected a number"));
-    CHECK_THAT(refusal([](Json& t) { t["schema"] = "ripplenotch/joint/1"; }),
+    CHECK_THAT(table_refusal([](Json& t) { t["schema"] = "ripplenotch/joint/1"; }),
                Contains("ripplenotch/table/1"));
 }
 

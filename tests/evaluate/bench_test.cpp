@@ -6,25 +6,16 @@
 #include <cmath>
 #include <random>
 
+#include "evaluate/contenders.hpp"
 #include "ripplenotch/core/biquad.hpp"
 #include "ripplenotch/design/transient.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
+using namespace ripplenotch::testing;
 
 namespace {
-
-Contender contender(const std::string& text) { return make_contender(parse_spec(text)); }
-
-std::shared_ptr<const CandidateTable> paper_table() {
-    TableSpec spec;
-    spec.gear_ratio = GearRatio(100.0);
-    spec.orders = {Order(1.0), Order(2.0)};
-    spec.sample_rate = 1000_Hz;
-    spec.bands = bands_by_spacing(18_deg_s, 180_deg_s, 18_deg_s);
-    return std::make_shared<const CandidateTable>(CandidateTable::design(spec));
-}
 
 double settle_ms(const Contender& c) {
     return 1e3 * Bench(c, 1000_Hz, 90_deg_s).step(NewtonMeters(10.0)).settle[0].value();

@@ -5,16 +5,16 @@
 #include <numbers>
 #include <random>
 
+#include "evaluate/contenders.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
 #include "ripplenotch/evaluate/match_low_pass.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
+using namespace ripplenotch::testing;
 
 namespace {
-
-Contender contender(const std::string& text) { return make_contender(parse_spec(text)); }
 
 const GearAccount paper_lines{GearRatio(100.0), {Order(1.0), Order(2.0)}, {}, {}, ""};
 

@@ -4,28 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "evaluate/contenders.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
 using namespace ripplenotch::literals;
+using namespace ripplenotch::testing;
 
-namespace {
-
-std::shared_ptr<const CandidateTable> paper_table() {
-    TableSpec spec;
-    spec.gear_ratio = GearRatio(100.0);
-    spec.orders = {Order(1.0), Order(2.0)};
-    spec.sample_rate = 1000_Hz;
-    spec.bands = bands_by_spacing(18_deg_s, 180_deg_s, 18_deg_s);
-    return std::make_shared<const CandidateTable>(CandidateTable::design(spec));
-}
-
-Contender contender(const std::string& text, std::shared_ptr<const CandidateTable> table = nullptr) {
-    return make_contender(parse_spec(text), std::move(table));
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("the ramp delay of every entry of a ledger, measured on a ramp, is its DC group delay") {
     for (const Contender& method : {contender("switching,table=table.json", paper_table()),

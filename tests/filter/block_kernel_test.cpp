@@ -20,10 +20,6 @@ namespace {
 
 constexpr std::size_t most_sections = 6;
 
-double between(double low, double high, std::mt19937& engine) {
-    return std::uniform_real_distribution<double>(low, high)(engine);
-}
-
 // Poles anywhere within the circle, up to a hundredth of it; numerators of any kind, unity gain at 0 Hz.
 Biquad some_section(std::mt19937& engine) {
     Biquad f;
@@ -98,10 +94,6 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
     double largest = 0.0;
     for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, std::abs(a[k] - b[k]));
     return largest;
-}
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 }  // namespace

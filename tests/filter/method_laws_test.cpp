@@ -2,7 +2,6 @@
 // What every method promises. Settings are made up from the method's own list of keys, so that a new entry of
 // methods.def is tested the day it is listed.
 
-#include <cstring>
 #include <set>
 
 #include "filter/tables.hpp"
@@ -82,10 +81,6 @@ std::set<std::string> specifications(const Method& method, unsigned seed) {
         }
     }
     return texts;
-}
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 // A filter that is told of a ripple takes it out of a constant as well, as it should.

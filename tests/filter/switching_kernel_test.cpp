@@ -18,10 +18,6 @@ using namespace ripplenotch::testing;
 
 namespace {
 
-double between(double low, double high, std::mt19937& engine) {
-    return std::uniform_real_distribution<double>(low, high)(engine);
-}
-
 CandidateTable some_table(std::size_t bands, std::size_t orders, std::mt19937& engine) {
     TableSpec spec = table_spec({});
     for (std::size_t i = 0; i < orders; ++i) spec.orders.push_back(Order(static_cast<double>(i + 1)));

@@ -11,25 +11,6 @@ using namespace ripplenotch::testing;
 
 namespace {
 
-// The comparison of transitions, worked out independently with SciPy: 20 s at 1 kHz, 20 deg/s for 5 s, a ramp
-// to 40 deg/s in 10 s, hold; torque 10 + 2 sin(theta + 0.3) + sin(2 theta + 1.1) Nm, theta the motor angle by
-// trapezoids.
-Signals ramp() {
-    Signals s;
-    double angle_deg = 0.0, last = 20.0;
-    for (std::size_t k = 0; k < 20000; ++k) {
-        const double t = static_cast<double>(k) / 1000.0;
-        const double v = t < 5.0 ? 20.0 : t < 15.0 ? 20.0 + 2.0 * (t - 5.0) : 40.0;
-        if (k > 0) angle_deg += 0.5 * (last + v) / 1000.0;
-        last = v;
-        const double theta = 100.0 * angle_deg * std::numbers::pi / 180.0;
-        s.velocity_deg_s.push_back(v);
-        s.position_deg.push_back(angle_deg);
-        s.torque_nm.push_back(10.0 + 2.0 * std::sin(theta + 0.3) + std::sin(2.0 * theta + 1.1));
-    }
-    return s;
-}
-
 // Bands of equal ratio rho^2 from 18 deg/s, notches at the geometric middle, Q of the sampled filter.
 CandidateTable geometric_table(double q, double rho) {
     TableSpec spec = table_spec();

@@ -3,6 +3,7 @@
 // Candidate tables and signals that several tests of this room use.
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -104,6 +105,33 @@ inline std::vector<double> filtered_in_two_passes(const std::string& text, const
     const auto learner = method.learner(Settings("method " + spec.name, spec, method.keys), sample_rate);
     static_cast<void>(filtered(*learner, in));
     return filtered(*learner->learned(), in);
+}
+
+/// The comparison of transitions, worked out independently with SciPy: 20 s at 1 kHz, 20 deg/s for 5 s, a
+/// ramp to 40 deg/s in 10 s, hold; torque 10 + 2 sin(theta + 0.3) + sin(2 theta + 1.1) Nm, theta the motor
+/// angle by trapezoids.
+inline Signals ramp() {
+    Signals s;
+    double angle_deg = 0.0, last = 20.0;
+    for (std::size_t k = 0; k < 20000; ++k) {
+        const double t = static_cast<double>(k) / 1000.0;
+        const double v = t < 5.0 ? 20.0 : t < 15.0 ? 20.0 + 2.0 * (t - 5.0) : 40.0;
+        if (k > 0) angle_deg += 0.5 * (last + v) / 1000.0;
+        last = v;
+        const double theta = 100.0 * angle_deg * std::numbers::pi / 180.0;
+        s.velocity_deg_s.push_back(v);
+        s.position_deg.push_back(angle_deg);
+        s.torque_nm.push_back(10.0 + 2.0 * std::sin(theta + 0.3) + std::sin(2.0 * theta + 1.1));
+    }
+    return s;
+}
+
+inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+inline double between(double low, double high, std::mt19937& engine) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
 }
 
 }  // namespace ripplenotch::testing

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <complex>
-#include <cstring>
 
 #include "filter/moves.hpp"
 #include "ripplenotch/core/biquad.hpp"
@@ -17,23 +16,6 @@ using namespace ripplenotch::testing;
 namespace {
 
 const std::string gear = "tracking,gear-ratio=100,orders=1:2";
-
-// 20 s at 1 kHz: 20 deg/s for 5 s, a ramp to 40 deg/s in 10 s, hold; 10 Nm with ripple of 2 and 1 Nm.
-Signals ramp() {
-    Signals s;
-    double angle_deg = 0.0, last = 20.0;
-    for (std::size_t k = 0; k < 20000; ++k) {
-        const double t = static_cast<double>(k) / 1000.0;
-        const double v = t < 5.0 ? 20.0 : t < 15.0 ? 20.0 + 2.0 * (t - 5.0) : 40.0;
-        if (k > 0) angle_deg += 0.5 * (last + v) / 1000.0;
-        last = v;
-        const double theta = 100.0 * angle_deg * std::numbers::pi / 180.0;
-        s.velocity_deg_s.push_back(v);
-        s.position_deg.push_back(angle_deg);
-        s.torque_nm.push_back(10.0 + 2.0 * std::sin(theta + 0.3) + std::sin(2.0 * theta + 1.1));
-    }
-    return s;
-}
 
 struct Left {
     double hold = 0.0, ramp = 0.0,

@@ -65,14 +65,6 @@ const std::vector<const LogFormat*>& written_formats() {
     return formats;
 }
 
-std::string written(const LogFormat& format, const std::vector<NumberColumn>& columns) {
-    const TemporaryPath path(std::string(format.extensions[0]));
-    ByteSink sink(path.string(), ByteSink::Overwrite::yes, format.binary);
-    format.write_columns(sink, columns);
-    sink.finish();
-    return file_bytes(path.string());
-}
-
 // Numbers of any size are no joint's: nobody has to find out which side of the gear they are from.
 ReadOptions of_the_joint() {
     ReadOptions options;

@@ -135,4 +135,15 @@ inline std::string rewritten(const std::string& bytes, const TorqueMap& map, con
 
 inline std::string file_bytes(const std::string& path) { return read_all(path); }
 
+inline double same(double torque) { return torque; }
+inline double doubled(double torque) { return 2.0 * torque; }
+
+inline std::string written(const LogFormat& format, const std::vector<NumberColumn>& columns) {
+    const TemporaryPath path(std::string(format.extensions[0]));
+    ByteSink sink(path.string(), ByteSink::Overwrite::yes, format.binary);
+    format.write_columns(sink, columns);
+    sink.finish();
+    return file_bytes(path.string());
+}
+
 }  // namespace ripplenotch::test

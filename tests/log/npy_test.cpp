@@ -19,9 +19,6 @@ std::string reference(const std::string& name) {
     return file_bytes(source_folder() + "/tests/log/data/" + name);
 }
 
-double same(double torque) { return torque; }
-double doubled(double torque) { return 2.0 * torque; }
-
 }  // namespace
 
 TEST_CASE("arrays that NumPy wrote hold the rows that were put in", "[log]") {

@@ -28,7 +28,7 @@ QuickRows three_columns(char delimiter = ',', char mark = '.', char line_end = '
                       std::vector<double>(4, 1.0)});
 }
 
-bool same_bits(double a, double b) {
+bool same_number(double a, double b) {
     return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
@@ -74,7 +74,7 @@ Taken taken(const std::string& text, bool wide) {
 }
 
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_bits);
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_number);
 }
 
 bool same(const Taken& a, const Taken& b) {
@@ -102,7 +102,7 @@ std::size_t misread(std::uint64_t seed, std::size_t rows) {
     const JointRows& joint = careful.block.joints[0];
     for (std::size_t i = 0; i < rows; ++i) {
         const auto expect = [&](std::size_t column, double got) {
-            different += same_bits(got, *parse_number(cells[3 * i + column])) ? 0 : 1;
+            different += same_number(got, *parse_number(cells[3 * i + column])) ? 0 : 1;
         };
         expect(0, joint.velocity_deg_s[i]);
         expect(1, joint.torque_nm[i]);

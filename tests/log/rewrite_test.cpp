@@ -14,9 +14,6 @@ using Catch::Contains;
 
 namespace {
 
-double same(double torque) { return torque; }
-double doubled(double torque) { return 2.0 * torque; }
-
 WriteOptions append(const std::string& name = "torque_filtered") {
     WriteOptions options;
     options.append = true;

@@ -14,14 +14,6 @@ double seconds_of(const std::string& text, const TimeAxis& axis = {}) {
     return on_axis(parse_time_point(text, "--from"), axis, "--from");
 }
 
-std::string written(const LogFormat& format, const std::vector<NumberColumn>& columns) {
-    const TemporaryPath path(std::string(format.extensions[0]));
-    ByteSink sink(path.string(), ByteSink::Overwrite::yes, format.binary);
-    format.write_columns(sink, columns);
-    sink.finish();
-    return file_bytes(path.string());
-}
-
 // Rows `first` to `last` of a log of milliseconds.
 std::vector<NumberColumn> table(int first, int last) {
     std::vector<NumberColumn> columns = {{"time_ms", {}}, {"velocity_deg_s", {}}, {"torque_nm", {}}};

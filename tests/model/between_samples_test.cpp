@@ -9,10 +9,9 @@
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
+using std::numbers::pi;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 // cos(2 pi f k), f in cycles per sample.
 std::vector<double> wave(double frequency, std::size_t count = 400) {

@@ -83,4 +83,10 @@ inline double largest_difference(const std::vector<double>& a, const std::vector
     return most;
 }
 
+inline Model model_of(std::initializer_list<std::string_view> terms) {
+    Model model{GearRatio(100.0), {}};
+    for (const auto term : terms) model.terms.push_back(parse_term(term));
+    return model;
+}
+
 }  // namespace ripplenotch::fixture

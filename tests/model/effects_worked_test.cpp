@@ -10,16 +10,9 @@
 
 using namespace ripplenotch;
 using namespace ripplenotch::fixture;
+using std::numbers::pi;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
-
-Model model_of(std::initializer_list<std::string_view> terms) {
-    Model model{GearRatio(100.0), {}};
-    for (const auto term : terms) model.terms.push_back(parse_term(term));
-    return model;
-}
 
 Motion move(std::vector<std::string> specs, double rate_hz = 1000.0) {
     return make_motion(specs, Hertz(rate_hz));

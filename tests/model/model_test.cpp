@@ -5,21 +5,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/effects_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
+using fixture::model_of;
 using namespace ripplenotch::literals;
 using Catch::Contains;
 
 namespace {
-
-Model model_of(std::initializer_list<std::string_view> terms) {
-    Model model{GearRatio(100.0), {}};
-    for (const auto term : terms) model.terms.push_back(parse_term(term));
-    return model;
-}
 
 // A sensor that doubles and a sensor that adds one: their order shows.
 Effect sensor(void (*apply)(const Situation&, std::span<const double>, std::span<double>)) {

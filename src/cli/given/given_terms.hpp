@@ -20,13 +20,13 @@ namespace ripplenotch {
 
 /// Options that state a given term.
 struct GivenOptions {
-    std::optional<std::string> simulated;  ///< "column,name=tau_model,scale=1"
+    std::optional<std::string> simulated;  ///< "tau_model,scale=1"
     std::optional<std::string> arm;        ///< "urdf,file=robot.urdf"
 
     [[nodiscard]] bool any() const { return simulated || arm; }
 };
 inline constexpr std::string_view simulated_option_help =
-    "torque of your own simulation, beside which is searched: a column of the log, column,name=tau_model, or "
+    "torque of your own simulation, beside which is searched: a column of the log, tau_model, or "
     "of another file, log,file=sim.csv,column=torque; scale=1 keeps it as it is, delay=2ms or delay=fit says "
     "how much later it is";
 void attach_given(Options& options, GivenOptions& given);

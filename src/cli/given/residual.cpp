@@ -50,14 +50,14 @@ void attach_residual(Options& options, ResidualOptions& residual) {
     options.text("--residual", residual.model, "FILE",
                  "look into measured less predicted torque: of this model.json, along the log");
     options.text("--simulated", residual.simulated, "SPEC",
-                 "the same of your own simulation: column,name=tau_model or log,file=sim.csv,column=torque; "
+                 "the same of your own simulation: tau_model (a column) or log,file=sim.csv,column=torque; "
                  "its scale is fitted unless scale=1 keeps it");
 }
 
 void take_residual(const ResidualOptions& residual, ReadOptions reading, std::size_t logs,
                    const GivenLog& log, const CommonOptions& common, Provenance& provenance) {
     if (!residual.any()) return;
-    if (logs > 1 && residual.simulated && residual.simulated->starts_with("log"))
+    if (logs > 1 && residual.simulated && residual.simulated->starts_with("log,"))
         raise<UsageError>("--simulated log,...: it is the simulation of one log, and there are {}", logs);
     if (!log.log.trace.joint.empty()) reading.joint = log.log.trace.joint;
     const ModelWithGiven model = model_of(residual, log.log.trace.joint);

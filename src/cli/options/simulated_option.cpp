@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 #include <vector>
 
@@ -128,13 +129,26 @@ bool states(const Spec& spec, std::string_view key) {
                        [&](const auto& pair) { return pair.first == key; });
 }
 
+// A name alone is that of a column.
+Spec spec_of(std::string_view text) {
+    Spec spec = parse_spec(text);
+    if (spec.name == "column" || spec.name == "log") return spec;
+    if (states(spec, "name") || states(spec, "file") || states(spec, "column"))
+        raise<UsageError>("--simulated: '{}' is neither column,name=NAME nor log,file=FILE,column=NAME",
+                          text);
+    if (std::filesystem::is_regular_file(spec.name))
+        raise<UsageError>(
+            "--simulated: {} is a file; say which column of it is the torque: --simulated "
+            "log,file={},column=NAME",
+            spec.name, spec.name);
+    spec.values.emplace_back("name", std::exchange(spec.name, "column"));
+    return spec;
+}
+
 }  // namespace
 
 SimulatedOption::SimulatedOption(std::string_view text, const std::optional<SimulatedTerm>& stated) {
-    const Spec spec = parse_spec(text);
-    if (spec.name != "column" && spec.name != "log")
-        raise<UsageError>("--simulated: '{}' is neither column,name=NAME nor log,file=FILE,column=NAME",
-                          text);
+    const Spec spec = spec_of(text);
     const bool own = spec.name == "log";
     const Settings settings("--simulated " + spec.name, spec,
                             own ? std::span<const Key>(log_keys) : std::span<const Key>(column_keys));

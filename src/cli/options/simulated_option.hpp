@@ -15,9 +15,9 @@ namespace ripplenotch {
 
 class SimulatedOption {
   public:
-    /// "column,name=tau_model[,scale=1][,delay=2ms]" or "log,file=sim.csv,column=torque[,validate=sim2.csv]
-    /// [,align=start]...". Beside a model that states a simulation it says only where its torque is: scale
-    /// and delay are the model's. Throws UsageError.
+    /// "tau_model[,scale=1][,delay=2ms]", the same as "column,name=tau_model...", or "log,file=sim.csv,
+    /// column=torque[,validate=sim2.csv][,align=start]...". Beside a model that states a simulation it says
+    /// only where its torque is: scale and delay are the model's. Throws UsageError.
     explicit SimulatedOption(std::string_view text, const std::optional<SimulatedTerm>& stated = {});
 
     /// As a model.json states it: a column of the log.

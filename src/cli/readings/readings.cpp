@@ -25,8 +25,9 @@ std::string lower_first(std::string text) {
     return text;
 }
 
-std::string first_clause(const std::string& verdict) {
-    return lower_first(verdict.substr(0, verdict.find(';')));
+// What tells one reading's verdict from another's: up to the ratio's error. The notes have it whole.
+std::string briefly(const std::string& verdict) {
+    return lower_first(verdict.substr(0, std::min(verdict.find(';'), verdict.find(" (95 %)"))));
 }
 
 bool in_motor_units(std::span<const Log> logs) {
@@ -111,9 +112,9 @@ bool agree(const Identification& a, const Identification& b) {
 Identification cannot_tell(Identification found, const std::string& assumed,
                            const std::vector<std::pair<OtherReading, Identification>>& others,
                            const std::string& options) {
-    std::string verdict = fmt::format("Cannot tell: {}, {}", assumed, first_clause(found.verdict));
+    std::string verdict = fmt::format("Cannot tell: {}, {}", assumed, briefly(found.verdict));
     for (const auto& [reading, other] : others) {
-        verdict += fmt::format("; if {}, {}", reading.words, first_clause(other.verdict));
+        verdict += fmt::format("; if {}, {}", reading.words, briefly(other.verdict));
         found.notes.push_back(fmt::format("if {} ({}): {}", reading.words, reading.option, other.verdict));
     }
     found.notes.insert(found.notes.end() - static_cast<std::ptrdiff_t>(others.size()),

@@ -22,7 +22,7 @@ std::string paragraph(const std::string& sentence) {
     return text;
 }
 
-std::string commands(std::string_view head, const std::vector<std::string>& lines) {
+std::string next_commands(std::string_view head, const std::vector<std::string>& lines) {
     if (lines.empty()) return "";
     return fmt::format("\n{}\n    {}\n", head, fmt::join(lines, "\n    "));
 }
@@ -74,8 +74,8 @@ std::string list(std::string_view head, const std::vector<std::string>& sentence
 std::string recommendation_view(const RecommendationReport& report) {
     const Recommendation& found = report.found;
     std::string text = paragraph(recommendation_verdict(found));
-    text += commands("To take it:", report.take);
-    text += commands("The other:", report.runner_up);
+    text += next_commands("To take it:", report.take);
+    text += next_commands("The other:", report.runner_up);
     if (!found.orders.empty()) text += orders_text(found);
     if (!found.methods.empty()) {
         text += methods_text(found);
@@ -85,7 +85,7 @@ std::string recommendation_view(const RecommendationReport& report) {
             "for every ms of delay, since this torque moves at {:.3g} Nm/s.\n",
             report.split_s, found.windows, 1e-3 * found.torque_rate_nm_s, found.torque_rate_nm_s);
     }
-    if (!report.check.empty()) text += commands("To measure it again:", {report.check});
+    if (!report.check.empty()) text += next_commands("To measure it again:", {report.check});
     return text + list("Assumed:", report.assumed) + list("Not tried:", report.left_out);
 }
 

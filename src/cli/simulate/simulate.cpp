@@ -235,7 +235,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_joint_model(options, o->joint);
     options.text("--simulated", o->simulated, "SPEC",
                  "with a LOG: torque of your own simulation as a part of the model, "
-                 "column,name=tau_model,scale=1 or log,file=sim.csv,column=torque,scale=1");
+                 "tau_model,scale=1 (a column) or log,file=sim.csv,column=torque,scale=1");
     options.texts(
         "--motion", o->motions, "NAME,KEY=VALUE,...",
         fmt::format("how the joint moves: constant,speed=60deg/s,duration=5s; repeated ones follow one "
