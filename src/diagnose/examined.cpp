@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/undecidable.hpp"
+#include "diagnose/case/undecidable.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

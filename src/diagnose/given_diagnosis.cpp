@@ -6,16 +6,16 @@
 #include <utility>
 
 #include "core/vectors/dot.hpp"
-#include "diagnose/beside/always_on.hpp"
-#include "diagnose/beside/sensing.hpp"
-#include "diagnose/beside/sizes.hpp"
-#include "diagnose/beside/told.hpp"
-#include "diagnose/doubt.hpp"
+#include "diagnose/beside/finding/sensing.hpp"
+#include "diagnose/beside/finding/sizes.hpp"
+#include "diagnose/beside/finding/told.hpp"
+#include "diagnose/beside/weighing/always_on.hpp"
+#include "diagnose/case/faults.hpp"
 #include "diagnose/examined.hpp"
-#include "diagnose/faults.hpp"
-#include "diagnose/leftover.hpp"
-#include "diagnose/search.hpp"
-#include "diagnose/summary.hpp"
+#include "diagnose/judging/doubt.hpp"
+#include "diagnose/judging/leftover.hpp"
+#include "diagnose/search/search.hpp"
+#include "diagnose/telling/summary.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -2,8 +2,8 @@
 #pragma once
 // A bench on a log with something hidden in it, for judges that are asked alone.
 
-#include "diagnose/doubt.hpp"
-#include "diagnose/model_bench.hpp"
+#include "diagnose/judging/doubt.hpp"
+#include "diagnose/search/model_bench.hpp"
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Names beside a leftover, step by step, and on logs whose leftover nothing in the catalogue explains.
 
-#include "diagnose/beside/beside.hpp"
+#include "diagnose/beside/finding/beside.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "bench_fixture.hpp"
-#include "diagnose/beside/color.hpp"
-#include "diagnose/beside/ground.hpp"
-#include "diagnose/beside/outside_gain.hpp"
+#include "diagnose/beside/weighing/color.hpp"
+#include "diagnose/beside/weighing/ground.hpp"
+#include "diagnose/beside/weighing/outside_gain.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "support/catch.hpp"
 

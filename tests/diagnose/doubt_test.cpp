@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Each thing that speaks against a finding, alone, with the rule that is told for it.
-#include "diagnose/doubt.hpp"
+#include "diagnose/judging/doubt.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include "bench_fixture.hpp"
-#include "diagnose/wandering.hpp"
+#include "diagnose/judging/wandering.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bench_fixture.hpp"
-#include "diagnose/judge.hpp"
-#include "diagnose/search.hpp"
+#include "diagnose/judging/judge.hpp"
+#include "diagnose/search/search.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Lines of a residual, against time and against the angle.
-#include "diagnose/lines.hpp"
+#include "diagnose/case/lines.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The noise is measured alike whatever the model misses.
-#include "diagnose/noise_floor.hpp"
+#include "diagnose/case/noise_floor.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A finding that another log contradicts is withdrawn; one that it bears out stays.
-#include "diagnose/reproduction.hpp"
+#include "diagnose/judging/reproduction.hpp"
 
 #include "bench_fixture.hpp"
 #include "support/catch.hpp"

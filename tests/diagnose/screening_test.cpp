@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A screening ranks what is there first, asks its price, and is made once.
-#include "diagnose/screening.hpp"
+#include "diagnose/search/screening.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The search adds what is worth its price, and says of the last candidates why they were not.
-#include "diagnose/search.hpp"
+#include "diagnose/search/search.hpp"
 
 #include "bench_fixture.hpp"
 #include "support/catch.hpp"

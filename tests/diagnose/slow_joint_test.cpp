@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "bench_fixture.hpp"
-#include "diagnose/evenness.hpp"
-#include "diagnose/leftover.hpp"
-#include "diagnose/place.hpp"
+#include "diagnose/case/place.hpp"
+#include "diagnose/judging/evenness.hpp"
+#include "diagnose/judging/leftover.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

@@ -2,8 +2,8 @@
 // The values told at the end: what pulls them to one side is away, and their intervals hold the truth.
 #include <cmath>
 
-#include "diagnose/search.hpp"
-#include "diagnose/values.hpp"
+#include "diagnose/judging/values.hpp"
+#include "diagnose/search/search.hpp"
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 #include "support/catch.hpp"

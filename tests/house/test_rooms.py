@@ -68,6 +68,31 @@ PRIVATE_DOORS = {
 }
 
 
+# Rooms whose folders stand in an order: what a folder includes never comes back to it.
+ORDERED = ("arm", "diagnose")
+
+
+def folders_seen(room):
+    """Folders of a room, each with those that it includes from."""
+    seen = {}
+    for path, of, includes in sources():
+        folder = path.parent.relative_to(SOURCE)
+        if of != room or folder.parts[0] != "src":
+            continue
+        headers = [SOURCE / "src" / include for include in includes if include.split("/")[0] == room]
+        seen.setdefault(folder, set()).update(one.parent.relative_to(SOURCE) for one in headers if one.exists())
+    return {folder: below - {folder} for folder, below in seen.items()}
+
+
+def circle_in(seen):
+    """Folders that are left when those that see none of the others are taken away, again and again."""
+    left = dict(seen)
+    while free := [folder for folder, below in left.items() if not below & set(left)]:
+        for folder in free:
+            del left[folder]
+    return set(left)
+
+
 def private_door(header, room):
     return any(header.startswith(door) and room in rooms for door, (rooms, _) in PRIVATE_DOORS.items())
 
@@ -113,6 +138,15 @@ class Rooms(unittest.TestCase):
                     self.assertTrue(target[1] == room or target[1] in SEES[room],
                                     f"{path.relative_to(SOURCE)} in {room} includes {include}")
         self.assertGreater(looked_at, 50)
+
+    def test_folders_of_a_room_do_not_see_each_other_in_a_circle(self):
+        for room in ORDERED:
+            with self.subTest(room=room):
+                seen = folders_seen(room)
+                self.assertGreater(len(seen), 2)
+                self.assertGreater(sum(map(len, seen.values())), 2)
+                self.assertEqual(circle_in(seen), set())
+        self.assertEqual(circle_in({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": set()}), {"a", "b", "c"})
 
     def test_the_decision_tells_every_room_and_names_files_that_there_are(self):
         page = (SOURCE / "docs/decisions/0001-rooms.md").read_text()

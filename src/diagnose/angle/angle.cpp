@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/search.hpp"
+#include "diagnose/search/search.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {

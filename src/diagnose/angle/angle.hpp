@@ -3,7 +3,7 @@
 // What a diagnosis does about the angle of a log without position.
 
 #include "diagnose/angle/walk.hpp"
-#include "diagnose/model_bench.hpp"
+#include "diagnose/search/model_bench.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "core/vectors/dot.hpp"
-#include "diagnose/beside/ridge.hpp"
-#include "diagnose/lines.hpp"
-#include "diagnose/undecidable.hpp"
+#include "diagnose/beside/weighing/ridge.hpp"
+#include "diagnose/case/lines.hpp"
+#include "diagnose/case/undecidable.hpp"
 #include "model/fit_coordinates.hpp"
 #include "model/local_motion.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -3,7 +3,7 @@
 // The angle of a log that has no position: the integral of a noisy speed walks away, and the ripple, which is
 // locked to the motor, tells how far.
 
-#include "diagnose/case.hpp"
+#include "diagnose/case/case.hpp"
 #include "ripplenotch/model/model.hpp"
 
 namespace ripplenotch {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/rms.hpp"
-#include "diagnose/doubt.hpp"
-#include "diagnose/undecidable.hpp"
+#include "diagnose/case/undecidable.hpp"
+#include "diagnose/judging/doubt.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {

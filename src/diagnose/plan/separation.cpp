@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/vectors/dot.hpp"
-#include "diagnose/search_starts.hpp"
+#include "diagnose/search/search_starts.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/beside/weighing/sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/vectors/dot.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+}  // namespace
+
+Sums::Sums(const Lens& lens) : lens_(lens) {
+    const auto& target = lens.target();
+    for (const RowRange& fold : lens.ground().folds())
+        target_squares_.push_back(dot(target.data() + fold.first, target.data() + fold.first, fold.count));
+    for (const Shape& shape : lens.shapes()) add(shape);
+}
+
+void Sums::add(const Shape& shape) {
+    std::vector<Column> columns;
+    double part = 0.0;
+    const auto take = [&](Lens::Weighed weighed) {
+        part = std::max(part, weighed.part);
+        for (auto& column : weighed.columns)
+            columns.push_back(std::make_shared<const std::vector<double>>(std::move(column)));
+    };
+    const auto plain =
+        shape.ringing ? std::find(shapes_.begin(), shapes_.end(), Shape{shape.term}) : shapes_.end();
+    if (plain != shapes_.end()) {
+        const auto place = static_cast<std::size_t>(plain - shapes_.begin());
+        columns = columns_[place];
+        part = own_part_[place];
+        take(lens_.weighed_ringing(shape));
+    } else {
+        take(lens_.weighed(shape));
+    }
+    shapes_.push_back(shape);
+    own_part_.push_back(part);
+    columns_.push_back(std::move(columns));
+    std::vector<VectorXd> targets;
+    for (const RowRange& fold : lens_.ground().folds()) {
+        VectorXd sums(static_cast<Index>(columns_.back().size()));
+        for (Index c = 0; c < sums.size(); ++c)
+            sums[c] = dot(columns_.back()[static_cast<std::size_t>(c)]->data() + fold.first,
+                          lens_.target().data() + fold.first, fold.count);
+        targets.push_back(std::move(sums));
+    }
+    targets_.push_back(std::move(targets));
+}
+
+std::size_t Sums::place_of(const Shape& shape) {
+    const auto known = std::find(shapes_.begin(), shapes_.end(), shape);
+    if (known != shapes_.end()) return static_cast<std::size_t>(known - shapes_.begin());
+    add(shape);
+    return shapes_.size() - 1;
+}
+
+void Sums::forget_but(Names& kept) {
+    std::vector<Shape> shapes;
+    for (const std::size_t name : kept) shapes.push_back(shapes_[name]);
+    std::vector<std::size_t> staying;
+    for (std::size_t i = 0; i < shapes_.size(); ++i) {
+        if (i < listed() || std::find(kept.begin(), kept.end(), i) != kept.end()) staying.push_back(i);
+    }
+    for (std::size_t i = 0; i < staying.size(); ++i) {
+        if (staying[i] == i) continue;
+        shapes_[i] = std::move(shapes_[staying[i]]);
+        columns_[i] = std::move(columns_[staying[i]]);
+        own_part_[i] = own_part_[staying[i]];
+        targets_[i] = std::move(targets_[staying[i]]);
+    }
+    shapes_.resize(staying.size());
+    columns_.resize(staying.size());
+    own_part_.resize(staying.size());
+    targets_.resize(staying.size());
+    std::erase_if(pairs_, [&](const auto& entry) { return entry.first.second >= listed(); });
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        kept[i] =
+            static_cast<std::size_t>(std::find(shapes_.begin(), shapes_.end(), shapes[i]) - shapes_.begin());
+}
+
+bool Sums::is_told(std::size_t shape) const {
+    return own_part_[shape] > lens_.rules().screening.least_outside;
+}
+
+const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
+    const auto [entry, is_new] = pairs_.try_emplace({a, b});
+    if (!is_new) return entry->second;
+    for (const RowRange& fold : lens_.ground().folds()) {
+        MatrixXd sums(static_cast<Index>(columns_[a].size()), static_cast<Index>(columns_[b].size()));
+        for (Index r = 0; r < sums.rows(); ++r) {
+            for (Index c = 0; c < sums.cols(); ++c)
+                sums(r, c) = dot(columns_[a][static_cast<std::size_t>(r)]->data() + fold.first,
+                                 columns_[b][static_cast<std::size_t>(c)]->data() + fold.first, fold.count);
+        }
+        entry->second.push_back(std::move(sums));
+    }
+    return entry->second;
+}
+
+MatrixXd Sums::products(const Names& names, std::size_t fold) const {
+    Index size = 0;
+    for (const std::size_t name : names) size += static_cast<Index>(columns_[name].size());
+    MatrixXd all(size, size);
+    for (Index a = 0, row = 0; a < static_cast<Index>(names.size()); ++a) {
+        const std::size_t first = names[static_cast<std::size_t>(a)];
+        const auto rows = static_cast<Index>(columns_[first].size());
+        for (Index b = 0, column = 0; b <= a; ++b) {
+            const std::size_t second = names[static_cast<std::size_t>(b)];
+            const auto columns = static_cast<Index>(columns_[second].size());
+            if (first <= second) {
+                all.block(row, column, rows, columns) = pair(first, second)[fold];
+            } else {
+                all.block(row, column, rows, columns) = pair(second, first)[fold].transpose();
+            }
+            all.block(column, row, columns, rows) = all.block(row, column, rows, columns).transpose().eval();
+            column += columns;
+        }
+        row += rows;
+    }
+    return all;
+}
+
+MatrixXd Sums::products(const Names& names) const {
+    MatrixXd all = products(names, 0);
+    for (std::size_t fold = 1; fold < folds(); ++fold) all += products(names, fold);
+    return all;
+}
+
+VectorXd Sums::targets(const Names& names, std::size_t fold) const {
+    Index size = 0;
+    for (const std::size_t name : names) size += static_cast<Index>(columns_[name].size());
+    VectorXd all(size);
+    Index row = 0;
+    for (const std::size_t name : names) {
+        const VectorXd& own = targets_[name][fold];
+        all.segment(row, own.size()) = own;
+        row += own.size();
+    }
+    return all;
+}
+
+VectorXd Sums::solved(const MatrixXd& products, const VectorXd& targets) const {
+    // Sizes are drawn to 0 as little as numbers allow.
+    constexpr double usual_size = 1e4, least_of_its_own = 1e-9;
+    VectorXd scale = products.diagonal();
+    for (Index i = 0; i < scale.size(); ++i) scale[i] = std::sqrt(scale[i] + 1e-30);
+    MatrixXd scaled = products;
+    VectorXd wanted = targets;
+    for (Index r = 0; r < scale.size(); ++r) {
+        for (Index c = 0; c < scale.size(); ++c) scaled(r, c) /= scale[r] * scale[c];
+        const double drawn = lens_.sigma() / (usual_size * scale[r]);
+        scaled(r, r) += drawn * drawn + least_of_its_own;
+        wanted[r] /= scale[r];
+    }
+    return scaled.llt().solve(wanted).cwiseQuotient(scale);
+}
+
+double Sums::left_outside(const Names& names) const {
+    double left = 0.0;
+    std::vector<MatrixXd> by_fold;
+    std::vector<VectorXd> target_of;
+    MatrixXd all;
+    VectorXd all_targets;
+    for (std::size_t fold = 0; fold < folds(); ++fold) {
+        by_fold.push_back(products(names, fold));
+        target_of.push_back(targets(names, fold));
+        if (fold == 0) {
+            all = by_fold[0];
+            all_targets = target_of[0];
+        } else {
+            all += by_fold.back();
+            all_targets += target_of.back();
+        }
+    }
+    for (std::size_t fold = 0; fold < folds(); ++fold) {
+        left += target_squares_[fold];
+        if (names.empty()) continue;
+        const VectorXd x = solved(all - by_fold[fold], all_targets - target_of[fold]);
+        left += -2.0 * x.dot(target_of[fold]) + x.dot(by_fold[fold] * x);
+    }
+    return left;
+}
+
+std::vector<double> Sums::residual_outside(const Names& names) const {
+    return residual_outside(names, lens_.target());
+}
+
+std::vector<double> Sums::residual_outside(const Names& names, std::vector<double> target) const {
+    if (names.empty()) return target;
+    const MatrixXd all = products(names);
+    std::vector<VectorXd> by_fold;
+    VectorXd all_targets = VectorXd::Zero(all.rows());
+    for (const RowRange& rows : lens_.ground().folds()) {
+        VectorXd sums(all.rows());
+        Index value = 0;
+        for (const std::size_t name : names) {
+            for (const auto& column : columns_[name])
+                sums[value++] = dot(column->data() + rows.first, target.data() + rows.first, rows.count);
+        }
+        all_targets += sums;
+        by_fold.push_back(std::move(sums));
+    }
+    for (std::size_t fold = 0; fold < folds(); ++fold) {
+        const VectorXd x = solved(all - products(names, fold), all_targets - by_fold[fold]);
+        const RowRange& rows = lens_.ground().folds()[fold];
+        Index value = 0;
+        for (const std::size_t name : names) {
+            for (const auto& column : columns_[name])
+                add_scaled(-x[value++], column->data() + rows.first, target.data() + rows.first, rows.count);
+        }
+    }
+    return target;
+}
+
+VectorXd Sums::sizes(const Names& names) const {
+    if (names.empty()) return {};
+    VectorXd all_targets = targets(names, 0);
+    for (std::size_t fold = 1; fold < folds(); ++fold) all_targets += targets(names, fold);
+    return solved(products(names), all_targets);
+}
+
+}  // namespace ripplenotch

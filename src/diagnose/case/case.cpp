@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/case/case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/model/measured_motion.hpp"
+
+namespace ripplenotch {
+namespace {
+
+template <class Value>
+std::vector<Value> picked(const std::vector<Value>& values, const std::vector<std::size_t>& rows) {
+    std::vector<Value> some;
+    some.reserve(rows.size());
+    for (const std::size_t row : rows) some.push_back(values[row]);
+    return some;
+}
+
+std::vector<std::size_t> every(const Case& whole, std::size_t step) {
+    std::vector<std::size_t> rows;
+    for (std::size_t k = 0; k < whole.size(); k += step) rows.push_back(k);
+    return rows;
+}
+
+Case rows_of(const Case& whole, const std::vector<std::size_t>& rows, Hertz sample_rate) {
+    const Motion& motion = whole.motion;
+    Case some;
+    some.motion = {sample_rate, picked(motion.time_s, rows), picked(motion.position_deg, rows),
+                   picked(motion.velocity_deg_s, rows), picked(motion.acceleration_deg_s2, rows)};
+    if (!motion.carried_nm.empty()) some.motion.carried_nm = picked(motion.carried_nm, rows);
+    some.torque_nm = picked(whole.torque_nm, rows);
+    some.row = picked(whole.row, rows);
+    some.rough_deg_s2 = picked(whole.rough_deg_s2, rows);
+    some.blunted_deg_s2 = picked(whole.blunted_deg_s2, rows);
+    some.walk_deg = whole.walk_deg;
+    some.step_nm = whole.step_nm;
+    some.moving_deg_s = whole.moving_deg_s;
+    for (const std::size_t row : rows) {
+        some.use.push_back(whole.use[row]);
+        some.edge.push_back(whole.edge[row]);
+    }
+    some.from = {0};
+    return some;
+}
+
+// Where a rest begins or ends (motion_along holds the speed at 0 there), some time to both sides.
+std::vector<unsigned char> edges_of(const Motion& motion, double edge_s) {
+    const auto reach = static_cast<std::size_t>(edge_s * motion.sample_rate.value()) + 1;
+    const std::size_t n = motion.size();
+    std::vector<unsigned char> edge(n, 0);
+    for (std::size_t k = 1; k < n; ++k) {
+        if ((motion.velocity_deg_s[k] == 0.0) == (motion.velocity_deg_s[k - 1] == 0.0)) continue;
+        for (std::size_t i = k - std::min(k, reach); i < std::min(k + reach, n); ++i) edge[i] = 1;
+    }
+    return edge;
+}
+
+// Where the acceleration jumps, smoothing makes a slope of it, and what the joint's inertia does there is not
+// known: such samples do not count.
+void leave_out_kinks(Case& whole, Seconds smoothing, const RecordingRules& rules) {
+    std::vector<double> sizes;
+    double most = 0.0;
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+        sizes.push_back(std::abs(whole.blunted_deg_s2[k]));
+        most = std::max(most, std::abs(whole.motion.acceleration_deg_s2[k]));
+    }
+    std::vector<double> sorted = sizes;
+    const double kink = std::max(rules.kink_deviations * 1.4826 * median_in(sorted), rules.kink_part * most);
+    const auto reach = static_cast<std::size_t>(0.5 * smoothing.value() * whole.motion.sample_rate.value());
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+        if (sizes[k] <= kink) continue;
+        for (std::size_t i = k - std::min(k, reach); i < std::min(k + reach + 1, whole.size()); ++i)
+            whole.use[i] = 0;
+    }
+}
+
+// A hundredth of the fastest speed of a slow joint is motion; of a fast one the limit stays, however fast.
+double slowest_moving(const Motion& motion, const RecordingRules& rules) {
+    double fastest = 0.0;
+    for (const double speed : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(speed));
+    return fastest > 0.0 ? std::min(rules.moving_most_deg_s, rules.moving_part * fastest)
+                         : rules.moving_most_deg_s;
+}
+
+}  // namespace
+
+std::size_t Case::used() const {
+    return static_cast<std::size_t>(
+        std::count_if(use.begin(), use.end(), [](unsigned char u) { return u != 0; }));
+}
+
+Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& rules) {
+    if (log.size() < rules.fewest_samples)
+        raise<DataError>("the log has {} rows; a diagnosis needs at least {}", log.size(),
+                         rules.fewest_samples);
+    Case whole;
+    whole.motion = motion_along(log, smoothing);
+    const Motion smoother = motion_along(log, 3.0 * smoothing), sharper = motion_along(log, 0.5 * smoothing);
+    whole.torque_nm.assign(log.torque_nm.begin(), log.torque_nm.end());
+    whole.rough_deg_s2 = whole.motion.acceleration_deg_s2;
+    whole.blunted_deg_s2 = sharper.acceleration_deg_s2;
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        whole.rough_deg_s2[k] -= smoother.acceleration_deg_s2[k];
+        whole.blunted_deg_s2[k] -= whole.motion.acceleration_deg_s2[k];
+    }
+    for (const double torque : log.torque_nm) whole.use.push_back(std::isfinite(torque) ? 1 : 0);
+    for (double& torque : whole.torque_nm) torque = std::isfinite(torque) ? torque : 0.0;
+    whole.from = {0};
+    whole.row.resize(log.size());
+    std::iota(whole.row.begin(), whole.row.end(), std::size_t{0});
+    whole.moving_deg_s = slowest_moving(whole.motion, rules);
+    whole.edge = edges_of(whole.motion, rules.edge_s);
+    leave_out_kinks(whole, smoothing, rules);
+    if (!log.has_position()) {
+        double squares = 0.0;
+        for (std::size_t k = 0; k < log.size(); ++k) {
+            const double off = log.velocity_deg_s[k] - whole.motion.velocity_deg_s[k];
+            squares += off * off;
+        }
+        whole.walk_deg = std::sqrt(squares / static_cast<double>(log.size()) / log.sample_rate.value());
+    }
+    return whole;
+}
+
+Case excerpt(const Case& whole, const RecordingRules& rules) {
+    const std::size_t stretch_samples = rules.stretch_samples;
+    if (whole.size() <= rules.search_samples + stretch_samples) return whole;
+    const std::size_t stretches = rules.search_samples / stretch_samples;
+    std::vector<std::size_t> rows, from;
+    for (std::size_t s = 0; s < stretches; ++s) {
+        const std::size_t begin = s * (whole.size() - stretch_samples) / (stretches - 1);
+        from.push_back(rows.size());
+        for (std::size_t k = 0; k < stretch_samples; ++k) rows.push_back(begin + k);
+    }
+    Case some = rows_of(whole, rows, whole.motion.sample_rate);
+    some.from = from;
+    for (const std::size_t begin : from)
+        std::fill_n(some.use.begin() + static_cast<std::ptrdiff_t>(begin),
+                    begin > 0 ? rules.settling_samples : 0, 0);
+    return some;
+}
+
+Case sketch(const Case& whole, std::size_t count) {
+    const std::size_t step = std::max<std::size_t>(1, (whole.size() + count - 1) / count);
+    return rows_of(whole, every(whole, step),
+                   Hertz(whole.motion.sample_rate.value() / static_cast<double>(step)));
+}
+
+Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules) {
+    const std::size_t length = rules.block_samples, all = whole.size();
+    if (all <= count + length) return rows_of(whole, every(whole, 1), whole.motion.sample_rate);
+    const std::size_t number = count / length;
+    std::vector<std::size_t> rows;
+    for (std::size_t b = 0; b < number; ++b) {
+        const std::size_t begin = b * (all - length) / (number - 1);
+        for (std::size_t k = begin; k < begin + length; ++k) rows.push_back(k);
+    }
+    Case some = rows_of(whole, rows, whole.motion.sample_rate);
+    // What a delay brings into the ends of a stretch is of another one.
+    for (std::size_t k = 0; k < some.size(); ++k) {
+        const std::size_t within = k % length;
+        if (within < rules.block_begin || within + rules.block_end > length) some.use[k] = 0;
+    }
+    return some;
+}
+
+std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
+    std::vector<Nuisance> errors{{looked_at.rough_deg_s2, 0.0}, {looked_at.blunted_deg_s2, 0.0}};
+    if (looked_at.walk_deg == 0.0) return errors;
+    // How the torque changes with the position: so little that it is a slope, and far above rounding.
+    constexpr double shift_deg = 1e-4;
+    Motion ahead = looked_at.motion, behind = looked_at.motion;
+    for (double& position : ahead.position_deg) position += shift_deg;
+    for (double& position : behind.position_deg) position -= shift_deg;
+    const auto up = predict_nm(model, ahead), down = predict_nm(model, behind);
+    // A random walk is a sum of sines of a quarter, three quarters, ... of a cycle with independent sizes
+    // (Karhunen and Loeve).
+    const auto& time_s = looked_at.motion.time_s;
+    const double duration_s = time_s.back() - time_s.front();
+    for (std::size_t mode = 1; mode <= rules.walk_modes; ++mode) {
+        const double quarter_turns = (static_cast<double>(mode) - 0.5) * std::numbers::pi;
+        Nuisance walk{std::vector<double>(time_s.size()),
+                      looked_at.walk_deg * std::sqrt(duration_s) * std::numbers::sqrt2 / quarter_turns};
+        for (std::size_t k = 0; k < time_s.size(); ++k) {
+            walk.torque_nm[k] = (up[k] - down[k]) / (2.0 * shift_deg) *
+                                portable::sin(quarter_turns * (time_s[k] - time_s.front()) / duration_s);
+        }
+        errors.push_back(std::move(walk));
+    }
+    return errors;
+}
+
+}  // namespace ripplenotch

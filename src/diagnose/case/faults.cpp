@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/case/faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/model/detection.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// Step of a log that holds few distinct values at equal distances; 0 when it is as good as continuous.
+double step_of(const std::vector<double>& torque_nm, const FaultRules& rules) {
+    std::vector<double> values = torque_nm;
+    std::sort(values.begin(), values.end());
+    std::vector<double> distances;
+    const double range = values.back() - values.front();
+    for (std::size_t k = 1; k < values.size(); ++k) {
+        const double distance = values[k] - values[k - 1];
+        if (distance > 1e-9 * range) distances.push_back(distance);
+    }
+    if (distances.empty() ||
+        static_cast<double>(distances.size()) > rules.most_distinct_part * static_cast<double>(values.size()))
+        return 0.0;
+    // The smallest that is common: rarer levels leave multiples of it, rounding leaves crumbs.
+    const double step = median_of(distances);
+    std::size_t fitting = 0;
+    for (const double distance : distances) {
+        const double steps = distance / step;
+        if (std::abs(steps - std::round(steps)) < rules.off_step_part * std::max(steps, 1.0) && steps > 0.5)
+            ++fitting;
+    }
+    return fitting >= distances.size() * rules.fitting_percent / 100 ? step : 0.0;
+}
+
+double noise_of(const std::vector<double>& torque_nm) {
+    // Second differences take motion and slow torque away; 6 is the sum of the squares of 1, -2, 1.
+    std::vector<double> off;
+    for (std::size_t k = 1; k + 1 < torque_nm.size(); ++k)
+        off.push_back(std::abs(torque_nm[k - 1] - 2.0 * torque_nm[k] + torque_nm[k + 1]));
+    return 1.4826 * median_of(off) / std::sqrt(6.0);
+}
+
+// Effects that can be seen in a log, in the order in which they look at it.
+std::vector<const Effect*> detectable() {
+    std::vector<const Effect*> effects;
+    for (const Effect* effect : catalogue()) {
+        if (effect->detect != nullptr) effects.push_back(effect);
+    }
+    std::stable_sort(effects.begin(), effects.end(),
+                     [](const Effect* a, const Effect* b) { return a->detect_turn < b->detect_turn; });
+    return effects;
+}
+
+Fault fault_of(const Effect& effect, const DetectedFault& found, const Motion& motion) {
+    Fault fault{{&effect, {}}, found.spoiled.size(), {}, found.words};
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+        const Parameter& parameter = effect.parameters[p];
+        fault.term.values.emplace_back(std::clamp(found.values.at(p), parameter.lower, parameter.upper));
+    }
+    // Samples next to each other are one stretch, however their times are rounded.
+    const double gap_s = 1.5 / motion.sample_rate.value();
+    for (const std::size_t k : found.spoiled) {
+        if (!fault.time_s.empty() && motion.time_s[k] - fault.time_s.back().to <= gap_s) {
+            fault.time_s.back().to = motion.time_s[k];
+        } else {
+            fault.time_s.push_back({motion.time_s[k], motion.time_s[k]});
+        }
+    }
+    return fault;
+}
+
+}  // namespace
+
+std::vector<Fault> find_faults(Case& looked_at, const FaultRules& rules) {
+    const LoggedTorque log{looked_at.motion,
+                           looked_at.torque_nm,
+                           looked_at.use,
+                           looked_at.moving_deg_s,
+                           step_of(looked_at.torque_nm, rules),
+                           noise_of(looked_at.torque_nm)};
+    std::vector<Fault> faults;
+    for (const Effect* effect : detectable()) {
+        const auto found = effect->detect(log, rules);
+        if (!found) continue;
+        faults.push_back(fault_of(*effect, *found, looked_at.motion));
+        for (const std::size_t k : found->spoiled) looked_at.use[k] = 0;
+        looked_at.step_nm = std::max(looked_at.step_nm, found->bends_nm);
+    }
+    return faults;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Lines of a residual: in time, where they are tones, and over the output angle, where they are orders.
+
+#include <vector>
+
+#include "diagnose/case/case.hpp"
+
+namespace ripplenotch {
+
+using LineRules = DiagnosisRules::LineRules;
+
+struct ResidualLine {
+    bool by_angle = false;
+    double frequency = 0.0;     ///< Hz, or cycles per degree of output
+    double amplitude_nm = 0.0;  ///< zero to peak
+    double prominence = 0.0;    ///< power over the median power about it
+};
+
+/// The strongest lines whose prominence is at least `least`, the strongest first, at most `most`.
+[[nodiscard]] std::vector<ResidualLine> standing_out(const Case& looked_at,
+                                                     const std::vector<double>& residual_nm, double least,
+                                                     std::size_t most, const LineRules& rules);
+
+/// Frequencies of the strongest tones of the residual, refined: at most rules.screening.most_tones.
+[[nodiscard]] std::vector<double> strongest_tones_hz(const Case& looked_at,
+                                                     const std::vector<double>& residual_nm,
+                                                     const DiagnosisRules& rules);
+
+/// The orders of a model's ripple, and the gear ratio with what its terms make of it.
+struct StatedRipple {
+    std::vector<double> orders;
+    GearRatio ratio;
+};
+[[nodiscard]] StatedRipple stated_ripple(const Model& model);
+
+/// Gear ratios that put `orders` on the strongest lines of a torque over the angle, the best first; how many
+/// were compared comes with them. At most rules.screening.most_ratios.
+struct RatioCandidates {
+    std::vector<double> ratios;
+    double compared = 1.0;
+};
+[[nodiscard]] RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
+                                            const std::vector<double>& orders, double about,
+                                            const DiagnosisRules& rules);
+
+}  // namespace ripplenotch

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/judging/doubt.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "diagnose/judging/evenness.hpp"
+#include "diagnose/judging/leftover.hpp"
+#include "diagnose/judging/wandering.hpp"
+#include "diagnose/search/bent_shape.hpp"
+#include "diagnose/search/hearing.hpp"
+#include "diagnose/search/search.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using DoubtRules = DiagnosisRules::DoubtRules;
+
+constexpr const char* more_is_left = "more is left unexplained than it explains";
+
+// Domains in which something unexplained casts doubt on an effect.
+bool touches(Domain domain, const Leftover& leftover) {
+    switch (leftover.kind) {
+        case LeftoverKind::order:
+        case LeftoverKind::tone:
+            return domain == Domain::order || domain == Domain::frequency;
+        case LeftoverKind::position:
+            return domain == Domain::position;
+        case LeftoverKind::speed:
+            return domain == Domain::speed;
+        case LeftoverKind::time:
+            return domain == Domain::time || domain == Domain::speed || domain == Domain::position;
+    }
+    return false;
+}
+
+std::string uneven_words(const Unevenness& uneven) {
+    return fmt::format("what is there only looks like it: its size differs by {:.0f} % {}",
+                       100.0 * std::min(uneven.part, 9.99), uneven.where);
+}
+
+bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
+
+bool of_one_kind(Domain a, Domain b) { return is_fast(a) == is_fast(b); }
+
+// The shortest time of an effect of the sensor, in samples; empty when it has none.
+std::optional<double> shortest_delay_samples(const Term& term, const Case& looked_at) {
+    std::optional<double> shortest;
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        const Parameter& parameter = term.effect->parameters[p];
+        if (term.effect->side != Side::sensor || parameter.unit != "s" || !term.values[p]) continue;
+        const double samples = std::abs(*term.values[p]) * looked_at.motion.sample_rate.value();
+        shortest = std::min(shortest.value_or(samples), samples);
+    }
+    return shortest;
+}
+
+// The size that is told best, and its standard error as a part of it.
+struct Size {
+    std::string_view name;
+    double error = 0.0;
+};
+
+// Empty for an effect without a size; of several the first that is told, or the last.
+std::optional<Size> size_of(const Term& stated, const std::vector<FittedValue>& values, std::size_t term,
+                            double most_error) {
+    std::optional<Size> size;
+    for (const FittedValue& value : values) {
+        const Parameter& parameter = stated.effect->parameters[value.parameter];
+        if (value.term != term || !parameter.linear) continue;
+        const double off = std::abs(value.value - parameter.neutral);
+        size = {parameter.name,
+                value.standard_error ? *value.standard_error / off : std::numeric_limits<double>::infinity()};
+        if (size->error < most_error) return size;
+    }
+    return size;
+}
+
+// What speaks against a finding by itself; empty reason when nothing does.
+struct Doubt {
+    FindingStatus status = FindingStatus::confirmed;
+    std::string reason;
+};
+
+// Too small to matter, or too small to be told.
+Doubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t term,
+                    const Evidence& evidence, Hearing& hearing) {
+    const Term& stated = model.stated.terms[term];
+    const DoubtRules& rules = bench.rules().doubt;
+    bool slight = hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
+                                evidence.share_sigma < bench.material_sigma());
+    // A delay of part of a sample is a matter of when a sample is said to be taken.
+    if (const auto samples = shortest_delay_samples(stated, bench.looked_at()); samples && !slight)
+        slight = hearing.asked("doubt.least_delay_samples", *samples, *samples < rules.least_delay_samples);
+    if (slight)
+        return {FindingStatus::immaterial,
+                fmt::format("it changes the torque by {:.2g} Nm rms beside a noise of {:.2g} Nm",
+                            evidence.share_nm, bench.noise().rms_nm)};
+    const double share_nm = std::max(evidence.share_nm, 1e-12);
+    if (hearing.asked("doubt.most_inflation", evidence.own_nm / share_nm,
+                      evidence.own_nm > rules.most_inflation * share_nm))
+        return {FindingStatus::unidentifiable,
+                "most of its torque is held in balance by another effect's: this log cannot tell them"};
+    // A size that its own error covers, unless another number tells that the effect is there.
+    const auto size = size_of(stated, model.values, term, rules.most_error);
+    if (size && hearing.asked("doubt.most_error", size->error, !(size->error < rules.most_error)))
+        return {FindingStatus::unidentifiable, fmt::format("this log does not tell its {}", size->name)};
+    return {};
+}
+
+Doubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::size_t term,
+                    const Evidence& evidence, Hearing& hearing) {
+    const DoubtRules& rules = bench.rules().doubt;
+    if (hearing.asked("doubt.least_closed_nm2", evidence.raw_gain,
+                      evidence.raw_gain <= rules.least_closed_nm2))
+        return {FindingStatus::tentative, "the gap is no smaller with it"};
+    if (const Bend bend = bend_of(bench, model, term); !bend.parameter.empty()) {
+        hearing.asked(bend.rule, bend.number, true);
+        return {FindingStatus::tentative,
+                fmt::format("its {} ends at a bound, or as good as that: it stands in for something else",
+                            bend.parameter)};
+    }
+    if (hearing.asked("doubt.least_elsewhere", evidence.elsewhere,
+                      evidence.elsewhere < rules.least_elsewhere))
+        return {FindingStatus::tentative,
+                "it explains one short stretch of the log and hardly anything elsewhere"};
+    const Unevenness uneven = unevenness(bench, model.stated, term);
+    if (hearing.asked("evenness.most_uneven", uneven.part, uneven.part > bench.rules().evenness.most_uneven))
+        return {FindingStatus::tentative, uneven_words(uneven)};
+    const auto above = above_wandering(bench, model.stated, term, evidence.raw_gain);
+    if (above && hearing.asked("wandering.least_above", *above, *above < bench.rules().wandering.least_above))
+        return {FindingStatus::tentative, "the log wanders nearly as slowly, and nearly as far, without it"};
+    return {};
+}
+
+}  // namespace
+
+void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& model, std::size_t term) {
+    Hearing hearing(bench.rules(), finding.decisions);
+    Doubt doubt = doubt_of_size(bench, model, term, finding.evidence, hearing);
+    if (doubt.status == FindingStatus::confirmed)
+        doubt = doubt_of_kind(bench, model, term, finding.evidence, hearing);
+    finding.status = doubt.status;
+    finding.reason = std::move(doubt.reason);
+}
+
+double excess_of(const ModelBench& bench, const Model& stated) {
+    const double left_nm = rms(bench.cleared_residual(stated));
+    return std::sqrt(std::max(left_nm * left_nm - portable::pow(bench.noise().rms_nm, 2), 0.0));
+}
+
+void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& bench,
+                         const std::vector<Leftover>& unexplained) {
+    const DoubtRules& rules = bench.rules().doubt;
+    const double share_nm = finding.evidence.share_nm;
+    Hearing hearing(bench.rules(), finding.decisions);
+    if (hearing.asked("doubt.outgrown", excess_nm / share_nm,
+                      excess_nm > rules.outgrown * share_nm && !unexplained.empty())) {
+        finding.status = FindingStatus::tentative;
+        finding.reason = more_is_left;
+    }
+    const Leftover* largest = nullptr;
+    for (const Leftover& place : unexplained) {
+        if (!touches(finding.term.effect->domain, place) ||
+            is_confined(place, bench.looked_at(), bench.rules()))
+            continue;
+        if (largest == nullptr || place.rms_nm > largest->rms_nm) largest = &place;
+    }
+    // What is left must not be small beside the finding to cast doubt on it.
+    if (largest == nullptr || !hearing.asked("doubt.casts_doubt", largest->rms_nm / share_nm,
+                                             !(largest->rms_nm < rules.casts_doubt * share_nm)))
+        return;
+    finding.status = FindingStatus::tentative;
+    finding.reason = "something unexplained is left where it acts";
+}
+
+void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& all) {
+    const DoubtRules& rules = all.doubt;
+    const Evidence& evidence = finding.evidence;
+    for (const Finding& other : findings) {
+        const Effect& larger = *other.term.effect;
+        const bool slight = evidence.share_sigma < rules.slight_sigma;
+        const bool stands = evidence.share_sigma > rules.stands_sigma &&
+                            evidence.own_nm > rules.shape_part * other.evidence.own_nm;
+        const double larger_nm = std::max(other.evidence.share_nm, other.evidence.own_nm);
+        if (evidence.share_nm > rules.shape_part * larger_nm || stands ||
+            !(slight || of_one_kind(finding.term.effect->domain, larger.domain)))
+            continue;
+        Hearing(all, finding.decisions).asked("doubt.shape_part", evidence.share_nm / larger_nm, true);
+        finding.status = is_doubtful(other) ? FindingStatus::tentative : FindingStatus::shape_correction;
+        finding.reason = fmt::format("it may only mend the form of {}, which is {}", larger.name,
+                                     is_doubtful(other) ? "in doubt" : "far larger");
+    }
+}
+
+bool is_trusted(const Finding& finding) {
+    return finding.status == FindingStatus::confirmed || finding.status == FindingStatus::ambiguous;
+}
+
+bool is_doubtful(const Finding& finding) {
+    return finding.status == FindingStatus::tentative || finding.status == FindingStatus::unidentifiable ||
+           finding.status == FindingStatus::not_reproduced;
+}
+
+bool doubt_beside(const ModelBench& bench, const Candidate& kept, std::size_t own_terms,
+                  std::vector<Finding>& findings) {
+    const double excess_nm = excess_of(bench, kept.stated);
+    bool changed = false;
+    std::size_t term = own_terms;
+    for (Finding& finding : findings) {
+        if (is_doubtful(finding)) continue;
+        const std::size_t place = term++;
+        const Domain domain = finding.term.effect->domain;
+        bool same = false, kin = false;
+        for (const Finding& other : findings) {
+            same = same || (is_doubtful(other) && other.term.effect->domain == domain);
+            kin = kin || (is_doubtful(other) && is_fast(other.term.effect->domain) && is_fast(domain));
+        }
+        if (!is_trusted(finding)) continue;
+        const Unevenness uneven = same ? unevenness(bench, kept.stated, place) : Unevenness{};
+        const DiagnosisRules& rules = bench.rules();
+        const double share_nm = finding.evidence.share_nm;
+        const bool outdone = (same || kin) && excess_nm > rules.doubt.outgrown * share_nm;
+        if (!outdone && uneven.part <= rules.evenness.most_uneven) continue;
+        Hearing hearing(rules, finding.decisions);
+        if (outdone)
+            hearing.asked("doubt.outgrown", excess_nm / share_nm, true);
+        else
+            hearing.asked("evenness.most_uneven", uneven.part, true);
+        finding.status = FindingStatus::tentative;
+        finding.reason = outdone ? more_is_left : uneven_words(uneven);
+        changed = true;
+    }
+    return changed;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What speaks against a finding: by itself, beside what is left unexplained, beside other findings.
+
+#include <cstddef>
+#include <vector>
+
+#include "diagnose/search/model_bench.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+
+namespace ripplenotch {
+
+/// Sets status and reason from the finding's own evidence, which must be filled in; confirmed when nothing
+/// speaks against it. `term`: its place in the model.
+void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& model, std::size_t term);
+
+/// Where more is left over than a finding explains, it may have fed on that. `excess_nm`: of excess_of().
+void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& bench,
+                         const std::vector<Leftover>& unexplained);
+
+/// A finding that is slight beside a far larger one may only mend its form. One whose torque is large, and of
+/// which others explain much because they look alike, is no such thing.
+void doubt_for_size(Finding& finding, const std::vector<Finding>& findings, const DiagnosisRules& rules);
+
+/// Once more without the findings in doubt: beside a surrogate of its kind a finding may look right that does
+/// not by itself. True when one was doubted.
+[[nodiscard]] bool doubt_beside(const ModelBench& bench, const Candidate& kept, std::size_t own_terms,
+                                std::vector<Finding>& findings);
+
+/// rms of what is left above the noise.
+[[nodiscard]] double excess_of(const ModelBench& bench, const Model& stated);
+
+/// True for findings that are named, alone or as one side of a tie.
+[[nodiscard]] bool is_trusted(const Finding& finding);
+/// True for findings that are told and not believed: they are not in the improved model.
+[[nodiscard]] bool is_doubtful(const Finding& finding);
+
+}  // namespace ripplenotch

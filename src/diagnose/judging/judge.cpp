@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/judging/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "diagnose/case/place.hpp"
+#include "diagnose/search/hearing.hpp"
+#include "diagnose/search/search.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// Part of the gain that is left when the stretch of the log that gives most of it is put aside.
+double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& without) {
+    const auto now = bench.residual(with), before = bench.residual(without);
+    const auto& time_s = bench.looked_at().motion.time_s;
+    const double start_s = time_s.front(),
+                 stretch_s = std::max((time_s.back() - start_s) / bench.rules().judge.stretches,
+                                      bench.rules().judge.least_stretch_s);
+    std::map<long, double> gains;
+    double total = 0.0, most = 0.0;
+    for (std::size_t r = 0; r < now.size(); ++r) {
+        const double gain = before[r] * before[r] - now[r] * now[r];
+        gains[static_cast<long>((time_s[bench.rows()[r]] - start_s) / stretch_s)] += gain;
+        total += gain;
+    }
+    for (const auto& [stretch, gain] : gains) most = std::max(most, gain);
+    return total > 0.0 ? (total - most) / total : 0.0;
+}
+
+// A curve over the speed with nothing but a size, such as its square.
+bool is_fixed_curve(const Effect& effect) {
+    return effect.side == Side::joint && effect.domain == Domain::speed &&
+           std::all_of(effect.parameters.begin(), effect.parameters.end(),
+                       [](const Parameter& parameter) { return parameter.linear; });
+}
+
+// By how much the rival is behind. Where something is left, two curves of fixed form that lie nearer to each
+// other than to what is there are not told: the form is neither's.
+double margin_of(const ModelBench& bench, const Candidate& model, const Candidate& other, bool is_form_alone,
+                 bool something_left) {
+    const double behind = other.criterion() - model.criterion();
+    if (!is_form_alone || !something_left || behind <= 0.0) return behind;
+    return std::max(behind - std::max(model.gain_left - bench.samples(), 0.0), 0.0);
+}
+
+void find_rivals(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
+                 std::span<const Effect* const> effects, bool something_left, Finding& finding) {
+    const DiagnosisRules::JudgeRules& rules = bench.rules().judge;
+    const std::size_t most = bench.work().ended() ? 1 : rules.most_rivals;
+    std::size_t tried = 0;
+    Hearing hearing(bench.rules(), finding.decisions);
+    for (const Trial& trial : screen(bench, fewer, effects)) {
+        if (trial.start.effect == model.stated.terms[term].effect) continue;
+        if (trial.gain < rules.rival_gain * finding.evidence.gain - rules.rival_slack || tried++ >= most)
+            break;
+        const Candidate other = with_trial(bench, fewer, trial);
+        const bool is_form_alone =
+            is_fixed_curve(*trial.start.effect) && is_fixed_curve(*model.stated.terms[term].effect);
+        const double margin = margin_of(bench, model, other, is_form_alone, something_left);
+        finding.alternatives.push_back({trial.start.effect->name, margin});
+        if (hearing.asked("judge.tie_margin", margin, margin < rules.tie_margin))
+            finding.status = FindingStatus::ambiguous;
+    }
+}
+
+double squares(const ModelBench& bench, const Model& stated) {
+    const auto left = bench.raw_residual(stated);
+    double sum = 0.0;
+    for (const std::size_t k : bench.rows()) sum += left[k] * left[k];
+    return sum;
+}
+
+Finding finding_of(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
+                   const std::vector<double>& torque_nm) {
+    Finding finding;
+    finding.term = model.stated.terms[term];
+    for (const FittedValue& value : model.values) {
+        if (value.term == term) finding.values.push_back(value);
+    }
+    Evidence& evidence = finding.evidence;
+    evidence.gain = fewer.gain_left - model.gain_left;
+    evidence.price = model.prices[term];
+    evidence.share_sigma = bench.share(model, fewer);
+    evidence.share_nm = evidence.share_sigma * bench.noise().rms_nm;
+    evidence.own_nm = rms(torque_nm);
+    evidence.raw_gain = squares(bench, fewer.stated) - squares(bench, model.stated);
+    evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
+    finding.where = place_of(bench.looked_at(), torque_nm, finding.term, bench.rules().place);
+    return finding;
+}
+
+}  // namespace
+
+std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std::size_t own_terms,
+                           std::span<const Effect* const> effects, const std::vector<Leftover>& unexplained) {
+    std::vector<Finding> findings;
+    const Candidate model = bench.with_errors(found);
+    for (std::size_t term = own_terms; term < model.stated.terms.size(); ++term) {
+        const Candidate fewer = without_term(bench, model, term);
+        Finding finding = finding_of(bench, model, fewer, term, bench.torque_of(model.stated, term));
+        // It was worth its price when it was added; beside later ones it may be worth less.
+        const Evidence& evidence = finding.evidence;
+        Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);
+        doubt_alone(finding, bench, model, term);
+        if (is_trusted(finding))
+            find_rivals(bench, model, fewer, term, effects, !unexplained.empty(), finding);
+        findings.push_back(std::move(finding));
+    }
+    const double excess_nm = excess_of(bench, model.stated);
+    for (Finding& finding : findings) {
+        if (!is_trusted(finding)) continue;
+        doubt_for_leftovers(finding, excess_nm, bench, unexplained);
+        doubt_for_size(finding, findings, bench.rules());
+    }
+    return findings;
+}
+
+std::string what_would_tell(const Effect& one, const Effect& other) {
+    for (const auto& [effect, rival] : {std::pair(&one, &other), std::pair(&other, &one)}) {
+        for (const LookAlike& alike : effect->look_alikes) {
+            if (alike.name == rival->name) return std::string(alike.told_by);
+        }
+    }
+    return "a log with rests, both directions, several speeds and a travel of more than a revolution";
+}
+
+Candidate believed(const ModelBench& bench, const Candidate& model, std::size_t own_terms,
+                   std::vector<Finding>& findings) {
+    while (true) {
+        Candidate kept = model;
+        for (std::size_t i = findings.size(); i-- > 0;) {
+            if (is_doubtful(findings[i])) kept = without_term(bench, kept, own_terms + i);
+        }
+        if (!doubt_beside(bench, kept, own_terms, findings)) return kept;
+    }
+}
+
+}  // namespace ripplenotch

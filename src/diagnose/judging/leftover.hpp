@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a residual still holds besides noise, and where: tests against time, tones, orders, position and
+// speed.
+
+#include <vector>
+
+#include "diagnose/search/model_bench.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+
+namespace ripplenotch {
+
+/// Disagreements of the model with the log that are both significant and large enough to matter, the largest
+/// first.
+[[nodiscard]] std::vector<Leftover> leftovers(const ModelBench& bench, const Model& stated);
+
+/// True when the leftover is confined to less than rules.leftover.confined_part of the log's time, so that
+/// the rest of the log can be diagnosed without it.
+[[nodiscard]] bool is_confined(const Leftover& leftover, const Case& looked_at, const DiagnosisRules& rules);
+
+}  // namespace ripplenotch

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/judging/values.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ripplenotch {
+namespace {
+
+// Samples that are left out because they stand at the limit are those that noise has brought there; those
+// that noise has kept below would stay, and the torque would come out too small. What counts is where the
+// torque is expected to be.
+void leave_out_limited(Case& looked_at, const Model& stated, const std::vector<Fault>& faults,
+                       double noise_nm, const DiagnosisRules::ValueRules& rules) {
+    for (const Fault& fault : faults) {
+        const auto place = fault.term.effect->range_limit;
+        if (!place) continue;
+        const double most_nm = *fault.term.values[*place] - rules.limit_deviations * noise_nm;
+        const auto expected_nm = predict_nm(stated, looked_at.motion);
+        std::vector<unsigned char> inside = looked_at.use;
+        for (std::size_t k = 0; k < looked_at.size(); ++k) {
+            if (std::abs(expected_nm[k]) > most_nm) inside[k] = 0;
+        }
+        const auto used = [](const std::vector<unsigned char>& use) {
+            return static_cast<std::size_t>(std::count(use.begin(), use.end(), 1));
+        };
+        if (used(inside) * rules.least_inside >= used(looked_at.use)) looked_at.use = inside;
+    }
+}
+
+}  // namespace
+
+Candidate told_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen,
+                      const std::vector<Fault>& faults, Work& work, const DiagnosisRules& rules) {
+    leave_out_limited(looked_at, chosen.stated, faults, noise.rms_nm, rules.values);
+    ModelBench bench(looked_at, noise, work, rules);
+    bench.settle_on(chosen.stated);
+    return bench.settled(chosen);
+}
+
+}  // namespace ripplenotch

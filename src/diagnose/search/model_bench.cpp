@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/search/model_bench.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "ripplenotch/model/prediction.hpp"
+
+namespace ripplenotch {
+
+double material_sigma(const Case& looked_at, const DiagnosisRules& rules) {
+    return looked_at.step_nm > 0.0 ? rules.judge.material_sigma_of_steps : rules.judge.material_sigma;
+}
+
+double Candidate::criterion() const { return gain_left + std::accumulate(prices.begin(), prices.end(), 0.0); }
+
+std::string_view material_rule(const Case& looked_at) {
+    return looked_at.step_nm > 0.0 ? "judge.material_sigma_of_steps" : "judge.material_sigma";
+}
+
+ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work,
+                       const DiagnosisRules& rules)
+    : case_(looked_at),
+      noise_(noise),
+      work_(work),
+      rules_(rules),
+      weighing_(looked_at.size(), looked_at.use, noise.color) {}
+
+std::optional<std::vector<Trial>> ModelBench::screened(const Model& beside,
+                                                       std::span<const Effect* const> effects) const {
+    for (const Screened& before : screened_) {
+        if (before.beside == beside && std::ranges::equal(before.effects, effects)) return before.trials;
+    }
+    return std::nullopt;
+}
+
+void ModelBench::remember(const Model& beside, std::span<const Effect* const> effects,
+                          std::vector<Trial> trials) const {
+    screened_.push_back({beside, {effects.begin(), effects.end()}, std::move(trials)});
+}
+
+void ModelBench::settle_on(const Model& model) {
+    screened_.clear();
+    weighing_.set_nuisance(motion_errors(case_, model, rules_.recording), noise_.white_nm);
+}
+
+Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
+                             int most_iterations, double settled) const {
+    return fitted(open, std::move(prices),
+                  {.first_guess = &first_guess,
+                   .most_iterations = most_iterations,
+                   .settled = settled,
+                   .errors = false,
+                   .weighing = &weighing_,
+                   .carriers = &carriers_});
+}
+
+std::vector<double> ModelBench::torque_of(const Model& stated, std::size_t term) const {
+    Model others = stated;
+    others.terms.erase(others.terms.begin() + static_cast<std::ptrdiff_t>(term));
+    return Prediction(others, case_.motion).added(stated.terms[term]);
+}
+
+Candidate ModelBench::with_errors(Candidate model) const {
+    const Fit there = fit(
+        model.open, case_.motion, case_.torque_nm,
+        {.first_guess = &model.stated, .most_iterations = 0, .weighing = &weighing_, .carriers = &carriers_});
+    work_.add(there.applied, case_.size());
+    model.values = there.values;
+    return model;
+}
+
+Candidate ModelBench::settled(const Candidate& model) const {
+    return fitted(model.open, model.prices,
+                  {.first_guess = &model.stated,
+                   .most_iterations = 30,
+                   .error_stretch = static_cast<std::size_t>(
+                       std::ceil(rules_.values.error_stretch_s * case_.motion.sample_rate.value())),
+                   .weighing = &weighing_,
+                   .carriers = &carriers_});
+}
+
+Candidate ModelBench::fitted(const Model& open, std::vector<double> prices, const FitOptions& options) const {
+    const Fit found = fit(open, case_.motion, case_.torque_nm, options);
+    work_.add(found.applied, case_.size());
+    const double squares = found.residual_rms_nm * found.residual_rms_nm * static_cast<double>(found.samples);
+    return {open,
+            found.model,
+            found.values,
+            std::move(prices),
+            squares / (noise_.white_nm * noise_.white_nm),
+            found.converged};
+}
+
+double ModelBench::share(const Candidate& with, const Candidate& without) const {
+    const auto left_with = raw_residual(with.stated), left_without = raw_residual(without.stated);
+    double raw = 0.0, moved = 0.0;
+    for (const std::size_t k : rows()) {
+        raw += (left_without[k] * left_without[k] - left_with[k] * left_with[k]) / samples();
+        moved += (left_without[k] - left_with[k]) * (left_without[k] - left_with[k]) / samples();
+    }
+    // Of coloured noise the whitened gain is the sharper measure, of a slow effect the torque itself; nothing
+    // explains more than the torque that it brings.
+    const double white = (without.gain_left - with.gain_left) / samples() * noise_.white_nm * noise_.white_nm;
+    return std::sqrt(std::max({std::min(white, moved), raw, 0.0})) / noise_.rms_nm;
+}
+
+std::vector<double> ModelBench::cleared_residual(const Model& stated) const {
+    Weighing plain(case_.size(), case_.use, {});
+    plain.set_nuisance(motion_errors(case_, stated, rules_.recording), noise_.rms_nm);
+    const auto cleared = plain(raw_residual(stated));
+    // Weighing leaves out what noise_.color makes unusable as well; here only rows() are told.
+    std::vector<double> all(case_.size(), 0.0), told;
+    for (std::size_t r = 0; r < plain.rows().size(); ++r) all[plain.rows()[r]] = cleared[r];
+    for (const std::size_t k : rows()) told.push_back(all[k]);
+    return told;
+}
+
+double ModelBench::floor_nm(const Model& stated) const {
+    const auto left = raw_residual(stated), cleared = cleared_residual(stated);
+    double all = 0.0, beside = 0.0;
+    for (std::size_t r = 0; r < rows().size(); ++r) {
+        all += left[rows()[r]] * left[rows()[r]];
+        beside += cleared[r] * cleared[r];
+    }
+    return std::sqrt(noise_.rms_nm * noise_.rms_nm + std::max(all - beside, 0.0) / samples());
+}
+
+std::vector<double> ModelBench::raw_residual(const Model& stated) const {
+    std::vector<double> left = predict_nm(stated, case_.motion);
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] = case_.torque_nm[k] - left[k];
+    return left;
+}
+
+std::vector<double> ModelBench::residual(const Model& stated) const {
+    std::vector<double> left = weighing_(raw_residual(stated));
+    left.resize(weighing_.rows().size());
+    for (double& value : left) value /= noise_.white_nm;
+    return left;
+}
+
+}  // namespace ripplenotch

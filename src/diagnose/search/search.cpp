@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/search/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "diagnose/search/bent_shape.hpp"
+#include "diagnose/search/hearing.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using SearchRules = DiagnosisRules::SearchRules;
+
+// The lines of a trial are names of their own: ripple of order 3 and of order 4 may both be there.
+bool same_place(const Term& a, const Term& b) {
+    if (a.effect != b.effect) return false;
+    for (std::size_t p = 0; p < a.values.size(); ++p) {
+        if (a.effect->parameters[p].left_out == LeftOut::refused && a.values[p] != b.values[p]) return false;
+    }
+    return true;
+}
+
+bool newest_is_bent(const ModelBench& bench, const Candidate& model) {
+    return !bend_of(bench, model, model.stated.terms.size() - 1).parameter.empty();
+}
+
+// A shape that is bent as far as it goes stands in for something else: before it is taken, whatever closes a
+// fair part of what it closes has its turn.
+// `tried`: the finalists, the best first.
+std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate& now,
+                                       const std::vector<Trial>& trials, std::vector<Candidate>& tried) {
+    const SearchRules& rules = bench.rules().search;
+    const double worth = trials.empty() ? 0.0 : std::max(rules.within_reach * trials[0].score(), 0.0);
+    for (const Trial& trial : trials) {
+        if (tried.size() >= rules.finalists || trial.score() <= worth) break;
+        if (!tried.empty() && bench.work().is_over()) break;
+        tried.push_back(with_trial(bench, now, trial));
+    }
+    if (tried.empty()) return std::nullopt;
+    std::stable_sort(tried.begin(), tried.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.criterion() < b.criterion(); });
+    const double most = now.criterion() - tried[0].criterion();
+    for (const Candidate& next : tried) {
+        if (now.criterion() - next.criterion() < rules.instead_of_bent * most) break;
+        if (!newest_is_bent(bench, next)) return next;
+    }
+    return tried[0];
+}
+
+bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& next,
+              std::vector<Decision>& decisions) {
+    Hearing hearing(bench.rules(), decisions);
+    const double gain = now.gain_left - next.gain_left, samples = bench.samples();
+    if (hearing.asked_price(gain, next.prices.back(), next.criterion() >= now.criterion())) return false;
+    const double share = bench.share(next, now);
+    if (hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma())) return false;
+    const double gap = now.gain_left - samples;
+    const SearchRules& rules = bench.rules().search;
+    const bool open = gap > rules.open_gap * samples;
+    return !open || !hearing.asked("search.fair_part", gain / gap, gain < rules.fair_part * gap);
+}
+
+// Why each finalist was not added; where none was fitted, why the best of the screening was none.
+std::vector<RefusedCandidate> refused_by(const ModelBench& bench, const Candidate& now,
+                                         const std::vector<Trial>& trials,
+                                         const std::vector<Candidate>& tried) {
+    std::vector<RefusedCandidate> refused;
+    for (const Candidate& next : tried) {
+        RefusedCandidate candidate{next.stated.terms.back(), {}};
+        // One that passes alone was left out for a better one that did not.
+        if (!worth_it(bench, now, next, candidate.decisions)) refused.push_back(std::move(candidate));
+    }
+    if (!tried.empty() || trials.empty()) return refused;
+    RefusedCandidate best{trials[0].start, {}};
+    Hearing(bench.rules(), best.decisions).asked_price(trials[0].gain, trials[0].price, true);
+    return {best};
+}
+
+// `spared`: how many of the newest were judged a moment ago.
+void drop_needless(const ModelBench& bench, Candidate& now, std::size_t own_terms, std::size_t spared = 1) {
+    while (now.stated.terms.size() > own_terms + spared) {
+        std::optional<Candidate> best;
+        for (std::size_t term = own_terms; term + spared < now.stated.terms.size(); ++term) {
+            if (bench.work().is_over()) return;
+            Candidate fewer = without_term(bench, now, term);
+            if (!best || fewer.criterion() < best->criterion()) best = std::move(fewer);
+        }
+        if (!best || best->criterion() >= now.criterion()) return;
+        now = std::move(*best);
+    }
+}
+
+// A second term of one name that changes next to nothing mends the form of the first; while it is there,
+// neither shows what it is worth.
+void drop_slight_twins(const ModelBench& bench, Candidate& now, std::size_t own_terms) {
+    for (std::size_t term = now.stated.terms.size(); term-- > own_terms;) {
+        bool has_twin = false;
+        for (std::size_t other = own_terms; other < now.stated.terms.size(); ++other)
+            has_twin =
+                has_twin || (other != term && same_place(now.stated.terms[other], now.stated.terms[term]));
+        if (!has_twin) continue;
+        Candidate fewer = without_term(bench, now, term);
+        if (bench.share(now, fewer) < bench.material_sigma()) now = std::move(fewer);
+    }
+}
+
+bool swap_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
+               std::span<const Effect* const> effects) {
+    const SearchRules& rules = bench.rules().search;
+    for (std::size_t term = own_terms; term < now.stated.terms.size(); ++term) {
+        if (bench.work().is_over()) return false;
+        const Candidate fewer = without_term(bench, now, term);
+        const double gain = fewer.gain_left - now.gain_left;
+        std::size_t tried = 0;
+        for (const Trial& trial : screen(bench, fewer, effects)) {
+            if (same_place(trial.start, now.stated.terms[term])) continue;
+            if (trial.gain < rules.swap_gain * gain || tried++ >= rules.most_swaps) break;
+            const Candidate other = with_trial(bench, fewer, trial);
+            if (other.criterion() < now.criterion() - rules.swap_margin && !newest_is_bent(bench, other)) {
+                now = other;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+Candidate baseline(const ModelBench& bench, const Model& model) {
+    return bench.fitted(model, model, std::vector<double>(model.terms.size(), 0.0), 30);
+}
+
+Candidate with_trial(const ModelBench& bench, const Candidate& model, const Trial& trial) {
+    Model open = model.open, guess = model.stated;
+    open.terms.push_back(trial.open);
+    guess.terms.push_back(trial.start);
+    std::vector<double> prices = model.prices;
+    prices.push_back(trial.price);
+    return bench.fitted(open, guess, std::move(prices), bench.work().ended() ? 4 : 12,
+                        bench.rules().search.finalist_settled);
+}
+
+Candidate without_term(const ModelBench& bench, const Candidate& model, std::size_t term) {
+    Model open = model.open, guess = model.stated;
+    std::vector<double> prices = model.prices;
+    const auto at = static_cast<std::ptrdiff_t>(term);
+    open.terms.erase(open.terms.begin() + at);
+    guess.terms.erase(guess.terms.begin() + at);
+    prices.erase(prices.begin() + at);
+    // After the end only a size is wanted.
+    if (bench.work().ended())
+        return bench.fitted(open, guess, std::move(prices), 3, bench.rules().search.finalist_settled);
+    return bench.fitted(open, guess, std::move(prices));
+}
+
+Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
+                 std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
+    const SearchRules& rules = bench.rules().search;
+    Candidate now = start;
+    const auto add_all = [&] {
+        refused.clear();
+        // An addition may make an earlier one needless, and that one come back.
+        for (std::size_t added = 0;
+             added < rules.most_additions && now.stated.terms.size() < own_terms + rules.most_names;
+             ++added) {
+            if (bench.work().is_over()) return;
+            const std::vector<Trial> trials = screen(bench, now, effects);
+            std::vector<Candidate> tried;
+            std::vector<Decision> decisions;
+            const auto next = best_addition(bench, now, trials, tried);
+            if (!next || !worth_it(bench, now, *next, decisions)) {
+                refused = refused_by(bench, now, trials, tried);
+                return;
+            }
+            now = *next;
+            // The motion's errors act through the model's own torque, which has changed.
+            bench.settle_on(now.stated);
+            now = bench.fitted(now.open, now.stated, now.prices);
+            drop_needless(bench, now, own_terms);
+        }
+    };
+    drop_needless(bench, now, own_terms, 0);
+    add_all();
+    for (std::size_t round = 0; round < rules.swap_rounds; ++round) {
+        if (!swap_once(bench, now, own_terms, effects)) break;
+        drop_needless(bench, now, own_terms);
+        add_all();
+    }
+    drop_slight_twins(bench, now, own_terms);
+    return now;
+}
+
+}  // namespace ripplenotch

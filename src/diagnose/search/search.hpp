@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which effects to add to a model: the best first, as long as each is worth its price; then whatever later
+// ones made needless is dropped, and each is tried against its rivals.
+
+#include <span>
+#include <vector>
+
+#include "diagnose/search/screening.hpp"
+#include "ripplenotch/diagnose/diagnosis.hpp"
+
+namespace ripplenotch {
+
+/// The user's terms and no others, fitted.
+[[nodiscard]] Candidate baseline(const ModelBench& bench, const Model& model);
+
+/// `start` with what should be added. `own_terms`: how many of its terms are the user's and stay. `refused`:
+/// what was not added in the last step, and why.
+[[nodiscard]] Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
+                               std::span<const Effect* const> effects,
+                               std::vector<RefusedCandidate>& refused);
+
+[[nodiscard]] Candidate without_term(const ModelBench& bench, const Candidate& model, std::size_t term);
+[[nodiscard]] Candidate with_trial(const ModelBench& bench, const Candidate& model, const Trial& trial);
+
+}  // namespace ripplenotch

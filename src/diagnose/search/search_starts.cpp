@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "diagnose/search/search_starts.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace ripplenotch {
+namespace {
+
+// The value of the parameter that makes the ratio: the ratio is affine in it.
+double value_for_ratio(const Effect& effect, std::size_t p, const Hints& hints, double wanted) {
+    std::vector<double> values;
+    for (const Parameter& parameter : effect.parameters) values.push_back(parameter.neutral);
+    Motion scratch;
+    GearRatio at_neutral = hints.ratio, at_next = hints.ratio;
+    effect.change_motion(values, scratch, at_neutral);
+    values[p] += 1.0;
+    effect.change_motion(values, scratch, at_next);
+    const double slope = at_next.value() - at_neutral.value();
+    return effect.parameters[p].neutral + (wanted - at_neutral.value()) / slope;
+}
+
+std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hints, double samples,
+                          double& cells) {
+    const Parameter& parameter = effect.parameters[p];
+    std::vector<double> values;
+    if (parameter.tried.empty() && parameter.hint != Hint::tones) values.push_back(parameter.start);
+    values.insert(values.end(), parameter.tried.begin(), parameter.tried.end());
+    cells *= static_cast<double>(std::max<std::size_t>(values.size(), 1));
+    if (parameter.hint == Hint::ripple_orders && hints.orders.size() > 1) {
+        values.insert(values.end(), hints.orders.begin(), hints.orders.end());
+        cells *= static_cast<double>(values.size());
+    }
+    if (parameter.hint == Hint::tones) {
+        values = hints.tones_hz;
+        cells *= samples / 2.0;
+    }
+    if (parameter.hint == Hint::gear_ratios && !hints.ratios.ratios.empty()) {
+        cells += hints.ratios.compared;
+        for (const double ratio : hints.ratios.ratios)
+            values.push_back(value_for_ratio(effect, p, hints, ratio));
+    }
+    std::erase_if(values, [&](double value) { return !allows(parameter, value); });
+    return values;
+}
+
+}  // namespace
+
+Hints hints_of(const ModelBench& bench, const Model& stated) {
+    Hints hints;
+    hints.tones_hz = strongest_tones_hz(bench.looked_at(), bench.raw_residual(stated), bench.rules());
+    StatedRipple ripple = stated_ripple(stated);
+    hints.ratio = ripple.ratio;
+    hints.orders = std::move(ripple.orders);
+    Model without_ripple = stated;
+    std::erase_if(without_ripple.terms,
+                  [](const Term& term) { return term.effect->ripple_order.has_value(); });
+    hints.ratios = likely_ratios(bench.looked_at(), bench.raw_residual(without_ripple), hints.orders,
+                                 hints.ratio.value(), bench.rules());
+    return hints;
+}
+
+std::vector<Term> starts_of(const Effect& effect, const Hints& hints, double samples, double& cells) {
+    std::vector<Term> starts{{&effect, {}}};
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+        const Parameter& parameter = effect.parameters[p];
+        const bool phase = effect.polar && p == effect.polar->phase;
+        std::vector<double> values{parameter.linear || phase ? parameter.start : parameter.neutral};
+        if (!parameter.linear && !phase) values = tried(effect, p, hints, samples, cells);
+        std::vector<Term> more;
+        for (const Term& start : starts) {
+            for (const double value : values) {
+                more.push_back(start);
+                more.back().values.emplace_back(value);
+            }
+        }
+        starts = std::move(more);
+    }
+    // A ripple effect of the very order that the model has already tells nothing new, but a screening
+    // finds that out by itself.
+    return starts;
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Where the search for an effect may begin: the values that the catalogue says to try, and those that the
+// residual itself shows.
+
+#include <vector>
+
+#include "diagnose/case/lines.hpp"
+#include "diagnose/search/model_bench.hpp"
+
+namespace ripplenotch {
+
+/// What the whole residual shows: lines finer than a thinned log resolves.
+struct Hints {
+    std::vector<double> tones_hz, orders;
+    GearRatio ratio;
+    RatioCandidates ratios;
+};
+
+[[nodiscard]] Hints hints_of(const ModelBench& bench, const Model& stated);
+
+/// The effect with every combination of the values at which its search may begin. `samples`: of the log.
+/// `cells` is multiplied by the number of places that were compared to choose them.
+[[nodiscard]] std::vector<Term> starts_of(const Effect& effect, const Hints& hints, double samples,
+                                          double& cells);
+
+}  // namespace ripplenotch
