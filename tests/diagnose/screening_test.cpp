@@ -45,6 +45,22 @@ TEST_CASE("where nothing is missing no trial is worth its price, and a rarer fal
     CHECK(dearer[0].price - trials[0].price == Approx(2.0 * std::log(100.0)));
 }
 
+TEST_CASE("ripple behind a delay and a hysteresis that the model has is ranked first") {
+    const auto known = {std::string_view("delay,delay_s=0.0114"),
+                        std::string_view("hysteresis,torque_nm=1,width_deg=4")};
+    Model model = joint_with(known), truth = joint_with(known);
+    truth.terms.push_back(parse_term("ripple,order=4,amplitude_nm=0.2,phase_deg=-97"));
+    DiagnosisRules rules;
+    rules.screening.sketch_samples = 1024;
+    const TestBench on(case_of(plain_log(truth, 76)), rules);
+    const auto trials = screen(on.bench, on.fitted(model),
+                               Effects{&find_effect("coulomb-friction"), &find_effect("viscous-friction"),
+                                       &find_effect("ripple"), &find_effect("output-ripple")});
+    REQUIRE(!trials.empty());
+    CHECK(trials[0].start.effect->name == "ripple");
+    CHECK(*trials[0].start.values[0] == 4.0);
+}
+
 TEST_CASE("a screening beside the same model is kept, but not for other effects, and not after settling") {
     TestBench on(case_of(plain_log(joint(), 75)));
     const Candidate model = on.fitted(joint());

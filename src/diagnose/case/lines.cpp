@@ -187,6 +187,7 @@ RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& 
     found.compared = static_cast<double>(last - first);
     for (std::size_t i = 0; i < std::min(rules.screening.most_ratios, tops.size()); ++i)
         found.ratios.push_back(static_cast<double>(tops[i]) * step);
+    if (!tops.empty()) found.strongest_nm2 = score[tops.front()];
     return found;
 }
 

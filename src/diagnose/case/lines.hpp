@@ -39,6 +39,7 @@ struct StatedRipple {
 struct RatioCandidates {
     std::vector<double> ratios;
     double compared = 1.0;
+    double strongest_nm2 = 0.0;  ///< squared amplitudes that the orders have at the best one, in all
 };
 [[nodiscard]] RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& torque_nm,
                                             const std::vector<double>& orders, double about,

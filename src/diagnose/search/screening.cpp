@@ -81,6 +81,19 @@ bool is_there_already(const Term& tried, const Candidate& model) {
     });
 }
 
+// Of the samples that a screening looks at. The model itself is run along the whole log: what it remembers
+// (hysteresis, lag) lies in samples that were left out.
+VectorXd residual_of(const ModelBench& bench, const Case& some, const Model& stated) {
+    const std::vector<double> whole = bench.raw_residual(stated);
+    const std::vector<std::size_t>& rows = bench.looked_at().row;
+    VectorXd residual(static_cast<Index>(some.size()));
+    for (std::size_t k = 0; k < some.size(); ++k) {
+        const auto at = std::ranges::lower_bound(rows, some.row[k]) - rows.begin();
+        residual[static_cast<Index>(k)] = whole[static_cast<std::size_t>(at)];
+    }
+    return residual;
+}
+
 class Screening {
   public:
     Screening(const ModelBench& bench, const Candidate& model, Case some, const Hints& hints)
@@ -94,9 +107,8 @@ class Screening {
         counts_.resize(static_cast<Index>(case_.size()));
         for (std::size_t k = 0; k < case_.size(); ++k)
             counts_[static_cast<Index>(k)] = case_.use[k] != 0 ? 1.0 : 0.0;
-        torque_ = to_vector(case_.torque_nm);
-        residual_ = counted(torque_ - to_vector(prediction_.torque_nm()));
-        basis_ = orthonormal(columns_of(model.open, prediction_, false), torque_.size());
+        residual_ = counted(residual_of(bench, case_, model.stated));
+        basis_ = orthonormal(columns_of(model.open, prediction_, false), residual_.size());
         left_ = outside(residual_);
         // Gains of the thinned log in those of the whole one.
         unit_ = samples_ / std::max(counts_.sum(), 1.0) / (bench.noise().rms_nm * bench.noise().rms_nm);
@@ -218,8 +230,9 @@ class Screening {
         with.terms.push_back(start);
         open.terms.push_back(start);
         const Prediction changed(with, case_.motion, &carriers_);
-        const MatrixXd basis = orthonormal(columns_of(open, changed, true), torque_.size());
-        const VectorXd left = counted(torque_ - to_vector(changed.torque_nm()));
+        const MatrixXd basis = orthonormal(columns_of(open, changed, true), residual_.size());
+        const VectorXd left =
+            residual_ + counted(to_vector(prediction_.torque_nm()) - to_vector(changed.torque_nm()));
         work_.add(changed.applied(), case_.size());
         return left_.squaredNorm() - outside_of(basis, left).squaredNorm();
     }
@@ -231,7 +244,7 @@ class Screening {
     Prediction prediction_;
     double samples_, unit_ = 1.0;
     Work& work_;
-    VectorXd counts_, torque_, residual_, left_;
+    VectorXd counts_, residual_, left_;
     MatrixXd basis_;
     const Hints& hints_;
 };
@@ -247,8 +260,11 @@ std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
     // Delays and lags look at neighbouring samples, which a thinned log does not have.
     const Screening stretches(bench, model, blocks(bench.looked_at(), count, bench.rules().recording), hints);
     std::vector<Trial> trials;
+    // A thinned log has no delay of a few samples, and what lies behind one has the wrong phase there.
+    const bool delayed = std::ranges::any_of(
+        model.stated.terms, [](const Term& term) { return term.effect->side == Side::sensor; });
     for (const Effect* effect : effects) {
-        const Screening& screening = effect->side == Side::sensor ? stretches : thinned;
+        const Screening& screening = delayed || effect->side == Side::sensor ? stretches : thinned;
         if (auto trial = screening.best(*effect, effects.size())) trials.push_back(*trial);
     }
     std::stable_sort(trials.begin(), trials.end(),

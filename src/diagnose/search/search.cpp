@@ -7,6 +7,7 @@
 
 #include "diagnose/search/bent_shape.hpp"
 #include "diagnose/search/hearing.hpp"
+#include "diagnose/search/late_ratio.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -20,6 +21,13 @@ bool same_place(const Term& a, const Term& b) {
         if (a.effect->parameters[p].left_out == LeftOut::refused && a.values[p] != b.values[p]) return false;
     }
     return true;
+}
+
+// Whether the newest term has the name of an earlier one.
+bool has_twin(const Candidate& model) {
+    const std::vector<Term>& terms = model.stated.terms;
+    return std::any_of(terms.begin(), terms.end() - 1,
+                       [&](const Term& term) { return same_place(term, terms.back()); });
 }
 
 bool newest_is_bent(const ModelBench& bench, const Candidate& model) {
@@ -60,6 +68,23 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     const SearchRules& rules = bench.rules().search;
     const bool open = gap > rules.open_gap * samples;
     return !open || !hearing.asked("search.fair_part", gain / gap, gain < rules.fair_part * gap);
+}
+
+// A delay and a gear ratio that are both there, where each is worth it beside the other and the two close
+// more than the best effect by itself.
+std::optional<Candidate> late_ratio_instead(const ModelBench& bench, const Candidate& now,
+                                            const std::optional<Candidate>& alone,
+                                            std::span<const Effect* const> effects, std::size_t room) {
+    if (room < 2) return std::nullopt;
+    if (now.gain_left - bench.samples() < bench.rules().search.open_gap * bench.samples())
+        return std::nullopt;
+    auto both = with_late_ratio(bench, now, effects);
+    if (!both || (alone && alone->criterion() < both->criterion())) return std::nullopt;
+    for (std::size_t term = both->stated.terms.size() - 2; term < both->stated.terms.size(); ++term) {
+        std::vector<Decision> decisions;
+        if (!worth_it(bench, without_term(bench, *both, term), *both, decisions)) return std::nullopt;
+    }
+    return both;
 }
 
 // Why each finalist was not added; where none was fitted, why the best of the screening was none.
@@ -170,10 +195,18 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
             const std::vector<Trial> trials = screen(bench, now, effects);
             std::vector<Candidate> tried;
             std::vector<Decision> decisions;
-            const auto next = best_addition(bench, now, trials, tried);
-            if (!next || !worth_it(bench, now, *next, decisions)) {
+            auto next = best_addition(bench, now, trials, tried);
+            if (auto both = late_ratio_instead(bench, now, next, effects,
+                                               own_terms + rules.most_names - now.stated.terms.size())) {
+                next = std::move(both);
+            } else if (!next || !worth_it(bench, now, *next, decisions)) {
                 refused = refused_by(bench, now, trials, tried);
                 return;
+            }
+            // A second one of a name mends the form of the first, which another name may have instead.
+            if (has_twin(*next) && swap_once(bench, now, own_terms, effects)) {
+                drop_needless(bench, now, own_terms);
+                continue;
             }
             now = *next;
             // The motion's errors act through the model's own torque, which has changed.

@@ -4,21 +4,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "diagnose/search/late_ratio.hpp"
+
 namespace ripplenotch {
 namespace {
-
-// The value of the parameter that makes the ratio: the ratio is affine in it.
-double value_for_ratio(const Effect& effect, std::size_t p, const Hints& hints, double wanted) {
-    std::vector<double> values;
-    for (const Parameter& parameter : effect.parameters) values.push_back(parameter.neutral);
-    Motion scratch;
-    GearRatio at_neutral = hints.ratio, at_next = hints.ratio;
-    effect.change_motion(values, scratch, at_neutral);
-    values[p] += 1.0;
-    effect.change_motion(values, scratch, at_next);
-    const double slope = at_next.value() - at_neutral.value();
-    return effect.parameters[p].neutral + (wanted - at_neutral.value()) / slope;
-}
 
 std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hints, double samples,
                           double& cells) {
@@ -38,13 +27,26 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
     if (parameter.hint == Hint::gear_ratios && !hints.ratios.ratios.empty()) {
         cells += hints.ratios.compared;
         for (const double ratio : hints.ratios.ratios)
-            values.push_back(value_for_ratio(effect, p, hints, ratio));
+            values.push_back(value_for_ratio(effect, p, hints.ratio, ratio));
     }
     std::erase_if(values, [&](double value) { return !allows(parameter, value); });
     return values;
 }
 
 }  // namespace
+
+double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated, double wanted) {
+    // The ratio is affine in the parameter.
+    std::vector<double> values;
+    for (const Parameter& other : effect.parameters) values.push_back(other.neutral);
+    Motion scratch;
+    GearRatio at_neutral = stated, at_next = stated;
+    effect.change_motion(values, scratch, at_neutral);
+    values[parameter] += 1.0;
+    effect.change_motion(values, scratch, at_next);
+    const double slope = at_next.value() - at_neutral.value();
+    return effect.parameters[parameter].neutral + (wanted - at_neutral.value()) / slope;
+}
 
 Hints hints_of(const ModelBench& bench, const Model& stated) {
     Hints hints;
@@ -55,8 +57,9 @@ Hints hints_of(const ModelBench& bench, const Model& stated) {
     Model without_ripple = stated;
     std::erase_if(without_ripple.terms,
                   [](const Term& term) { return term.effect->ripple_order.has_value(); });
-    hints.ratios = likely_ratios(bench.looked_at(), bench.raw_residual(without_ripple), hints.orders,
-                                 hints.ratio.value(), bench.rules());
+    hints.ratios =
+        likely_ratios(seen_late(bench.looked_at(), lateness_of(stated)), bench.raw_residual(without_ripple),
+                      hints.orders, hints.ratio.value(), bench.rules());
     return hints;
 }
 

@@ -17,6 +17,10 @@ struct Hints {
     RatioCandidates ratios;
 };
 
+/// What the parameter has to be for the effect to make `stated` the ratio `wanted`.
+[[nodiscard]] double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated,
+                                     double wanted);
+
 [[nodiscard]] Hints hints_of(const ModelBench& bench, const Model& stated);
 
 /// The effect with every combination of the values at which its search may begin. `samples`: of the log.
