@@ -83,6 +83,28 @@ TEST_CASE("steps finer than the noise are no fault: a log of four decimals is as
     CHECK(names(find_faults(finer, standard.faults)).empty());
 }
 
+TEST_CASE("a torque that stays on a step while the joint runs fast is not held, one that then jumps is") {
+    Case c = case_with({});
+    // Ripple that a lag takes away at speed: slow, it goes up and down the steps; fast, it stays on one.
+    for (std::size_t k = 0; k < c.size(); ++k) {
+        const double left = std::max(0.0, 1.0 - std::abs(c.motion.velocity_deg_s[k]) / 60.0);
+        const double turned = 2.0 * std::numbers::pi * c.motion.position_deg[k] / 3.6;
+        c.torque_nm[k] = 0.4 * std::round(4.0 * left * std::sin(turned));
+    }
+    CHECK(names(find_faults(c, standard.faults)) == Names{"quantization"});
+    std::size_t held = 0;
+    for (std::size_t k = 1; k < c.size(); ++k) {
+        if (std::abs(c.motion.velocity_deg_s[k]) < 60.0 || std::abs(c.motion.velocity_deg_s[k - 1]) >= 60.0)
+            continue;
+        // What stands before the fast stretch is held on through it.
+        for (std::size_t i = k; i < c.size() && std::abs(c.motion.velocity_deg_s[i]) >= 60.0; ++i)
+            c.torque_nm[i] = k % 2 == 0 ? 1.2 : -1.2;
+        ++held;
+    }
+    REQUIRE(held >= 3);
+    CHECK(names(find_faults(c, standard.faults)) == Names{"quantization", "dropout"});
+}
+
 TEST_CASE("a resonance and a burst of noise are no spikes") {
     Case c = case_with({"resonance,frequency_hz=30,damping=0.05"});
     CHECK(names(find_faults(c, standard.faults)) == Names{});

@@ -102,6 +102,13 @@ class Runs {
         return rules_.held_turns * *high;
     }
 
+    // A torque that stays on a step by itself leaves it for the next one; what was held catches up at once.
+    [[nodiscard]] bool jumps_at(std::size_t end) const {
+        if (log_.step_nm == 0.0) return true;
+        return end < log_.torque_nm.size() &&
+               std::abs(log_.torque_nm[end] - log_.torque_nm[end - 1]) > 1.5 * log_.step_nm;
+    }
+
   private:
     const LoggedTorque& log_;
     const FaultRules& rules_;
@@ -113,15 +120,19 @@ std::optional<DetectedFault> detect(const LoggedTorque& log, const FaultRules& r
     const double least_turn_deg = runs.least_turn_deg();
     DetectedFault fault;
     std::vector<double> lengths;
+    std::size_t jumps = 0;
     for (std::size_t k = 1; k < n;) {
         const std::size_t end = runs.end_of_run(k);
         if (end - k >= unlikely && runs.turn_deg(k - 1, end) >= least_turn_deg) {
             lengths.push_back(static_cast<double>(end - k));
+            if (runs.jumps_at(end)) ++jumps;
             for (std::size_t i = k; i < end; ++i) fault.spoiled.push_back(i);
         }
         k = std::max(end, k + 1);
     }
-    if (lengths.empty()) return std::nullopt;
+    if (lengths.empty() ||
+        static_cast<double>(jumps) < rules.jumping_part * static_cast<double>(lengths.size()))
+        return std::nullopt;
     const double rate = log.motion.sample_rate.value();
     double mean = 0.0;
     for (const double length : lengths) mean += length / static_cast<double>(lengths.size());
