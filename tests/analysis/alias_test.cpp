@@ -88,7 +88,8 @@ TEST_CASE("in motion of varying speed an order beyond half the sample rate is fo
 }
 
 TEST_CASE(
-    "images that explain a line alike are listed; a hint chooses among them, but not against the samples") {
+    "images that explain a line alike are listed, and a hint chooses among them, but not against the "
+    "samples") {
     const std::vector<Fold> folds{{250.0, 18.3}, {100.5, 18.0}, {199.6, 18.2}};
     const FoldQuestion question{49.5, 2.0, 17.8, 19.0, folds};
     const FoldAnswer open = answer_fold(question, std::nullopt);

@@ -151,7 +151,7 @@ TEST_CASE("lines that never part within a window are left out, not invented") {
     CHECK(tracks.rows_not_separable > 0);
 }
 
-TEST_CASE("rest, gaps and turning back end a run; too slow windows are counted") {
+TEST_CASE("rest, gaps and turning back end a run, and too slow windows are counted") {
     auto signal = tests::shaft(tests::straight(0.0, 0.0, 3000), 1000.0);
     CHECK(track_orders(signal.tracked({1.0}), {}).time_s.empty());
     // 3 s at 2 turns a second: eight turns take 4 s, half of that is too long as well.

@@ -87,7 +87,7 @@ TEST_CASE("a track's ribbon is twice its standard error, in the kind of amplitud
     CHECK(figure.panels[1].curves[0].y == std::vector<double>{30.0, 40.0});
 }
 
-TEST_CASE("an order has one colour in every figure; a tone and a line that nobody knows have others") {
+TEST_CASE("an order has one colour in every figure, and a tone and a line that nobody knows have others") {
     OrderTracks tracks;
     tracks.time_s = {0.0, 1.0};
     tracks.speed_deg_s = {10.0, 20.0};

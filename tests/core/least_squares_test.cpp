@@ -21,7 +21,7 @@ TEST_CASE("least squares: worked arithmetic, and what is left stands upright on 
     }
 }
 
-TEST_CASE("least squares of columns that cannot be told apart shares between them; nothing gets 0") {
+TEST_CASE("least squares of columns that cannot be told apart shares between them, and nothing gets 0") {
     const std::vector<double> column = {1, 2, 3}, nothing = {0, 0, 0};
     const auto values = least_squares({column, column, nothing}, column);
     CHECK(values[0] == Approx(0.5));

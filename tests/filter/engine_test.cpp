@@ -175,7 +175,8 @@ TEST_CASE("of even stamps in whole milliseconds the rate is the mean, not one ov
 }
 
 TEST_CASE(
-    "time that runs backward is an error that names the row; repeated times and held samples are counted") {
+    "time that runs backward is an error that names the row, and repeated times and held samples are "
+    "counted") {
     Rows rows = uniform(20000, 1000.0);
     rows.time_s[15000] = rows.time_s[14999];
     const auto hold = [&rows](std::size_t k, double velocity_deg_s, bool torque_too) {
@@ -202,7 +203,8 @@ TEST_CASE(
                       Catch::Contains("fake.csv: data row 17001") && Catch::Contains("--sample-rate"));
 }
 
-TEST_CASE("a stated rate is believed; without time or a stated rate, or with one row, nothing is filtered") {
+TEST_CASE(
+    "a stated rate is believed, and without time or a stated rate, or with one row, nothing is filtered") {
     Rows rows = uniform(100, 1000.0);
     CHECK(stream_of(rows, 10, Hertz(978.0)).design_rate().value() == 978.0);
     Rows timeless = rows;

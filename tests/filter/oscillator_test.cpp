@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <array>
 
 #include "filter/gain_schedule.hpp"
 #include "filter/motor_angle.hpp"
@@ -279,6 +279,13 @@ TEST_CASE("a position wrapped at 360 degrees is the same as one that is not") {
     for (std::size_t k = 0; k < wrapped.size(); ++k) REQUIRE(wrapped[k] == Approx(straight[k]).margin(1e-6));
 }
 
+namespace {
+
+using SixValues = std::array<double, 6>;
+using SixBySix = std::array<SixValues, 6>;
+
+}  // namespace
+
 TEST_CASE("the exact gain is that of the textbook's matrices, and settles to that of the Riccati equation") {
     RippleModel model{{1.0, 2.0}, 0.001, 2.0 * std::numbers::pi * 15.0, 2.0};
     const std::vector<AmplitudePrior> priors(2, {0.0, 0.0, 20.0});
@@ -287,38 +294,63 @@ TEST_CASE("the exact gain is that of the textbook's matrices, and settles to tha
     // The same model written with matrices, in the frame that turns.
     const double step = 0.025;
     const RippleRotation frame = ripple_rotation(model, step);
-    const Eigen::MatrixXd f =
-        Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-            frame.step.data(), 6, 6);
-    const Eigen::VectorXd h = Eigen::Map<const Eigen::VectorXd>(frame.seen.data(), 6);
-    Eigen::MatrixXd q = Eigen::MatrixXd::Zero(6, 6), p = q;
+    const auto f = [&](std::size_t r, std::size_t c) { return frame.step[6 * r + c]; };
+    const auto& h = frame.seen;
+    SixBySix q{}, p{};
     const auto noise = model.torque_noise();
-    q(0, 0) = noise.torque;
-    q(0, 1) = q(1, 0) = noise.cross;
-    q(1, 1) = noise.rate;
-    q.diagonal().tail(4).setConstant(model.amplitude_noise(step));
+    q[0][0] = noise.torque;
+    q[0][1] = q[1][0] = noise.cross;
+    q[1][1] = noise.rate;
+    for (std::size_t i = 2; i < 6; ++i) q[i][i] = model.amplitude_noise(step);
     // Any torque: a variance beyond all others, then the first measurement.
-    p.diagonal() << 1e10, 0.0, 400.0, 400.0, 400.0, 400.0;
-    p(1, 1) = 100.0 * std::numbers::sqrt2 * std::pow(model.bandwidth_rad_s, 3) * model.step_s;
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(6), gain;
+    p[0][0] = 1e10;
+    p[1][1] = 100.0 * std::numbers::sqrt2 * std::pow(model.bandwidth_rad_s, 3) * model.step_s;
+    for (std::size_t i = 2; i < 6; ++i) p[i][i] = 400.0;
+    SixValues x{}, gain{};
     const auto measure = [&](double y) {
-        gain = p * h / (1.0 + h.dot(p * h));
-        x += gain * (y - h.dot(x));
-        p = (p - gain * h.transpose() * p).eval();
-        p = (0.5 * (p + p.transpose())).eval();
+        SixValues seen{};
+        double variance = 1.0, foreseen = 0.0;
+        for (std::size_t r = 0; r < 6; ++r)
+            for (std::size_t c = 0; c < 6; ++c) seen[r] += p[r][c] * h[c];
+        for (std::size_t r = 0; r < 6; ++r) {
+            variance += h[r] * seen[r];
+            foreseen += h[r] * x[r];
+        }
+        for (std::size_t r = 0; r < 6; ++r) {
+            gain[r] = seen[r] / variance;
+            x[r] += gain[r] * (y - foreseen);
+        }
+        SixBySix left{};
+        for (std::size_t r = 0; r < 6; ++r)
+            for (std::size_t c = 0; c < 6; ++c) left[r][c] = p[r][c] - gain[r] * seen[c];
+        for (std::size_t r = 0; r < 6; ++r)
+            for (std::size_t c = 0; c < 6; ++c) p[r][c] = 0.5 * (left[r][c] + left[c][r]);
+    };
+    const auto go_on = [&] {
+        SixValues next{};
+        SixBySix half{}, all = q;
+        for (std::size_t r = 0; r < 6; ++r) {
+            for (std::size_t c = 0; c < 6; ++c) {
+                next[r] += f(r, c) * x[c];
+                for (std::size_t i = 0; i < 6; ++i) half[r][c] += f(r, i) * p[i][c];
+            }
+        }
+        for (std::size_t r = 0; r < 6; ++r)
+            for (std::size_t c = 0; c < 6; ++c)
+                for (std::size_t i = 0; i < 6; ++i) all[r][c] += half[r][i] * f(c, i);
+        x = next;
+        p = all;
     };
     measure(0.0);
     for (int k = 1; k <= 4000; ++k) {
         const double y = 3.0 * std::sin(0.01 * k) + 10.0 * std::cos(2.0 * std::numbers::pi * step * k + 0.4);
-        x = f * x;
-        p = f * p * f.transpose() + q;
+        go_on();
         measure(y);
         const double torque = filter.next(y, step * k, step);
         REQUIRE(torque == Approx(x[0]).margin(1e-4));
     }
     const auto settled = settled_gain(model, step);
-    for (Eigen::Index i = 0; i < 6; ++i)
-        CHECK(settled[static_cast<std::size_t>(i)] == Approx(gain[i]).epsilon(1e-9).margin(1e-12));
+    for (std::size_t i = 0; i < 6; ++i) CHECK(settled[i] == Approx(gain[i]).epsilon(1e-9).margin(1e-12));
 }
 
 TEST_CASE(

@@ -173,7 +173,7 @@ TEST_CASE("long steps in a row that do not last are gaps, each of them", "[log]"
     CHECK(watched.usable.back());
 }
 
-TEST_CASE("where rows are lost the steps tell the controller's rate; rounded stamps do not lose rows",
+TEST_CASE("where rows are lost the steps tell the controller's rate, and rounded stamps do not lose rows",
           "[log]") {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> share;

@@ -26,7 +26,8 @@ double at_speed(std::initializer_list<std::string_view> terms, double speed_deg_
 
 }  // namespace
 
-TEST_CASE("drift begins with its slope and ends at slope times time constant; at the bound it is a line") {
+TEST_CASE(
+    "drift begins with its slope and ends at slope times time constant, and at the bound it is a line") {
     const Motion m = move({"rest,duration=100s"}, 10.0);
     const auto torque = predict_nm(model_of({"drift,rate_nm_s=0.05,time_constant_s=4"}), m);
     CHECK(torque[0] == 0.0);
@@ -165,7 +166,7 @@ TEST_CASE("output ripple and tone: one follows the position, the other the clock
     CHECK(hum[4] == Approx(0.0).margin(1e-12));
 }
 
-TEST_CASE("delay and lag move the torque in time; a delayed model is the model on the motion of before") {
+TEST_CASE("delay and lag move the torque in time, and a delayed model is the model on the motion of before") {
     const Motion m = move({"sine,amplitude=40deg,frequency=1Hz,duration=3s"});
     const auto delayed =
         predict_nm(model_of({"inertia,inertia_kgm2=1", "ripple,order=1,amplitude_nm=1,phase_deg=0",
@@ -223,7 +224,8 @@ TEST_CASE("dropouts hold the value before them, as often and as long as asked") 
     CHECK(static_cast<double>(held) / static_cast<double>(stretches) == Approx(100.0).margin(10.0));
 }
 
-TEST_CASE("a wrong gear ratio is the model of the right one; a velocity bias turns the ripple on with time") {
+TEST_CASE(
+    "a wrong gear ratio is the model of the right one, and a velocity bias turns the ripple on with time") {
     Model wrong = base_model(), right = base_model();
     right.gear_ratio = GearRatio(80.0);
     wrong.terms.push_back(parse_term("gear-ratio,error_percent=-20"));

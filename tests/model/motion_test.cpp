@@ -169,7 +169,7 @@ TEST_CASE("a seventh coefficient that gives 171 deg/s takes the acceleration to 
     CHECK(largest(m.acceleration_deg_s2) == Approx(289.6).margin(0.05));
 }
 
-TEST_CASE("asymmetry moves the greatest speed and mirrors in time; the ends stay at rest") {
+TEST_CASE("asymmetry moves the greatest speed and mirrors in time, and the ends stay at rest") {
     for (const double asymmetry : {-1.0, -0.4, 0.0, 0.4, 1.0}) {
         CAPTURE(asymmetry);
         const auto spec = [](double a) {

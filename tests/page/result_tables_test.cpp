@@ -38,7 +38,7 @@ TEST_CASE("the notch table is the design: centre and Q of each order in each ban
           std::vector<std::string>{"1", "18 to 36", "7.5", "0.25", "15", "0.3", "127.3", "490"});
 }
 
-TEST_CASE("130 switches are a histogram and the ten largest; a few are a table") {
+TEST_CASE("130 switches are a histogram and the ten largest, and a few are a table") {
     Json many = Json::array();
     for (int i = 0; i < 130; ++i)
         many.push_back({{"sample", i}, {"jump_nm", i % 2 == 0 ? 0.01 * i : -0.01 * i}});

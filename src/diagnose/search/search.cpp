@@ -70,6 +70,40 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     return !open || !hearing.asked("search.fair_part", gain / gap, gain < rules.fair_part * gap);
 }
 
+// What is left of a candidate with the best that the screening beside it finds.
+double criterion_ahead(const ModelBench& bench, const Candidate& candidate,
+                       std::span<const Effect* const> effects) {
+    double best = candidate.criterion();
+    const std::vector<Trial> trials = screen(bench, candidate, effects);
+    for (std::size_t i = 0; i < std::min(bench.rules().search.looked_ahead, trials.size()); ++i)
+        best = std::min(best, with_trial(bench, candidate, trials[i]).criterion());
+    return best;
+}
+
+// Two effects that act on the same ripple may each do little alone, and a third, which does a part of both,
+// more than either. Where the best addition leaves much of the gap, the finalists are compared by what they
+// come to with one more.
+std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candidate& now,
+                                            const Candidate& best, const std::vector<Candidate>& tried,
+                                            std::span<const Effect* const> effects) {
+    const SearchRules& rules = bench.rules().search;
+    const double gap = now.gain_left - bench.samples();
+    if (gap < rules.open_gap * bench.samples() ||
+        best.gain_left - bench.samples() < rules.look_ahead_gap * gap)
+        return std::nullopt;
+    const double ahead = criterion_ahead(bench, best, effects);
+    std::optional<Candidate> found;
+    double least = ahead;
+    for (const Candidate& other : tried) {
+        if (other.criterion() == best.criterion() || bench.work().is_over()) continue;
+        const double criterion = criterion_ahead(bench, other, effects);
+        if (criterion >= least) continue;
+        least = criterion;
+        found = other;
+    }
+    return found;
+}
+
 // A delay and a gear ratio that are both there, where each is worth it beside the other and the two close
 // more than the best effect by itself.
 std::optional<Candidate> late_ratio_instead(const ModelBench& bench, const Candidate& now,
@@ -199,7 +233,12 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
             if (auto both = late_ratio_instead(bench, now, next, effects,
                                                own_terms + rules.most_names - now.stated.terms.size())) {
                 next = std::move(both);
-            } else if (!next || !worth_it(bench, now, *next, decisions)) {
+            } else if (next && now.stated.terms.size() == own_terms) {
+                if (auto other = best_with_one_more(bench, now, *next, tried, effects);
+                    other && worth_it(bench, now, *other, decisions))
+                    next = std::move(other);
+            }
+            if (!next || !worth_it(bench, now, *next, decisions)) {
                 refused = refused_by(bench, now, trials, tried);
                 return;
             }
