@@ -19,11 +19,21 @@ struct Found {
     std::vector<RefusedCandidate> refused;
 };
 
-Found found_in(const Model& truth, const DiagnosisRules& rules = standard) {
+std::vector<const Effect*> effects_of_the_ripple() {
+    return {&find_effect("delay"),
+            &find_effect("lag"),
+            &find_effect("resonance"),
+            &find_effect("ripple-speed-dependence"),
+            &find_effect("ripple-direction-dependence"),
+            &find_effect("gear-ratio")};
+}
+
+Found found_in(const Model& truth, const DiagnosisRules& rules = standard,
+               const std::vector<const Effect*>& effects = three_effects()) {
     TestBench on(case_of(plain_log(truth, 58)), rules);
     const Candidate start = baseline(on.bench, opened(joint()));
     Found found;
-    const Candidate last = search(on.bench, start, 3, three_effects(), found.refused);
+    const Candidate last = search(on.bench, start, 3, effects, found.refused);
     for (std::size_t term = 3; term < last.stated.terms.size(); ++term)
         found.names.emplace_back(last.stated.terms[term].effect->name);
     for (const RefusedCandidate& candidate : found.refused) {
@@ -68,4 +78,26 @@ TEST_CASE("no more is added than the rules allow") {
     const Found found = found_in(
         joint_with({"offset,torque_nm=0.5", "tone,frequency_hz=30,amplitude_nm=0.2,phase_deg=10"}), rules);
     CHECK(found.names == std::vector<std::string>{"offset"});
+}
+
+TEST_CASE("a lag and a resonance are both found, though a delay by itself closes more than either") {
+    const Model truth = joint_with({"lag,time_constant_s=0.0097", "resonance,frequency_hz=40,damping=0.11"});
+    DiagnosisRules one_at_a_time;
+    one_at_a_time.search.looked_ahead = 0;
+    const Found blind = found_in(truth, one_at_a_time, effects_of_the_ripple());
+    CAPTURE(blind.names);
+    CHECK(blind.names != std::vector<std::string>{"lag", "resonance"});
+    CHECK(found_in(truth, standard, effects_of_the_ripple()).names ==
+          std::vector<std::string>{"lag", "resonance"});
+}
+
+TEST_CASE("a wrong ratio and a delay that hide each other are added together") {
+    Model truth = joint_with({"delay,delay_s=0.0105"});
+    truth.gear_ratio = GearRatio(120.0);
+    CHECK(found_in(truth, standard, effects_of_the_ripple()).names ==
+          std::vector<std::string>{"delay", "gear-ratio"});
+    DiagnosisRules apart;
+    apart.screening.late_ratio = 1000.0;
+    CHECK(found_in(truth, apart, effects_of_the_ripple()).names !=
+          std::vector<std::string>{"delay", "gear-ratio"});
 }
