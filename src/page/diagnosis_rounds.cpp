@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "page/diagnosis_rounds.hpp"
 
-#include "document/diagnosis_fields.hpp"
+#include "document/fields/diagnosis_fields.hpp"
 #include "page/json_table.hpp"
 #include "page/json_words.hpp"
 

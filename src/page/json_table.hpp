@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 
 namespace ripplenotch {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "figure/gnuplot_script.hpp"
 #include "figure/picture_layout.hpp"
 #include "ripplenotch/figure/figure.hpp"

@@ -3,7 +3,7 @@
 // The traces of a plotly figure. Each function completes `json`, which holds the axes, the name and the
 // legend already.
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {

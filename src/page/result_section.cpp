@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "document/fields/document_head.hpp"
 #include "page/diagnosis_rounds.hpp"
 #include "page/json_table.hpp"
 #include "page/json_words.hpp"

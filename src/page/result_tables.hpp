@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "ripplenotch/figure/figure.hpp"
 #include "ripplenotch/page/page.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 // Tables of a trend that lead to the reports of the logs.
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "ripplenotch/page/page.hpp"
 
 namespace ripplenotch {

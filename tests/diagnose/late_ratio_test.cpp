@@ -16,7 +16,7 @@ std::vector<const Effect*> both_effects() { return {&find_effect("delay"), &find
 std::optional<Candidate> told_together(const Model& truth, std::uint64_t seed,
                                        const std::vector<const Effect*>& effects = both_effects()) {
     const TestBench on(case_of(plain_log(truth, seed)));
-    return with_late_ratio(on.bench, on.fitted(joint()), effects);
+    return with_late_ratio(on.bench, on.fitted(joint()), 3, effects);
 }
 
 Model turned(double ratio, Model model) {
@@ -73,5 +73,20 @@ TEST_CASE("one of the two alone, or none, is not told as both") {
     DiagnosisRules rules;
     rules.screening.late_ratio = 1000.0;
     const TestBench strict(case_of(plain_log(both, 95)), rules);
-    CHECK(!with_late_ratio(strict.bench, strict.fitted(joint()), both_effects()));
+    CHECK(!with_late_ratio(strict.bench, strict.fitted(joint()), 3, both_effects()));
+}
+
+TEST_CASE("a ratio that was found alone gives way to the pair, one that the model states does not") {
+    Model truth = turned(120.0, joint());
+    truth.terms.push_back({&find_effect("delay"), {0.0105}});
+    const TestBench on(case_of(plain_log(truth, 96)));
+    const Candidate with_wrong = on.fitted(joint_with({"gear-ratio,error_percent=-40"}));
+    const auto found = with_late_ratio(on.bench, with_wrong, 3, both_effects());
+    REQUIRE(found);
+    REQUIRE(found->stated.terms.size() == 5);
+    CHECK(found->stated.terms[4].values[0].value() == Approx(20.0).margin(0.05));
+    CHECK(!with_late_ratio(on.bench, with_wrong, 4, both_effects()));
+    const Candidate with_both =
+        on.fitted(joint_with({"gear-ratio,error_percent=20", "delay,delay_s=0.0105"}));
+    CHECK(!with_late_ratio(on.bench, with_both, 3, both_effects()));
 }

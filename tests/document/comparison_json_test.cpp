@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/comparison_json.hpp"
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

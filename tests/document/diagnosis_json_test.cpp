@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/diagnosis_json.hpp"
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 #include "support/diagnoses.hpp"

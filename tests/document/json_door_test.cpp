@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "document/json_door.hpp"
+#include "document/json/json_door.hpp"
 
 #include <string>
 
-#include "document/limits.hpp"
+#include "document/json/limits.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "document/json.hpp"
+#include "document/json/json.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

@@ -35,7 +35,7 @@ SEES = {
 # Third-party header -> the files that may include it.
 DOORS = {
     r"fftw3": {"src/analysis/spectrum/fourier.cpp"},
-    r"nlohmann/": {"src/document/json.hpp", "src/log/messages/json_message.cpp"},
+    r"nlohmann/": {"src/document/json/json.hpp", "src/log/messages/json_message.cpp"},
     r"CLI/": {"src/cli/options/options_implementation.hpp"},
     r"fast_float/": {"src/core/number.cpp"},
     r"nettle/": {"src/core/sha256.cpp"},
@@ -61,15 +61,16 @@ PRIVATE_DOORS = {
     "model/fit_coordinates.hpp": ({"diagnose"}, "effects that are tried are screened in the coordinates of the fit"),
     "model/local_motion.hpp": ({"diagnose", "fleet"}, "the noise of a torque is told as that of a velocity is, and so is that of what a descriptor rests on"),
     "model/weighing.hpp": ({"diagnose"}, "effects that are tried are screened by the weights of the fit"),
-    "document/diagnosis_fields.hpp": ({"page"}, "values and places of a finding stand on the page as in the document"),
-    "document/json.hpp": ({"page"}, "the page shows JSON as tables; the library behind it has one door"),
+    "document/fields/diagnosis_fields.hpp": ({"page"}, "values and places of a finding stand on the page as in the document"),
+    "document/fields/document_head.hpp": ({"page"}, "the page takes any document, by the head that all have"),
+    "document/json/json.hpp": ({"page"}, "the page shows JSON as tables; the library behind it has one door"),
     "figure/gnuplot_script.hpp": ({"page"}, "a map has the same colours on the page as in a picture"),
     "figure/picture_layout.hpp": ({"page"}, "names find their places on the page as they do in a picture"),
 }
 
 
 # Rooms whose folders stand in an order: what a folder includes never comes back to it.
-ORDERED = ("arm", "diagnose")
+ORDERED = ("arm", "diagnose", "document")
 
 
 def folders_seen(room):

@@ -18,10 +18,6 @@ const Effect* among(std::span<const Effect* const> effects, std::string_view nam
     return found == effects.end() ? nullptr : *found;
 }
 
-bool has(const Model& model, const Effect& effect) {
-    return std::ranges::any_of(model.terms, [&](const Term& term) { return term.effect == &effect; });
-}
-
 struct LateRatio {
     double delay_s = 0.0;
     RatioCandidates ratios;
@@ -59,14 +55,26 @@ Case seen_late(const Case& looked_at, Seconds late) {
     return seen;
 }
 
-std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidate& now,
+std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidate& now, std::size_t own_terms,
                                          std::span<const Effect* const> effects) {
     const Effect* const delay = among(effects, "delay");
     const Effect* const gear_ratio = among(effects, "gear-ratio");
-    if (delay == nullptr || gear_ratio == nullptr || has(now.open, *delay) || has(now.open, *gear_ratio))
-        return std::nullopt;
-    const StatedRipple ripple = stated_ripple(now.stated);
-    Model without_ripple = now.stated;
+    if (delay == nullptr || gear_ratio == nullptr) return std::nullopt;
+    const auto is_one = [&](const Term& term) { return term.effect == delay || term.effect == gear_ratio; };
+    Model open = now.open, guess = now.stated;
+    std::vector<double> prices = now.prices;
+    // One of the two that was found alone may have the wrong value, for want of the other.
+    std::size_t there = 0;
+    for (std::size_t term = guess.terms.size(); term-- > 0;) {
+        if (!is_one(guess.terms[term])) continue;
+        if (term < own_terms || ++there == 2) return std::nullopt;
+        const auto at = static_cast<std::ptrdiff_t>(term);
+        open.terms.erase(open.terms.begin() + at);
+        guess.terms.erase(guess.terms.begin() + at);
+        prices.erase(prices.begin() + at);
+    }
+    const StatedRipple ripple = stated_ripple(guess);
+    Model without_ripple = guess;
     std::erase_if(without_ripple.terms,
                   [](const Term& term) { return term.effect->ripple_order.has_value(); });
     const std::vector<double> torque_nm = bench.raw_residual(without_ripple);
@@ -83,8 +91,6 @@ std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidat
     if (best.ratios.ratios.empty() ||
         !(best.ratios.strongest_nm2 > bench.rules().screening.late_ratio * alone))
         return std::nullopt;
-    Model open = now.open, guess = now.stated;
-    std::vector<double> prices = now.prices;
     const double cells = best.ratios.compared * static_cast<double>(delay->parameters[0].tried.size());
     const double price =
         portable::log(bench.samples()) + portable::log(cells) +

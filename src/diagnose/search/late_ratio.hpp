@@ -18,9 +18,11 @@ namespace ripplenotch {
 [[nodiscard]] Seconds lateness_of(const Model& stated);
 
 /// The model with a delay and a gear ratio that together make the ripple's lines stand out by
-/// rules.screening.late_ratio of what the best ratio makes of them alone; fitted. None where the model has
-/// either already, where they are not among `effects`, or where no delay makes that much.
+/// rules.screening.late_ratio of what the best ratio makes of them alone; fitted. One of the two that the
+/// search has added gives way to the pair. None where the first `own_terms` terms hold one, where the model
+/// has both, where they are not among `effects`, or where no delay makes that much.
 [[nodiscard]] std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidate& now,
+                                                       std::size_t own_terms,
                                                        std::span<const Effect* const> effects);
 
 }  // namespace ripplenotch

@@ -87,6 +87,10 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
                                             const Candidate& best, const std::vector<Candidate>& tried,
                                             std::span<const Effect* const> effects) {
     const SearchRules& rules = bench.rules().search;
+    const auto adds_torque = [](const Candidate& one) {
+        return one.stated.terms.back().effect->side == Side::joint;
+    };
+    if (adds_torque(best)) return std::nullopt;
     const double gap = now.gain_left - bench.samples();
     if (gap < rules.open_gap * bench.samples() ||
         best.gain_left - bench.samples() < rules.look_ahead_gap * gap)
@@ -95,7 +99,7 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
     std::optional<Candidate> found;
     double least = ahead;
     for (const Candidate& other : tried) {
-        if (other.criterion() == best.criterion() || bench.work().is_over()) continue;
+        if (other.criterion() == best.criterion() || adds_torque(other) || bench.work().is_over()) continue;
         const double criterion = criterion_ahead(bench, other, effects);
         if (criterion >= least) continue;
         least = criterion;
@@ -108,12 +112,12 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
 // more than the best effect by itself.
 std::optional<Candidate> late_ratio_instead(const ModelBench& bench, const Candidate& now,
                                             const std::optional<Candidate>& alone,
-                                            std::span<const Effect* const> effects, std::size_t room) {
-    if (room < 2) return std::nullopt;
-    if (now.gain_left - bench.samples() < bench.rules().search.open_gap * bench.samples())
+                                            std::span<const Effect* const> effects, std::size_t own_terms) {
+    auto both = with_late_ratio(bench, now, own_terms, effects);
+    if (!both ||
+        both->criterion() >= (alone ? std::min(alone->criterion(), now.criterion()) : now.criterion()) ||
+        both->stated.terms.size() > own_terms + bench.rules().search.most_names)
         return std::nullopt;
-    auto both = with_late_ratio(bench, now, effects);
-    if (!both || (alone && alone->criterion() < both->criterion())) return std::nullopt;
     for (std::size_t term = both->stated.terms.size() - 2; term < both->stated.terms.size(); ++term) {
         std::vector<Decision> decisions;
         if (!worth_it(bench, without_term(bench, *both, term), *both, decisions)) return std::nullopt;
@@ -230,8 +234,7 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
             std::vector<Candidate> tried;
             std::vector<Decision> decisions;
             auto next = best_addition(bench, now, trials, tried);
-            if (auto both = late_ratio_instead(bench, now, next, effects,
-                                               own_terms + rules.most_names - now.stated.terms.size())) {
+            if (auto both = late_ratio_instead(bench, now, next, effects, own_terms)) {
                 next = std::move(both);
             } else if (next && now.stated.terms.size() == own_terms) {
                 if (auto other = best_with_one_more(bench, now, *next, tried, effects);

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/document/model_json.hpp"
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "document/fields/arm_fields.hpp"
+#include "document/fields/document_head.hpp"
+#include "document/fields/model_fields.hpp"
+#include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
+
+namespace ripplenotch {
+namespace {
+
+template <class Simulated>
+auto nuisance_fields(Simulated& term) {
+    return std::array{std::pair(std::string_view("offset_nm"), &term.offset_nm),
+                      std::pair(std::string_view("inertia_kgm2"), &term.inertia_kgm2),
+                      std::pair(std::string_view("gravity_cosine_nm"), &term.gravity_cosine_nm),
+                      std::pair(std::string_view("gravity_sine_nm"), &term.gravity_sine_nm)};
+}
+
+Json term_json(const Term& term) {
+    Json json = Json::object();
+    json["effect"] = term.effect->name;
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        if (term.values[p]) json[std::string(term.effect->parameters[p].name)] = *term.values[p];
+    }
+    return json;
+}
+
+Term term_of(Fields& fields) {
+    const Effect& effect = effect_of(fields);
+    Term term{&effect, {}};
+    for (const Parameter& parameter : effect.parameters) {
+        if (!fields.has(parameter.name)) {
+            term.values.emplace_back();
+            continue;
+        }
+        const double value = fields.number(parameter.name);
+        if (!allows(parameter, value)) {
+            raise<DataError>("{} is {}, expected a number between {} and {} {}", fields.where(parameter.name),
+                             shortest(value), shortest(parameter.lower), shortest(parameter.upper),
+                             parameter.unit);
+        }
+        term.values.emplace_back(value);
+    }
+    return term;
+}
+
+Json simulated_json(const SimulatedTerm& term) {
+    Json json{{"column", term.column}};
+    json["scale"] = term.scale ? Json(*term.scale) : Json(nullptr);
+    json["delay_s"] = term.fit_delay ? Json(nullptr) : Json(term.delay_s);
+    Json nuisance = Json::object();
+    for (const auto& [name, value] : nuisance_fields(term)) {
+        if (*value != 0.0) nuisance[std::string(name)] = *value;
+    }
+    if (!nuisance.empty()) json["nuisance"] = nuisance;
+    return json;
+}
+
+SimulatedTerm simulated_of(Fields& fields) {
+    SimulatedTerm term;
+    term.column = fields.text("column");
+    term.scale = fields.number_if_any("scale");
+    term.delay_s = fields.number_if_any("delay_s").value_or(0.0);
+    if (fields.has("nuisance")) {
+        Fields nuisance = fields.object("nuisance");
+        for (const auto& [name, value] : nuisance_fields(term))
+            *value = nuisance.number_if_any(name).value_or(0.0);
+        nuisance.finish();
+    }
+    fields.finish();
+    return term;
+}
+
+void refuse_twice(const Model& model, const std::string& source) {
+    for (const Term& term : model.terms) {
+        if (term.effect->name == "gravity" || term.effect->name == "inertia")
+            raise<DataError>("{}: {} is part of arm; remove one of the two", source, term.effect->name);
+    }
+}
+
+}  // namespace
+
+void put_model(Json& json, const Model& model) {
+    json["gear_ratio"] = model.gear_ratio.value();
+    json["effects"] = Json::array();
+    for (const Term& term : model.terms) list_in(json, "effects").push_back(term_json(term));
+}
+
+std::string write_model(const ModelWithGiven& model, const Provenance& provenance) {
+    Json json = document_head("model", provenance);
+    if (model.simulated) json["simulated"] = simulated_json(*model.simulated);
+    if (model.arm) json["arm"] = stated_arm_json(*model.arm);
+    put_model(json, model.model);
+    return to_text(json);
+}
+
+std::string write_model(const Model& model, const Provenance& provenance) {
+    return write_model(ModelWithGiven{model}, provenance);
+}
+
+// The catalogue answers an unknown name as a wrong request; in a file it is wrong data, and the file must be
+// named.
+const Effect& effect_of(Fields& fields) {
+    try {
+        return find_effect(fields.text("effect"));
+    } catch (const UsageError& error) {
+        raise<DataError>("{}: {}", fields.where("effect"), error.what());
+    }
+}
+
+Model model_of(Fields& fields) {
+    Model model;
+    model.gear_ratio = GearRatio(fields.number("gear_ratio"));
+    if (!(model.gear_ratio.value() > 0.0 && model.gear_ratio <= largest_gear_ratio)) {
+        raise<DataError>("{} is {}, expected a number above 0 and at most {}", fields.where("gear_ratio"),
+                         shortest(model.gear_ratio.value()), shortest(largest_gear_ratio.value()));
+    }
+    fields.each(
+        "effects", [&](Fields& entry) { model.terms.push_back(term_of(entry)); }, most_effects);
+    return model;
+}
+
+ModelWithGiven read_model_with_given(std::string_view text, const std::string& source) {
+    const Json json = parse_document(text, source, "model");
+    Fields fields(json, source, "");
+    fields.ignore_head();
+    ModelWithGiven found;
+    found.model = model_of(fields);
+    if (fields.has("simulated")) {
+        Fields simulated = fields.object("simulated");
+        found.simulated = simulated_of(simulated);
+        // Left out it is 0; null is to be fitted.
+        const Json& stated = json["simulated"];
+        found.simulated->fit_delay = stated.contains("delay_s") && stated["delay_s"].is_null();
+    }
+    if (fields.has("arm")) {
+        Fields arm = fields.object("arm");
+        found.arm = stated_arm_of(arm, source);
+        refuse_twice(found.model, source);
+    }
+    fields.finish();
+    return found;
+}
+
+Model read_model(std::string_view text, const std::string& source) {
+    ModelWithGiven found = read_model_with_given(text, source);
+    if (found.simulated)
+        raise<DataError>("{}: simulated is part of the model; this command has no log to read '{}' from",
+                         source, found.simulated->column);
+    if (found.arm)
+        raise<DataError>("{}: an arm is part of the model; this command has no log of its joints", source);
+    return std::move(found.model);
+}
+
+}  // namespace ripplenotch
