@@ -186,6 +186,11 @@ class Rooms(unittest.TestCase):
         using = {path for path in (SOURCE / "tests").rglob("*.[ch]pp") if "<catch2/" in path.read_text()}
         self.assertEqual(using, doors)
 
+    def test_tests_leave_linear_algebra_to_the_library(self):
+        # What a test makes of its templates, without an optimiser, the linker takes in place of the library's own.
+        for path in (SOURCE / "tests").rglob("*.[ch]pp"):
+            self.assertNotRegex(path.read_text(), r"#include [<\"](Eigen/|core/linear_algebra)", str(path))
+
     def test_no_name_of_a_test_holds_what_cmake_takes_for_the_end_of_an_entry(self):
         # CMake cut such a name in two with Catch2 v2, and neither part was the name of a test: nothing ran.
         for path in (SOURCE / "tests").rglob("*.cpp"):
