@@ -57,6 +57,22 @@ std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate&
     return tried[0];
 }
 
+// Part of the gap, as the torque has it, that a line closes; 0 of what is no line. What is missing below a
+// line's frequency colours the noise that the gap is weighed by, and the line weighs little then.
+double line_part(const ModelBench& bench, const Candidate& now, const Candidate& next) {
+    // A line has a place, its order or frequency, before its size; gravity has none.
+    const auto& polar = next.stated.terms.back().effect->polar;
+    if (!polar || polar->size == 0) return 0.0;
+    double before = 0.0, after = 0.0;
+    const auto left_before = bench.raw_residual(now.stated), left_after = bench.raw_residual(next.stated);
+    for (const std::size_t k : bench.rows()) {
+        before += left_before[k] * left_before[k];
+        after += left_after[k] * left_after[k];
+    }
+    const double noise_nm = bench.noise().rms_nm, gap = before - bench.samples() * noise_nm * noise_nm;
+    return gap > 0.0 ? (before - after) / gap : 0.0;
+}
+
 bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& next,
               std::vector<Decision>& decisions) {
     Hearing hearing(bench.rules(), decisions);
@@ -67,7 +83,9 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     const double gap = now.gain_left - samples;
     const SearchRules& rules = bench.rules().search;
     const bool open = gap > rules.open_gap * samples;
-    return !open || !hearing.asked("search.fair_part", gain / gap, gain < rules.fair_part * gap);
+    if (!open) return true;
+    const double part = std::max(gain / gap, line_part(bench, now, next));
+    return !hearing.asked("search.fair_part", part, part < rules.fair_part);
 }
 
 // What is left of a candidate with the best that the screening beside it finds.
