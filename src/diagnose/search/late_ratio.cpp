@@ -35,7 +35,7 @@ Seconds lateness_of(const Model& stated) {
 
 Case seen_late(const Case& looked_at, Seconds late) {
     Case seen = looked_at;
-    if (late.value() == 0.0) return seen;
+    if (late.value() == 0.0 || seen.size() < 2) return seen;
     const auto& time_s = looked_at.motion.time_s;
     const auto& position_deg = looked_at.motion.position_deg;
     // Rows that were lost or left out make a step of several periods.
