@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The gate on speed: instructions a row, as callgrind counts them, against the recorded figures.
+"""The gate on speed: instructions a row, as valgrind counts them, against the recorded figures.
 
 usage: tests/bench/instructions.py [--update]      (environment: RIPPLENOTCH, the tool; RIPPLENOTCH_BUILD, compiler and flags)
 
@@ -23,6 +23,10 @@ import tempfile
 
 RECORDED = pathlib.Path(__file__).with_name("instructions.json")
 SKIPPED = 77
+# Most of a short run is valgrind's translation of code that runs but a few times: it is not to optimise it. The counts are
+# callgrind's, to the last instruction; cachegrind does no more than count.
+COUNT = ["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", "--vgdb=no",
+         "--vex-guest-chase=no", "--vex-iropt-level=0"]
 SHORT, LONG = 17_000, 29_000  # both beyond the first 16384 rows, which filter looks at before it begins
 COLUMNS = ("time_s", "velocity_deg_s", "torque_nm")
 
@@ -51,8 +55,8 @@ def rows(count):
         yield t, speed, speed / 52 + 0.8 * math.sin(motor) + 0.35 * math.sin(2 * motor + 1) + 0.2 * (seed / 2147483647 - 0.5)
 
 
-def make_logs(folder, count):
-    log = list(rows(count))
+def make_logs(folder, log):
+    count = len(log)
     text = ",".join(COLUMNS) + "\n" + "".join(f"{t:.4f},{v:.6f},{x:.6f}\n" for t, v, x in log)
     (folder / f"{count}.csv").write_text(text)
     header = str({"descr": [(name, "<f8") for name in COLUMNS], "fortran_order": False, "shape": (count,)})
@@ -63,12 +67,11 @@ def make_logs(folder, count):
 
 def instructions(words, piped):
     with open(piped, "rb") as pipe:
-        done = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *words],
-                              capture_output=True, text=True, stdin=pipe)
-    found = re.search(r"Collected : (\d+)", done.stderr)
+        done = subprocess.run([*COUNT, *words], capture_output=True, text=True, stdin=pipe)
+    found = re.search(r"I +refs: +([\d,]+)", done.stderr)
     if done.returncode != 0 or not found:
         raise RuntimeError(f"{' '.join(words)}:\n{done.stderr}")
-    return int(found[1])
+    return int(found[1].replace(",", ""))
 
 
 def per_row(tool, folder, words):
@@ -93,8 +96,9 @@ def measure(tool):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         tool = without_symbols(tool, folder)
+        log = list(rows(LONG))
         for count in (SHORT, LONG):
-            make_logs(folder, count)
+            make_logs(folder, log[:count])
         subprocess.run([tool, "design", "--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20",
                         "--q", "5", "--width", "digital", "--above", "pass", "-o", folder / "table.json"], check=True)
         return {case: per_row(tool, folder, words) for case, words in CASES.items()}
