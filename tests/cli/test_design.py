@@ -2,6 +2,7 @@
 """ripplenotch design as users meet it: Table 1 of the paper in three forms, units, and what is refused."""
 
 import csv
+import functools
 import io
 import json
 import os
@@ -409,10 +410,16 @@ class Goals(unittest.TestCase):
             self.assertIn(part, done.stderr)
 
 
+@functools.cache
+def frontier(*words):
+    """The curve of a goal, which is the same for all that is asked of it."""
+    return json.loads(design(*GOAL, *words, "--frontier", "--json").stdout)
+
+
 class FrontierCurve(unittest.TestCase):
     def test_text_json_and_csv_agree_and_one_point_is_recommended_with_its_reason(self):
         words = (*GOAL, "--frontier", "--min-attenuation", "20dB")
-        found = json.loads(design(*words, "--json").stdout)
+        found = frontier("--min-attenuation", "20dB")
         self.assertEqual(found["schema"], "ripplenotch/frontier/1")
         rows = list(csv.DictReader(io.StringIO(design(*words, "--format", "csv").stdout)))
         self.assertEqual([int(r["bands"]) for r in rows], [p["bands"] for p in found["points"]])
@@ -429,7 +436,7 @@ class FrontierCurve(unittest.TestCase):
     def test_the_recommended_point_is_the_table_that_design_writes(self):
         for words in (["--min-attenuation", "20dB"], ["--max-delay", "25ms"],
                       ["--min-attenuation", "20dB", "--max-delay", "25ms"]):
-            point = json.loads(design(*GOAL, *words, "--frontier", "--json").stdout)["recommended"]
+            point = frontier(*words)["recommended"]
             bands = json.loads(design(*GOAL, *words, "--json").stdout)["bands"]
             self.assertEqual(point["bands"], len(bands))
             self.assertAlmostEqual(point["delay_ms"], max(b["dc_delay_ms"] for b in bands), places=6)  # nine digits
@@ -437,7 +444,7 @@ class FrontierCurve(unittest.TestCase):
             self.assertAlmostEqual(point["attenuation_db"], min(b["held_attenuation_db"] for b in bands), delta=5.1e-8)
 
     def test_more_attenuation_costs_more_delay_all_along_the_curve(self):
-        points = json.loads(design(*GOAL, "--frontier", "--json").stdout)["points"]
+        points = frontier()["points"]
         self.assertGreater(len(points), 5)
         for before, after in zip(points, points[1:]):
             self.assertGreater(after["attenuation_db"], before["attenuation_db"])

@@ -46,7 +46,7 @@ class Joint(unittest.TestCase):
     def logged(self, *effects, name="log.csv"):
         words = [word for effect in effects for word in ("--effect", effect)]
         self.run_tool("simulate", "--gear-ratio", 100, "--ripple", "1:0.6Nm:20deg", "--ripple", "2:0.4Nm:250deg", *words, *MOVES,
-                      "--sample-rate", "500Hz", "--noise", "0.05Nm", "--seed", 4, "--decimals", 7, "-o", name)
+                      "--sample-rate", "250Hz", "--noise", "0.05Nm", "--seed", 4, "--decimals", 7, "-o", name)
 
     def model(self, *effects):
         (self.folder / "model.json").write_text(json.dumps({

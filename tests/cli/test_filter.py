@@ -300,15 +300,14 @@ class Threads(Case):
 
     ROWS = 240_000
 
-    def setUp(self):
-        super().setUp()
+    @classmethod
+    def setUpClass(cls):
         rows = ["time_s,velocity_deg_s,torque_nm,note"]
-        for k in range(self.ROWS):
+        for k in range(cls.ROWS):
             rows.append(f"{k / 1000:.3f},{60 * math.sin(k / 3000):.6f},{math.sin(k / 40) + math.sin(k / 7000):.6f},n{k}")
-        for k, comment in ((2, "# between rows, with, commas"), (170_000, "# a line, longer"), (self.ROWS, "EOF")):
+        for k, comment in ((2, "# between rows, with, commas"), (170_000, "# a line, longer"), (cls.ROWS, "EOF")):
             rows.insert(k, comment)
-        self.text = "\n".join(rows) + "\n"
-        self.log = self.write("long.csv", self.text)
+        cls.text = "\n".join(rows) + "\n"
 
     def test_exact_changes_the_last_digits_of_fixed_and_lowpass_alone_and_v_says_the_way(self):
         log, table = self.write("log.csv", log_text(60000)), self.table()

@@ -78,13 +78,13 @@ class Code(unittest.TestCase):
     def test_the_compiled_code_is_the_method(self):
         log, made = self.folder / "log.csv", rows()
         log.write_text("time_s,velocity_deg_s,torque_nm,position_deg\n" + "".join(f"{t!r},{v!r},{nm!r},{q!r}\n" for t, v, nm, q, _ in made))
+        fed = "".join(f"{nm!r} {v!r} {turns!r} {q!r}\n" for _, v, nm, q, turns in made)
         (self.folder / "main.c").write_text(HARNESS)
         for method, motion in METHODS.items():
             out = self.folder / "out.csv"
             done = run("filter", log, "--method", method, "-o", out, "--force")
             self.assertEqual(done.returncode, 0, done.stderr)
             expected = [float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
-            fed = "".join(f"{nm!r} {v!r} {turns!r} {q!r}\n" for _, v, nm, q, turns in made)
             for precision, most in MOST.items():
                 self.export(method, to=f"c-header,name=code,precision={precision}")
                 done = subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-O2", "-ffp-contract=off",

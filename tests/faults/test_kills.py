@@ -21,7 +21,7 @@ SIGNALS = [getattr(signal, f"SIG{name}") for name in CAUGHT]
 
 
 class Kills(unittest.TestCase):
-    ROWS = 30_000
+    ROWS = 20_000
 
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
