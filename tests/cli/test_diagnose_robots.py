@@ -24,10 +24,10 @@ class Robots(unittest.TestCase):
     def path(self, name):
         return pathlib.Path(self.folder.name) / name
 
-    def part(self, log, name, first, last, columns=None):
-        """Rows of a log from the share `first` to the share `last`, in a file of their own."""
+    def part(self, log, name, first, last, columns=None, step=1):
+        """Rows of a log from the share `first` to the share `last`, in a file of their own; of `step` rows one."""
         header, *rows = [line.split(",")[:columns] for line in (LOGS / log).read_text().splitlines()]
-        kept = rows[round(first * len(rows)):round(last * len(rows))]
+        kept = rows[round(first * len(rows)):round(last * len(rows)):step]
         self.path(name).write_text("\n".join(",".join(row) for row in [header, *kept]) + "\n")
         return self.path(name)
 
@@ -39,8 +39,9 @@ class Robots(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(done.stdout)
 
-    def halves(self, log, columns=None):
-        return self.part(log, "train.csv", 0.0, 0.6, columns), self.part(log, "other.csv", 0.6, 1.0, columns)
+    def halves(self, log, columns=None, step=1):
+        return (self.part(log, "train.csv", 0.0, 0.6, columns, step),
+                self.part(log, "other.csv", 0.6, 1.0, columns, step))
 
     def check_no_false_story(self, found):
         """Whatever it says, rows that it never saw are not told worse, and what is left is admitted."""
@@ -54,7 +55,9 @@ class Robots(unittest.TestCase):
     def test_an_arm_that_moves_as_a_whole_is_not_explained_by_one_joint(self):
         for joint in ("j1", "j4"):
             with self.subTest(joint):
-                self.check_no_false_story(self.diagnosed(*self.halves(f"gpl3/panda_gaz_{joint}.csv"), 120, PAPER))
+                # Of two rows one: 287 Hz are fast enough for this arm, and half the work.
+                logs = self.halves(f"gpl3/panda_gaz_{joint}.csv", step=2)
+                self.check_no_false_story(self.diagnosed(*logs, 120, PAPER))
 
     def test_gravity_of_the_joint_that_moves_alone_is_found_and_holds_at_positions_that_were_never_seen(self):
         found = self.diagnosed(*self.halves("neura_lara8_j3.csv"), 101, [INERTIA])

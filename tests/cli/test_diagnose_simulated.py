@@ -2,6 +2,7 @@
 """ripplenotch diagnose --simulated: the torque of the user's own simulation, in a column and in a file of its own."""
 
 import csv
+import functools
 import json
 import math
 import os
@@ -23,21 +24,28 @@ def arm_nm(t, q, payload):
     return (30 + 50 * payload) * math.cos(math.radians(q + other))
 
 
+@functools.cache
+def made():
+    """The rows of a joint that moves alone, simulated once for all tests."""
+    with tempfile.TemporaryDirectory() as folder:
+        motion = [word for lap in range(3) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.7), (-20, 1.2))
+                  for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
+        plain = pathlib.Path(folder) / "plain.csv"
+        subprocess.run([TOOL, "simulate", "--gear-ratio", "100", "--effect", "coulomb-friction,torque_nm=0.9,width_deg_s=1",
+                        "--effect", "viscous-friction,coefficient_nm_per_deg_s=0.012", *motion, "--sample-rate", "500Hz",
+                        "--noise", "0.05Nm", "--seed", "1", "-o", plain], check=True, capture_output=True, timeout=300)
+        with open(plain) as file:
+            rows = list(csv.DictReader(file))
+    names = {key.split("_")[0]: key for key in rows[0]}
+    return [[float(row[names[key]]) for key in ("time", "velocity", "torque", "position")] for row in rows]
+
+
 class Simulated(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
         self.path = pathlib.Path(self.folder.name)
-        motion = [word for lap in range(3) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.7), (-20, 1.2))
-                  for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
-        done = self.run_tool("simulate", "--gear-ratio", "100", "--effect", "coulomb-friction,torque_nm=0.9,width_deg_s=1",
-                             "--effect", "viscous-friction,coefficient_nm_per_deg_s=0.012", *motion, "--sample-rate", "500Hz",
-                             "--noise", "0.05Nm", "--seed", "1", "-o", "plain.csv")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        with open(self.path / "plain.csv") as file:
-            rows = list(csv.DictReader(file))
-        names = {key.split("_")[0]: key for key in rows[0]}
-        self.rows = [[float(row[names[key]]) for key in ("time", "velocity", "torque", "position")] for row in rows]
+        self.rows = made()
         log = [[t, v, tau + arm_nm(t, q, 1.03), q, arm_nm(t, q, 1.0)] for t, v, tau, q in self.rows]
         written(self.path / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], log)
 

@@ -257,7 +257,10 @@ class BeforeTheGear(Commands):
         yield ["filter", log, "--method", f"subtract,joint=joint_{ratio}.json", *out]
         yield ["simulate", log, "--gear-ratio", ratio, *out]
         yield ["simulate", log, "--model", f"model_{ratio}.json", *out]
-        yield ["diagnose", log, "--model", f"model_{ratio}.json", "--json"]
+        # What is asked is how the log is read; the search for names has its own tests.
+        effects = [one["effect"] for one in json.loads(self.good("effects", "--json").stdout)["effects"]]
+        untried = [word for effect in effects for word in ("--without", effect)]
+        yield ["diagnose", log, "--model", f"model_{ratio}.json", "--json", *untried]
 
     def recordings(self, name, ratio):
         for words in self.asked(f"{name}.csv", ratio):
