@@ -2,6 +2,7 @@
 """Maps of ripple that depends on the joint's temperature: where it enters, how the methods and the exports take it."""
 
 import ctypes
+import functools
 import json
 import math
 import random
@@ -12,6 +13,21 @@ import unittest
 from test_map import GEAR, Case, run
 
 
+@functools.cache
+def motion(seed):
+    """What is the same at any temperature, row by row: time, velocity and position as text, slow torque, ripple and noise."""
+    draw, position, before, made = random.Random(seed), 3.0, None, []
+    for k in range(20000):
+        t = k / 1000.0
+        v = 80 * math.sin(0.9 * t + seed) + 30 * math.sin(0.37 * t)
+        position += 0.0 if before is None else (before + v) / 2000.0
+        before = v
+        theta = math.radians(100 * position)
+        made.append((f"{t:.6f},{v:.6f}", f"{position:.6f}", 6 * math.sin(0.5 * t), 0.8 * math.cos(theta + 0.5) + 0.5 * math.cos(2 * theta),
+                     draw.gauss(0, 0.05)))
+    return made
+
+
 class Warm(Case):
     """Ripple of 0.8 Nm at 30 degC that grows by 3 % a degree, in logs with a column of the joint's temperature."""
 
@@ -19,20 +35,13 @@ class Warm(Case):
 
     def write(self, warmth, seed=1, grows=0.03, path=None, column=True):
         """Returns the slow torque; `warmth` is the temperature from first to last row, or of a row by its number."""
-        draw, position, before, slow = random.Random(seed), 3.0, None, []
         with open(path or self.log, "w") as file:
             file.write("time_s,velocity_deg_s,torque_nm,position_deg" + (",drive_degc" if column else "") + "\n")
-            for k in range(20000):
-                t, degc = k / 1000.0, warmth(k) if callable(warmth) else warmth[0] + (warmth[1] - warmth[0]) * k / 20000
-                v = 80 * math.sin(0.9 * t + seed) + 30 * math.sin(0.37 * t)
-                position += 0.0 if before is None else (before + v) / 2000.0
-                before = v
-                theta = math.radians(100 * position)
-                slow.append(6 * math.sin(0.5 * t))
-                ripple = (1 + grows * (degc - 30)) * (0.8 * math.cos(theta + 0.5) + 0.5 * math.cos(2 * theta))
-                cells = [t, v, slow[-1] + ripple + draw.gauss(0, 0.05), position, degc]
-                file.write(",".join(f"{cell:.6f}" for cell in cells[:5 if column else 4]) + "\n")
-        return slow
+            for k, (start, position, slow, ripple, noise) in enumerate(motion(seed)):
+                degc = warmth(k) if callable(warmth) else warmth[0] + (warmth[1] - warmth[0]) * k / 20000
+                nm = slow + (1 + grows * (degc - 30)) * ripple + noise
+                file.write(f"{start},{nm:.6f},{position}" + (f",{degc:.6f}\n" if column else "\n"))
+        return [slow for _, _, slow, _, _ in motion(seed)]
 
     def filtered(self, method, *words, code=0):
         out = self.folder / "out.csv"
