@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Logs made in memory for the tests of the analysis room: a motion, ripple by order, tones, noise.
+// Logs made in memory for the tests of the analysis room: a motion, ripple by order, tones, noise. What makes
+// them is compiled optimised: thousands of logs are looked at.
 
 #include <cmath>
 #include <cstdint>
@@ -11,6 +12,10 @@
 
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/core/trace.hpp"
+
+// In traces.cpp, optimised: without this the linker may take the copy of a test, which is not.
+extern template class std::mersenne_twister_engine<std::uint_fast32_t, 32, 624, 397, 31, 0x9908b0df, 11,
+                                                   0xffffffff, 7, 0x9d2c5680, 15, 0xefc60000, 18, 1812433253>;
 
 namespace ripplenotch::tests {
 
@@ -25,11 +30,7 @@ struct Tone {
 class Noise {
   public:
     explicit Noise(std::uint32_t seed) : engine_(seed) {}
-    double operator()() {
-        double sum = -6.0;
-        for (int i = 0; i < 12; ++i) sum += static_cast<double>(engine_()) / 4294967296.0;
-        return sum;
-    }
+    double operator()();
 
   private:
     std::mt19937 engine_;
@@ -48,40 +49,7 @@ struct TraceRecipe {
     std::uint32_t seed = 1;
 };
 
-inline Trace make_trace(const TraceRecipe& recipe) {
-    Trace trace;
-    trace.sample_rate = Hertz(recipe.rate_hz);
-    Noise noise(recipe.seed), jitter(recipe.seed + 7919);
-    const double dt = 1.0 / recipe.rate_hz;
-    const auto n = static_cast<std::size_t>(std::llround(recipe.seconds * recipe.rate_hz));
-    double angle = 0.0, last = 0.0;
-    for (std::size_t k = 0; k < n; ++k) {
-        double t = static_cast<double>(k) * dt;
-        if (recipe.jitter_steps > 0.0)
-            t += std::min(std::max(recipe.jitter_steps * jitter(), -0.45), 0.45) * dt;
-        // Eight Simpson steps a sample: the angle is that of the motion, not of its samples.
-        const double h = (t - last) / 8.0;
-        for (int i = 0; i < 8 && k > 0; ++i) {
-            const double a = last + h * i;
-            angle +=
-                h / 6.0 *
-                (recipe.speed_deg_s(a) + 4.0 * recipe.speed_deg_s(a + h / 2) + recipe.speed_deg_s(a + h));
-        }
-        last = t;
-        double torque = recipe.offset_nm + recipe.noise_nm * noise();
-        for (const Ripple& r : recipe.ripple) {
-            torque += r.amplitude_nm * std::cos(r.order_output * angle / degrees_per_radian + r.phase_rad);
-        }
-        for (const Tone& tone : recipe.tones) {
-            torque += tone.amplitude_nm * std::cos(2.0 * std::numbers::pi * tone.hz * t + tone.phase_rad);
-        }
-        trace.time_s.push_back(t);
-        trace.velocity_deg_s.push_back(recipe.speed_deg_s(t));
-        trace.torque_nm.push_back(torque);
-        if (recipe.position) trace.position_deg.push_back(angle);
-    }
-    return trace;
-}
+Trace make_trace(const TraceRecipe& recipe);
 
 inline Identification identify_all(const std::vector<Trace>& traces, const IdentifyOptions& options = {}) {
     std::vector<TraceView> views;

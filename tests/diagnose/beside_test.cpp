@@ -125,7 +125,8 @@ TEST_CASE(
 }
 
 TEST_CASE("nothing but a leftover names nothing, whatever the leftover") {
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    // scripts/prove-diagnose has more of them, those of real robots.
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const BesideOutcome outcome = found_in(log_beside(truth_of({}), seed, 0.8));
         INFO("seed " << seed << "\n" << told(outcome));
         CHECK(outcome.believed.empty());

@@ -95,7 +95,7 @@ TEST_CASE("ripple that grows with the root or the square of the speed has one na
 }
 
 TEST_CASE("a touch many times the noise is no match") {
-    Trace log = log_with("", 51);
+    Trace log = log_with("", 55);
     for (std::size_t k = 0; k < log.size(); ++k) {
         const double share = (log.time_s[k] - 9.0) / 1.2;
         if (share > 0.0 && share < 1.0) log.torque_nm[k] += 0.6 * std::sin(std::numbers::pi * share);
