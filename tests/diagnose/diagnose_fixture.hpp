@@ -16,7 +16,7 @@ namespace ripplenotch::fixture {
 inline constexpr double noise_nm = 0.05;
 inline const DiagnosisRules standard;
 
-inline const Motion& tour() {
+inline Motion tour_at(Hertz sample_rate) {
     static const std::vector<std::string> specs = {"rest,duration=0.4s",
                                                    "poly6,to=150deg,duration=2.2s",
                                                    "rest,duration=0.4s",
@@ -34,7 +34,17 @@ inline const Motion& tour() {
                                                    "rest,duration=0.4s",
                                                    "poly6,to=-20deg,duration=1.2s",
                                                    "rest,duration=0.4s"};
-    static const Motion motion = make_motion(specs, Hertz(500.0));
+    return make_motion(specs, sample_rate);
+}
+
+inline const Motion& tour() {
+    static const Motion motion = tour_at(Hertz(500.0));
+    return motion;
+}
+
+/// For searches that take long, and for what needs no more samples to be seen: order 2 stays below 110 Hz.
+inline const Motion& coarse_tour() {
+    static const Motion motion = tour_at(Hertz(250.0));
     return motion;
 }
 

@@ -14,8 +14,8 @@ using namespace ripplenotch::fixture;
 namespace {
 
 Diagnosis diagnosed_with_power(double power) {
-    Trace log = logged(joint(), tour(), 61);
-    const auto& velocity_deg_s = tour().velocity_deg_s;
+    Trace log = logged(joint(), coarse_tour(), 61);
+    const auto& velocity_deg_s = coarse_tour().velocity_deg_s;
     for (std::size_t k = 0; k < log.size(); ++k)
         log.torque_nm[k] +=
             std::copysign(0.6 * std::pow(std::abs(velocity_deg_s[k]) / 130.0, power), velocity_deg_s[k]);

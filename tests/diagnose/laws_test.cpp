@@ -104,7 +104,7 @@ TEST_CASE("the unit of the torque, the order of the model and the half of the lo
     Model truth = joint();
     truth.terms.push_back(parse_term("coulomb-friction,torque_nm=0.4,width_deg_s=0.2"));
     truth.terms.push_back(parse_term("ripple-modulation,output_order=1,depth_percent=45,phase_deg=70"));
-    Trace log = logged(truth, tour(), 6);
+    Trace log = logged(truth, coarse_tour(), 6);
     const auto named = [&](const Model& model, const TraceView& view) {
         auto names = diagnose(model, view, nullptr).named;
         std::sort(names.begin(), names.end());

@@ -41,7 +41,7 @@ TEST_CASE("with an effect taken out of the list, no look-alike takes its place")
         {"viscous-friction", "viscous-friction,coefficient_nm_per_deg_s=0.0063"},
         {"coulomb-friction", "coulomb-friction,torque_nm=0.84,width_deg_s=0.12"}};
     for (const auto& [name, hidden] : cases) {
-        const Trace log = logged(joint_with({hidden}), tour(), 32);
+        const Trace log = logged(joint_with({hidden}), coarse_tour(), 32);
         const Names without = {name};
         const Diagnosis found = diagnose(opened(joint()), log.view(), nullptr, {.without = without});
         CAPTURE(name);
@@ -70,15 +70,15 @@ TEST_CASE("a ripple that may not be named is unexplained at its order") {
 TEST_CASE("an offset beside gravity and a drift is a finding and no correction of theirs") {
     const Model truth = joint_with({"drift,rate_nm_s=0.04,time_constant_s=8",
                                     "gravity,amplitude_nm=3,phase_deg=69", "offset,torque_nm=0.5"});
-    const Diagnosis found = diagnose(opened(joint()), logged(truth, tour(), 33).view(), nullptr);
+    const Diagnosis found = diagnose(opened(joint()), logged(truth, coarse_tour(), 33).view(), nullptr);
     tell(found);
     CHECK(sorted(found.named) == Names{"drift", "gravity", "offset"});
 }
 
 TEST_CASE("a name that the validation log contradicts is withdrawn, with the figures") {
     const Model with = joint_with({"viscous-friction,coefficient_nm_per_deg_s=0.005"});
-    const Trace log = logged(with, tour(), 34), same = logged(with, tour(), 35),
-                other = logged(joint(), tour(), 36);
+    const Trace log = logged(with, coarse_tour(), 34), same = logged(with, coarse_tour(), 35),
+                other = logged(joint(), coarse_tour(), 36);
     const TraceView same_view = same.view(), other_view = other.view();
     const Diagnosis kept = diagnose(opened(joint()), log.view(), &same_view);
     tell(kept);
@@ -102,9 +102,10 @@ TEST_CASE(
     "with a validation log that none of the names fits, the improved model does no worse there than the one "
     "given") {
     // An offset of the other sign and no friction: nothing that one teaches helps the other.
-    const Trace log = logged(
-        joint_with({"offset,torque_nm=0.4", "coulomb-friction,torque_nm=0.6,width_deg_s=0.3"}), tour(), 41);
-    const Trace other = logged(joint_with({"offset,torque_nm=-0.4"}), tour(), 42);
+    const Trace log =
+        logged(joint_with({"offset,torque_nm=0.4", "coulomb-friction,torque_nm=0.6,width_deg_s=0.3"}),
+               coarse_tour(), 41);
+    const Trace other = logged(joint_with({"offset,torque_nm=-0.4"}), coarse_tour(), 42);
     const TraceView other_view = other.view();
     const Diagnosis found = diagnose(opened(joint()), log.view(), &other_view);
     tell(found);
@@ -116,8 +117,9 @@ TEST_CASE(
 TEST_CASE(
     "a search that has spent its evaluations ends, says so, and names nothing that it did not look at "
     "twice") {
-    const Trace log = logged(
-        joint_with({"offset,torque_nm=0.4", "viscous-friction,coefficient_nm_per_deg_s=0.005"}), tour(), 37);
+    const Trace log =
+        logged(joint_with({"offset,torque_nm=0.4", "viscous-friction,coefficient_nm_per_deg_s=0.005"}),
+               coarse_tour(), 37);
     const Diagnosis whole = diagnose(opened(joint()), log.view(), nullptr);
     CHECK(!whole.search_ended);
     CHECK(whole.evaluations > 10.0);
