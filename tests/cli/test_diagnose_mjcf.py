@@ -33,6 +33,8 @@ BODY = """<?xml version="1.0"?>
 
 
 class Joint(unittest.TestCase):
+    RATE = "500Hz"
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -46,7 +48,7 @@ class Joint(unittest.TestCase):
     def logged(self, *effects, name="log.csv"):
         words = [word for effect in effects for word in ("--effect", effect)]
         self.run_tool("simulate", "--gear-ratio", 100, "--ripple", "1:0.6Nm:20deg", "--ripple", "2:0.4Nm:250deg", *words, *MOVES,
-                      "--sample-rate", "250Hz", "--noise", "0.05Nm", "--seed", 4, "--decimals", 7, "-o", name)
+                      "--sample-rate", self.RATE, "--noise", "0.05Nm", "--seed", 4, "--decimals", 7, "-o", name)
 
     def model(self, *effects):
         (self.folder / "model.json").write_text(json.dumps({
@@ -89,6 +91,8 @@ class Joint(unittest.TestCase):
 
 
 class Written(Joint):
+    RATE = "250Hz"  # what is written is read here, not driven along the log
+
     def test_values_are_those_of_the_model_in_units_of_rad(self):
         self.logged(*EFFECTS)
         self.model()
