@@ -199,7 +199,7 @@ TEST_CASE("too short a log is refused with the number needed") {
 TEST_CASE(
     "noise and fixed tones, at steady speeds or back and forth, give an order in at most one set of logs of "
     "a hundred") {
-    constexpr int runs = 100;  // scripts/prove-identify does ten times as many of each kind
+    constexpr int runs = 200;
     int alarms = 0;
     for (int run = 0; run < runs; ++run) {
         const double fast = 30.0 + 10.0 * (run % 10);

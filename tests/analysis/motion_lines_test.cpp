@@ -84,7 +84,7 @@ TEST_CASE("at one speed, order and tone cannot be told apart, and the line says 
 }
 
 TEST_CASE("noise of any colour, held and coarse samples give orders in at most one log of a hundred") {
-    constexpr int runs = 100;  // scripts/prove-identify does ten times as many of each kind
+    constexpr int runs = 300;
     int alarms = 0;
     for (int run = 0; run < runs; ++run) {
         const double fast = 20.0 + 10.0 * (run % 7), slow = 5.0 + 5.0 * (run % 5);

@@ -147,7 +147,7 @@ TEST_CASE("on a short way without position, what depends on where the joint is c
     std::vector<std::string> specs = {"rest,duration=0.4s", "poly6,to=150deg,duration=2.2s",
                                       "rest,duration=0.4s", "poly6,to=-60deg,duration=3s",
                                       "rest,duration=0.4s"};
-    // Whatever the noise nothing is named; with some of it the search takes five times as long.
+    // With most noise the search takes three to five times as long as with this; nothing is named by either.
     Trace log =
         logged(joint_with({"gravity,amplitude_nm=2,phase_deg=30"}), make_motion(specs, Hertz(500.0)), 38);
     log.position_deg.clear();
