@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/least_squares.hpp"
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
@@ -18,7 +18,7 @@ std::vector<double> least_squares(const std::vector<std::vector<double>>& column
                 dot(column, columns[static_cast<std::size_t>(j)].data(), target.size());
         side(i) = dot(column, target.data(), target.size());
     }
-    const Eigen::VectorXd values = products.completeOrthogonalDecomposition().solve(side);
+    const Eigen::VectorXd values = RankedFactors(products).solve(side);
     return {values.begin(), values.end()};
 }
 

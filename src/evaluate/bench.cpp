@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -71,7 +71,7 @@ double sine_amplitude(std::span<const double> y, std::size_t from, double omega)
         normal += row * row.transpose();
         right += row * y[k];
     }
-    const Eigen::Vector3d fit = normal.ldlt().solve(right);
+    const Eigen::VectorXd fit = SymmetricFactors(normal).solve(Eigen::VectorXd(right));
     return portable::hypot(fit[0], fit[1]);
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -61,7 +61,7 @@ std::optional<RunFigures> run(const LoadedSection& section, Hertz frequency, Her
         normal += row * row.transpose();
         right += row * (out[k] - verify_load_nm);
     }
-    const Eigen::Vector3d fit = normal.ldlt().solve(right);
+    const Eigen::VectorXd fit = SymmetricFactors(normal).solve(Eigen::VectorXd(right));
     return RunFigures{fit[0], portable::hypot(fit[1], fit[2])};
 }
 

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <complex>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 
 namespace ripplenotch {
 namespace {
 
 // (1 + c1/z + c2/z^2) for each pair of roots: conjugates together, real ones two by two.
 std::vector<std::pair<double, double>> quadratics(const Eigen::MatrixXd& matrix) {
-    const Eigen::VectorXcd roots = matrix.eigenvalues();
+    const Eigen::VectorXcd roots = eigenvalues(matrix);
     std::vector<std::pair<double, double>> factors;
     std::vector<double> real;
     for (const std::complex<double>& root : roots) {

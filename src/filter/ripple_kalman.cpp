@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "filter/gain_schedule.hpp"
 #include "filter/rate_edge.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -245,7 +245,7 @@ std::vector<double> settled_gain(const RippleModel& model, double step_turns) {
     Eigen::MatrixXd g = h * h.transpose();
     const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(m, m);
     for (int round = 0; round < 60; ++round) {
-        const Eigen::PartialPivLU<Eigen::MatrixXd> solver(one + g * s);
+        const SquareFactors solver(one + g * s);
         const Eigen::MatrixXd wa = solver.solve(a), wg = solver.solve(g);
         const Eigen::MatrixXd added = a.transpose() * s * wa;
         g += a * wg * a.transpose();

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -135,8 +135,9 @@ void RippleWindows::close() {
         }
     }
     const Eigen::Map<const Eigen::VectorXd> torque(torque_nm_.data(), rows);
-    const Eigen::LDLT<Eigen::MatrixXd> solver(basis.transpose() * weight.asDiagonal() * basis);
-    const Eigen::VectorXd fit = solver.solve(basis.transpose() * weight.asDiagonal() * torque);
+    const Eigen::MatrixXd normal = basis.transpose() * weight.asDiagonal() * basis;
+    const Eigen::VectorXd right = basis.transpose() * weight.asDiagonal() * torque;
+    const Eigen::VectorXd fit = SymmetricFactors(normal).solve(right);
     if (!fit.allFinite()) return;
     const Eigen::VectorXd residual = torque - basis * fit;
     const double variance = residual.squaredNorm() / static_cast<double>(rows - columns);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "model/carriers.hpp"
 #include "model/fit_coordinates.hpp"
 #include "model/fit_errors.hpp"
@@ -89,10 +89,9 @@ Factored factor(MatrixXd slopes, const VectorXd& residual) {
     for (Index c = 0; c < slopes.cols(); ++c) {
         if (factored.scale[c] > 0.0) slopes.col(c) /= factored.scale[c];
     }
-    const Eigen::HouseholderQR<MatrixXd> qr(slopes);
-    const Index m = slopes.cols();
-    factored.triangle = qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
-    factored.target = (qr.householderQ().transpose() * residual).head(m);
+    const OrthogonalFactors factors(slopes);
+    factored.triangle = factors.triangle();
+    factored.target = factors.reached(residual);
     return factored;
 }
 
@@ -103,7 +102,7 @@ VectorXd damped_step(const Factored& factored, double damping) {
     stacked << factored.triangle, std::sqrt(damping) * MatrixXd::Identity(m, m);
     VectorXd target = VectorXd::Zero(2 * m);
     target.head(m) = factored.target;
-    VectorXd step = stacked.householderQr().solve(target);
+    VectorXd step = OrthogonalFactors(stacked).solve(target);
     for (Index c = 0; c < m; ++c) step[c] = factored.scale[c] > 0.0 ? step[c] / factored.scale[c] : 0.0;
     return step;
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -56,11 +56,11 @@ struct Told {
 // Small singular values belong to combinations that the log does not tell; what takes part in one is unknown.
 Told told_by(const MatrixXd& triangle) {
     const Index m = triangle.cols();
-    const Eigen::JacobiSVD<MatrixXd> svd(triangle, Eigen::ComputeFullV);
+    const SingularDirections found = singular_directions(triangle);
     Told told{MatrixXd::Zero(m, m), VectorXd::Zero(m)};
     for (Index i = 0; i < m; ++i) {
-        const VectorXd direction = svd.matrixV().col(i);
-        const double length = svd.singularValues()[i];
+        const VectorXd direction = found.directions.col(i);
+        const double length = found.lengths[i];
         if (length < not_told) {
             told.unknown += direction.cwiseAbs2();
         } else {
@@ -83,8 +83,7 @@ std::vector<double> covariance_of(std::span<const double> slopes, std::span<cons
     for (Index c = 0; c < m; ++c) {
         if (scale[c] > 0.0) scaled.col(c) /= scale[c];
     }
-    const Told told =
-        told_by(Eigen::HouseholderQR<MatrixXd>(scaled).matrixQR().topRows(m).triangularView<Eigen::Upper>());
+    const Told told = told_by(OrthogonalFactors(scaled).triangle());
     const double samples = static_cast<double>(weighing.rows().size() - weighing.used_up());
     const double variance = left.squaredNorm() / (samples - static_cast<double>(m));
     VectorXd larger = VectorXd::Ones(m);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""docs/security.md states the limits that the code has, and JSON, words and standard streams have one door each."""
+"""docs/security.md states the limits that the code has; JSON, words, standard streams and factorisations have one door each."""
 
 import os
 import pathlib
@@ -55,6 +55,8 @@ DOORS = {
     r"\b(Json|json)::(sax_)?parse\b": {"src/document/json/json_door.cpp", "src/log/messages/json_message.cpp"},
     r"(?<!\")\bstderr\b(?!\")|std::(cerr|clog|cout)\b|STDERR_FILENO": {"src/cli/talk.cpp", "src/cli/out_of_memory.cpp", "src/cli/progress_bar.cpp", "src/figure/gnuplot_process.cpp"},
     r"\bwrite_all\(\"-\"": set(),
+    r"\b(HouseholderQR|LLT|LDLT|PartialPivLU|JacobiSVD|\w*EigenSolver|\w+Decomposition)<|[.>](ldlt|llt|eigenvalues|inverse|\w*[qQ]r|"
+    r"\w+PivLu|\w+Svd)\(\)": {"src/core/factorisations.hpp", "src/core/factorisations.cpp"},
 }
 
 

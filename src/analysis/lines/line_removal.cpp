@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "core/many_numbers.hpp"
 #include "core/two_cores.hpp"
 #include "core/vectors/dot.hpp"
@@ -144,7 +144,7 @@ void fit_out(Sweep& sweep, std::span<const KnownLine> lines) {
         }
     });
     normal.diagonal().array() *= 1.0 + 1e-10;  // line and first cosine are nearly parallel
-    const Eigen::VectorXd found = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    const Eigen::VectorXd found = SymmetricFactors(normal).solve(right);
     rows.in_blocks([&](std::size_t first, std::size_t count) {
         for (std::size_t m = 0; m < rows.count(); ++m)
             add_scaled(-found[static_cast<Eigen::Index>(m)], rows.row(m), sweep.torque_nm.data() + first,

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/track_by_speed.hpp"
@@ -66,7 +66,7 @@ void remove_cubic(Window& window, std::span<const double> torque) {
         normal += window.weight[k] * row * row.transpose();
         right += window.weight[k] * torque[k] * row;
     }
-    const Eigen::Vector4d trend = normal.ldlt().solve(right);
+    const Eigen::Vector4d trend = SymmetricFactors(normal).solve(Eigen::VectorXd(right));
     window.value.resize(torque.size());
     for (std::size_t k = 0; k < torque.size(); ++k) {
         fill(k);

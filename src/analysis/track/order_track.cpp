@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -75,7 +75,7 @@ class WindowFit {
         normal_ =
             scale.asDiagonal() * normal_.selfadjointView<Eigen::Lower>().toDenseMatrix() * scale.asDiagonal();
         solver_.compute(normal_);
-        if (!(solver_.vectorD().minCoeff() > least_pivot)) return false;
+        if (!(solver_.least_pivot() > least_pivot)) return false;
         const Eigen::VectorXd right = scale.asDiagonal() * (basis_.transpose() * torque_);
         const Eigen::VectorXd scaled = solver_.solve(right);
         coefficients_ = scale.asDiagonal() * scaled;
@@ -130,7 +130,7 @@ class WindowFit {
     int degree_;
     Eigen::MatrixXd basis_, normal_, covariance_;
     Eigen::VectorXd torque_, coefficients_;
-    Eigen::LDLT<Eigen::MatrixXd> solver_;
+    SymmetricFactors solver_;
     double residual_square_ = 0.0;
 };
 

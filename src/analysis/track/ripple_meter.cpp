@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -179,11 +179,12 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
         }
     }
     const Eigen::MatrixXd normal = basis.transpose() * basis;
-    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+    const SymmetricFactors solver(normal);
     const auto count = static_cast<Eigen::Index>(signals);
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> torque(
         torque_nm.data(), n, count);
-    const Eigen::MatrixXd fitted = solver.solve(basis.transpose() * torque);
+    const Eigen::MatrixXd right = basis.transpose() * torque;
+    const Eigen::MatrixXd fitted = solver.solve(right);
     const double weight = static_cast<double>(rows);
     for (std::size_t j = 0; j < signals; ++j) {
         const auto column = static_cast<Eigen::Index>(j);

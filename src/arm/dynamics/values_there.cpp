@@ -5,7 +5,7 @@
 #include <random>
 
 #include "arm/dynamics/arm_row.hpp"
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/arm/arm_dynamics.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -47,9 +47,7 @@ std::size_t rank(MatrixXd rows) {
         else
             rows.col(c).setZero();
     }
-    Eigen::ColPivHouseholderQR<MatrixXd> factored(rows);
-    factored.setThreshold(of_the_largest);
-    return static_cast<std::size_t>(factored.rank());
+    return static_cast<std::size_t>(RankedFactors(rows).rank(of_the_largest));
 }
 
 // Rows of the joints [first, end) at random places; with the rotor of `first` as a last column.

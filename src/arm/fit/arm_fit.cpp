@@ -7,6 +7,7 @@
 #include "arm/fit/checked_log.hpp"
 #include "arm/fit/ridge.hpp"
 #include "arm/fit/smooth_along.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
@@ -106,8 +107,7 @@ std::size_t told(const ArmRidge& ridge, const Found& found, std::size_t links) {
     for (Index v = 0; v < scale.size(); ++v)
         scale[v] = scale[v] > 1e-12 * largest ? 1.0 / std::sqrt(scale[v]) : 0.0;
     const MatrixXd scaled = scale.asDiagonal() * said * scale.asDiagonal();
-    const VectorXd sizes =
-        Eigen::SelfAdjointEigenSolver<MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+    const VectorXd sizes = symmetric_eigenvalues(scaled);
     return static_cast<std::size_t>((sizes.array() > told_of_largest * sizes.maxCoeff()).count());
 }
 

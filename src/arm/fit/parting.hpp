@@ -2,7 +2,7 @@
 #pragma once
 // Knowledge of values that belong together as knowledge of as many others that do not.
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 
 namespace ripplenotch {
@@ -17,7 +17,7 @@ class Parting {
         scale_ = precision.diagonal().cwiseSqrt();
         const Eigen::VectorXd inverse = scale_.cwiseInverse();
         const Eigen::MatrixXd scaled = inverse.asDiagonal() * precision * inverse.asDiagonal();
-        lower_ = Eigen::LLT<Eigen::MatrixXd>(scaled).matrixL();
+        lower_ = DefiniteFactors(scaled).lower();
     }
 
     /// The mean of what is known, parted.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/factorisations.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -31,7 +32,7 @@ VectorXd solve_definite(MatrixXd matrix, const VectorXd& side) {
     const VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
     matrix.diagonal().array() += rounding;
-    return scale.cwiseProduct(Eigen::LLT<MatrixXd>(matrix).solve(scale.cwiseProduct(side)));
+    return scale.cwiseProduct(DefiniteFactors(matrix).solve(VectorXd(scale.cwiseProduct(side))));
 }
 
 double ArmRidge::Errors::smoothed_mean() const { return geometric_mean(smoothed_nm); }
@@ -119,11 +120,11 @@ ArmRidge::Word ArmRidge::word_of(std::size_t j, double noise_nm) const {
         of_own(v, v) += 1.0 / (far * far);
     }
     const MatrixXd between = weight * sums.rows_by_rows.topRightCorner(links, own);
-    const Eigen::LLT<MatrixXd> factored(of_own);
+    const DefiniteFactors factored(of_own);
     return {weight * sums.rows_by_rows.topLeftCorner(links, links) -
-                between * factored.solve(between.transpose()),
+                between * factored.solve(MatrixXd(between.transpose())),
             weight * sums.rows_by_torque.head(links) -
-                between * factored.solve(weight * sums.rows_by_torque.tail(own))};
+                between * factored.solve(VectorXd(weight * sums.rows_by_torque.tail(own)))};
 }
 
 }  // namespace ripplenotch

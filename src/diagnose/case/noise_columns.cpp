@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
@@ -46,7 +46,7 @@ std::vector<double> NoiseColumns::left_of(std::span<const double> torque_nm) {
         gram(row, row) += 1e-7 * static_cast<double>(rows);
         target[row] = dot(columns_[i].data(), left.data(), rows);
     }
-    const Eigen::VectorXd theta = gram.selfadjointView<Eigen::Lower>().ldlt().solve(target);
+    const Eigen::VectorXd theta = SymmetricFactors(gram).solve(target);
     for (std::size_t row = 0; row < rows; row += block_rows) {
         const std::size_t count = std::min(block_rows, rows - row);
         for (std::size_t i = 0; i < columns_.size(); ++i) {

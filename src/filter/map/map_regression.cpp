@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/factorisations.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -76,7 +78,7 @@ MapRegression::Matrix MapRegression::penalty(const RippleMap& frame) const {
 }
 
 std::vector<std::complex<double>> MapRegression::values() const {
-    const Matrix z = Eigen::LDLT<Matrix>(gram_).solve(right_);
+    const Matrix z = SymmetricFactors(gram_).solve(right_);
     std::vector<std::complex<double>> values;
     for (Eigen::Index c = 0; c < z.rows(); ++c) values.emplace_back(z(c, 0), z(c, 1));
     return values;
@@ -93,7 +95,8 @@ std::complex<double> MapRegression::foretold(std::size_t window,
 // Sandwich over the blocks (Liang and Zeger 1986), each part by itself.
 std::vector<std::complex<double>> MapRegression::errors() const {
     const auto fit = values();
-    const Matrix inverse = Eigen::LDLT<Matrix>(gram_).solve(Matrix::Identity(gram_.rows(), gram_.rows()));
+    const Matrix inverse =
+        SymmetricFactors(gram_).solve(Matrix(Matrix::Identity(gram_.rows(), gram_.rows())));
     Matrix variance = Matrix::Zero(gram_.rows(), 2);
     for (std::size_t b = 0; b < data_.blocks; ++b) {
         Matrix score = Matrix::Zero(gram_.rows(), 2);
@@ -121,7 +124,7 @@ HeldOut MapRegression::held_out() const {
     HeldOut found{std::vector<double>(data_.blocks), std::vector<double>(data_.blocks), 0.0, 0.0};
     double weights = 0.0;
     for (std::size_t b = 0; b < data_.blocks; ++b) {
-        const Matrix z = Eigen::LDLT<Matrix>(gram_ - block_gram_[b]).solve(right_ - block_right_[b]);
+        const Matrix z = SymmetricFactors(gram_ - block_gram_[b]).solve(Matrix(right_ - block_right_[b]));
         for (std::size_t i = 0; i < data_.windows.size(); ++i) {
             const MapWindow& window = data_.windows[i];
             if (window.block != b || !window.scored) continue;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -175,9 +175,9 @@ std::string cause_of(const JointHistory& history, const std::vector<Regression>&
         errors[i] = changed[static_cast<std::size_t>(i)].extra.error;
     }
     const MatrixXd correlation = correlation_of(history, known, change, changed);
-    const Eigen::LLT<MatrixXd> root(correlation);
+    const MatrixXd root = DefiniteFactors(correlation).lower();
     const auto whitened = [&](const VectorXd& v) -> VectorXd {
-        return root.matrixL().solve(v.cwiseQuotient(errors));
+        return root.triangularView<Eigen::Lower>().solve(v.cwiseQuotient(errors));
     };
     const VectorXd seen = whitened(sizes);
     const double price = portable::log(static_cast<double>(history.lines.size()));
@@ -189,13 +189,13 @@ std::string cause_of(const JointHistory& history, const std::vector<Regression>&
         MatrixXd columns(d, static_cast<Index>(one.columns.size()));
         for (std::size_t c = 0; c < one.columns.size(); ++c)
             columns.col(static_cast<Index>(c)) = whitened(one.columns[c]);
-        const VectorXd values = columns.colPivHouseholderQr().solve(seen);
+        const VectorXd values = RankedFactors(columns).solve(seen);
         const double left = (seen - columns * values).squaredNorm();
         const double score = left + price * static_cast<double>(one.columns.size());
         if (best != nullptr && score >= least) continue;
         best = &one;
         least = score;
-        left_by_best = root.matrixL() * (seen - columns * values);
+        left_by_best = root.triangularView<Eigen::Lower>() * (seen - columns * values);
     }
     // By what no other descriptor changed beside it.
     if (best != nullptr && left_by_best.cwiseAbs2().maxCoeff() < took_part) return best->name;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 
+#include "core/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/beside/weighing/ringing_torque.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -78,7 +79,7 @@ MatrixXd covariance_of(const Slopes& slopes, const Lens& lens) {
                 dot(at(r).data() + block.first, slopes.left.data() + block.first, block.count) / scale[r];
         scores += score * score.transpose();
     }
-    const MatrixXd inverse = products.llt().solve(MatrixXd::Identity(m, m));
+    const MatrixXd inverse = DefiniteFactors(products).solve(MatrixXd(MatrixXd::Identity(m, m)));
     const MatrixXd pulled = inverse * scores * inverse, white = lens.sigma() * lens.sigma() * inverse;
     MatrixXd larger = pulled;
     for (Index r = 0; r < m; ++r) {

@@ -28,7 +28,7 @@ Ridge::Ridge(const std::vector<std::vector<double>>& columns, std::span<const do
         for (Index c = 0; c <= r; ++c) products(r, c) = product(r, c) / (scale_[r] * scale_[c]);
         products(r, r) += drawn * drawn + least_of_its_own;
     }
-    factored_.compute(products);
+    factored_ = DefiniteFactors(products);
 }
 
 std::vector<double> Ridge::solve(std::span<const double> target) const {
@@ -36,8 +36,7 @@ std::vector<double> Ridge::solve(std::span<const double> target) const {
     for (Index r = 0; r < values.size(); ++r)
         values[r] =
             dot(columns_[static_cast<std::size_t>(r)].data(), target.data(), target.size()) / scale_[r];
-    factored_.solveInPlace(values);
-    values = values.cwiseQuotient(scale_);
+    values = factored_.solve(values).cwiseQuotient(scale_);
     return {values.begin(), values.end()};
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/linear_algebra.hpp"
+#include "core/factorisations.hpp"
 
 namespace ripplenotch {
 
@@ -28,7 +28,7 @@ class Ridge {
   private:
     const std::vector<std::vector<double>>& columns_;
     Eigen::VectorXd scale_;
-    Eigen::LLT<Eigen::MatrixXd> factored_;
+    DefiniteFactors factored_;
 };
 
 }  // namespace ripplenotch

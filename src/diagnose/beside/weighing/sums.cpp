@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
@@ -159,7 +160,7 @@ VectorXd Sums::solved(const MatrixXd& products, const VectorXd& targets) const {
         scaled(r, r) += drawn * drawn + least_of_its_own;
         wanted[r] /= scale[r];
     }
-    return scaled.llt().solve(wanted).cwiseQuotient(scale);
+    return DefiniteFactors(scaled).solve(wanted).cwiseQuotient(scale);
 }
 
 double Sums::left_outside(const Names& names) const {
