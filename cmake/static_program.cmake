@@ -54,10 +54,12 @@ if(NOT fmt_type STREQUAL SHARED_LIBRARY)
     return()
 endif()
 get_target_property(fmt_include_dirs fmt::fmt INTERFACE_INCLUDE_DIRECTORIES)
-try_compile(RIPPLENOTCH_FMT_LINKS
-    SOURCES ${CMAKE_CURRENT_LIST_DIR}/fmt_check.cpp ${CMAKE_CURRENT_LIST_DIR}/fmt_definitions.cpp
-    CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${fmt_include_dirs}" LINK_OPTIONS -static-pie
-    CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
+if(NOT DEFINED RIPPLENOTCH_FMT_LINKS)  # once a build folder: it takes four seconds
+    try_compile(RIPPLENOTCH_FMT_LINKS
+        SOURCES ${CMAKE_CURRENT_LIST_DIR}/fmt_check.cpp ${CMAKE_CURRENT_LIST_DIR}/fmt_definitions.cpp
+        CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${fmt_include_dirs}" LINK_OPTIONS -static-pie
+        CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON)
+endif()
 if(NOT RIPPLENOTCH_FMT_LINKS)
     message(STATUS "fmt ${fmt_VERSION} is compiled into every file: cmake/fmt_definitions.cpp does not hold all of it")
     set_target_properties(ripplenotch_fmt PROPERTIES INTERFACE_LINK_LIBRARIES fmt::fmt-header-only)
