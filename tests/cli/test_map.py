@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """ripplenotch map as users meet it, from a log to a map to a filter without delay."""
 
+import functools
 import json
 import math
 import os
@@ -20,23 +21,28 @@ def run(*words):
     return subprocess.run([TOOL, *map(str, words)], capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL)
 
 
+@functools.cache
+def motion(seed):
+    """Row by row: time, velocity, position, slow torque, the motor's angle in rad, noise."""
+    draw, position, before, rows = random.Random(seed), 3.0, None, []
+    for k in range(20000):
+        t = k / 1000.0
+        v = 80 * math.sin(0.9 * t + seed) + 30 * math.sin(0.37 * t)
+        position += 0.0 if before is None else (before + v) / 2000.0
+        before = v
+        rows.append((t, v, position, 6 * math.sin(0.5 * t), math.radians(100 * position), draw.gauss(0, 0.05)))
+    return rows
+
+
 def write_log(path, seed, shift_deg=0.0, ripple=1.0, header="time_s,velocity_deg_s,torque_nm,position_deg", torque=True):
     """Ripple of 0.8 Nm (order 1, phase 30 deg) and 0.5 Nm (order 2) at a gear ratio of 100; returns the slow torque."""
-    draw = random.Random(seed)
-    position, before, slow = 3.0, None, []
     with open(path, "w") as file:
         file.write(header + "\n")
-        for k in range(20000):
-            t = k / 1000.0
-            v = 80 * math.sin(0.9 * t + seed) + 30 * math.sin(0.37 * t)
-            position += 0.0 if before is None else (before + v) / 2000.0
-            before = v
-            theta = math.radians(100 * position)
-            slow.append(6 * math.sin(0.5 * t))
-            nm = slow[-1] + ripple * (0.8 * math.cos(theta + math.radians(30)) + 0.5 * math.cos(2 * theta)) + draw.gauss(0, 0.05)
+        for t, v, position, slow, theta, noise in motion(seed):
+            nm = slow + ripple * (0.8 * math.cos(theta + math.radians(30)) + 0.5 * math.cos(2 * theta)) + noise
             cells = [t, v, nm, position + shift_deg]
             file.write(",".join(f"{cell:.6f}" for cell in cells[:len(header.split(","))]) + "\n")
-    return slow
+    return [row[3] for row in motion(seed)]
 
 
 class Case(unittest.TestCase):

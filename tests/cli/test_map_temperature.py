@@ -5,27 +5,18 @@ import ctypes
 import functools
 import json
 import math
-import random
 import shutil
 import subprocess
 import unittest
 
-from test_map import GEAR, Case, run
+from test_map import GEAR, Case, motion, run
 
 
 @functools.cache
-def motion(seed):
-    """What is the same at any temperature, row by row: time, velocity and position as text, slow torque, ripple and noise."""
-    draw, position, before, made = random.Random(seed), 3.0, None, []
-    for k in range(20000):
-        t = k / 1000.0
-        v = 80 * math.sin(0.9 * t + seed) + 30 * math.sin(0.37 * t)
-        position += 0.0 if before is None else (before + v) / 2000.0
-        before = v
-        theta = math.radians(100 * position)
-        made.append((f"{t:.6f},{v:.6f}", f"{position:.6f}", 6 * math.sin(0.5 * t), 0.8 * math.cos(theta + 0.5) + 0.5 * math.cos(2 * theta),
-                     draw.gauss(0, 0.05)))
-    return made
+def parts(seed):
+    """What is the same at any temperature: time and velocity as text, position as text, slow torque, ripple, noise."""
+    return [(f"{t:.6f},{v:.6f}", f"{position:.6f}", slow, 0.8 * math.cos(theta + 0.5) + 0.5 * math.cos(2 * theta), noise)
+            for t, v, position, slow, theta, noise in motion(seed)]
 
 
 class Warm(Case):
@@ -37,11 +28,11 @@ class Warm(Case):
         """Returns the slow torque; `warmth` is the temperature from first to last row, or of a row by its number."""
         with open(path or self.log, "w") as file:
             file.write("time_s,velocity_deg_s,torque_nm,position_deg" + (",drive_degc" if column else "") + "\n")
-            for k, (start, position, slow, ripple, noise) in enumerate(motion(seed)):
+            for k, (start, position, slow, ripple, noise) in enumerate(parts(seed)):
                 degc = warmth(k) if callable(warmth) else warmth[0] + (warmth[1] - warmth[0]) * k / 20000
                 nm = slow + (1 + grows * (degc - 30)) * ripple + noise
                 file.write(f"{start},{nm:.6f},{position}" + (f",{degc:.6f}\n" if column else "\n"))
-        return [slow for _, _, slow, _, _ in motion(seed)]
+        return [slow for _, _, slow, _, _ in parts(seed)]
 
     def filtered(self, method, *words, code=0):
         out = self.folder / "out.csv"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/rms.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
@@ -45,9 +46,7 @@ void ModelBench::settle_on(const Model& model) {
     // A walk of the angle is weighed against all that the model leaves: against the sensor's noise alone, one
     // that nobody expects would stand in for what the model lacks, and blow up the ripple to do so.
     const std::vector<double> white = weighing_.whitened(raw_residual(model));
-    double squares = 0.0;
-    for (const double left : white) squares += left * left;
-    const double left_nm = std::sqrt(squares / static_cast<double>(weighing_.rows().size()));
+    const double left_nm = rms(std::span(white).first(weighing_.rows().size()));
     weighing_.set_nuisance(motion_errors(case_, model, rules_.recording), std::max(noise_.white_nm, left_nm));
 }
 
