@@ -4,6 +4,7 @@
 // screening ask for again and again.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ripplenotch/model/model.hpp"
@@ -31,11 +32,23 @@ class Prediction {
     /// predict_nm with term `place` replaced by `term`, of the same effect, less torque_nm().
     [[nodiscard]] std::vector<double> changed(std::size_t place, const Term& term) const;
 
+    /// Of the model with the term appended, but for rounding. A term that changes ripple alone (a change of
+    /// the ripple, another gear ratio) costs the ripple anew; any other a whole prediction. The motion and
+    /// the carriers have to outlive it as well.
+    [[nodiscard]] Prediction with(const Term& term) const;
+    /// Made by with(), and every joint term that is no ripple has the very torque that it had before.
+    [[nodiscard]] bool has_only_ripple_anew() const;
+    /// What a further sensor makes of a torque as this model's sensors have left it: of torque_nm(), or of a
+    /// slope of it. Empty where the effect is no such sensor, or a converter comes after it.
+    [[nodiscard]] std::optional<std::vector<double>> behind(const Term& sensor,
+                                                            std::vector<double> torque_nm) const;
+
     /// How often an effect was run along the motion so far: what this has cost.
     [[nodiscard]] std::size_t applied() const;
 
   private:
     struct State;
+    explicit Prediction(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
 

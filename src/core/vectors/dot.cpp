@@ -73,6 +73,47 @@ struct AddDots {
     }
 };
 
+struct PredictionErrors {
+    template <class Lanes>
+    RIPPLENOTCH_INLINED static void run(const double* signal, std::size_t count, const double* weights,
+                                        std::size_t memory, double* to) {
+        // Each sum is in the order of the weights; four registers of sums hide how long an addition takes.
+        Lanes by{}, a{}, b{}, c{}, d{};
+        std::size_t k = 0;
+        for (; k + 4 * lane_count <= count; k += 4 * lane_count) {
+            Lanes sum_a{}, sum_b{}, sum_c{}, sum_d{};
+            const double* before = signal + k;
+            for (std::size_t i = 0; i < memory; ++i) {
+                --before;
+                fill(by, weights[i]);
+                load(a, before);
+                load(b, before + lane_count);
+                load(c, before + 2 * lane_count);
+                load(d, before + 3 * lane_count);
+                sum_a += by * a;
+                sum_b += by * b;
+                sum_c += by * c;
+                sum_d += by * d;
+            }
+            load(a, signal + k);
+            load(b, signal + k + lane_count);
+            load(c, signal + k + 2 * lane_count);
+            load(d, signal + k + 3 * lane_count);
+            store(to + k, a - sum_a);
+            store(to + k + lane_count, b - sum_b);
+            store(to + k + 2 * lane_count, c - sum_c);
+            store(to + k + 3 * lane_count, d - sum_d);
+        }
+        for (; k < count; ++k) {
+            double sum = 0.0;
+            for (std::size_t i = 0; i < memory; ++i)
+                sum +=
+                    weights[i] * signal[static_cast<std::ptrdiff_t>(k) - 1 - static_cast<std::ptrdiff_t>(i)];
+            to[k] = signal[k] - sum;
+        }
+    }
+};
+
 }  // namespace
 
 double dot(const double* a, const double* b, std::size_t count) { return in_lanes<Dot>(a, b, count); }
@@ -84,6 +125,11 @@ void add_scaled(double factor, const double* from, double* to, std::size_t count
 void add_dots(const double* const (&a)[2], const double* const (&b)[2], std::size_t count,
               double (&sums)[4]) {
     in_lanes<AddDots>(a[0], a[1], b[0], b[1], count, static_cast<double*>(sums));
+}
+
+void prediction_errors(const double* signal, std::size_t count, const double* weights, std::size_t memory,
+                       double* to) {
+    in_lanes<PredictionErrors>(signal, count, weights, memory, to);
 }
 
 }  // namespace ripplenotch

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/linear_algebra.hpp"
-#include "core/vectors/dot.hpp"
+#include "diagnose/search/projection.hpp"
 #include "diagnose/search/search_starts.hpp"
 #include "model/carriers.hpp"
 #include "model/fit_coordinates.hpp"
@@ -16,49 +15,21 @@
 namespace ripplenotch {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+// The errors of the motion that no model changes: two of its acceleration.
+constexpr std::size_t errors_of_any_model = 2;
 
-VectorXd to_vector(const std::vector<double>& values) {
-    return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+// Of coordinates that a screening solves anew beside another effect.
+bool is_solved(const Coordinate& coordinate) {
+    return coordinate.linear || coordinate.kind != CoordinateKind::logarithm;
 }
 
-// Takes off what lies along the first `count` columns of the basis.
-void take_off(const MatrixXd& basis, Index count, VectorXd& column) {
-    const auto rows = static_cast<std::size_t>(column.size());
-    for (Index b = 0; b < count; ++b) {
-        const double* const other = basis.col(b).data();
-        add_scaled(-dot(other, column.data(), rows), other, column.data(), rows);
-    }
-}
+// A term whose torque a change of the ripple leaves as it is.
+bool is_plain(const Term& term) { return term.effect->side == Side::joint && !term.effect->ripple_order; }
 
-double length_of(const VectorXd& column) {
-    return std::sqrt(dot(column.data(), column.data(), static_cast<std::size_t>(column.size())));
-}
-
-// A column that keeps most of its length is orthogonal to rounding after one pass; twice is enough for any
-// other (Kahan, Parlett).
-MatrixXd orthonormal(const std::vector<VectorXd>& columns, Index rows) {
-    MatrixXd basis(rows, static_cast<Index>(columns.size()));
-    Index kept = 0;
-    for (const VectorXd& given : columns) {
-        const double length = length_of(given);
-        if (!(length > 0.0)) continue;
-        VectorXd column = given;
-        take_off(basis, kept, column);
-        if (length_of(column) < 0.5 * length) take_off(basis, kept, column);
-        const double left = length_of(column);
-        if (left > 1e-7 * length) basis.col(kept++) = column / left;
-    }
-    basis.conservativeResize(rows, kept);
-    return basis;
-}
-
-// Of a column, what lies outside the basis.
-VectorXd outside_of(const MatrixXd& basis, VectorXd column) {
-    take_off(basis, basis.cols(), column);
-    return column;
+std::vector<double> starts(const Coordinates& coordinates) {
+    std::vector<double> point;
+    for (const Coordinate& coordinate : coordinates.list()) point.push_back(coordinate.start);
+    return point;
 }
 
 // A joint has one delay, one lag, one gear ratio, and ripple grows with the speed in one way: what a second
@@ -83,14 +54,13 @@ bool is_there_already(const Term& tried, const Candidate& model) {
 
 // Of the samples that a screening looks at. The model itself is run along the whole log: what it remembers
 // (hysteresis, lag) lies in samples that were left out.
-VectorXd residual_of(const ModelBench& bench, const Case& some, const Model& stated) {
+Column residual_of(const ModelBench& bench, const Case& some, const Model& stated) {
     const std::vector<double> whole = bench.raw_residual(stated);
     const std::vector<std::size_t>& rows = bench.looked_at().row;
-    VectorXd residual(static_cast<Index>(some.size()));
-    for (std::size_t k = 0; k < some.size(); ++k) {
-        const auto at = std::ranges::lower_bound(rows, some.row[k]) - rows.begin();
-        residual[static_cast<Index>(k)] = whole[static_cast<std::size_t>(at)];
-    }
+    Column residual;
+    for (const std::size_t row : some.row)
+        residual.push_back(
+            whole[static_cast<std::size_t>(std::ranges::lower_bound(rows, row) - rows.begin())]);
     return residual;
 }
 
@@ -104,14 +74,12 @@ class Screening {
           samples_(bench.samples()),
           work_(bench.work()),
           hints_(hints) {
-        counts_.resize(static_cast<Index>(case_.size()));
-        for (std::size_t k = 0; k < case_.size(); ++k)
-            counts_[static_cast<Index>(k)] = case_.use[k] != 0 ? 1.0 : 0.0;
         residual_ = counted(residual_of(bench, case_, model.stated));
-        basis_ = orthonormal(columns_of(model.open, prediction_, false), residual_.size());
-        left_ = outside(residual_);
+        look_at_slopes();
+        left_ = outside_of(basis_, residual_);
         // Gains of the thinned log in those of the whole one.
-        unit_ = samples_ / std::max(counts_.sum(), 1.0) / (bench.noise().rms_nm * bench.noise().rms_nm);
+        unit_ = samples_ / std::max(static_cast<double>(residual_.size()), 1.0) /
+                (bench.noise().rms_nm * bench.noise().rms_nm);
     }
 
     [[nodiscard]] std::optional<Trial> best(const Effect& effect, std::size_t effects) const {
@@ -132,23 +100,24 @@ class Screening {
 
   private:
     // Slopes of the model's coordinates, and the errors of the motion.
-    [[nodiscard]] std::vector<VectorXd> columns_of(const Model& open, const Prediction& prediction,
-                                                   bool only_linear) const {
-        const Coordinates coordinates(open, &prediction.model());
-        std::vector<double> point;
-        for (const Coordinate& coordinate : coordinates.list()) point.push_back(coordinate.start);
-        std::vector<VectorXd> columns;
+    void look_at_slopes() {
+        errors_ = motion_errors(case_, prediction_.model(), rules_.recording);
+        std::vector<Column> all;
+        for (const Nuisance& error : errors_) all.push_back(counted(error.torque_nm));
+        std::vector<Column> untouched(all.begin(), all.begin() + errors_of_any_model);
+        errors_basis_ = orthonormal(untouched);
+        const Coordinates coordinates(model_.open, &prediction_.model());
+        const std::vector<double> point = starts(coordinates);
         for (std::size_t c = 0; c < point.size(); ++c) {
             const Coordinate& coordinate = coordinates.list()[c];
-            if (only_linear && !coordinate.linear && coordinate.kind == CoordinateKind::logarithm) continue;
-            columns.push_back(counted(to_vector(slope_nm(prediction, coordinates, point, c))));
+            slopes_nm_.push_back(slope_nm(prediction_, coordinates, point, c));
+            all.push_back(counted(slopes_nm_.back()));
+            if (is_solved(coordinate) && is_plain(model_.open.terms[coordinate.term]))
+                untouched.push_back(all.back());
         }
-        for (const Nuisance& error : motion_errors(case_, prediction.model(), rules_.recording))
-            columns.push_back(counted(to_vector(error.torque_nm)));
-        return columns;
+        basis_ = orthonormal(all);
+        plain_basis_ = orthonormal(untouched);
     }
-
-    [[nodiscard]] VectorXd outside(const VectorXd& column) const { return outside_of(basis_, column); }
 
     static std::size_t free_values(const Term& term) {
         std::size_t count = 0;
@@ -168,7 +137,16 @@ class Screening {
         return trial;
     }
 
-    [[nodiscard]] VectorXd counted(const VectorXd& column) const { return column.cwiseProduct(counts_); }
+    // The samples that count.
+    [[nodiscard]] Column counted(Column column) const {
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < column.size(); ++k) {
+            column[kept] = column[k];
+            kept += case_.use[k] != 0 ? 1 : 0;
+        }
+        column.resize(kept);
+        return column;
+    }
 
     // Fall of the sum of squares, in Nm^2, of the thinned log.
     [[nodiscard]] double gain_of(const Term& start) const {
@@ -181,9 +159,9 @@ class Screening {
     // Of an effect with a size: its torque is added to the model's.
     [[nodiscard]] double gain_beside(const Term& start) const {
         const Effect& effect = *start.effect;
-        std::vector<VectorXd> columns;
+        std::vector<Column> columns;
         double least = -1e300;
-        const auto add = [&](Term term) { columns.push_back(counted(to_vector(prediction_.added(term)))); };
+        const auto add = [&](Term term) { columns.push_back(counted(prediction_.added(term))); };
         for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
             const Parameter& parameter = effect.parameters[p];
             Term term = start;
@@ -207,18 +185,18 @@ class Screening {
                 add(term);
             }
         }
-        std::vector<VectorXd> beside;
-        for (const VectorXd& column : columns) {
-            const VectorXd part = outside(column);
-            if (!(part.norm() > rules_.screening.least_outside * column.norm())) continue;
+        std::vector<Column> beside;
+        for (const Column& column : columns) {
+            const Column part = outside_of(basis_, column);
+            const double part_asked = rules_.screening.least_outside;
+            if (!(product(part, part) > part_asked * part_asked * product(column, column))) continue;
             beside.push_back(part);
         }
         if (beside.empty()) return 0.0;
-        if (columns.size() == 1 && least == 0.0 && beside[0].dot(left_) < 0.0) return 0.0;
-        const MatrixXd basis = orthonormal(beside, left_.size());
+        if (columns.size() == 1 && least == 0.0 && product(beside[0], left_) < 0.0) return 0.0;
         double gain = 0.0;
-        for (Index b = 0; b < basis.cols(); ++b) {
-            const double along = basis.col(b).dot(left_);
+        for (const Column& direction : orthonormal(beside)) {
+            const double along = product(direction, left_);
             gain += along * along;
         }
         return gain;
@@ -226,15 +204,51 @@ class Screening {
 
     // Of an effect that changes the model's own torque: everything linear is solved anew.
     [[nodiscard]] double gain_within(const Term& start) const {
-        Model with = model_.stated, open = model_.open;
-        with.terms.push_back(start);
+        if (const auto torque_nm = prediction_.behind(start, prediction_.torque_nm()))
+            return gain_behind(start, *torque_nm);
+        Model open = model_.open;
         open.terms.push_back(start);
-        const Prediction changed(with, case_.motion, &carriers_);
-        const MatrixXd basis = orthonormal(columns_of(open, changed, true), residual_.size());
-        const VectorXd left =
-            residual_ + counted(to_vector(prediction_.torque_nm()) - to_vector(changed.torque_nm()));
+        const Prediction changed = prediction_.with(start);
+        const bool only_ripple = changed.has_only_ripple_anew();
+        const Coordinates coordinates(open, &changed.model());
+        const std::vector<double> point = starts(coordinates);
+        std::vector<Column> columns;
+        for (std::size_t c = 0; c < point.size(); ++c) {
+            const Coordinate& coordinate = coordinates.list()[c];
+            if (!is_solved(coordinate) || (only_ripple && is_plain(open.terms[coordinate.term]))) continue;
+            columns.push_back(counted(slope_nm(changed, coordinates, point, c)));
+        }
+        if (errors_.size() > errors_of_any_model) {
+            const auto errors = motion_errors(case_, changed.model(), rules_.recording);
+            for (std::size_t e = errors_of_any_model; e < errors.size(); ++e)
+                columns.push_back(counted(errors[e].torque_nm));
+        }
         work_.add(changed.applied(), case_.size());
-        return left_.squaredNorm() - outside_of(basis, left).squaredNorm();
+        return fall(only_ripple ? plain_basis_ : errors_basis_, columns, changed.torque_nm());
+    }
+
+    // Of a sensor that comes after all others: it does to each slope what it does to the torque.
+    [[nodiscard]] double gain_behind(const Term& sensor, const std::vector<double>& torque_nm) const {
+        const Coordinates coordinates(model_.open, &prediction_.model());
+        std::vector<Column> columns;
+        for (std::size_t c = 0; c < slopes_nm_.size(); ++c) {
+            if (!is_solved(coordinates.list()[c])) continue;
+            columns.push_back(counted(*prediction_.behind(sensor, slopes_nm_[c])));
+        }
+        for (std::size_t e = errors_of_any_model; e < errors_.size(); ++e)
+            columns.push_back(counted(*prediction_.behind(sensor, errors_[e].torque_nm)));
+        work_.add(columns.size() + 1, case_.size());
+        return fall(errors_basis_, columns, torque_nm);
+    }
+
+    // Fall of the square where the model's torque becomes another one.
+    [[nodiscard]] double fall(std::span<const Column> basis, std::span<const Column> columns,
+                              std::vector<double> torque_nm) const {
+        for (std::size_t k = 0; k < torque_nm.size(); ++k)
+            torque_nm[k] = prediction_.torque_nm()[k] - torque_nm[k];
+        Column left = counted(std::move(torque_nm));
+        for (std::size_t k = 0; k < left.size(); ++k) left[k] += residual_[k];
+        return product(left_, left_) - (product(left, left) - explained(basis, columns, left));
     }
 
     const Candidate& model_;
@@ -244,8 +258,11 @@ class Screening {
     Prediction prediction_;
     double samples_, unit_ = 1.0;
     Work& work_;
-    VectorXd counts_, residual_, left_;
-    MatrixXd basis_;
+    Column residual_, left_;
+    std::vector<std::vector<double>> slopes_nm_;  ///< one for each of the model's coordinates
+    std::vector<Nuisance> errors_;
+    std::vector<Column> basis_, plain_basis_,
+        errors_basis_;  ///< of all, of what no ripple is part of, of errors
     const Hints& hints_;
 };
 

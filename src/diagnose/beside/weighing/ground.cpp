@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/vectors/dot.hpp"
+
 namespace ripplenotch {
 
 Ground::Ground(const Case& looked_at, const BesideRules& rules) : rules_(rules) {
@@ -90,21 +92,13 @@ void Ground::cut(const std::vector<std::size_t>& counting) {
 }
 
 std::vector<double> Ground::whitened(std::span<const double> bridged_column) const {
-    std::vector<double> white;
-    white.reserve(row_.size());
-    const std::size_t p = color_.size();
-    for (const std::size_t k : row_) {
-        // Four sums at a time hide how long an addition takes.
-        double sums[4] = {};
-        const double* before = bridged_column.data() + k - 1;
-        std::size_t i = 0;
-        for (; i + 4 <= p; i += 4) {
-            for (std::size_t lane = 0; lane < 4; ++lane)
-                sums[lane] += color_[i + lane] * before[-static_cast<std::ptrdiff_t>(i + lane)];
-        }
-        double rest = 0.0;
-        for (; i < p; ++i) rest += color_[i] * before[-static_cast<std::ptrdiff_t>(i)];
-        white.push_back(bridged_column[k] - ((sums[0] + sums[1]) + (sums[2] + sums[3]) + rest));
+    std::vector<double> white(row_.size());
+    // Rows that follow each other are worked out together.
+    for (std::size_t from = 0, end; from < row_.size(); from = end) {
+        end = from + 1;
+        while (end < row_.size() && row_[end] == row_[end - 1] + 1) ++end;
+        prediction_errors(bridged_column.data() + row_[from], end - from, color_.data(), color_.size(),
+                          white.data() + from);
     }
     return white;
 }
