@@ -20,9 +20,9 @@ constexpr double rounding_nm = 1e-9;
 std::vector<Model> models() {
     Model sensed = base_model(), loaded = base_model(), changed = base_model();
     sensed.terms.push_back(parse_term("lag,time_constant_s=0.004"));
-    loaded.terms.push_back(parse_term("load-friction,coefficient=0.02"));
+    loaded.terms.push_back(parse_term("load-friction,torque_nm=0.2,exponent=0.7,width_deg_s=1"));
     changed.terms.push_back(parse_term("resonance,frequency_hz=40,damping=0.2"));
-    changed.terms.push_back(parse_term("coulomb-friction,torque_nm=0.4"));
+    changed.terms.push_back(parse_term("coulomb-friction,torque_nm=0.4,width_deg_s=1"));
     return {base_model(), sensed, loaded, changed};
 }
 

@@ -170,8 +170,12 @@ Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules) {
     return some;
 }
 
-std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
-    std::vector<Nuisance> errors{{looked_at.rough_deg_s2, 0.0}, {looked_at.blunted_deg_s2, 0.0}};
+std::vector<Nuisance> acceleration_errors(const Case& looked_at) {
+    return {{looked_at.rough_deg_s2, 0.0}, {looked_at.blunted_deg_s2, 0.0}};
+}
+
+std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
+    std::vector<Nuisance> errors;
     if (looked_at.walk_deg == 0.0) return errors;
     // How the torque changes with the position: so little that it is a slope, and far above rounding.
     constexpr double shift_deg = 1e-4;
@@ -193,6 +197,12 @@ std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, c
         }
         errors.push_back(std::move(walk));
     }
+    return errors;
+}
+
+std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
+    std::vector<Nuisance> errors = acceleration_errors(looked_at);
+    for (Nuisance& walk : walk_errors(looked_at, model, rules)) errors.push_back(std::move(walk));
     return errors;
 }
 

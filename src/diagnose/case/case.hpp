@@ -44,8 +44,14 @@ struct Case {
 /// The same number in short stretches at the full rate, for what looks at neighbouring samples.
 [[nodiscard]] Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules);
 
-/// Shapes that errors of the measured motion leave in the torque of a model: the walk of an integrated
-/// position, and what smoothing made of the acceleration.
+/// Shapes that errors of the measured acceleration leave in the torque, whatever the model: what smoothing
+/// made of it.
+[[nodiscard]] std::vector<Nuisance> acceleration_errors(const Case& looked_at);
+/// Shapes that the walk of an integrated position leaves in the torque of a model; none where the log has a
+/// position.
+[[nodiscard]] std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model,
+                                                const RecordingRules& rules);
+/// The former, then the latter.
 [[nodiscard]] std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model,
                                                   const RecordingRules& rules);
 

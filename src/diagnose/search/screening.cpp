@@ -15,9 +15,6 @@
 namespace ripplenotch {
 namespace {
 
-// The errors of the motion that no model changes: two of its acceleration.
-constexpr std::size_t errors_of_any_model = 2;
-
 // Of coordinates that a screening solves anew beside another effect.
 bool is_solved(const Coordinate& coordinate) {
     return coordinate.linear || coordinate.kind != CoordinateKind::logarithm;
@@ -101,11 +98,12 @@ class Screening {
   private:
     // Slopes of the model's coordinates, and the errors of the motion.
     void look_at_slopes() {
-        errors_ = motion_errors(case_, prediction_.model(), rules_.recording);
         std::vector<Column> all;
-        for (const Nuisance& error : errors_) all.push_back(counted(error.torque_nm));
-        std::vector<Column> untouched(all.begin(), all.begin() + errors_of_any_model);
+        for (const Nuisance& error : acceleration_errors(case_)) all.push_back(counted(error.torque_nm));
+        std::vector<Column> untouched = all;
         errors_basis_ = orthonormal(untouched);
+        walk_ = walk_errors(case_, prediction_.model(), rules_.recording);
+        for (const Nuisance& error : walk_) all.push_back(counted(error.torque_nm));
         const Coordinates coordinates(model_.open, &prediction_.model());
         const std::vector<double> point = starts(coordinates);
         for (std::size_t c = 0; c < point.size(); ++c) {
@@ -218,11 +216,8 @@ class Screening {
             if (!is_solved(coordinate) || (only_ripple && is_plain(open.terms[coordinate.term]))) continue;
             columns.push_back(counted(slope_nm(changed, coordinates, point, c)));
         }
-        if (errors_.size() > errors_of_any_model) {
-            const auto errors = motion_errors(case_, changed.model(), rules_.recording);
-            for (std::size_t e = errors_of_any_model; e < errors.size(); ++e)
-                columns.push_back(counted(errors[e].torque_nm));
-        }
+        for (const Nuisance& error : walk_errors(case_, changed.model(), rules_.recording))
+            columns.push_back(counted(error.torque_nm));
         work_.add(changed.applied(), case_.size());
         return fall(only_ripple ? plain_basis_ : errors_basis_, columns, changed.torque_nm());
     }
@@ -235,8 +230,8 @@ class Screening {
             if (!is_solved(coordinates.list()[c])) continue;
             columns.push_back(counted(*prediction_.behind(sensor, slopes_nm_[c])));
         }
-        for (std::size_t e = errors_of_any_model; e < errors_.size(); ++e)
-            columns.push_back(counted(*prediction_.behind(sensor, errors_[e].torque_nm)));
+        for (const Nuisance& error : walk_)
+            columns.push_back(counted(*prediction_.behind(sensor, error.torque_nm)));
         work_.add(columns.size() + 1, case_.size());
         return fall(errors_basis_, columns, torque_nm);
     }
@@ -260,7 +255,7 @@ class Screening {
     Work& work_;
     Column residual_, left_;
     std::vector<std::vector<double>> slopes_nm_;  ///< one for each of the model's coordinates
-    std::vector<Nuisance> errors_;
+    std::vector<Nuisance> walk_;
     std::vector<Column> basis_, plain_basis_,
         errors_basis_;  ///< of all, of what no ripple is part of, of errors
     const Hints& hints_;
