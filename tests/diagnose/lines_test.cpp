@@ -49,6 +49,38 @@ TEST_CASE("a tone is a line in time, with its frequency and its size") {
     CHECK(tones[0] == Approx(37.0).margin(0.02));
 }
 
+TEST_CASE("a tone is heard on both sides of a gap of any length") {
+    // A spectrum of the whole would be a comb, and end at 6 Hz and at 3 mHz.
+    for (const double gap_s : {60.0, 4e4, 1e8}) {
+        Case far = along_tour();
+        for (std::size_t k = far.size() / 3; k < far.size(); ++k) far.motion.time_s[k] += gap_s;
+        const auto values = with_line(37.0, far.motion.time_s);
+        INFO("a gap of " << gap_s << " s");
+        const auto lines = standing_out(far, values, standard.leftover.line_prominence, 4, standard.lines);
+        REQUIRE(!lines.empty());
+        CHECK(!lines[0].by_angle);
+        CHECK(lines[0].frequency == Approx(37.0).margin(0.02));
+        CHECK(lines[0].amplitude_nm == Approx(0.1).epsilon(0.2));
+        const auto tones = strongest_tones_hz(far, values, standard);
+        REQUIRE(!tones.empty());
+        CHECK(tones[0] == Approx(37.0).margin(0.02));
+        CHECK(standing_out(far, noise(67), standard.leftover.line_prominence, 4, standard.lines).empty());
+    }
+}
+
+TEST_CASE("a tone of a long log of which pieces are looked at is that of all pieces together") {
+    // Eight pieces of a log of a quarter of an hour.
+    Case pieces = along_tour();
+    const std::size_t each = pieces.size() / 8;
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+        pieces.motion.time_s[k] += 120.0 * static_cast<double>(k / each);
+    const auto values = with_line(37.1234, pieces.motion.time_s);
+    const auto tones = strongest_tones_hz(pieces, values, standard);
+    REQUIRE(!tones.empty());
+    // A fiftieth of a cycle from end to end.
+    CHECK(tones[0] == Approx(37.1234).margin(0.02 / 840.0));
+}
+
 TEST_CASE("a swing slower than the rule is no tone") {
     DiagnosisRules rules;
     const auto values = with_line(8.0, along_tour().motion.time_s);

@@ -3,22 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
+#include <utility>
 
+#include "diagnose/case/tones.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
-
-struct Spectrum {
-    double spacing = 0.0;
-    std::vector<double> power;  ///< squared amplitude, Nm^2
-};
-
-struct Samples {
-    std::vector<double> where, value;
-};
 
 Samples counted(const Case& c, const std::vector<double>& where, const std::vector<double>& values) {
     Samples samples;
@@ -28,18 +20,6 @@ Samples counted(const Case& c, const std::vector<double>& where, const std::vect
         samples.value.push_back(values[k]);
     }
     return samples;
-}
-
-Spectrum spectrum_of(const Samples& samples, double highest, const LineRules& rules) {
-    const auto [low, high] = std::minmax_element(samples.where.begin(), samples.where.end());
-    Spectrum spectrum;
-    spectrum.spacing = 1.0 / (rules.oversampling * std::max(*high - *low, 1e-9));
-    const std::size_t count =
-        std::min(static_cast<std::size_t>(std::max(highest / spectrum.spacing, 1.0)) + 1, rules.most_cells);
-    const auto sums = nonuniform_fourier(samples.where, samples.value, spectrum.spacing, count);
-    const double scale = 2.0 / static_cast<double>(samples.value.size());
-    for (const auto& sum : sums) spectrum.power.push_back(std::norm(scale * sum));
-    return spectrum;
 }
 
 // Median power of blocks, as a background that a line cannot raise.
@@ -102,22 +82,31 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t first, double l
     return peaks;
 }
 
-void gather(const Case& c, const std::vector<double>& residual_nm, bool by_angle, double least,
-            const LineRules& rules, std::vector<ResidualLine>& lines) {
-    const auto samples =
-        by_angle ? evenly_by_angle(c, residual_nm) : counted(c, c.motion.time_s, residual_nm);
-    if (samples.where.size() < rules.fewest_samples) return;
-    const auto [low, high] = std::minmax_element(samples.where.begin(), samples.where.end());
-    if (!(*high - *low > rules.least_range)) return;
-    const Spectrum spectrum = spectrum_of(
-        samples, by_angle ? highest_cycles_per_deg(c, rules) : 0.5 * c.motion.sample_rate.value(), rules);
-    // Slow tones and orders are matters of drift and friction.
-    const double slowest = by_angle ? rules.fewest_cycles_per_turn / 360.0 : rules.slowest_tone_hz;
-    const auto first = static_cast<std::size_t>(slowest / spectrum.spacing) + 1;
+void gather_by_angle(const Case& c, const std::vector<double>& residual_nm, double least,
+                     const LineRules& rules, std::vector<ResidualLine>& lines) {
+    const Samples samples = evenly_by_angle(c, residual_nm);
+    if (samples.where.size() < rules.fewest_samples || !(range_of(samples) > rules.least_range)) return;
+    const Spectrum spectrum = spectrum_of(samples, highest_cycles_per_deg(c, rules), rules);
+    // Slow orders are matters of gravity and friction.
+    const auto first = static_cast<std::size_t>(rules.fewest_cycles_per_turn / 360.0 / spectrum.spacing) + 1;
     for (const Peak& peak : peaks_of(spectrum, first, least, rules)) {
         const double cell = static_cast<double>(peak.cell) * spectrum.spacing;
-        lines.push_back({by_angle, refine_peak(samples.where, samples.value, cell, spectrum.spacing),
+        lines.push_back({true, refine_peak(samples.where, samples.value, cell, spectrum.spacing),
                          std::sqrt(spectrum.power[peak.cell]), peak.prominence});
+        if (lines.size() > rules.most_peaks) break;
+    }
+}
+
+void gather_by_time(const Case& c, const std::vector<double>& residual_nm, double least,
+                    const LineRules& rules, std::vector<ResidualLine>& lines) {
+    Samples samples = counted(c, c.motion.time_s, residual_nm);
+    if (samples.where.size() < rules.fewest_samples || !(range_of(samples) > rules.least_range)) return;
+    const Tones tones(std::move(samples), c.motion.sample_rate.value(), rules);
+    // Slow tones are matters of drift.
+    const auto first = static_cast<std::size_t>(rules.slowest_tone_hz / tones.spectrum().spacing) + 1;
+    for (const Peak& peak : peaks_of(tones.spectrum(), first, least, rules)) {
+        lines.push_back({false, tones.refined_hz(peak.cell), std::sqrt(tones.spectrum().power[peak.cell]),
+                         peak.prominence});
         if (lines.size() > rules.most_peaks) break;
     }
 }
@@ -127,8 +116,8 @@ void gather(const Case& c, const std::vector<double>& residual_nm, bool by_angle
 std::vector<ResidualLine> standing_out(const Case& looked_at, const std::vector<double>& residual_nm,
                                        double least, std::size_t most, const LineRules& rules) {
     std::vector<ResidualLine> lines, by_angle;
-    gather(looked_at, residual_nm, false, least, rules, lines);
-    gather(looked_at, residual_nm, true, least, rules, by_angle);
+    gather_by_time(looked_at, residual_nm, least, rules, lines);
+    gather_by_angle(looked_at, residual_nm, least, rules, by_angle);
     lines.insert(lines.end(), by_angle.begin(), by_angle.end());
     std::sort(lines.begin(), lines.end(),
               [](const ResidualLine& a, const ResidualLine& b) { return a.prominence > b.prominence; });
@@ -138,15 +127,14 @@ std::vector<ResidualLine> standing_out(const Case& looked_at, const std::vector<
 
 std::vector<double> strongest_tones_hz(const Case& looked_at, const std::vector<double>& residual_nm,
                                        const DiagnosisRules& rules) {
-    const auto samples = counted(looked_at, looked_at.motion.time_s, residual_nm);
+    Samples samples = counted(looked_at, looked_at.motion.time_s, residual_nm);
     if (samples.where.size() < rules.lines.fewest_samples) return {};
-    const Spectrum spectrum = spectrum_of(samples, 0.5 * looked_at.motion.sample_rate.value(), rules.lines);
-    const auto first = static_cast<std::size_t>(rules.lines.slowest_tone_hz / spectrum.spacing) + 1;
+    const Tones seen(std::move(samples), looked_at.motion.sample_rate.value(), rules.lines);
+    const auto first = static_cast<std::size_t>(rules.lines.slowest_tone_hz / seen.spectrum().spacing) + 1;
     std::vector<double> tones;
-    for (const Peak& peak : peaks_of(spectrum, first, rules.screening.tone_prominence, rules.lines)) {
+    for (const Peak& peak : peaks_of(seen.spectrum(), first, rules.screening.tone_prominence, rules.lines)) {
         if (tones.size() >= rules.screening.most_tones) break;
-        tones.push_back(refine_peak(samples.where, samples.value,
-                                    static_cast<double>(peak.cell) * spectrum.spacing, spectrum.spacing));
+        tones.push_back(seen.refined_hz(peak.cell));
     }
     return tones;
 }

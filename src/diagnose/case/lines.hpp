@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "diagnose/case/case.hpp"
+#include "diagnose/case/line_spectrum.hpp"
 
 namespace ripplenotch {
-
-using LineRules = DiagnosisRules::LineRules;
 
 struct ResidualLine {
     bool by_angle = false;
