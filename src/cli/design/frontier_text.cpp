@@ -49,6 +49,13 @@ std::string slowest_sentence(Seconds delay, DegPerSec slowest) {
                        four(1e3 * delay.value()));
 }
 
+std::string crossover_sentence(Seconds delay, std::string_view aside) {
+    return fmt::format(
+        "At a crossover of {} Hz this delay costs a loop {:g} deg of phase{}; for a faster loop give "
+        "--max-delay.",
+        crossover_text(delay), spared_deg, aside);
+}
+
 std::string frontier_to_text(const Frontier& frontier) {
     std::vector<std::vector<std::string>> rows = {
         {"attenuation", "delay", "loop to", "bands", "Q", "settles", "overshoot", ""},
@@ -68,11 +75,7 @@ std::string frontier_to_text(const Frontier& frontier) {
     text +=
         fmt::format("\nRecommended: {:.1f} dB with {:.1f} ms in {} band{}: {}.\n", chosen.attenuation_db,
                     1e3 * chosen.delay.value(), chosen.bands, chosen.bands == 1 ? "" : "s", frontier.reason);
-    text += fmt::format(
-        "At a crossover of {} Hz this delay costs a loop {:g} deg of phase (\"loop to\"); for a faster loop "
-        "give "
-        "--max-delay.\n",
-        crossover_text(chosen.delay), spared_deg);
+    text += crossover_sentence(chosen.delay, " (\"loop to\")") + "\n";
     if (frontier.slowest) text += slowest_sentence(chosen.delay, *frontier.slowest) + "\n";
     return text;
 }
