@@ -131,9 +131,7 @@ Figure frontier_figure(const std::string& title, const std::string& sentence,
             curve->y.push_back(point.attenuation_db);
         }
         if (point.chosen) {
-            panel.lines.push_back(
-                {fmt::format("chosen: {:.4g} ms, {:.3g} dB", point.delay_ms, point.attenuation_db),
-                 NamedLine::Run::at_x, point.delay_ms, Ink::vermilion});
+            panel.lines.push_back({"recommended", NamedLine::Run::at_x, point.delay_ms, Ink::vermilion});
         }
     }
     panel.curves = {std::move(frontier), std::move(designs)};

@@ -120,7 +120,7 @@ ExitCode print_frontier(const DesignRequest& request, const std::string& form, c
         }
         const Seconds chosen = frontier.points[frontier.recommended].delay;
         return frontier_figure("Attenuation against delay",
-                               "Recommended: " + frontier.reason + ". " + crossover_sentence(chosen), points);
+                               recommended_sentence(frontier) + " " + crossover_sentence(chosen), points);
     });
     return ExitCode::done;
 }
