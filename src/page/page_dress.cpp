@@ -46,6 +46,7 @@ pre { background: var(--box); padding: .6rem; overflow-x: auto; font-size: .85re
 details { margin: .6rem 0; }
 details > summary { cursor: pointer; color: var(--soft); }
 @media (max-width: 32rem) { body { padding: .7rem; font-size: 15px; } .facts li { flex: 1 1 40%; } }
+@media (max-width: 45rem) { figure { overflow-x: auto; } figure img { width: 44rem; } }
 @media print { :root { --ink: #000; --paper: #fff; --soft: #444; --rule: #ccc; --box: #fff; --link: #000; }
   body { max-width: none; padding: 0; } details, .modebar { display: none; }
   figure, table, article { break-inside: avoid; } figure img { filter: none; } }
