@@ -51,6 +51,10 @@ if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
     set(packed ${debian}/changelog.Debian.gz)
     add_custom_command(OUTPUT ${packed} DEPENDS ${debian}/changelog.Debian VERBATIM
         COMMAND ${RIPPLENOTCH_GZIP} -9nk -f ${debian}/changelog.Debian)
+    add_custom_command(OUTPUT ${debian}/changelog.gz DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md VERBATIM
+        COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${debian}/changelog
+        COMMAND ${RIPPLENOTCH_GZIP} -9n -f ${debian}/changelog)
+    list(APPEND packed ${debian}/changelog.gz)
     foreach(page IN LISTS RIPPLENOTCH_MAN_PAGES)
         add_custom_command(OUTPUT ${RIPPLENOTCH_REFERENCE}/${page}.gz DEPENDS ${RIPPLENOTCH_REFERENCE}/${page} VERBATIM
             COMMAND ${RIPPLENOTCH_GZIP} -9nk -f ${RIPPLENOTCH_REFERENCE}/${page})
@@ -60,7 +64,7 @@ if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
     foreach(package IN ITEMS runtime development)
         string(TOUPPER ${package} PACKAGE)
         set(folder ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${PACKAGE}_PACKAGE_NAME})
-        install(FILES ${CMAKE_CURRENT_LIST_DIR}/package/copyright ${debian}/changelog.Debian.gz
+        install(FILES ${CMAKE_CURRENT_LIST_DIR}/package/copyright ${debian}/changelog.Debian.gz ${debian}/changelog.gz
                 DESTINATION ${folder} COMPONENT ${package})
     endforeach()
 endif()

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "ripplenotch/core/how_many.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -105,13 +106,13 @@ Figure table_figure(const CandidateTable& table) {
         stairs(table, fmt::format("settles to {} %", shortest(table.bands().front().settle_band_percent)),
                Ink::vermilion, [](const Band& band) { return 1e3 * band.settle.value(); }));
     leave_room(delay);
-    return {
-        "candidate-table",
-        fmt::format("Candidate notches for gear ratio {:.6g} at {:.6g} Hz", spec.gear_ratio.value(),
-                    spec.sample_rate.value()),
-        fmt::format("{} bands from {:.6g} to {:.6g} deg/s, Q {}; numbers are bands.", table.bands().size(),
-                    table.bands().front().from.value(), table.bands().back().to.value(), shortest(spec.q)),
-        {centre_panel(table), std::move(worst), std::move(delay)}};
+    return {"candidate-table",
+            fmt::format("Candidate notches for gear ratio {:.6g} at {:.6g} Hz", spec.gear_ratio.value(),
+                        spec.sample_rate.value()),
+            fmt::format("{} from {:.6g} to {:.6g} deg/s, Q {}; numbers are bands.",
+                        how_many(table.bands().size(), "band"), table.bands().front().from.value(),
+                        table.bands().back().to.value(), shortest(spec.q)),
+            {centre_panel(table), std::move(worst), std::move(delay)}};
 }
 
 Figure frontier_figure(const std::string& title, const std::string& sentence,
@@ -130,9 +131,7 @@ Figure frontier_figure(const std::string& title, const std::string& sentence,
             curve->y.push_back(point.attenuation_db);
         }
         if (point.chosen) {
-            panel.lines.push_back(
-                {fmt::format("chosen: {:.4g} ms, {:.3g} dB", point.delay_ms, point.attenuation_db),
-                 NamedLine::Run::at_x, point.delay_ms, Ink::vermilion});
+            panel.lines.push_back({"recommended", NamedLine::Run::at_x, point.delay_ms, Ink::vermilion});
         }
     }
     panel.curves = {std::move(frontier), std::move(designs)};

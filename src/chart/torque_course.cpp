@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/chart/torque_course.hpp"
+#include "ripplenotch/core/how_many.hpp"
 
 #include <fmt/format.h>
 
@@ -88,10 +89,11 @@ Figure TorqueCourse::figure(const std::string& source, const std::string& method
     jumps.curves = {thinned(jump)};
     figure.panels.push_back(std::move(in_force));
     figure.panels.push_back(std::move(jumps));
-    figure.sentence = fmt::format("{} changes of filter{}.", report.switch_count,
-                                  report.switches.size() < report.switch_count
-                                      ? fmt::format(", the first {} shown", report.switches.size())
-                                      : "");
+    figure.sentence =
+        fmt::format("{}{}.", how_many(report.switch_count, "change of filter", "changes of filter"),
+                    report.switches.size() < report.switch_count
+                        ? fmt::format(", the first {} shown", report.switches.size())
+                        : "");
     return figure;
 }
 

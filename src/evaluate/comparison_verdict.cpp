@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 
@@ -26,6 +27,19 @@ std::vector<std::string> parts_of(const std::string& method) {
 }
 
 constexpr std::size_t short_enough = 36;  // letters of a method that is told as it was typed
+constexpr std::size_t longest_name = 40;  // of a name in a table and beside a line
+
+// "oscillator B", with the letter that the page of results has for it.
+std::string lettered(const std::string& method, const MethodFigures& figures, const Comparison& comparison) {
+    std::size_t before = 0;
+    for (const MethodFigures& other : comparison.methods) {
+        if (&other == &figures) break;
+        if (!is(other, "none")) ++before;
+    }
+    constexpr std::size_t letters = 'Z' - 'A' + 1;
+    return before < letters ? fmt::format("{} {}", method, static_cast<char>('A' + before))
+                            : fmt::format("{} M{}", method, before + 1);
+}
 
 }  // namespace
 
@@ -43,7 +57,7 @@ std::string short_name(const MethodFigures& figures, const Comparison& compariso
         });
         if (!shared) name += "," + parts[i];
     }
-    return name;
+    return name.size() <= longest_name ? name : lettered(parts.front(), figures, comparison);
 }
 
 namespace {
@@ -70,7 +84,7 @@ std::string lag(const MethodFigures& a, const MethodFigures& b, const std::strin
     if (!of(a) || !of(b)) return "";
     const double mine = *of(a), theirs = *of(b);
     const std::string than = rival.empty() ? "" : " than " + rival;
-    const std::string figures = fmt::format("({:.1f} against {:.1f} ms)", mine, theirs);
+    const std::string figures = fmt::format("({} against {} ms)", rounded(mine, 1), rounded(theirs, 1));
     if (std::abs(mine - theirs) < 0.05) return fmt::format("lags as much {}", figures);
     return fmt::format("lags {:.1f} ms {}{} {}", std::abs(mine - theirs), mine < theirs ? "less" : "more",
                        than, figures);
@@ -78,7 +92,7 @@ std::string lag(const MethodFigures& a, const MethodFigures& b, const std::strin
 
 std::string decibels(double db) {
     return db >= most_attenuation_db ? fmt::format("more than {:.0f} dB", most_attenuation_db)
-                                     : fmt::format("{:.1f} dB", db);
+                                     : fmt::format("{} dB", rounded(db, 1));
 }
 
 // The least attenuation of any line.
@@ -107,7 +121,7 @@ std::string alone(const MethodFigures& a, const std::string& name) {
         parts.push_back(
             fmt::format("settles in {:.0f} ms to {} %", (*a.settle_ms)[0], settle_bands_percent[0]));
     if (const auto delay = a.ramp_delay_ms ? a.ramp_delay_ms : a.dc_delay_ms)
-        parts.push_back(fmt::format("lags {:.1f} ms", *delay));
+        parts.push_back(fmt::format("lags {} ms", rounded(*delay, 1)));
     if (a.ripple_rms_nm) {
         parts.push_back(fmt::format("leaves {:.3g} Nm rms of ripple", *a.ripple_rms_nm));
     } else if (const auto db = least_db(a)) {

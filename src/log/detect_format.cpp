@@ -20,7 +20,8 @@ struct Stranger {
 };
 constexpr std::array strangers = {
     Stranger{"MDF     ", "an MDF file",
-             "convert it: python3 -c \"import asammdf; asammdf.MDF('{}').export('csv', 'run.csv')\""},
+             "convert it: python3 -c \"import asammdf; asammdf.MDF('{}').export('csv', 'run.csv', "
+             "single_time_base=True)\""},
     Stranger{"TDSm", "a TDMS file",
              "convert it: python3 -c \"import nptdms; "
              "nptdms.TdmsFile.read('{}').as_dataframe().to_csv('run.csv')\""},

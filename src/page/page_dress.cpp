@@ -46,6 +46,7 @@ pre { background: var(--box); padding: .6rem; overflow-x: auto; font-size: .85re
 details { margin: .6rem 0; }
 details > summary { cursor: pointer; color: var(--soft); }
 @media (max-width: 32rem) { body { padding: .7rem; font-size: 15px; } .facts li { flex: 1 1 40%; } }
+@media (max-width: 45rem) { figure { overflow-x: auto; } figure img { width: 44rem; } }
 @media print { :root { --ink: #000; --paper: #fff; --soft: #444; --rule: #ccc; --box: #fff; --link: #000; }
   body { max-width: none; padding: 0; } details, .modebar { display: none; }
   figure, table, article { break-inside: avoid; } figure img { filter: none; } }
@@ -54,7 +55,7 @@ details > summary { cursor: pointer; color: var(--soft); }
 // The figures come in the colours of paper; at night each of these has another that stands out as much. White
 // names on a heat map stay white, since the map stays as it is.
 const std::string_view page_script = R"js(
-const dark = matchMedia("(prefers-color-scheme: dark)");
+const dark = matchMedia("(prefers-color-scheme: dark)"), narrow = matchMedia("(max-width: 45rem)");
 const night = {"#1b1b1b": "#e4e6e8", "#222": "#e4e6e8", "#444": "#aab1b8", "#555": "#8f969d", "#888": "#8f969d",
   "#e3e3e3": "#333940", "#eeeeee": "#22272c", "#000000": "#e4e6e8", "#0072b2": "#3ea0dc", "#808080": "#9aa1a8"};
 const coloured = new Set(["color", "gridcolor", "linecolor", "fillcolor", "plot_bgcolor"]);
@@ -66,9 +67,16 @@ function dressed(value, key) {
   if (key === "plot_bgcolor" && value === "#ffffff") return "rgba(0,0,0,0)";
   return night[value] || (night[value.slice(0, 7)] || value.slice(0, 7)) + value.slice(7);
 }
+function narrowed(figure) {
+  for (const {path, value} of figure.narrow || []) {
+    const names = path.split("/").slice(1), last = names.pop();
+    names.reduce((within, name) => within[name], figure)[last] = value;
+  }
+  return figure;
+}
 function draw(source, light) {
   const place = document.getElementById(source.dataset.figure);
-  const read = JSON.parse(source.textContent);
+  const whole = JSON.parse(source.textContent), read = narrow.matches ? narrowed(whole) : whole;
   const figure = dark.matches && !light ? dressed(read, "") : read;
   figure.layout.paper_bgcolor = "rgba(0,0,0,0)";
   figure.layout.modebar = {bgcolor: "rgba(0,0,0,0)"};
@@ -83,6 +91,7 @@ const sources = [...document.querySelectorAll("script[data-figure]")];
 const draw_all = (light) => sources.forEach((source) => draw(source, light));
 draw_all(false);
 dark.addEventListener("change", () => draw_all(false));
+narrow.addEventListener("change", () => draw_all(false));
 addEventListener("beforeprint", () => draw_all(true));
 addEventListener("afterprint", () => draw_all(false));
 )js";

@@ -16,11 +16,30 @@ namespace {
 constexpr double left_margin_px = 84.0, tool_bar_px = 34.0;
 constexpr double axis_px = 56.0, row_px = 24.0;
 
+constexpr double phone_px = 280.0;  // a panel's width on a screen of 400
+
+// Rows that the names of a panel's curves fill, set one after the other as far as there is room.
+std::size_t legend_rows(const Panel& panel, double room_px) {
+    if (!panel.legend) return 0;
+    std::size_t rows = 0;
+    double used_px = room_px + 1.0;
+    for (const std::string& name : legend_names(panel)) {
+        const double px = letter_px * static_cast<double>(text_width(name)) + 60.0;
+        if (used_px + px > room_px) {
+            ++rows;
+            used_px = 0.0;
+        }
+        used_px += px;
+    }
+    return rows;
+}
+
 // One panel of the figure; axes are numbered from 1, and 1 is written without its number.
 class PlotlyPanel {
   public:
-    PlotlyPanel(const Panel& panel, std::size_t number, Json& data, Json& layout)
+    PlotlyPanel(const Panel& panel, std::size_t number, double room_px, Json& data, Json& layout)
         : panel_(panel),
+          room_px_(room_px),
           suffix_(number == 1 ? "" : std::to_string(number)),
           x_(x_range(panel)),
           y_(y_range(panel)),
@@ -70,7 +89,7 @@ class PlotlyPanel {
     /// Space for the names of lines above the panel, or right of it.
     [[nodiscard]] double names_px(bool on_top) const { return lines_.names_px(on_top); }
     [[nodiscard]] double height_px() const {
-        const double rows = panel_.legend ? static_cast<double>(legend_rows()) : 0.0;
+        const auto rows = static_cast<double>(legend_rows(panel_, room_px_));
         return lines_.names_px(true) + panel_px * panel_.height + axis_px + row_px * rows + 46.0;
     }
     [[nodiscard]] double above_px() const {
@@ -93,13 +112,6 @@ class PlotlyPanel {
         for (const std::string& line : lines) text += (text.empty() ? "" : "<br>") + plotly_shown(line);
         return text;
     }
-    [[nodiscard]] std::size_t legend_rows() const {
-        double px = 0.0;
-        for (const std::string& name : legend_names(panel_))
-            px += letter_px * static_cast<double>(text_width(name)) + 60.0;
-        return static_cast<std::size_t>(std::ceil(px / plot_px));
-    }
-
     void axis(const char* which, const PlotAxis& axis, const PlotRange& range) {
         const bool log = axis.scale == PlotScale::logarithmic;
         Json& json = layout_[which + suffix_];
@@ -158,6 +170,7 @@ class PlotlyPanel {
     }
 
     const Panel& panel_;
+    double room_px_;
     std::string suffix_;
     PlotRange x_, y_;
     PlotlyLines lines_;
@@ -172,17 +185,15 @@ bool alike(const Panel& a, const Panel& b) {
            near(x.from, y.from, x.to - x.from) && near(x.to, y.to, x.to - x.from);
 }
 
-}  // namespace
-
-std::string plotly_text(const Figure& figure) {
-    check_figure(figure);
+// The figure where a panel is so wide.
+Json drawn(const Figure& figure, double room_px) {
     Json data = Json::array();
     Json layout{{"shapes", Json::array()}, {"annotations", Json::array()}};
     double total_px = 0.0, beside_px = 24.0;
     std::vector<PlotlyPanel> panels;
     panels.reserve(figure.panels.size());
     for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-        panels.emplace_back(figure.panels[i], i + 1, data, layout);
+        panels.emplace_back(figure.panels[i], i + 1, room_px, data, layout);
         total_px += panels.back().height_px() + panels.back().above_px() - panels.back().names_px(true);
         beside_px =
             std::max(beside_px, panels.back().names_px(false) + 10.0 + (figure.panels[i].map ? 90.0 : 0.0));
@@ -207,8 +218,37 @@ std::string plotly_text(const Figure& figure) {
             : "#ffffff";
     layout["hovermode"] = "closest";
     layout["dragmode"] = "zoom";
-    std::string text = Json{{"data", std::move(data)}, {"layout", std::move(layout)}}.dump(
-        -1, ' ', false, Json::error_handler_t::replace);
+    return Json{{"data", std::move(data)}, {"layout", std::move(layout)}};
+}
+
+// What is different where a screen is narrow, so that names of curves take more rows: paths and their values.
+Json narrow_changes(const Figure& figure, const Json& wide) {
+    Json changes = Json::array();
+    const bool same = std::all_of(figure.panels.begin(), figure.panels.end(), [](const Panel& panel) {
+        return legend_rows(panel, phone_px) == legend_rows(panel, plot_px);
+    });
+    if (same) return changes;
+    const Json narrow = drawn(figure, phone_px);
+    const auto add = [&](const Json& from, const Json& to, const std::string& place) {
+        for (const Json& one : Json::diff(from, to))
+            changes.push_back({{"path", place + one["path"].get<std::string>()}, {"value", one["value"]}});
+    };
+    add(wide["layout"], narrow["layout"], "/layout");
+    for (std::size_t i = 0; i < wide["data"].size(); ++i) {
+        const Json &trace = wide["data"][i], &other = narrow["data"][i];
+        if (trace.contains("colorbar"))
+            add(trace["colorbar"], other["colorbar"], "/data/" + std::to_string(i) + "/colorbar");
+    }
+    return changes;
+}
+
+}  // namespace
+
+std::string plotly_text(const Figure& figure) {
+    check_figure(figure);
+    Json json = drawn(figure, plot_px);
+    if (Json changes = narrow_changes(figure, json); !changes.empty()) json["narrow"] = std::move(changes);
+    std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
     // "<br>" and "<extra>" of templates included: JSON reads it back the same.
     for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
         text.replace(at, 1, "\\u003c");

@@ -171,8 +171,8 @@ void state_uses(LogInfo& info) {
                          [](const JointInfo& a, const JointInfo& b) { return a.turns < b.turns; });
     const JointInfo none;
     const JointInfo& joint = most == info.joints.end() ? none : *most;
-    const std::string missing = !joint.torque_nm     ? "no torque column"
-                                : !joint.speed_deg_s ? "no velocity column"
+    const std::string missing = !joint.torque_nm     ? "no torque column; --columns torque=NAME names one"
+                                : !joint.speed_deg_s ? "no velocity column; --columns velocity=NAME names one"
                                                      : info.clock.refusal;
     const std::string speeds = speeds_text(joint.stretches);
     const std::string of_joint = info.joints.size() > 1 ? fmt::format("joint {}: ", joint.joint) : "";
@@ -188,11 +188,11 @@ void state_uses(LogInfo& info) {
     if (missing.empty()) {
         const double top = 0.5 * info.clock.nominal_rate.value();
         const double speed = std::max(std::abs(joint.speed_deg_s->min), std::abs(joint.speed_deg_s->max));
+        const std::string turns = fmt::format("{:.3g}", joint.turns);
         identify.reason = fmt::format(
-            "{}{:.3g} turns of the joint at up to {:.3g} deg/s; lines below {:.0f} cycles per turn stay "
-            "under half the "
-            "sample rate at that speed",
-            of_joint, joint.turns, speed, 360.0 * top / std::max(speed, 1e-9));
+            "{}{} turn{} of the joint at up to {:.3g} deg/s; lines below {:.0f} cycles per turn stay "
+            "under half the sample rate at that speed",
+            of_joint, turns, turns == "1" ? "" : "s", speed, 360.0 * top / std::max(speed, 1e-9));
         if (!identify.possible)
             identify.reason = fmt::format("{}the joint turns by {:.3g} of a turn: too little for any line",
                                           of_joint, joint.turns);
@@ -213,6 +213,17 @@ void state_uses(LogInfo& info) {
                            : "too few rows, too little motion, or position and velocity of different things";
     }
     info.uses = {spectrum, identify, filter, clock};
+}
+
+// A log of unknown columns is told like any other, since `info` is what one looks with.
+void warn_where_nothing_is_known(LogInfo& info) {
+    const auto& columns = info.layout.columns;
+    if (!std::all_of(columns.begin(), columns.end(),
+                     [](const Column& column) { return column.role == Role::other; }))
+        return;
+    info.warnings.emplace_back(
+        "no column is known as time, velocity, torque or position, so no command can use this log as it is; "
+        "say which is which, by name or number: --columns time=NAME,velocity=NAME,torque=NAME");
 }
 
 }  // namespace
@@ -240,6 +251,7 @@ LogInfo survey_log(const std::string& path, ReadOptions options, std::size_t mos
             if (own.joint == name || info.layout.columns[c].joint == name) info.layout.columns[c] = own;
         }
     }
+    warn_where_nothing_is_known(info);
     add_warnings(info, joints);
     state_uses(info);
     return info;

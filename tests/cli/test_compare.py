@@ -94,12 +94,26 @@ class Signals(Case):
         done = run("compare", *SIGNALS, *RIPPLE, *methods(NOTCHES, MISLABELLED))
         verdict, _, rest = done.stdout.partition("\n\n")
         lines = rest.split("\n")
-        self.assertLessEqual(max(len(line) for line in verdict.split("\n")), 110)
+        self.assertLessEqual(max(len(line) for line in verdict.split("\n")), 100)
         self.assertEqual(" ".join(verdict.split("\n")), f"{NOTCHES} settles 2.8 times faster than {MISLABELLED} (147 against 408 ms to 0.5 %), "
                                    "lags 38.9 ms less (38.0 against 76.9 ms), and takes more than 200 dB off its weakest "
                                    "line against 21.7 dB.")
         for name in ("none", NOTCHES, MISLABELLED):
-            self.assertEqual(sum(line.startswith(name + "  ") for line in lines), 1)
+            self.assertEqual(sum(line.startswith(name + "  ") for line in lines), 2)  # costs, and what is left
+
+    def test_no_line_is_wider_than_a_hundred_columns_but_what_is_there_to_be_copied(self):
+        fixed = [f"oscillator,gear-ratio=100,orders=1:2,amplitudes={a}:0.5,phases={a}12345:0.012345678" for a in (0.7, 0.8)]
+        move = str(DATA / "paper_move_2s.csv")
+        text = run("compare", move, *RIPPLE, "--truth", move, "--crossover", "12Hz", "--max-delay", "40ms",
+                   *methods(*fixed, MISLABELLED, NOTCHES, "lowpass,cutoff=1.894387654321Hz,order=1")).stdout
+        self.assertNotIn("-0.0 ", text)
+        told = [line for line in text.split("\n") if " is --method " not in line]
+        self.assertLessEqual(max(map(len, told)), 100, text)
+        for letter, method in zip("AB", fixed):
+            self.assertIn(f"\noscillator {letter} is --method {method}\n", text)
+            self.assertIn(f"\noscillator {letter}  ", text)
+        for figure in ("to 0.5 %", "lag at 12 Hz", "order 2", "residual", "error"):
+            self.assertIn(figure, text)
 
     def test_switching_uses_the_band_of_the_speed(self):
         with tempfile.TemporaryDirectory() as folder:

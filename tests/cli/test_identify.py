@@ -99,6 +99,13 @@ class Answers(unittest.TestCase):
             self.assertEqual(done.returncode, 5)
             self.assertIn("a log at another speed would tell", done.stdout)
 
+    def test_the_sentence_is_as_sure_as_the_table(self):
+        several, one = identified(*PAPER), identified(str(DATA / "paper_90deg_s.csv"))
+        self.assertEqual({line["kind"] for line in several["lines"]}, {"order"})
+        self.assertTrue(several["verdict"].startswith("Ripple at orders 1 and 2 of the motor: "))
+        self.assertEqual({line["kind"] for line in one["lines"]}, {"unknown"})
+        self.assertTrue(one["verdict"].startswith("Lines that may be ripple at orders 1 and 2 of the motor: "))
+
     def test_no_ripple_is_a_conclusive_answer(self):
         with tempfile.TemporaryDirectory() as folder:
             paths = [self.write(folder, f"{v}.csv", log_text(v, 0.0, seed=v)) for v in (40, 80)]

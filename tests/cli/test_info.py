@@ -112,6 +112,20 @@ class Lacking(unittest.TestCase):
         self.assertEqual({use["name"]: use["possible"] for use in got["uses"]},
                          {"spectrum": False, "identify": False, "filter": False, "clock-check": True})
 
+    def test_a_log_of_unknown_columns_is_described_and_told_to_be_of_no_use_as_it_is(self):
+        rows = "\n".join(f"{k},{0.37 * k % 5:.3f},{0.11 * k % 3:.3f}" for k in range(100)) + "\n"
+        for data in ("a,b,c\n" + rows, rows):
+            got = info("-", data=data.encode())
+            self.assertEqual({column["role"] for column in got["columns"]}, {"other"})
+            self.assertEqual({use["possible"] for use in got["uses"]}, {False})
+            self.assertIn("no command can use this log as it is", got["warnings"][0])
+            self.assertIn("--columns time=NAME,velocity=NAME,torque=NAME", got["warnings"][0])
+            text = run("info", "-", data=data.encode()).stdout.decode()
+            self.assertIn("no column known as velocity, torque or position", text.split("\n")[0])
+            named = info("-", "--columns", "time=1,velocity=2,torque=3", "--unit", "time=ms", data=data.encode())
+            self.assertEqual([column["role"] for column in named["columns"]], ["time", "velocity", "torque"])
+            self.assertFalse([text for text in named["warnings"] if "no column is known" in text])
+
     def test_a_log_without_time_or_header_is_described(self):
         for name in ("no_time", "no_header"):
             got = info(SOURCE / f"data/dialects/{name}.csv")

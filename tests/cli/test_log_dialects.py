@@ -125,6 +125,15 @@ def twincat(stamps):
     return table(None, f"{stamps}|deg/s|{stamps}|Nm|{stamps}|deg", delimiter="\t", head=head) + b"EOF\n"
 
 
+def twincat_shared():
+    """Channels of one rate that share their column of times."""
+    head = ("Name\tScope Project\nFile\tC:\\scope.svdx\nStarttime of export\t133600000000000000\n"
+            "Endtime of export\t133600000090000000\n\n"
+            "Name\tAxis1.ActVelo\tAxis1.ActTorque\tAxis1.ActPos\nData-Type\tREAL64\tREAL64\tREAL64\n"
+            "SampleTime[ms]\t2\t2\t2\nUnit\t°/s\tNm\t°\n\n")
+    return table(None, "ms|deg/s|Nm|deg", delimiter="\t", head=head) + b"EOF\n"
+
+
 # name -> bytes, and the options that make it right where it may be refused
 RAD, REFUSED_RAD = "t|rad/s|Nm|rad", ["--unit", "velocity=rad/s"]
 DIALECTS = {
@@ -206,6 +215,7 @@ DIALECTS = {
     "LabVIEW": (lvm(), None),
     "TwinCAT Scope": (twincat("ms"), None),
     "TwinCAT Scope, FILETIME": (twincat("filetime"), None),
+    "TwinCAT Scope, one column of times": (twincat_shared(), None),
     "npy by rows": (npy(False, False), ["--unit", "velocity=deg/s"]),
     "npy in Fortran order": (npy(True, False), ["--unit", "velocity=deg/s"]),
     "npy with a row a signal": (npy(False, True), ["--unit", "velocity=deg/s"]),
@@ -250,6 +260,40 @@ class OneLogInManyDialects(unittest.TestCase):
                     self.assertAlmostEqual(json.loads(again.stdout)["gear_ratio"]["value"], RATIO, delta=0.5)
                     refused.append(name)
         print(f"\n{len(right)} right without an option, {len(refused)} refused with it: {', '.join(refused)}")
+
+
+class ChannelsWithClocksOfTheirOwn(unittest.TestCase):
+    """TwinCAT Scope exports a column of times beside each channel."""
+
+    def info(self, change=lambda row, cells: cells, *words):
+        text = twincat("ms").decode()
+        head, rows = text[:text.index("0\t")], text[text.index("0\t"):].splitlines()
+        rows = ["\t".join(change(k, row.split("\t"))) for k, row in enumerate(rows) if "\t" in row]
+        return subprocess.run([TOOL, "info", "-", "--json", *words], input=head + "\n".join(rows) + "\nEOF\n",
+                              capture_output=True, text=True, timeout=60)
+
+    def test_one_clock_in_several_columns_is_read(self):
+        done = self.info()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([c["role"] for c in json.loads(done.stdout)["columns"]],
+                         ["time", "velocity", "other", "torque", "other", "position"])
+
+    def test_two_clocks_are_refused_with_the_first_times_that_differ(self):
+        for at_k in (lambda k: f"{4.0 * k}", lambda k: f"{2.0 * k + 100.0}"):  # half the rate; a later start
+            done = self.info(lambda k, cells: cells[:2] + [at_k(k)] + cells[3:])
+            self.assertEqual((done.returncode, done.stdout), (3, ""))
+            self.assertIn("'Axis1.ActTorque' (column 4) at times of its own", done.stderr)
+            self.assertIn("export all channels at one rate", done.stderr)
+
+    def test_what_is_within_half_a_step_is_the_same_row(self):
+        done = self.info(lambda k, cells: cells[:2] + [f"{2.0 * k + 0.4}"] + cells[3:])
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_the_clock_that_is_named_counts(self):
+        velocity_late = lambda k, cells: [f"{2.0 * k + 100.0}"] + cells[1:]  # noqa: E731
+        self.assertIn("'Axis1.ActTorque' (column 4)", self.info(velocity_late).stderr)
+        self.assertIn("'Axis1.ActVelo' (column 2)", self.info(velocity_late, "--columns", "time=3").stderr)
+
 
 
 class WhatIsSaidWithoutAUnit(unittest.TestCase):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Arrays in NPZ, MAT and HDF5, written by NumPy, SciPy, Octave and h5py."""
 
+import os
 import shutil
 import struct
 import subprocess
@@ -138,10 +139,14 @@ class Mat(Case):
         script = ("m = csvread('run.csv'); time_s = m(:,1); velocity_deg_s = m(:,2); torque_nm = m(:,3); position_deg = m(:,4); "
                   "log.time_s = time_s; log.velocity_deg_s = velocity_deg_s; log.torque_nm = torque_nm; log.position_deg = position_deg; "
                   "save('-v6', 'six.mat', 'time_s', 'velocity_deg_s', 'torque_nm', 'position_deg'); "
-                  "save('-v7', 'seven.mat', 'log');")
+                  "save('-v7', 'seven.mat', 'log'); save('-hdf5', 'struct.h5', 'log'); "
+                  "save('-hdf5', 'plain.h5', 'time_s', 'velocity_deg_s', 'torque_nm', 'position_deg');")
         subprocess.run(["octave-cli", "--no-init-file", "--eval", script], cwd=self.folder, check=True, capture_output=True, timeout=60)
         self.assert_same(self.folder / "six.mat")
         self.assert_same(self.folder / "seven.mat")
+        if "HDF5" not in os.environ["RIPPLENOTCH_LACKS"].split(","):
+            self.assert_same(self.folder / "plain.h5")
+            self.assert_same(self.folder / "struct.h5")
 
 
 def json_of(done):

@@ -3,12 +3,17 @@
 
 import bz2
 import gzip
+import json
 import lzma
+import os
+import re
+import shutil
 import struct
+import subprocess
 import sys
 import unittest
 
-from container_case import LOG, Case, there
+from container_case import LOG, Case, needs, there
 
 
 def zstd(data):
@@ -84,6 +89,51 @@ class Strangers(Case):
                                   ("run.parquet", b"PAR1\x15\0", "duckdb"), ("run.xlsx", b"PK\x03\x04\x14\0", "libreoffice"),
                                   ("run.bag", b"#ROSBAG V2.0\n", "rosbags-convert")):
             self.assertIn(word, self.refusal(self.write(name, magic + bytes(600))))
+
+    def converted(self, name):
+        """The log as the line of the refusal makes it, in a folder of its own."""
+        line = re.search(r"convert (?:it|a workbook): (.*)$", self.refusal(self.folder / name).strip())[1]
+        (self.folder / "run.csv").unlink(missing_ok=True)
+        done = subprocess.run(line, shell=True, cwd=self.folder, capture_output=True, text=True, timeout=180,
+                              env=dict(os.environ, HOME=str(self.folder)))
+        self.assertEqual(done.returncode, 0, f"{line}: {done.stderr}")
+        return json.loads(self.run_tool("info", "run.csv", "--json").stdout)
+
+    def assert_has_the_rows(self, got):
+        self.assertEqual(got["rows"], len(self.rows))
+        self.assertLessEqual({"velocity", "torque"}, {column["role"] for column in got["columns"]})
+
+    @unittest.skipUnless(shutil.which("libreoffice"), "no libreoffice here to write a workbook")
+    def test_a_workbook_is_converted_by_its_line(self):
+        subprocess.run(["libreoffice", "--headless", "--convert-to", "xlsx", "--outdir", self.folder, LOG], check=True,
+                       capture_output=True, timeout=180, env=dict(os.environ, HOME=str(self.folder)))
+        (self.folder / f"{LOG.stem}.xlsx").rename(self.folder / "run.xlsx")
+        self.assert_has_the_rows(self.converted("run.xlsx"))
+
+    @unittest.skipUnless(shutil.which("duckdb"), "no duckdb here to write Parquet")
+    def test_parquet_is_converted_by_its_line(self):
+        subprocess.run(["duckdb", "-c", f"copy (from '{LOG}') to 'run.parquet'"], check=True, cwd=self.folder, timeout=60)
+        self.assert_has_the_rows(self.converted("run.parquet"))
+
+    @needs("nptdms")
+    def test_tdms_is_converted_by_its_line(self):
+        import nptdms
+        import numpy
+        with nptdms.TdmsWriter(str(self.folder / "run.tdms")) as writer:
+            writer.write_segment([nptdms.ChannelObject("log", name, numpy.array(values)) for name, values in self.columns.items()])
+        self.assert_has_the_rows(self.converted("run.tdms"))
+
+    @needs("asammdf")
+    def test_mdf_is_converted_by_its_line(self):
+        import asammdf
+        import numpy
+        times = numpy.array(self.columns["time_s"])
+        with asammdf.MDF() as mdf:
+            mdf.append([asammdf.Signal(samples=numpy.array(values), timestamps=times, name=name)
+                        for name, values in self.columns.items() if name != "time_s"])
+            mdf.save(self.folder / "run.mf4")
+        self.assert_has_the_rows(self.converted("run.mf4"))
+
 
 if __name__ == "__main__":
     unittest.main()

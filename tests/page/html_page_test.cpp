@@ -98,6 +98,37 @@ TEST_CASE("axes that show the same time are linked, others are not") {
     CHECK_FALSE(layout["xaxis3"].contains("matches"));
 }
 
+TEST_CASE("names of curves that take more rows on a phone have room for them there") {
+    Panel panel{.title = "first", .x = {"time", "s"}, .y = {"torque", "Nm"}};
+    constexpr int names = 12;
+    for (int i = 0; i < names; ++i)
+        panel.curves.push_back({"a method with its error, " + std::to_string(100 + i),
+                                Ink::blue,
+                                CurveStyle::line,
+                                {0.0, 1.0},
+                                {0.0, 1.0}});
+    Figure figure{"test", "t", "s", {panel, panel}, 1};
+    figure.panels[1].title = "second";
+    auto json = nlohmann::json::parse(plotly_text(figure));
+    const auto room_px = [&] {  // from the first row of names to the title below
+        const auto& layout = json["layout"];
+        const double title = layout["annotations"][1]["y"], first = layout["legend"]["y"];
+        REQUIRE(layout["annotations"][1]["text"] == "second");
+        return (first - title) * (layout["height"].get<double>() - 44.0);
+    };
+    const double wide_px = room_px();
+    REQUIRE(json.contains("narrow"));
+    for (const auto& change : json["narrow"])
+        json[nlohmann::json::json_pointer(change["path"].get<std::string>())] = change["value"];
+    const double row_px = 20.0, title_px = 18.0;
+    CHECK(wide_px >= names / 2 * row_px + title_px);  // two in a row
+    CHECK(wide_px < names * row_px);
+    CHECK(room_px() >= names * row_px + title_px);
+
+    for (Panel& one : figure.panels) one.curves.resize(1);
+    CHECK_FALSE(nlohmann::json::parse(plotly_text(figure)).contains("narrow"));
+}
+
 TEST_CASE("a page shows hostile text as text and lets no script run but its own two") {
     const std::string text = figure_json(full_figure());
     Page page{hostile, {section_of_result(text, hostile)}};

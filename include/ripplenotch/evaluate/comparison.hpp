@@ -84,7 +84,7 @@ struct Comparison {
 
 /// What a method is called beside the others of a comparison: as it was typed where that is short; a long one
 /// by its name where no other has it, else with the keys that tell it from those:
-/// "switching,transition=reset".
+/// "switching,transition=reset"; where those are long too, with a letter: "switching B".
 [[nodiscard]] std::string short_name(const MethodFigures& figures, const Comparison& comparison);
 
 /// One sentence with numbers: how subject and rival differ in settling, delay and ripple.

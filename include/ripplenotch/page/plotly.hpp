@@ -7,7 +7,8 @@
 namespace ripplenotch {
 
 /// A figure for plotly.js 3: {"data": [...], "layout": {...}}, panels one under the other, equal time axes
-/// linked. Names are escaped for plotly's own markup; the text holds no "<", so that it can stand in a page.
+/// linked; "narrow", where it is there, lists what is otherwise on a phone: {"path", "value"}. Names are
+/// escaped for plotly's own markup; the text holds no "<", so that it can stand in a page.
 [[nodiscard]] std::string plotly_text(const Figure& figure);
 
 }  // namespace ripplenotch

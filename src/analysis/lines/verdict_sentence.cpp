@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ripplenotch/analysis/identification.hpp"
+#include "ripplenotch/core/how_many.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -19,10 +20,6 @@ std::string listed(const std::vector<std::string>& words) {
     return text + " and " + words.back();
 }
 
-std::string plural(std::size_t count, std::string_view noun) {
-    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 std::string speeds(double from, double to) {
     return to - from < 0.02 * to ? fmt::format("{:.3g} deg/s", to)
                                  : fmt::format("{:.3g} to {:.3g} deg/s", from, to);
@@ -32,13 +29,10 @@ std::string speeds(double from, double to) {
 std::string basis(const Grounds& grounds) {
     const std::string at = speeds(grounds.slowest_deg_s, grounds.fastest_deg_s);
     if (grounds.from_sweeps) {
-        return fmt::format("{} over {:.3g} output turns at {}", plural(grounds.sweeps, "sweep"),
+        return fmt::format("{} over {:.3g} output turns at {}", how_many(grounds.sweeps, "sweep"),
                            grounds.sweep_turns, at);
     }
-    return fmt::format(
-        "{} at {}",
-        grounds.stretches == 1 ? "1 steady stretch" : fmt::format("{} steady stretches", grounds.stretches),
-        at);
+    return fmt::format("{} at {}", how_many(grounds.stretches, "steady stretch", "steady stretches"), at);
 }
 
 bool seen_at_rest(const Line& line) {
@@ -142,20 +136,32 @@ std::string with_ratio(const Identification& found) {
         orders.push_back(fmt::format("{:.0f}", *line->order));
         amplitudes.push_back(fmt::format("{:.2f}", line->amplitude_nm));
     }
+    std::vector<std::string> doubted;  // may be tones
+    for (const Line* line : lines) {
+        if (line->kind == LineKind::unknown) doubted.push_back(fmt::format("{:.0f}", *line->order));
+    }
+    const bool all_doubted = std::none_of(lines.begin(), lines.end(),
+                                          [](const Line* line) { return line->kind == LineKind::order; });
     std::string doubt;
-    if (std::none_of(lines.begin(), lines.end(),
-                     [](const Line* line) { return line->kind == LineKind::order; })) {
+    if (all_doubted) {
         doubt =
             "; one speed dominates, where a fixed tone would look the same: a log at another speed would "
             "tell";
+    } else if (!doubted.empty()) {
+        doubt = fmt::format("; {} may be a fixed tone{}: a log at another speed would tell",
+                            (doubted.size() == 1 ? "order " : "orders ") + listed(doubted),
+                            doubted.size() == 1 ? "" : "s");
     }
     const GearRatioFit& ratio = found.gear_ratio;
     const double half = 0.5 * (ratio.ci95_high - ratio.ci95_low);
     const int decimals = half < 0.005 ? 4 : half < 0.05 ? 3 : half < 0.5 ? 2 : 1;
+    const std::string subject = !all_doubted        ? "Ripple"
+                                : lines.size() == 1 ? "A line that may be ripple"
+                                                    : "Lines that may be ripple";
     return fmt::format(
-        "Ripple at order{} {} of the motor: gear ratio {:.{}f} +/- {:.{}f} (95 %), {} Nm zero to peak, from "
+        "{} at order{} {} of the motor: gear ratio {:.{}f} +/- {:.{}f} (95 %), {} Nm zero to peak, from "
         "{}{}{}.",
-        lines.size() == 1 ? "" : "s", listed(orders), *ratio.value, decimals, half, decimals,
+        subject, lines.size() == 1 ? "" : "s", listed(orders), *ratio.value, decimals, half, decimals,
         listed(amplitudes), basis(found.grounds), at_rest(found) + doubt, besides(found));
 }
 
@@ -185,7 +191,7 @@ std::string one_speed(const Identification& found) {
     const Line& first = *unknown.front();
     std::string text =
         fmt::format("{} at {:.4g} Hz ({:.2g} Nm zero to peak), from {}",
-                    unknown.size() == 1 ? "One line" : plural(unknown.size(), "line") + ", the strongest",
+                    unknown.size() == 1 ? "One line" : how_many(unknown.size(), "line") + ", the strongest",
                     first.hz.value_or(0.0), first.amplitude_nm, basis(found.grounds));
     if (first.order_output)
         text += fmt::format(": output order {:.5g} if it turns with the joint", *first.order_output);

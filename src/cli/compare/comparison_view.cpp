@@ -2,9 +2,11 @@
 #include "cli/compare/comparison_view.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
+#include <span>
 
 #include "cli/compare/ledger_text.hpp"
 #include "cli/text_table.hpp"
@@ -15,11 +17,19 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t page_width = 110;
+constexpr std::size_t page_width = 100;
+
+// A sentence wrapped to lines that a terminal shows whole.
+std::string paragraph(const std::string& sentence) {
+    std::string text;
+    for (const std::string& line : wrapped(sentence, page_width)) text += line + "\n";
+    return text;
+}
 
 struct ViewColumn {
     std::string title, unit;
     std::function<std::string(const MethodFigures&)> cell;  ///< empty text: not measured
+    bool with_next = false;  ///< stands beside the next one: they share a title
 };
 
 std::string fixed(const std::optional<double>& value, int decimals) {
@@ -33,43 +43,61 @@ std::string attenuation(const MethodFigures& figures, std::size_t line) {
     return rounded(db, 1);
 }
 
-std::vector<ViewColumn> columns_of(const Comparison& comparison) {
+// What a method costs.
+std::vector<ViewColumn> cost_columns(const Comparison& comparison) {
     std::vector<ViewColumn> columns;
     for (std::size_t b = 0; b < settle_bands_percent.size(); ++b) {
         columns.push_back(
             {b == 0 ? "settles, ms" : "", fmt::format("to {} %", settle_bands_percent[b]),
-             [b](const MethodFigures& f) { return f.settle_ms ? fixed((*f.settle_ms)[b], 0) : ""; }});
+             [b](const MethodFigures& f) { return f.settle_ms ? fixed((*f.settle_ms)[b], 0) : ""; },
+             b + 1 < settle_bands_percent.size()});
     }
     columns.push_back(
         {"overshoot", "%", [](const MethodFigures& f) { return fixed(f.overshoot_percent, 1); }});
-    columns.push_back({"ramp delay", "ms", [](const MethodFigures& f) { return fixed(f.ramp_delay_ms, 1); }});
+    columns.push_back(
+        {"ramp delay", "ms", [](const MethodFigures& f) { return fixed(f.ramp_delay_ms, 1); }, true});
     columns.push_back({"DC delay", "ms", [](const MethodFigures& f) { return fixed(f.dc_delay_ms, 1); }});
     if (comparison.crossover) {
         columns.push_back({fmt::format("lag at {:g} Hz", comparison.crossover->value()), "deg",
-                           [](const MethodFigures& f) { return fixed(f.phase_lag_deg, 1); }});
+                           [](const MethodFigures& f) { return fixed(f.phase_lag_deg, 1); }, true});
         columns.push_back({"", "dB", [](const MethodFigures& f) { return fixed(f.crossover_db, 1); }});
     }
+    return columns;
+}
+
+// What it leaves.
+std::vector<ViewColumn> result_columns(const Comparison& comparison) {
+    std::vector<ViewColumn> columns;
     for (std::size_t i = 0; comparison.lines && i < comparison.lines->orders.size(); ++i) {
         columns.push_back({fmt::format("order {}", shortest(comparison.lines->orders[i].value())), "dB",
                            [i](const MethodFigures& f) { return attenuation(f, i); }});
     }
     columns.push_back({"ripple", "Nm rms", [](const MethodFigures& f) { return fixed(f.ripple_rms_nm, 4); }});
     columns.push_back(
-        {"residual", "Nm rms", [](const MethodFigures& f) { return fixed(f.residual_rms_nm, 4); }});
+        {"residual", "Nm rms", [](const MethodFigures& f) { return fixed(f.residual_rms_nm, 4); }, true});
     columns.push_back(
         {"", "Nm p-p", [](const MethodFigures& f) { return fixed(f.residual_peak_to_peak_nm, 3); }});
+    columns.push_back({"error", "Nm rms", [](const MethodFigures& f) { return fixed(f.error_rms_nm, 4); }});
     columns.push_back({"switches", "",
-                       [](const MethodFigures& f) { return f.switches ? std::to_string(*f.switches) : ""; }});
+                       [](const MethodFigures& f) { return f.switches ? std::to_string(*f.switches) : ""; },
+                       true});
     columns.push_back(
         {"largest", "jump, Nm", [](const MethodFigures& f) { return fixed(f.largest_jump_nm, 3); }});
-    columns.push_back({"error", "Nm rms", [](const MethodFigures& f) { return fixed(f.error_rms_nm, 4); }});
     return columns;
 }
 
-std::string rows_of(const Comparison& comparison) {
-    std::vector<std::vector<std::string>> rows = {{"method"}, {""}};
+using Cells = std::vector<std::vector<std::string>>;  // rows of a table
+
+// The names of the methods below two lines of head.
+Cells names_of(const Comparison& comparison) {
+    Cells rows = {{"method"}, {""}};
     for (const MethodFigures& figures : comparison.methods) rows.push_back({figures.method});
-    for (const ViewColumn& column : columns_of(comparison)) {
+    return rows;
+}
+
+// The same with further columns; those that no method has a figure for are left out.
+Cells with_columns(Cells rows, const Comparison& comparison, std::span<const ViewColumn> columns) {
+    for (const ViewColumn& column : columns) {
         std::vector<std::string> cells;
         for (const MethodFigures& figures : comparison.methods) cells.push_back(column.cell(figures));
         if (std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return cell.empty(); }))
@@ -79,7 +107,50 @@ std::string rows_of(const Comparison& comparison) {
         for (std::size_t i = 0; i < cells.size(); ++i)
             rows[i + 2].push_back(cells[i].empty() ? "-" : cells[i]);
     }
-    return text_table(rows, "lr");
+    return rows;
+}
+
+bool fits(const std::string& text) {
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        if (end - at > page_width) return false;
+        at = end + 1;
+    }
+    return true;
+}
+
+// Tables to stand one below the other, each as wide as the page at most.
+std::vector<std::string> tables_of(const Comparison& comparison, std::span<const ViewColumn> columns) {
+    std::vector<std::string> tables;
+    for (std::size_t at = 0; at < columns.size();) {
+        Cells rows = names_of(comparison);
+        do {
+            std::size_t end = at + 1;
+            while (columns[end - 1].with_next) ++end;
+            Cells wider = with_columns(rows, comparison, columns.subspan(at, end - at));
+            if (rows[0].size() > 1 && !fits(text_table(wider, "lr"))) break;
+            rows = std::move(wider);
+            at = end;
+        } while (at < columns.size());
+        if (rows[0].size() > 1) tables.push_back(text_table(rows, "lr"));
+    }
+    return tables;
+}
+
+// All in one table where it fits on the page; else what the methods cost above what they leave, unless that
+// takes more tables than need be.
+std::string rows_of(const Comparison& comparison) {
+    const std::vector<ViewColumn> costs = cost_columns(comparison), results = result_columns(comparison);
+    std::vector<ViewColumn> all = costs;
+    all.insert(all.end(), results.begin(), results.end());
+    std::vector<std::string> tables = tables_of(comparison, all);
+    if (tables.empty()) return text_table(names_of(comparison), "l");
+    if (tables.size() > 1) {
+        std::vector<std::string> apart = tables_of(comparison, costs);
+        for (std::string& table : tables_of(comparison, results)) apart.push_back(std::move(table));
+        if (apart.size() <= tables.size()) tables = std::move(apart);
+    }
+    return fmt::format("{}", fmt::join(tables, "\n"));
 }
 
 // The band that switching methods have in force, said once where it is the same for all of them.
@@ -92,34 +163,34 @@ std::string notes_in_force(const Comparison& comparison) {
         return figures->note == switching.front()->note;
     });
     if (switching.size() > 1 && alike)
-        return fmt::format("All {} switching methods at this speed: {}.\n", switching.size(),
-                           switching.front()->note);
+        return paragraph(fmt::format("All {} switching methods at this speed: {}.", switching.size(),
+                                     switching.front()->note));
     std::string text;
     for (const MethodFigures* figures : switching)
-        text += fmt::format("{} at this speed: {}.\n", figures->method, figures->note);
+        text += paragraph(fmt::format("{} at this speed: {}.", figures->method, figures->note));
     return text;
 }
 
 std::string conditions(const Comparison& comparison) {
-    std::string text;
+    std::string text, on;
     if (comparison.on_log) {
-        text += fmt::format("Log: {} rows at {:.6g} Hz.", comparison.rows, comparison.sample_rate.value());
+        on = fmt::format("Log: {} rows at {:.6g} Hz.", comparison.rows, comparison.sample_rate.value());
         if (comparison.windows > 0) {
-            text += fmt::format(
+            on += fmt::format(
                 " Orders, ripple and residual (torque minus its trend) are measured in {} window{}, "
                 "{:.0f} % of the log.",
                 comparison.windows, comparison.windows == 1 ? "" : "s", 100.0 * comparison.measured_share);
         }
-        text += fmt::format("\nSettling and delays: at {:.6g} deg/s, on", comparison.speed.value());
+        text = paragraph(on);
+        on = fmt::format("Settling and delays: at {:.6g} deg/s, on", comparison.speed.value());
     } else {
-        text += fmt::format("At {:.6g} deg/s, sampled at {:.6g} Hz, on", comparison.speed.value(),
-                            comparison.sample_rate.value());
+        on = fmt::format("At {:.6g} deg/s, sampled at {:.6g} Hz, on", comparison.speed.value(),
+                         comparison.sample_rate.value());
     }
-    if (comparison.step_nm) text += fmt::format(" a step of {:.6g} Nm", *comparison.step_nm);
-    if (comparison.step_nm && comparison.ramp_nm_s) text += " and";
-    if (comparison.ramp_nm_s) text += fmt::format(" a ramp of {:.6g} Nm/s", *comparison.ramp_nm_s);
-    text += ".\n";
-    return text + notes_in_force(comparison);
+    if (comparison.step_nm) on += fmt::format(" a step of {:.6g} Nm", *comparison.step_nm);
+    if (comparison.step_nm && comparison.ramp_nm_s) on += " and";
+    if (comparison.ramp_nm_s) on += fmt::format(" a ramp of {:.6g} Nm/s", *comparison.ramp_nm_s);
+    return text + paragraph(on + ".") + notes_in_force(comparison);
 }
 
 // The same with short names for its methods.
@@ -140,13 +211,6 @@ std::string legend(const Comparison& comparison) {
     return text.empty() ? text : "\n" + text;
 }
 
-// A sentence wrapped to lines that a terminal shows whole.
-std::string paragraph(const std::string& sentence) {
-    std::string text;
-    for (const std::string& line : wrapped(sentence, page_width)) text += line + "\n";
-    return text;
-}
-
 }  // namespace
 
 std::string comparison_view(const Comparison& comparison) {
@@ -155,7 +219,7 @@ std::string comparison_view(const Comparison& comparison) {
     if (comparison.match && !comparison.match->low_pass) {
         std::string sentence = comparison.match->clause;
         sentence.front() = 'N';  // all of them begin with "no low-pass"
-        text += sentence + ".\n";
+        text += paragraph(sentence + ".");
     }
     return text + legend(comparison) + ledger_text(named);
 }

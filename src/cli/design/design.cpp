@@ -118,7 +118,9 @@ ExitCode print_frontier(const DesignRequest& request, const std::string& form, c
             points.push_back(
                 {1e3 * point.delay.value(), point.attenuation_db, i == frontier.recommended, ""});
         }
-        return frontier_figure("Attenuation against delay", "Recommended: " + frontier.reason + ".", points);
+        const Seconds chosen = frontier.points[frontier.recommended].delay;
+        return frontier_figure("Attenuation against delay",
+                               recommended_sentence(frontier) + " " + crossover_sentence(chosen), points);
     });
     return ExitCode::done;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/text_table.hpp"
+#include "ripplenotch/core/how_many.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -49,6 +50,19 @@ std::string slowest_sentence(Seconds delay, DegPerSec slowest) {
                        four(1e3 * delay.value()));
 }
 
+std::string recommended_sentence(const Frontier& frontier) {
+    const TradePoint& chosen = frontier.points[frontier.recommended];
+    return fmt::format("Recommended: {:.1f} dB with {:.1f} ms in {}: {}.", chosen.attenuation_db,
+                       1e3 * chosen.delay.value(), how_many(chosen.bands, "band"), frontier.reason);
+}
+
+std::string crossover_sentence(Seconds delay, std::string_view aside) {
+    return fmt::format(
+        "At a crossover of {} Hz this delay costs a loop {:g} deg of phase{}; for a faster loop give "
+        "--max-delay.",
+        crossover_text(delay), spared_deg, aside);
+}
+
 std::string frontier_to_text(const Frontier& frontier) {
     std::vector<std::vector<std::string>> rows = {
         {"attenuation", "delay", "loop to", "bands", "Q", "settles", "overshoot", ""},
@@ -65,14 +79,8 @@ std::string frontier_to_text(const Frontier& frontier) {
     }
     const TradePoint& chosen = frontier.points[frontier.recommended];
     std::string text = heading(frontier) + text_table(rows, "r");
-    text +=
-        fmt::format("\nRecommended: {:.1f} dB with {:.1f} ms in {} band{}: {}.\n", chosen.attenuation_db,
-                    1e3 * chosen.delay.value(), chosen.bands, chosen.bands == 1 ? "" : "s", frontier.reason);
-    text += fmt::format(
-        "At a crossover of {} Hz this delay costs a loop {:g} deg of phase (\"loop to\"); for a faster loop "
-        "give "
-        "--max-delay.\n",
-        crossover_text(chosen.delay), spared_deg);
+    text += "\n" + recommended_sentence(frontier) + "\n";
+    text += crossover_sentence(chosen.delay, " (\"loop to\")") + "\n";
     if (frontier.slowest) text += slowest_sentence(chosen.delay, *frontier.slowest) + "\n";
     return text;
 }

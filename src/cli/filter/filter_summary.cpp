@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ripplenotch/core/how_many.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -44,7 +45,7 @@ std::string crossover_line(const std::vector<LedgerEntry>& entries, Hertz crosso
 constexpr double many_switches_a_second = 2.0;
 
 std::string switches_line(const StreamReport& stream) {
-    std::string text = fmt::format("{} changes of filter", stream.switch_count);
+    std::string text = how_many(stream.switch_count, "change of filter", "changes of filter");
     std::size_t back = 0;
     for (std::size_t i = 1; i < stream.switches.size(); ++i)
         back += stream.switches[i].change.to_band == stream.switches[i - 1].change.from_band ? 1 : 0;
@@ -96,11 +97,11 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
     const StreamReport& stream = metrics.stream;
     std::vector<std::string> lines;
     const Recording& recording = stream.recording;
-    lines.push_back(fmt::format(
-        "{}: {}, {} rows at {:.6g} Hz (measured {:.6g} Hz), {} gaps, {} held samples, angle from {}",
-        metrics.source, metrics.method, recording.rows(), metrics.sample_rate.value(),
-        recording.clock.mean_rate.value(), recording.clock.gap_count, recording.held.count,
-        source_name(recording.angle.source())));
+    lines.push_back(
+        fmt::format("{}: {}, {} at {:.6g} Hz (measured {:.6g} Hz), {}, {}, angle from {}", metrics.source,
+                    metrics.method, how_many(recording.rows(), "row"), metrics.sample_rate.value(),
+                    recording.clock.mean_rate.value(), how_many(recording.clock.gap_count, "gap"),
+                    how_many(recording.held.count, "held sample"), source_name(recording.angle.source())));
     if (recording.outside) {
         lines.push_back(fmt::format("{}: {} rows before and {} after are left out, by --from and --to",
                                     metrics.source, recording.outside->before, recording.outside->after));
@@ -111,9 +112,9 @@ std::vector<std::string> filter_summary(const FilterMetrics& metrics) {
         lines.push_back(fmt::format(
             "ripple at most {:.3g} Nm peak to peak before, {:.3g} Nm after; residual {:.3g} Nm rms before, "
             "{:.3g} Nm "
-            "after ({} windows, {:.0f} % of the log)",
+            "after ({}, {:.0f} % of the log)",
             levels.ripple_peak_to_peak_nm[0], levels.ripple_peak_to_peak_nm[1], levels.residual_rms_nm[0],
-            levels.residual_rms_nm[1], levels.windows, 100.0 * levels.measured_share));
+            levels.residual_rms_nm[1], how_many(levels.windows, "window"), 100.0 * levels.measured_share));
     }
     if (!metrics.delays.empty()) lines.push_back(delay_line(metrics.delays));
     if (metrics.crossover && !metrics.delays.empty())

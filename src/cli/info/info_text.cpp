@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/text_table.hpp"
+#include "ripplenotch/core/how_many.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -20,7 +21,7 @@ std::string range_text(const std::optional<Range>& range) {
 }
 
 std::string first_sentence(const LogInfo& log) {
-    std::string text = fmt::format("{}: {} rows", log.source, log.rows);
+    std::string text = log.source + ": " + how_many(log.rows, "row");
     if (log.duration_s && log.clock.nominal_rate.value() > 0.0) {
         text += fmt::format(" over {:.6g} s at {:.5g} Hz", *log.duration_s, log.clock.nominal_rate.value());
     } else {
@@ -33,7 +34,11 @@ std::string first_sentence(const LogInfo& log) {
         if (!joint.joint.empty()) text += fmt::format(", joint {}", joint.joint);
         if (joint.speed_deg_s) text += fmt::format(", speed {} deg/s", range_text(joint.speed_deg_s));
         if (joint.torque_nm) text += fmt::format(", torque {} Nm", range_text(joint.torque_nm));
-        if (!joint.torque_nm) text += ", no torque";
+        if (!joint.speed_deg_s && !joint.torque_nm && !joint.position_deg) {
+            text += ", no column known as velocity, torque or position";
+        } else if (!joint.torque_nm) {
+            text += ", no torque";
+        }
     }
     return text + ".\n";
 }
@@ -55,11 +60,9 @@ std::string clock_text(const LogInfo& log) {
                         mean, figure(1e3 * clock.usual_step.value()),
                         figure(1e3 * clock.shortest_step.value()), figure(1e3 * clock.longest_step.value()),
                         figure(1e3 * rounded(clock.jitter, clock.usual_step)));
-    text += clock.gap_count == 0 ? "no gap"
-                                 : fmt::format("{} gap{}", clock.gap_count, clock.gap_count == 1 ? "" : "s");
+    text += clock.gap_count == 0 ? "no gap" : how_many(clock.gap_count, "gap");
     if (!clock.rate_changes.empty()) {
-        text += fmt::format("; {} change{} of rate", clock.rate_changes.size(),
-                            clock.rate_changes.size() == 1 ? "" : "s");
+        text += "; " + how_many(clock.rate_changes.size(), "change of rate", "changes of rate");
     }
     if (clock.repeated_times > 0) text += fmt::format("; {} repeated times", clock.repeated_times);
     return text;

@@ -8,6 +8,7 @@
 
 #include "cli/text_table.hpp"
 #include "core/normal_errors.hpp"
+#include "ripplenotch/core/how_many.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -40,8 +41,8 @@ Rows values_of(const MapFit& fit) {
         for (std::size_t c = 0; c < fit.map.values[i].size(); ++c) {
             const std::complex<double> z = fit.map.values[i][c], error = normal_95_errors * fit.errors[i][c];
             rows.push_back({shortest(fit.map.orders[i].value()), map_column_words(fit.map.form, c),
-                            fmt::format("{:.3f}", z.real()), fmt::format("{:.3f}", error.real()),
-                            fmt::format("{:.3f}", z.imag()), fmt::format("{:.3f}", error.imag()),
+                            rounded(z.real(), 3), fmt::format("{:.3f}", error.real()), rounded(z.imag(), 3),
+                            fmt::format("{:.3f}", error.imag()),
                             fmt::format("{:.3f}", portable::hypot(z.real(), z.imag())),
                             whole(-portable::arg(z) * degrees_per_radian)});
         }
@@ -66,8 +67,8 @@ Rows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
 std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) {
     std::string text = map_verdict(fit) + "\n";
     if (fit.finding != MapFinding::too_little) {
-        text += fmt::format("\non {} windows of 2.5 motor turns, {} blocks left out in turn\n", fit.windows,
-                            fit.blocks);
+        text += fmt::format("\non {} of 2.5 motor turns, {} blocks left out in turn\n",
+                            how_many(fit.windows, "window"), fit.blocks);
         text += text_table(scores_of(fit), "rrrrrrl");
     }
     if (fit.finding == MapFinding::mapped) {

@@ -8,14 +8,14 @@
 #include <span>
 
 #include "cli/text_table.hpp"
+#include "ripplenotch/core/how_many.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
 std::string counted(std::size_t count, std::string_view noun) {
-    return count == 0 ? fmt::format("no {}", noun)
-                      : fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+    return count == 0 ? fmt::format("no {}", noun) : how_many(count, noun);
 }
 
 std::string line_table(const std::vector<SpectralPeak>& peaks) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "ripplenotch/core/how_many.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
@@ -15,14 +16,13 @@ std::vector<std::string> track_warnings(const TrackReport& report) {
             "no usable position: the angle is integrated velocity, and phases count from the first sample");
     }
     if (tracks.windows_too_slow > 0) {
-        warnings.push_back(
-            fmt::format("{} windows left out: slower than {} turns in 2 s; --window gives them in seconds",
-                        tracks.windows_too_slow, shortest(report.window_turns.value_or(0.0))));
+        warnings.push_back(fmt::format(
+            "{} left out: slower than {} turns in 2 s; --window gives them in seconds",
+            how_many(tracks.windows_too_slow, "window"), shortest(report.window_turns.value_or(0.0))));
     }
     if (tracks.windows_too_few_samples > 0) {
-        warnings.push_back(
-            fmt::format("{} windows left out: too few samples for so many lines; use a longer window",
-                        tracks.windows_too_few_samples));
+        warnings.push_back(fmt::format("{} left out: too few samples for so many lines; use a longer window",
+                                       how_many(tracks.windows_too_few_samples, "window")));
     }
     if (tracks.rows_not_separable > 0) {
         warnings.push_back(

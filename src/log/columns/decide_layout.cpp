@@ -8,6 +8,7 @@
 #include <array>
 #include <set>
 
+#include "log/columns/channel_clocks.hpp"
 #include "log/columns/column_name.hpp"
 #include "log/columns/conventions.hpp"
 #include "log/columns/infer_motion.hpp"
@@ -51,6 +52,7 @@ class Decision {
         layout_detail::state_derived_velocity(layout_, facts_);
         layout_detail::state_units(layout_, facts_, options_);
         report_repeated_names();
+        layout_detail::check_channel_clocks(source_, facts_, layout_);
         layout_.options = layout_detail::options_line(layout_, facts_, options_);
         return std::move(layout_);
     }

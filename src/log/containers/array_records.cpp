@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "log/containers/stored_array.hpp"
@@ -93,11 +94,22 @@ std::size_t common_prefix(const std::vector<const StoredArray*>& arrays) {
     return end == std::string::npos ? 0 : end + 1;
 }
 
+// Without a last part that says nothing: Octave's HDF5 has "tau/value", Simulink's structs "tau.Data".
+std::string without_empty_word(const std::string& path) {
+    constexpr std::array empty_words = {"value", "Value", "data", "Data"};
+    const std::size_t end = path.find_last_of("./");
+    if (end == std::string::npos || end == 0) return path;
+    const std::string last = path.substr(end + 1);
+    return std::find(empty_words.begin(), empty_words.end(), last) == empty_words.end() ? path
+                                                                                        : path.substr(0, end);
+}
+
 std::vector<ArrayColumn> columns_of(const std::vector<const StoredArray*>& arrays, PathStyle style) {
     const std::size_t prefix = common_prefix(arrays);
     std::vector<ArrayColumn> columns;
     for (const StoredArray* array : arrays) {
-        const std::string below = array->read_as.empty() ? array->path.substr(prefix) : array->read_as;
+        const std::string below =
+            array->read_as.empty() ? without_empty_word(array->path.substr(prefix)) : array->read_as;
         for (std::size_t c = 0; c < array->shape.columns; ++c) {
             const std::size_t number = style == PathStyle::matlab ? c + 1 : c;
             columns.push_back({column_path(*array, c, style),

@@ -78,6 +78,7 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     facts.sample = std::move(dialect_.sample);
     facts.first_counts = dialect_.first_counts;
     facts.clock_texts = dialect_.clock_texts;
+    facts.clock_of = dialect_.clock_of;
     facts.row_step_s = dialect_.row_step_s;
     facts.dialect_options = dialect_options(dialect_);
     facts.motion_sample = [this, &opening](const MotionPlaces& places, std::size_t bytes) {

@@ -118,6 +118,7 @@ TextDialect sniff_text(std::string_view bytes, bool whole, const ByteSource& sou
         dialect.has_header = true;
         dialect.names = preamble.names;
         dialect.units = preamble.units;
+        dialect.clock_of = preamble.clock_of;
         dialect.header_end = lines.content[preamble.names_line].end;
     }
     if (row >= lines.content.size()) refuse_header_only(lines.content.front(), source.name());

@@ -71,33 +71,32 @@ class Lines {
     std::size_t columns_;
 };
 
-/// "Name A Name B" over pairs of time and value: every other cell says the same.
-bool speaks_of_channels(const std::vector<std::string>& cells, std::string_view key) {
-    if (cells.size() < 4) return false;
-    for (std::size_t i = 0; i + 1 < cells.size(); i += 2) {
-        if (cells[i] != key) return false;
-    }
-    return true;
+/// "Name A Name B" over pairs of time and value, "Name A B" where two channels share their times.
+bool speaks_of_channels(const std::vector<std::string>& cells, std::string_view key, std::size_t columns) {
+    return columns > 1 && cells.size() >= columns && cells[0] == key && cells[1] != key;
 }
 
-// TwinCAT Scope: a line of "Name", channel, "Name", channel, ...; times are milliseconds since the start, or
-// FILETIME.
+// TwinCAT Scope: a line of "Name", channel, "Name", channel, ...; "Name" stands over a column of times, which
+// channels of one rate may share. Times are milliseconds since the start, or FILETIME.
 void read_channels(const Lines& lines, std::size_t columns, Preamble& found) {
     for (std::size_t line = 0; line < found.first_row; ++line) {
         const std::vector<std::string> cells = lines.cells(line);
-        if (speaks_of_channels(cells, "Name")) {
+        if (speaks_of_channels(cells, "Name", columns)) {
             const auto first = parse_number(lines.cells(found.first_row).front());
             found.names.assign(columns, "");
-            for (std::size_t c = 0; c < std::min(columns, cells.size()); ++c) {
-                if (c % 2 == 1) found.names[c] = cells[c];
+            found.clock_of.assign(columns, 0);
+            for (std::size_t c = 1; c < columns; ++c) {
+                const bool times = cells[c] == "Name";
+                found.clock_of[c] = times ? c : found.clock_of[c - 1];
+                if (!times) found.names[c] = cells[c];
             }
             found.names[0] = first && *first > 1e16 ? "time [100ns]" : "time [ms]";
             found.names_line = line;
         }
-        if (speaks_of_channels(cells, "Unit")) {
+        if (!found.names.empty() && speaks_of_channels(cells, "Unit", columns)) {
             found.units.assign(columns, "");
-            for (std::size_t c = 1; c < std::min(columns, cells.size()); c += 2) {
-                if (usual_unit(cells[c], Role::other)) found.units[c] = cells[c];
+            for (std::size_t c = 1; c < columns; ++c) {
+                if (found.clock_of[c] != c && usual_unit(cells[c], Role::other)) found.units[c] = cells[c];
             }
         }
     }

@@ -19,6 +19,7 @@ struct Preamble {
     std::size_t names_line = 0, first_row = 0;
     /// From a head that says them channel by channel; empty where a line over the rows holds them.
     std::vector<std::string> names, units;
+    std::vector<std::size_t> clock_of;  ///< by column: where its times stand, if each has its own; else empty
     /// Seconds from row to row where the head says them (LabVIEW's Delta_X), alike for all channels.
     std::optional<double> row_step_s;
 };
