@@ -7,10 +7,6 @@
 using namespace ripplenotch;
 using namespace ripplenotch::fuzz;
 
-// libhdf5 1.10 forgets some objects of a damaged file behind an error of its own (H5C_protect): lost are some
-// hundred bytes a damaged file, and nothing that it gave us.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Bytes input(data, size);
     ReadOptions options = options_of(input.choice(6));
