@@ -33,7 +33,7 @@ def put(folder, number, bytes_):
 def logs(source):
     """Openings of the logs in the repository, and dialects that they have not."""
     for path in [*sorted(source.glob("data/*.csv")), *sorted(source.glob("tests/log/data/*"))]:
-        yield path.read_bytes()[:3000]
+        yield path.read_bytes()[:1200]
     head, row = "time_s{d}velocity_deg_s{d}torque_nm{d}note\n", "{t}{d}60{m}5{d}-0{m}25{d}x\n"
     for delimiter, mark in ((",", "."), (";", ","), ("\t", "."), (" ", ".")):
         for line_end in ("\n", "\r\n", "\r"):
@@ -89,13 +89,15 @@ def make(tool, source, folder):
     """A folder of seeds for each target in `folder`."""
     source, folder = pathlib.Path(source), pathlib.Path(folder)
     for number, bytes_ in enumerate(logs(source)):
-        put(folder / "logs", number, bytes([number % 12, number % 50]) + bytes_)
+        put(folder / "logs", number, bytes([number % 12, number % 50, number % 3]) + bytes_)
     for number, (target, bytes_) in enumerate(containers(source)):
         put(folder / target, number, bytes([0, number % 50]) + bytes_)
     for number, (reader, text) in enumerate(ARMS.items()):
         put(folder / "arms", number, bytes([reader]) + text.encode())
     for number, text in enumerate([*QUANTITIES, *SPECS]):
-        put(folder / "texts", number, bytes([number % 11]) + text.encode())
+        # By the first byte: quantities of eleven dimensions, then methods, visible texts, numbers.
+        for reader in ([number % 11, 13] if number < len(QUANTITIES) else [11, 12]):
+            put(folder / "texts", 20 * number + reader, bytes([reader]) + text.encode())
     with tempfile.TemporaryDirectory() as scratch:
         for number, text in enumerate(documents.make(tool, source, scratch).values()):
             if len(text) < 20000:

@@ -68,6 +68,8 @@ std::optional<std::string> nearest_name(std::string_view text, std::span<const s
     std::optional<std::string> best;
     std::size_t best_distance = std::max<std::size_t>(1, text.size() / 3) + 1;
     for (const std::string& name : known) {
+        const auto [shorter, longer] = std::minmax({text.size(), name.size()});
+        if (longer - shorter >= best_distance) continue;  // so is the distance
         const std::size_t distance = edit_distance(text, name);
         if (distance < best_distance) {
             best_distance = distance;

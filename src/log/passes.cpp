@@ -17,8 +17,11 @@ namespace ripplenotch {
 
 class LogPasses::Work {
   public:
-    Work(std::shared_ptr<const Spool> log, ReadOptions options)
-        : spool_(std::move(log)), options_(std::move(options)), reader_(open_log(spool_->open(), options_)) {}
+    Work(std::shared_ptr<const Spool> log, ReadOptions options, std::size_t joint)
+        : spool_(std::move(log)),
+          options_(std::move(options)),
+          joint_(joint),
+          reader_(open_log(spool_->open(), options_)) {}
 
     void first(const Use& use);
     void second(const Use& use);
@@ -37,6 +40,7 @@ class LogPasses::Work {
 
     std::shared_ptr<const Spool> spool_;
     ReadOptions options_;
+    std::size_t joint_;
     std::unique_ptr<LogReader> reader_;  ///< of the pass that comes next; made when it begins, but the first
     WrapWatch wrap_;
     std::size_t rows_ = 0;
@@ -55,7 +59,7 @@ Account LogPasses::Work::run(const Use& use) {
         held_bad_values += block.held_bad_values;
         for (const RunPart& part : account.add(block)) {
             if (!part.usable || part.count == 0) continue;
-            TraceView rows = view_of(block, 0, part.first, part.count);
+            TraceView rows = view_of(block, joint_, part.first, part.count);
             rows.sample_rate = facts.sample_rate;
             if (part.begins_run) rows.run_starts = at_first_row;
             use(rows);
@@ -84,7 +88,7 @@ void LogPasses::Work::first(const Use& use) {
         use(rows);
     });
     facts.rows = rows_;
-    recording = account.recording(layout, 0);
+    recording = account.recording(layout, joint_);
     const auto rows = static_cast<double>(facts.rows);
     facts.mean_s = sum_s_ / rows;
     const bool by_position = recording.angle.source() == AngleFacts::Source::position;
@@ -148,8 +152,8 @@ void LogPasses::Work::second(const Use& use) {
 
 LogPasses::LogPasses(const std::string& path, const ReadOptions& options)
     : LogPasses(std::make_shared<const Spool>(path), options) {}
-LogPasses::LogPasses(std::shared_ptr<const Spool> log, const ReadOptions& options)
-    : work_(std::make_unique<Work>(std::move(log), options)) {}
+LogPasses::LogPasses(std::shared_ptr<const Spool> log, const ReadOptions& options, std::size_t joint)
+    : work_(std::make_unique<Work>(std::move(log), options, joint)) {}
 LogPasses::~LogPasses() = default;
 
 void LogPasses::keep_rows(std::size_t most_bytes) { work_->kept = KeptParts(most_bytes / sizeof(double)); }

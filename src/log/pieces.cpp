@@ -62,8 +62,8 @@ class PieceTaker {
 }  // namespace
 
 std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const ReadOptions& options,
-                               std::size_t most_rows) {
-    LogPasses passes(log, options);
+                               std::size_t most_rows, std::size_t joint) {
+    LogPasses passes(log, options, joint);
     passes.keep_rows(most_bytes_kept);
     passes.first([](const TraceView&) {});
     if (passes.facts().rows <= most_rows) return std::nullopt;
@@ -72,6 +72,7 @@ std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const Re
     passes.second([&](const TraceView& rows) { taker.add(rows); });
     const LogFacts& facts = passes.facts();
     part.layout = passes.layout();
+    part.layout.chosen = part.layout.all_chosen()[joint];
     part.layout.others.clear();
     part.trace.source = part.layout.source;
     part.trace.joint = part.layout.chosen.joint;

@@ -2,7 +2,6 @@
 // Whole logs in memory, with an account of them.
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 
 #include "log/account/account.hpp"
@@ -83,8 +82,6 @@ std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options, 
     return logs;
 }
 
-constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
-
 std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) {
     return read_all_joints(reader, options, all_rows);
 }
@@ -137,6 +134,26 @@ std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions&
     every.joint.reset();
     every.every_joint = true;
     return read_all_joints(*open_log(path, every), every);
+}
+
+std::vector<Log> read_joints_at_once_in_part(const std::string& path, const ReadOptions& options,
+                                             std::size_t most_rows) {
+    const auto spool = std::make_shared<const Spool>(path);
+    ReadOptions every = options;
+    every.joint.reset();
+    every.every_joint = true;
+    std::vector<Log> logs;
+    if (!looks_longer(*spool, every, most_rows)) {
+        logs = read_all_joints(*open_log(spool->open(), every), every, most_rows);
+        if (!logs.empty()) return logs;
+    }
+    const std::size_t joints = open_log(spool->open(), every)->layout().all_chosen().size();
+    for (std::size_t j = 0; j < joints; ++j) {
+        auto pieces = read_pieces(spool, every, most_rows, j);
+        if (!pieces) return read_all_joints(*open_log(spool->open(), every), every);
+        logs.push_back(std::move(*pieces));
+    }
+    return logs;
 }
 
 Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options) {

@@ -109,6 +109,14 @@ class Arm(unittest.TestCase):
         self.assertIn("coulomb-friction", found["named"])
         self.assertTrue(found["arm"]["lengths_are_guessed"])
 
+    def test_of_a_long_log_all_joints_are_looked_at_in_the_same_pieces(self):
+        write_log(self.folder / "log.csv", 1, coulomb_nm=1.2, seconds=180.0)
+        found = self.diagnosed("log.csv", "--joint", "j2", "--arm", f"dh,file=dh.csv,{DOWN}")
+        self.assertEqual(found["recording"]["looked_at"], {"rows": 40960, "pieces": 16})
+        self.assertEqual(found["named"], ["coulomb-friction"])
+        self.assertAlmostEqual(found["rounds"][0]["parameters"]["torque_nm"]["value"], 1.2, delta=0.06)
+        self.assertEqual(found["arm"]["values_told"], found["arm"]["values_there"])
+
     def test_the_story_tells_the_arm_and_verbose_the_pairs(self):
         write_log(self.folder / "log.csv", 5, coulomb_nm=1.2, seconds=12.0)
         done = self.tool("diagnose", "log.csv", "--joint", "j1", "--arm", f"dh,file=dh.csv,{DOWN}", "--gear-ratio", "100", "-v")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What stands on a command line: quantities, methods with their keys, numbers; and names, made visible.
+// What stands on a command line: quantities, methods with their keys, numbers; and names, made visible. The
+// first byte says which.
 #include "fuzz/fuzz.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/quantity.hpp"
@@ -39,16 +40,30 @@ void visible(std::string_view text) {
             fail("visible text has control characters", text, shown);
 }
 
+void number(std::string_view text) {
+    const auto number = parse_number(text);
+    if (number && *number == *number && parse_number(shortest(*number)) != number)
+        fail("a number written again", text, shortest(*number));
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Bytes input(data, size);
-    const unsigned choice = input.choice(11);
-    quantity(input.rest(), choice);
-    spec(input.rest());
-    visible(input.rest());
-    if (const auto number = parse_number(input.rest());
-        number && parse_number(shortest(*number)) != number && *number == *number)
-        fail("a number written again", input.rest(), shortest(*number));
+    constexpr unsigned dimensions = 11;
+    switch (const unsigned choice = input.choice(dimensions + 3)) {
+        case dimensions:
+            spec(input.rest());
+            break;
+        case dimensions + 1:
+            visible(input.rest());
+            break;
+        case dimensions + 2:
+            number(input.rest());
+            break;
+        default:
+            quantity(input.rest(), choice);
+            break;
+    }
     return 0;
 }

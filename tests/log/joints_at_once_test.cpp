@@ -61,3 +61,33 @@ TEST_CASE("a joint without a torque is read where its motion is enough", "[log]"
     CHECK(all[2].trace.position_deg[100] == Approx(-10.0));
     CHECK(std::isnan(all[2].trace.torque_nm.front()));
 }
+
+TEST_CASE("of a long log all joints are looked at in the same pieces as one by one", "[log]") {
+    const TemporaryPath path;
+    std::ofstream(path.string()) << rows();
+    ReadOptions options;
+    options.torque_of_each = false;
+    const auto all = read_joints_at_once_in_part(path.string(), options, 480);
+    REQUIRE(all.size() == 3);
+    for (const Log& joint : all) {
+        REQUIRE(joint.recording.looked_at);
+        CHECK(joint.trace.size() == 480);
+        CHECK(joint.trace.time_s == all[0].trace.time_s);
+        CHECK(joint.layout.others.empty());
+    }
+    for (const Log& joint : {all[0], all[1]}) {
+        ReadOptions alone;
+        alone.joint = joint.trace.joint;
+        const Log one = read_log_in_part(path.string(), alone, 480);
+        CHECK(joint.layout.chosen.torque == one.layout.chosen.torque);
+        CHECK(joint.trace.time_s == one.trace.time_s);
+        CHECK(joint.trace.position_deg == one.trace.position_deg);
+        CHECK(joint.trace.torque_nm == one.trace.torque_nm);
+        CHECK(joint.trace.run_starts == one.trace.run_starts);
+        CHECK(joint.recording.angle.verdict == one.recording.angle.verdict);
+    }
+    CHECK_FALSE(all[2].layout.chosen.torque);
+    const auto held = read_joints_at_once_in_part(path.string(), options, 3000);
+    CHECK(held[0].trace.size() == 3000);
+    CHECK_FALSE(held[0].recording.looked_at);
+}

@@ -3,6 +3,7 @@
 // The front door of the log room: open a log as a stream, or read a whole log into memory with an account of
 // it.
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,6 +48,8 @@ struct Log {
 
 /// Rows that commands hold which look at pieces of a log anyway.
 inline constexpr std::size_t most_rows_held = 320'000;
+/// Of a log that is held whole.
+inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 
 /// Of a log with more than `most_rows`, the trace holds sixteen pieces, evenly spread, each a run of its own;
 /// all else is of the whole log, which is read twice then (a pipe waits in a temporary file), and
@@ -72,6 +75,12 @@ inline constexpr std::size_t most_rows_held = 320'000;
 /// pass: their rows are the same. The torque of a joint without one is not a number. What is told of the
 /// layout is told of all of them. Throws what open_log and read_log throw.
 [[nodiscard]] std::vector<Log> read_joints_at_once(const std::string& path, const ReadOptions& options);
+
+/// The same in the pieces of read_log_in_part where there are more than `most_rows`: the log is gone through
+/// twice for each joint then. O(joints most_rows) memory.
+[[nodiscard]] std::vector<Log> read_joints_at_once_in_part(const std::string& path,
+                                                           const ReadOptions& options,
+                                                           std::size_t most_rows = most_rows_held);
 
 /// One Log per joint of the file (only those with a velocity or position and a torque).
 [[nodiscard]] std::vector<Log> read_joints(const std::string& path, const ReadOptions& options);

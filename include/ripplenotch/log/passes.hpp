@@ -35,9 +35,10 @@ class LogPasses {
     /// Gets consecutive rows, of the joint that options choose; a run starts at their first or nowhere.
     using Use = std::function<void(const TraceView&)>;
 
-    /// A pipe is kept in a temporary file (Spool). Throws what open_log throws.
+    /// A pipe is kept in a temporary file (Spool). `joint`: by its place, where options.every_joint reads
+    /// several. Throws what open_log throws.
     LogPasses(const std::string& path, const ReadOptions& options);
-    LogPasses(std::shared_ptr<const Spool> log, const ReadOptions& options);
+    LogPasses(std::shared_ptr<const Spool> log, const ReadOptions& options, std::size_t joint = 0);
     ~LogPasses();
     LogPasses(const LogPasses&) = delete;
     LogPasses& operator=(const LogPasses&) = delete;

@@ -17,10 +17,10 @@ namespace ripplenotch {
 
 class GivenArm {
   public:
-    /// Reads the log. `smoothing`: of the motion that the arm sees; left out: the fit chooses it. Throws what
-    /// read_arm and arm_travel throw.
+    /// Reads the log, as read_arm, and so any other one. `smoothing`: of the motion that the arm sees; left
+    /// out: the fit chooses it. Throws what read_arm and arm_travel throw.
     GivenArm(ArmOption option, const std::string& path, const ReadOptions& options,
-             std::optional<Seconds> smoothing = {});
+             std::optional<Seconds> smoothing = {}, std::size_t most_rows = all_rows);
 
     [[nodiscard]] const Chain& chain() const { return option_.chain; }
     /// That the chain was read from.
@@ -44,6 +44,7 @@ class GivenArm {
   private:
     ArmOption option_;
     std::optional<Seconds> smoothing_;
+    std::size_t most_rows_;
     ArmReading reading_;
     std::map<std::string, ArmReading> others_;  ///< by path
     std::vector<JointTravel> travel_;

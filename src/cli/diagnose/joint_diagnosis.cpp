@@ -10,12 +10,15 @@
 #include "cli/gear/joint_methods.hpp"
 #include "cli/readings/readings.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/memory.hpp"
 #include "ripplenotch/core/progress.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17;  // with all that is made of them, 256 MiB
+// With all that is made of them, 256 MiB; with an arm of seven joints, 300 MiB: most of it is its columns
+// along the samples searched.
+constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17, most_rows_with_arm = 40'960;
 
 std::string source_of(const std::string& model) { return model == "-" ? "standard input" : model; }
 
@@ -33,10 +36,33 @@ ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path,
     return model;
 }
 
-// What is given beside the log stands row by row against all of it.
-Log read(const DiagnoseRequest& request, bool given, const ReadOptions& reading, const std::string& path,
-         Provenance& provenance) {
-    Log log = given ? read_log(path, reading) : read_log_in_part(path, reading, most_rows_diagnosed);
+// What another program has simulated stands row by row against all of the log.
+std::size_t most_rows(const GivenOptions& options, const ModelWithGiven& model) {
+    if (options.simulated || model.simulated) return all_rows;
+    return options.arm || model.arm ? most_rows_with_arm : most_rows_diagnosed;
+}
+
+// Of a log that is held with its simulation and all that is made of them, four findings among it; measured.
+constexpr double bytes_a_row_held = 300.0;
+
+void require_memory(const DiagnoseRequest& request, const ReadOptions& reading) {
+    double rows = estimated_rows(request.path, reading).value_or(0.0);
+    if (request.validate) rows += estimated_rows(*request.validate, reading).value_or(0.0);
+    const auto left = memory_to_be_had();
+    const double bytes = rows * bytes_a_row_held;
+    if (!left || bytes <= static_cast<double>(*left)) return;
+    constexpr double mebibyte = 1024.0 * 1024.0;
+    raise<MemoryError>(
+        "{}: beside a simulation the whole log is held, which takes about {:.3g} MiB for some {:.3g} rows, "
+        "and "
+        "{:.3g} MiB are to be had; take a part of the log with --from and --to",
+        request.path, bytes / mebibyte, rows, static_cast<double>(*left) / mebibyte);
+}
+
+Log read(const DiagnoseRequest& request, std::size_t most_rows, const ReadOptions& reading,
+         const std::string& path, Provenance& provenance) {
+    // A pipe that is held needs no second pass.
+    Log log = most_rows == all_rows ? read_log(path, reading) : read_log_in_part(path, reading, most_rows);
     say_layout(request.common, log.layout);
     say_warnings(request.common, log.recording.warnings);
     provenance.recordings.push_back({log.recording});
@@ -72,10 +98,11 @@ Diagnosis diagnosed(const DiagnoseRequest& request, const Model& model, const Jo
 
 // What is given of the log, and rows that it does not span told.
 GivenTerms given_of(const DiagnoseRequest& request, const ModelWithGiven& model, const ReadOptions& reading,
-                    GivenSource& source, JointDiagnosis& one, std::optional<Log>& other) {
-    const GivenLog log{request.path, one.log};
+                    std::size_t most_rows, GivenSource& source, JointDiagnosis& one,
+                    std::optional<Log>& other) {
+    const GivenLog log{request.path, one.log, most_rows};
     std::optional<GivenLog> validation;
-    if (other) validation.emplace(GivenLog{*request.validate, *other});
+    if (other) validation.emplace(GivenLog{*request.validate, *other, most_rows});
     const std::size_t said = one.log.recording.warnings.size();
     GivenTerms given = source.read(model, reading, log, validation ? &*validation : nullptr);
     const auto& warnings = one.log.recording.warnings;
@@ -104,12 +131,13 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
                                                              : source_of(path));
     say(request.common, gear_in_words(one.gear));
     const ReadOptions reading = read_options(words, one.gear);
-    const bool given = request.given.any() || model.any_given();
-    one.log = read(request, given, reading, request.path, one.provenance);
+    const std::size_t most = most_rows(request.given, model);
+    if (most == all_rows) require_memory(request, reading);
+    one.log = read(request, most, reading, request.path, one.provenance);
     one.joint = one.log.trace.joint;
     std::optional<Log> other;
-    if (request.validate) other = read(request, given, reading, *request.validate, one.provenance);
-    one.given = given_of(request, model, reading, source, one, other);
+    if (request.validate) other = read(request, most, reading, *request.validate, one.provenance);
+    one.given = given_of(request, model, reading, most, source, one, other);
     for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
@@ -127,7 +155,7 @@ std::vector<std::string> joints_of(const DiagnoseRequest& request, GivenSource& 
     if (!request.given.arm) return joints;
     // As each joint alone would read it.
     reading.gear_ratio = request.gear.ratio;
-    const auto arm = given.arm(reading, request.path);
+    const auto arm = given.arm(reading, request.path, most_rows(request.given, {}));
     const auto& known = arm->reading().names;
     std::erase_if(joints, [&](const std::string& joint) {
         const bool strange = std::find(known.begin(), known.end(), joint) == known.end();

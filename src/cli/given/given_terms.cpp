@@ -70,10 +70,14 @@ std::vector<std::string> GivenTerms::open() const {
     return names;
 }
 
-std::shared_ptr<GivenArm> GivenSource::arm(const ReadOptions& reading, const std::string& path) {
+std::shared_ptr<GivenArm> GivenSource::arm(const ReadOptions& reading, const std::string& path,
+                                           std::size_t most_rows) {
     if (path == "-") raise<UsageError>("{}", once);
-    if (!arm_) arm_ = std::make_shared<GivenArm>(read_arm_option(*options_.arm), path, reading);
-    return arm_;
+    std::shared_ptr<GivenArm>& arm = arms_[most_rows];
+    if (!arm)
+        arm = std::make_shared<GivenArm>(read_arm_option(*options_.arm), path, reading, std::nullopt,
+                                         most_rows);
+    return arm;
 }
 
 GivenTerms GivenSource::read(const ModelWithGiven& stated, const ReadOptions& reading, const GivenLog& log,
@@ -103,9 +107,9 @@ void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated,
 void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
                           const GivenLog& log, const GivenLog* validation) {
     if (log.path == "-") raise<UsageError>("{}", once);
-    const auto given = options_.arm ? arm(reading, log.path)
+    const auto given = options_.arm ? arm(reading, log.path, log.most_rows)
                                     : std::make_shared<GivenArm>(option_of(*stated.arm), log.path, reading,
-                                                                 stated.arm->smoothing);
+                                                                 stated.arm->smoothing, log.most_rows);
     const std::size_t joint = given->find(log.log.trace.joint);
     terms.arm = stated.arm ? *stated.arm : StatedArm{given->chain(), {}, {}};
     if (stated.arm && given->chain().joints[joint].name != stated.arm->joint)

@@ -3,6 +3,7 @@
 // Where the terms that a model is given come together, for every command that knows them: those that options
 // state, those that a model.json states, and the values that a diagnosis finds for them.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,7 +35,8 @@ void attach_given(Options& options, GivenOptions& given);
 /// A log of one joint as a command reads it.
 struct GivenLog {
     std::string path;
-    Log& log;  ///< rows that a given term does not span are taken out
+    Log& log;                          ///< rows that a given term does not span are taken out
+    std::size_t most_rows = all_rows;  ///< of which it was held whole: as read_log_in_part
 };
 
 /// What is given of one joint. In the same order in both lists; `validation` is empty without a validation
@@ -64,7 +66,8 @@ class GivenSource {
                                   const GivenLog& log, const GivenLog* validation);
     [[nodiscard]] const GivenOptions& options() const { return options_; }
     /// The arm of --arm; read when it is first asked for.
-    [[nodiscard]] std::shared_ptr<GivenArm> arm(const ReadOptions& reading, const std::string& path);
+    [[nodiscard]] std::shared_ptr<GivenArm> arm(const ReadOptions& reading, const std::string& path,
+                                                std::size_t most_rows);
 
   private:
     void add_simulated(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
@@ -74,7 +77,7 @@ class GivenSource {
 
     GivenOptions options_;
     Seconds smoothing_;
-    std::shared_ptr<GivenArm> arm_;
+    std::map<std::size_t, std::shared_ptr<GivenArm>> arms_;  ///< by the most rows held
 };
 
 /// The sum of terms whose values are all stated, an entry a row: at the joint, before any sensor.

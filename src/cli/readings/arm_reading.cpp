@@ -42,11 +42,11 @@ std::size_t ArmReading::find(const Chain& chain, const std::string& joint) const
                       near ? fmt::format("; did you mean {}?", *near) : "");
 }
 
-ArmReading read_arm(const std::string& path, const ReadOptions& options, const Chain& chain,
-                    const StatedJoints& stated) {
+ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
+                    const Chain& chain, const StatedJoints& stated) {
     ReadOptions motion = options;
     motion.torque_of_each = false;
-    std::vector<Log> all = read_joints_at_once(path, motion);
+    std::vector<Log> all = read_joints_at_once_in_part(path, motion, most_rows);
     std::vector<std::string> there;
     for (const Log& log : all) there.push_back(log.trace.joint);
     const std::string source = all.front().layout.source;

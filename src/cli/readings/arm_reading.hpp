@@ -22,9 +22,10 @@ struct ArmReading {
     [[nodiscard]] std::size_t find(const Chain& chain, const std::string& joint) const;
 };
 
-/// One pass over the log. Throws what read_joints_at_once and match_joints throw, and UsageError where a
-/// joint of the chain has no position.
-[[nodiscard]] ArmReading read_arm(const std::string& path, const ReadOptions& options, const Chain& chain,
-                                  const StatedJoints& stated);
+/// Of a log with more than `most_rows` the pieces of read_log_in_part. Throws what
+/// read_joints_at_once_in_part and match_joints throw, and UsageError where a joint of the chain has no
+/// position.
+[[nodiscard]] ArmReading read_arm(const std::string& path, const ReadOptions& options, std::size_t most_rows,
+                                  const Chain& chain, const StatedJoints& stated);
 
 }  // namespace ripplenotch

@@ -103,13 +103,9 @@ class UnpackedPart final : public StoredBytes {
             at_ += piece_.size();
             left_ = piece_;
         }
-        Unpacker::Step step;
-        try {
-            step = unpacker_->step(left_, unpacked);
-        } catch (const DataError& error) {
-            raise<DataError>("{}: read up to byte {}, expected packed numbers: {}", name(), at_,
-                             error.what());
-        }
+        const Unpacker::Step step = unpacker_->step(left_, unpacked);
+        if (!step.damage.empty())
+            raise<DataError>("{}: read up to byte {}, expected packed numbers: {}", name(), at_, step.damage);
         left_.remove_prefix(step.taken);
         have_ += step.given;
         if (step.given == 0 && (unpacker_->complete() || (step.taken == 0 && at_ == end_)))

@@ -33,6 +33,7 @@ void unpack_chunk(std::string_view packed, const Packing& packing, const std::st
     std::size_t have = 0;
     while (have < into.size()) {
         const Unpacker::Step step = unpacker->step(packed, std::span(into).subspan(have));
+        if (!step.damage.empty()) raise<DataError>("{}", step.damage);
         packed.remove_prefix(step.taken);
         have += step.given;
         if (step.taken == 0 && step.given == 0) break;

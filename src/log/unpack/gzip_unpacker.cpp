@@ -29,7 +29,7 @@ class GzipUnpacker final : public Unpacker {
         if (ended_) {
             // Tapes and disks fill the last block with zeros.
             skipped = std::min(packed.find_first_not_of('\0'), packed.size());
-            if (skipped == packed.size()) return {skipped, 0};
+            if (skipped == packed.size()) return {skipped, 0, {}};
             ::inflateReset(&stream_);
             ended_ = false;
         }
@@ -39,12 +39,12 @@ class GzipUnpacker final : public Unpacker {
         stream_.next_out = reinterpret_cast<Bytef*>(into.data());
         stream_.avail_out = static_cast<uInt>(into.size());
         const int result = ::inflate(&stream_, Z_NO_FLUSH);
-        if (result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR) {
-            raise<DataError>("the gzip data are damaged ({})",
-                             stream_.msg != nullptr ? stream_.msg : "unknown reason");
-        }
+        Step step{packed.size() - stream_.avail_in, into.size() - stream_.avail_out, {}};
+        if (result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR)
+            step.damage = fmt::format("the gzip data are damaged ({})",
+                                      stream_.msg != nullptr ? stream_.msg : "unknown reason");
         ended_ = result == Z_STREAM_END;
-        return {packed.size() - stream_.avail_in, into.size() - stream_.avail_out};
+        return step;
     }
     [[nodiscard]] bool complete() const override { return ended_; }
 

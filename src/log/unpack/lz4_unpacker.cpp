@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 // lz4 frames, by liblz4.
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "log/unpack/unpacker.hpp"
+#include "log/unpack/whole_units.hpp"
 #include "ripplenotch/core/error.hpp"
 
 #if defined(RIPPLENOTCH_HAS_LZ4)
@@ -21,18 +26,27 @@ class Lz4Unpacker final : public Unpacker {
     Lz4Unpacker& operator=(const Lz4Unpacker&) = delete;
 
     Step step(std::string_view packed, std::span<char> into) override {
-        std::size_t given = into.size(), taken = packed.size();
+        Step step;
+        const std::string_view unit = units_.next(packed, step.taken);
+        std::size_t given = into.size(), used = unit.size();
         const std::size_t left =
-            ::LZ4F_decompress(context_, into.data(), &given, packed.data(), &taken, nullptr);
-        if (::LZ4F_isError(left) != 0U)
-            raise<DataError>("the lz4 data are damaged ({})", ::LZ4F_getErrorName(left));
-        if (taken > 0 || given > 0) complete_ = left == 0;
-        return {taken, given};
+            ::LZ4F_decompress(context_, into.data(), &given, unit.data(), &used, nullptr);
+        if (::LZ4F_isError(left) != 0U) {
+            step.damage = fmt::format("the lz4 data are damaged ({})", ::LZ4F_getErrorName(left));
+            return step;
+        }
+        if (used > 0 || given > 0) complete_ = left == 0;
+        units_.used(used, left > block_ends ? left - block_ends : std::min(left, block_header), step.taken);
+        step.given = given;
+        return step;
     }
-    [[nodiscard]] bool complete() const override { return complete_; }
+    [[nodiscard]] bool complete() const override { return complete_ && !units_.keeps_some(); }
 
   private:
+    // liblz4 asks for a block, its checksum and the header of the next.
+    static constexpr std::size_t block_header = 4, block_ends = 8;
     LZ4F_dctx* context_ = nullptr;
+    WholeUnits units_;
     bool complete_ = false;
 };
 

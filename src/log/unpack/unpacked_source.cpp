@@ -33,8 +33,8 @@ class UnpackedBytes : public ByteSource {
         try {
             return unpack_some({into, size});
         } catch (const DataError& error) {
-            raise<DataError>("{}: read {} bytes of {}, which unpack to {}, expected more of the log: {}",
-                             name(), taken_, packing_.name, given_, error.what());
+            raise<DataError>("{}: read {} bytes out of {}, expected more of the log: {}", name(), given_,
+                             packing_.name, error.what());
         }
     }
 
@@ -42,13 +42,15 @@ class UnpackedBytes : public ByteSource {
     std::size_t unpack_some(std::span<char> into) {
         while (!into.empty()) {
             if (left_.empty() && !source_ended_) refill();
+            if (!damage_.empty()) raise<DataError>("{}", damage_);
             const Unpacker::Step step = unpacker_->step(left_, into);
+            damage_ = step.damage;
             left_.remove_prefix(step.taken);
             taken_ += step.taken;
             given_ += step.given;
             refuse_bomb();
             if (step.given > 0) return step.given;
-            if (step.taken > 0 || !source_ended_) continue;
+            if (step.taken > 0 || !source_ended_ || !damage_.empty()) continue;
             if (!left_.empty()) raise<DataError>("what follows is no {}; cut it off", packing_.name);
             if (unpacker_->complete()) return 0;
             raise<DataError>(
@@ -76,6 +78,7 @@ class UnpackedBytes : public ByteSource {
     std::string piece_;
     std::string_view left_;  ///< of the piece
     bool source_ended_ = false;
+    std::string damage_;  ///< behind what was given
     std::uint64_t taken_ = 0, given_ = 0;
 };
 
@@ -88,7 +91,10 @@ class ReadAhead : public ByteSource {
           thread_([this](const std::stop_token& stop) { fill(stop); }) {}
 
     std::size_t read(char* into, std::size_t size) override {
-        if (given_ == current_.size()) take_piece();
+        if (given_ == current_.size()) {
+            if (failure_) std::rethrow_exception(failure_);
+            take_piece();
+        }
         const std::size_t count = std::min(size, current_.size() - given_);
         std::memcpy(into, current_.data() + given_, count);
         given_ += count;
@@ -98,24 +104,23 @@ class ReadAhead : public ByteSource {
   private:
     struct Piece {
         std::vector<char> bytes;
-        std::exception_ptr failure;
+        std::exception_ptr failure;  ///< behind the bytes
     };
     void fill(const std::stop_token& stop) {
         bool ended = false;
         while (!ended) {
             std::vector<char> bytes = spare();
             Piece piece;
+            std::size_t have = 0;
             try {
                 bytes.resize(unpacked_piece);
-                std::size_t have = 0;
                 for (std::size_t got = 1; have < bytes.size() && got > 0; have += got)
                     got = source_->read(bytes.data() + have, bytes.size() - have);
-                bytes.resize(have);
             } catch (...) {
                 piece.failure = std::current_exception();
-                bytes.clear();
             }
-            ended = bytes.empty();
+            bytes.resize(have);
+            ended = bytes.empty() || piece.failure;
             piece.bytes = std::move(bytes);
             std::unique_lock lock(mutex_);
             if (!changed_.wait(lock, stop, [this] { return ready_.size() < pieces_ahead; })) return;
@@ -136,8 +141,9 @@ class ReadAhead : public ByteSource {
         spare_ = std::exchange(current_, std::move(piece.bytes));
         given_ = 0;
         changed_.notify_all();
-        ended_ = current_.empty();
-        if (piece.failure) std::rethrow_exception(piece.failure);
+        failure_ = piece.failure;
+        ended_ = current_.empty() && !failure_;
+        if (current_.empty() && failure_) std::rethrow_exception(failure_);
     }
 
     std::unique_ptr<ByteSource> source_;
@@ -147,7 +153,8 @@ class ReadAhead : public ByteSource {
     std::vector<char> spare_, current_;
     std::size_t given_ = 0;  ///< of the current piece
     bool ended_ = false;
-    std::jthread thread_;  ///< last: what it uses is there before it and behind it
+    std::exception_ptr failure_;  ///< behind the current piece
+    std::jthread thread_;         ///< last: what it uses is there before it and behind it
 };
 
 }  // namespace

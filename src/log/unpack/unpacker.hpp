@@ -19,9 +19,11 @@ class Unpacker {
     struct Step {
         std::size_t taken = 0;  ///< of the packed bytes
         std::size_t given = 0;  ///< put into the room
+        std::string damage;     ///< why nothing more comes, without a source's name; what was given counts
     };
-    /// Takes from `packed`, gives into `into`. Neither for want of bytes. Throws DataError, without a
-    /// source's name, where the bytes are damaged or ask for more than 128 MiB to be unpacked.
+    /// Takes from `packed`, gives into `into`. Neither for want of bytes. What is given before the damage of
+    /// damaged bytes, or of bytes that ask for more than 128 MiB to be unpacked, does not depend on the
+    /// pieces in which they come.
     virtual Step step(std::string_view packed, std::span<char> into) = 0;
     /// Whether what was taken so far is whole.
     [[nodiscard]] virtual bool complete() const = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // xz, by liblzma.
 
+#include <fmt/format.h>
+
 #include "log/unpack/unpacker.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -45,9 +47,10 @@ class XzUnpacker final : public Unpacker {
         // Streams may follow each other: only an empty piece says that all have come.
         const lzma_ret result = ::lzma_code(&stream_, packed.empty() ? LZMA_FINISH : LZMA_RUN);
         complete_ = result == LZMA_STREAM_END;
+        Step step{packed.size() - stream_.avail_in, into.size() - stream_.avail_out, {}};
         if (result != LZMA_OK && result != LZMA_BUF_ERROR && !complete_)
-            raise<DataError>("the xz data are damaged ({})", reason_of(result));
-        return {packed.size() - stream_.avail_in, into.size() - stream_.avail_out};
+            step.damage = fmt::format("the xz data are damaged ({})", reason_of(result));
+        return step;
     }
     [[nodiscard]] bool complete() const override { return complete_; }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // zstd (RFC 8878), by libzstd.
 
+#include <fmt/format.h>
+
 #include "log/unpack/unpacker.hpp"
+#include "log/unpack/whole_units.hpp"
 #include "ripplenotch/core/error.hpp"
 
 #if defined(RIPPLENOTCH_HAS_ZSTD)
@@ -20,19 +23,30 @@ class ZstdUnpacker final : public Unpacker {
     }
 
     Step step(std::string_view packed, std::span<char> into) override {
-        ZSTD_inBuffer in{packed.data(), packed.size(), 0};
+        Step step;
+        const std::string_view unit = units_.next(packed, step.taken);
+        // libzstd takes it for a fault to be called often for nothing.
+        if (unit.empty() && !room_was_full_) return step;
+        ZSTD_inBuffer in{unit.data(), unit.size(), 0};
         ZSTD_outBuffer out{into.data(), into.size(), 0};
         const std::size_t left = ::ZSTD_decompressStream(stream_.get(), &out, &in);
-        if (::ZSTD_isError(left) != 0)
-            raise<DataError>("the zstd data are damaged ({})", ::ZSTD_getErrorName(left));
+        if (::ZSTD_isError(left) != 0) {
+            step.damage = fmt::format("the zstd data are damaged ({})", ::ZSTD_getErrorName(left));
+            return step;
+        }
         if (in.pos > 0 || out.pos > 0) complete_ = left == 0;
-        return {in.pos, out.pos};
+        room_was_full_ = out.pos == out.size;
+        units_.used(in.pos, left > block_header ? left - block_header : left, step.taken);
+        step.given = out.pos;
+        return step;
     }
-    [[nodiscard]] bool complete() const override { return complete_; }
+    [[nodiscard]] bool complete() const override { return complete_ && !units_.keeps_some(); }
 
   private:
+    static constexpr std::size_t block_header = 3;  // libzstd asks for a block and the header of the next
     std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream_;
-    bool complete_ = false;
+    WholeUnits units_;
+    bool complete_ = false, room_was_full_ = false;
 };
 
 }  // namespace
