@@ -8,20 +8,20 @@
 
 namespace ripplenotch {
 
-double range_of(const Samples& samples) {
+double range_of(const LineSamples& samples) {
     const auto [low, high] = std::minmax_element(samples.where.begin(), samples.where.end());
     return std::max(*high - *low, 1e-9);
 }
 
-Spectrum spectrum_of(const Samples& samples, double spacing, std::size_t count) {
-    Spectrum spectrum{spacing, {}};
+LineSpectrum spectrum_of(const LineSamples& samples, double spacing, std::size_t count) {
+    LineSpectrum spectrum{spacing, {}};
     const auto sums = nonuniform_fourier(samples.where, samples.value, spacing, count);
     const double scale = 2.0 / static_cast<double>(samples.value.size());
     for (const auto& sum : sums) spectrum.power.push_back(std::norm(scale * sum));
     return spectrum;
 }
 
-Spectrum spectrum_of(const Samples& samples, double highest, const LineRules& rules) {
+LineSpectrum spectrum_of(const LineSamples& samples, double highest, const LineRules& rules) {
     const double spacing = 1.0 / (rules.oversampling * range_of(samples));
     return spectrum_of(
         samples, spacing,

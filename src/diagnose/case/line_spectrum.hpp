@@ -12,21 +12,21 @@ namespace ripplenotch {
 using LineRules = DiagnosisRules::LineRules;
 
 /// Values in Nm at places in s or in deg.
-struct Samples {
+struct LineSamples {
     std::vector<double> where, value;
 };
 
 /// Cell k is at k * spacing, in cycles per unit of the places.
-struct Spectrum {
+struct LineSpectrum {
     double spacing = 0.0;
     std::vector<double> power;  ///< squared amplitude, Nm^2
 };
 
 /// From the first place to the last one; never 0.
-[[nodiscard]] double range_of(const Samples& samples);
+[[nodiscard]] double range_of(const LineSamples& samples);
 
-[[nodiscard]] Spectrum spectrum_of(const Samples& samples, double spacing, std::size_t count);
+[[nodiscard]] LineSpectrum spectrum_of(const LineSamples& samples, double spacing, std::size_t count);
 /// As finely spaced as the range of the samples tells, up to `highest` or as many cells as the rules allow.
-[[nodiscard]] Spectrum spectrum_of(const Samples& samples, double highest, const LineRules& rules);
+[[nodiscard]] LineSpectrum spectrum_of(const LineSamples& samples, double highest, const LineRules& rules);
 
 }  // namespace ripplenotch

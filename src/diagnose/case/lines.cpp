@@ -12,8 +12,8 @@
 namespace ripplenotch {
 namespace {
 
-Samples counted(const Case& c, const std::vector<double>& where, const std::vector<double>& values) {
-    Samples samples;
+LineSamples counted(const Case& c, const std::vector<double>& where, const std::vector<double>& values) {
+    LineSamples samples;
     for (std::size_t k = 0; k < c.size(); ++k) {
         if (c.use[k] == 0) continue;
         samples.where.push_back(where[k]);
@@ -41,8 +41,8 @@ std::vector<double> background(const std::vector<double>& power, std::size_t blo
 
 // Against the angle each stretch of it counts the same, however long the joint stayed there: rests and slow
 // passes would spread a line over its whole neighbourhood.
-Samples evenly_by_angle(const Case& c, const std::vector<double>& values) {
-    Samples samples;
+LineSamples evenly_by_angle(const Case& c, const std::vector<double>& values) {
+    LineSamples samples;
     double sum = 0.0;
     for (std::size_t k = 0; k < c.size(); ++k) {
         const double speed = std::abs(c.motion.velocity_deg_s[k]);
@@ -67,7 +67,7 @@ struct Peak {
     double prominence;
 };
 
-std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t first, double least,
+std::vector<Peak> peaks_of(const LineSpectrum& spectrum, std::size_t first, double least,
                            const LineRules& rules) {
     const auto floor = background(spectrum.power, rules.background_cells);
     std::vector<Peak> peaks;
@@ -84,9 +84,9 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t first, double l
 
 void gather_by_angle(const Case& c, const std::vector<double>& residual_nm, double least,
                      const LineRules& rules, std::vector<ResidualLine>& lines) {
-    const Samples samples = evenly_by_angle(c, residual_nm);
+    const LineSamples samples = evenly_by_angle(c, residual_nm);
     if (samples.where.size() < rules.fewest_samples || !(range_of(samples) > rules.least_range)) return;
-    const Spectrum spectrum = spectrum_of(samples, highest_cycles_per_deg(c, rules), rules);
+    const LineSpectrum spectrum = spectrum_of(samples, highest_cycles_per_deg(c, rules), rules);
     // Slow orders are matters of gravity and friction.
     const auto first = static_cast<std::size_t>(rules.fewest_cycles_per_turn / 360.0 / spectrum.spacing) + 1;
     for (const Peak& peak : peaks_of(spectrum, first, least, rules)) {
@@ -99,7 +99,7 @@ void gather_by_angle(const Case& c, const std::vector<double>& residual_nm, doub
 
 void gather_by_time(const Case& c, const std::vector<double>& residual_nm, double least,
                     const LineRules& rules, std::vector<ResidualLine>& lines) {
-    Samples samples = counted(c, c.motion.time_s, residual_nm);
+    LineSamples samples = counted(c, c.motion.time_s, residual_nm);
     if (samples.where.size() < rules.fewest_samples || !(range_of(samples) > rules.least_range)) return;
     const Tones tones(std::move(samples), c.motion.sample_rate.value(), rules);
     // Slow tones are matters of drift.
@@ -127,7 +127,7 @@ std::vector<ResidualLine> standing_out(const Case& looked_at, const std::vector<
 
 std::vector<double> strongest_tones_hz(const Case& looked_at, const std::vector<double>& residual_nm,
                                        const DiagnosisRules& rules) {
-    Samples samples = counted(looked_at, looked_at.motion.time_s, residual_nm);
+    LineSamples samples = counted(looked_at, looked_at.motion.time_s, residual_nm);
     if (samples.where.size() < rules.lines.fewest_samples) return {};
     const Tones seen(std::move(samples), looked_at.motion.sample_rate.value(), rules.lines);
     const auto first = static_cast<std::size_t>(rules.lines.slowest_tone_hz / seen.spectrum().spacing) + 1;
@@ -144,7 +144,7 @@ RatioCandidates likely_ratios(const Case& looked_at, const std::vector<double>& 
     const auto samples = counted(looked_at, looked_at.motion.position_deg, torque_nm);
     if (orders.empty() || samples.where.size() < rules.lines.fewest_samples) return {};
     const double highest_order = *std::max_element(orders.begin(), orders.end());
-    const Spectrum spectrum = spectrum_of(
+    const LineSpectrum spectrum = spectrum_of(
         samples, 1.04 * rules.screening.highest_ratio * about * highest_order / 360.0, rules.lines);
     // The finest order decides how closely ratios are compared.
     const double step = 0.5 * spectrum.spacing * 360.0 / highest_order;

@@ -14,8 +14,8 @@ namespace ripplenotch {
 namespace {
 
 // What follows each other without a gap.
-std::vector<Samples> pieces_of(const Samples& samples, double usual_step, const LineRules& rules) {
-    std::vector<Samples> pieces(1);
+std::vector<LineSamples> pieces_of(const LineSamples& samples, double usual_step, const LineRules& rules) {
+    std::vector<LineSamples> pieces(1);
     for (std::size_t k = 0; k < samples.where.size(); ++k) {
         if (k > 0 && samples.where[k] - samples.where[k - 1] > rules.gap_steps * usual_step) {
             if (pieces.back().where.size() < rules.fewest_samples) pieces.pop_back();
@@ -30,7 +30,7 @@ std::vector<Samples> pieces_of(const Samples& samples, double usual_step, const 
 
 }  // namespace
 
-Tones::Tones(Samples samples, double rate_hz, const LineRules& rules)
+Tones::Tones(LineSamples samples, double rate_hz, const LineRules& rules)
     : rules_(rules), all_(std::move(samples)) {
     const double highest_hz = 0.5 * rate_hz;
     const double recorded_s = static_cast<double>(all_.where.size()) / rate_hz, range_s = range_of(all_);
@@ -42,15 +42,15 @@ Tones::Tones(Samples samples, double rate_hz, const LineRules& rules)
         return;
     }
     double longest_s = 0.0, counted = 0.0;
-    for (const Samples& piece : pieces_) {
+    for (const LineSamples& piece : pieces_) {
         longest_s = std::max(longest_s, range_of(piece));
         counted += static_cast<double>(piece.where.size());
     }
     spectrum_.spacing = 1.0 / (rules.oversampling * longest_s);
     spectrum_.power.assign(
         std::min(static_cast<std::size_t>(highest_hz / spectrum_.spacing) + 1, rules.most_cells), 0.0);
-    for (const Samples& piece : pieces_) {
-        const Spectrum own = spectrum_of(piece, spectrum_.spacing, spectrum_.power.size());
+    for (const LineSamples& piece : pieces_) {
+        const LineSpectrum own = spectrum_of(piece, spectrum_.spacing, spectrum_.power.size());
         const double part = static_cast<double>(piece.where.size()) / counted;
         for (std::size_t k = 0; k < own.power.size(); ++k) spectrum_.power[k] += part * own.power[k];
     }
@@ -61,7 +61,7 @@ double Tones::refined_hz(std::size_t cell) const {
     if (pieces_.empty()) return refine_peak(all_.where, all_.value, about_hz, spectrum_.spacing);
     std::vector<double> own_hz, weight;
     double weights = 0.0, sum = 0.0, squares = 0.0;
-    for (const Samples& piece : pieces_) {
+    for (const LineSamples& piece : pieces_) {
         own_hz.push_back(refine_peak(piece.where, piece.value, about_hz, spectrum_.spacing));
         weight.push_back(std::norm(fourier_point(piece.where, piece.value, own_hz.back()).value) + 1e-300);
         weights += weight.back();
@@ -79,7 +79,7 @@ double Tones::agreed_hz(double mean_hz, double error_hz) const {
     // Sums about the middle of each piece, with their slopes: near the mean frequency they are a parabola.
     std::vector<FourierPoint> sums;
     std::vector<double> middle_s;
-    for (const Samples& piece : pieces_) {
+    for (const LineSamples& piece : pieces_) {
         const double middle = 0.5 * (piece.where.front() + piece.where.back());
         std::vector<double> about = piece.where;
         for (double& time : about) time -= middle;

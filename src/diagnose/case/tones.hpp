@@ -13,11 +13,11 @@ namespace ripplenotch {
 
 class Tones {
   public:
-    /// Samples against time in s, in its order.
-    Tones(Samples samples, double rate_hz, const LineRules& rules);
+    /// LineSamples against time in s, in its order.
+    Tones(LineSamples samples, double rate_hz, const LineRules& rules);
 
     /// In Hz and Nm^2.
-    [[nodiscard]] const Spectrum& spectrum() const { return spectrum_; }
+    [[nodiscard]] const LineSpectrum& spectrum() const { return spectrum_; }
     /// The frequency about a cell of the spectrum; of pieces the one at which they agree best.
     [[nodiscard]] double refined_hz(std::size_t cell) const;
 
@@ -25,9 +25,9 @@ class Tones {
     [[nodiscard]] double agreed_hz(double mean_hz, double error_hz) const;
 
     const LineRules& rules_;
-    Samples all_;
-    std::vector<Samples> pieces_;  ///< none where the whole is looked at
-    Spectrum spectrum_;
+    LineSamples all_;
+    std::vector<LineSamples> pieces_;  ///< none where the whole is looked at
+    LineSpectrum spectrum_;
 };
 
 }  // namespace ripplenotch
