@@ -8,6 +8,7 @@
 #include <map>
 
 #include "log/containers/stored_array.hpp"
+#include "log/records/strided_copy.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -54,8 +55,7 @@ class ArrayRecords final : public RecordSource {
             const std::size_t size = columns_[c].size;
             column_.resize(rows * size);
             columns_[c].cursor->read(rows, column_.data());
-            for (std::size_t r = 0; r < rows; ++r)
-                column_.copy(bytes.data() + r * record_size() + offset, size, r * size);
+            copy_numbers({column_.data(), size}, {bytes.data() + offset, record_size()}, size, rows);
             offset += size;
         }
         if (rows > 0 && rows_left_ == 0) file_->require_unchanged();

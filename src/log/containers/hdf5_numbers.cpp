@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "log/records/strided_copy.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -65,9 +66,9 @@ class DatasetCursor final : public ColumnCursor {
                 "{}: read row {} of {}, expected {} rows of numbers; the file is cut off or damaged",
                 file_->bytes->name(), at_ + 1, path(), rows);
         }
-        for (std::size_t r = 0; picks && r < rows; ++r)
-            whole_.copy(into + r * memory_.field.size, memory_.field.size,
-                        (r * memory_.count + column_) * memory_.field.size);
+        const std::size_t size = memory_.field.size;
+        if (picks)
+            copy_numbers({whole_.data() + column_ * size, memory_.count * size}, {into, size}, size, rows);
         at_ += rows;
     }
 

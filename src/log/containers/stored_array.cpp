@@ -7,6 +7,7 @@
 #include <set>
 
 #include "log/columns/column_name.hpp"
+#include "log/records/strided_copy.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -30,7 +31,8 @@ class StridedCursor final : public ColumnCursor {
             const std::size_t count = std::min(at_once, rows - done);
             span_.resize((count - 1) * stride_ + size_);
             bytes_->read_at(at_, span_.data(), span_.size());
-            for (std::size_t r = 0; r < count; ++r, into += size_) span_.copy(into, size_, r * stride_);
+            copy_numbers({span_.data(), stride_}, {into, size_}, size_, count);
+            into += count * size_;
             at_ += count * stride_;
             done += count;
         }

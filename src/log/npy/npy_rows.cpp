@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "log/records/strided_copy.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -20,8 +21,8 @@ std::string npy_by_rows(std::string_view file, const NpyHeader& header, const st
     rows += data;
     if (!header.by_columns) return rows;
     for (std::size_t c = 0; c < columns; ++c) {
-        for (std::size_t r = 0; r < header.rows; ++r)
-            data.copy(rows.data() + start + (r * columns + c) * size, size, (c * header.rows + r) * size);
+        copy_numbers({data.data() + c * header.rows * size, size},
+                     {rows.data() + start + c * size, columns * size}, size, header.rows);
     }
     return rows;
 }
