@@ -165,7 +165,7 @@ constexpr std::array<Kind, 13> kinds = {
      {"trend", "Which joint changed, when, and what in it?", of_trend},
      {"table", "Which notches at which speed, and at what delay?", of_table},
      {"metrics", "What did the filter take off?", of_metrics},
-     {"comparison", "Which method takes off most for its delay?", of_comparison},
+     {"comparison", "What do the methods take off, and what do they cost?", of_comparison},
      {"diagnosis", "Which effect is missing from the model?", of_diagnosis},
      {"simulation", "What was simulated?", of_any},
      {"export", "What was exported, and what did rounding do to it?", of_any}}};

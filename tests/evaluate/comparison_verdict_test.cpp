@@ -92,3 +92,24 @@ TEST_CASE("a long method is told by its name, or by what tells it from others of
     CHECK(verdict(of({figures(crossfade, 100.0, {}), figures(tracking, 50.0, {})})) ==
           "switching settles 2.0 times slower than tracking (100 against 50 ms to 0.5 %).");
 }
+
+TEST_CASE("where the truth is known, the verdict names the method that comes nearest to it") {
+    Comparison comparison = of({figures("none", std::nullopt, 0.0), figures("a", std::nullopt, 20.0),
+                                figures("b", std::nullopt, 10.0), figures("c", std::nullopt, 0.0)});
+    const std::string before = "a lags 10.0 ms more than b (20.0 against 10.0 ms).";
+    CHECK(verdict(comparison) == before);
+    comparison.methods[0].error_rms_nm = 0.9;
+    comparison.methods[1].error_rms_nm = 0.7834;
+    comparison.methods[2].error_rms_nm = 0.7;
+    comparison.methods[3].error_rms_nm = 0.0281;
+    CHECK(verdict(comparison) == before + " Nearest to the truth is c: 0.0281 Nm rms off, a 0.783.");
+    comparison.methods[0].error_rms_nm = 0.01;  // where filtering harms, the raw torque is the answer
+    CHECK(verdict(comparison) == before + " Nearest to the truth is none: 0.01 Nm rms off, a 0.783.");
+    comparison.methods[1].error_rms_nm = 0.001;
+    CHECK(verdict(comparison) == before + " Nearest to the truth is a: 0.001 Nm rms off.");
+    // Of one method there is no nearest.
+    comparison = of({figures("none", std::nullopt, 0.0), figures("a", std::nullopt, 20.0)});
+    comparison.methods[0].error_rms_nm = 0.9;
+    comparison.methods[1].error_rms_nm = 0.1;
+    CHECK(verdict(comparison) == "a lags 20.0 ms.");
+}
