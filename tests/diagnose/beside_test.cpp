@@ -48,12 +48,18 @@ Model truth_of(std::initializer_list<const char*> terms) {
     return model;
 }
 
-BesideOutcome found_in(const Trace& log) {
-    const Case c = whole_case(log.view(), default_smoothing, standard.recording);
+/// With `other` each finding has to hold on that log, too.
+BesideOutcome found_in(const Trace& log, const Trace* other = nullptr) {
+    const auto case_of = [](const Trace& trace) {
+        return whole_case(trace.view(), default_smoothing, standard.recording);
+    };
+    const Case here = case_of(log), there = case_of(other != nullptr ? *other : log);
+    const GivenCase validation{there};
     const Model none{GearRatio(100.0), {}};
     Work work(1e9);
     std::vector<const Effect*> effects(catalogue().begin(), catalogue().end());
-    return find_beside({c}, nullptr, {none, none, {}, {}, 0.0, true}, effects, standard, work);
+    return find_beside({here}, other != nullptr ? &validation : nullptr, {none, none, {}, {}, 0.0, true},
+                       effects, standard, work);
 }
 
 std::vector<std::string> confirmed(const BesideOutcome& outcome) {
@@ -161,6 +167,30 @@ TEST_CASE("two frictions beside a leftover are found as the two that they are") 
         // What grows with the speed and what grows with its square is a tie now and then.
         CHECK(confirmed(outcome).size() >= 2);
     }
+}
+
+TEST_CASE("what another log bears out is no name either while the interval of its size holds 0") {
+    std::size_t doubted = 0;
+    for (const char* effect :
+         {"drift,rate_nm_s=0.05,time_constant_s=1000000", "viscous-friction,coefficient_nm_per_deg_s=0.01"}) {
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            const Model truth = truth_of({"coulomb-friction,torque_nm=0.9,width_deg_s=1", effect});
+            const Trace log = log_beside(truth, seed, 0.9), other = log_beside(truth, seed + 100, 0.9);
+            const BesideOutcome outcome = found_in(log, &other);
+            INFO(effect << ", seed " << seed << "\n" << told(outcome));
+            for (const Finding& finding : outcome.findings) {
+                if (finding.reason == "the interval of its size holds 0") ++doubted;
+                if (finding.status != FindingStatus::confirmed) continue;
+                for (const FittedValue& value : finding.values) {
+                    const Effect& named = *finding.term.effect;
+                    const bool is_size = named.parameters[value.parameter].linear ||
+                                         (named.polar && named.polar->size == value.parameter);
+                    if (is_size && value.ci95) CHECK((value.ci95->low > 0.0 || value.ci95->high < 0.0));
+                }
+            }
+        }
+    }
+    CHECK(doubted > 0);  // or this asked nothing
 }
 
 }  // namespace ripplenotch

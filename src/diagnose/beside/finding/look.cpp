@@ -187,11 +187,8 @@ Look::Look(const GivenCase& log, const GivenCase* validation, const Candidate& m
       sums(lens),
       named(named_beside(sums, {catalogue().size(), log.given.empty()})),
       other(named.findings.size()) {
-    // Where there is another log, that decides.
-    if (validation == nullptr)
-        withdraw_what_may_be_nothing(sums, named.findings);
-    else
-        other = withdraw_on_other(sums, model, *validation, named.findings);
+    if (validation != nullptr) other = withdraw_on_other(sums, model, *validation, named.findings);
+    withdraw_what_may_be_nothing(sums, named.findings);
 }
 
 std::vector<double> carried_beside(Look& look, const Candidate& model) {

@@ -31,7 +31,8 @@ std::vector<OtherLeft> withdraw_on_other(Sums& sums, const Candidate& model, con
                                          std::vector<BesideFinding>& findings);
 
 /// Puts in doubt what is believed and may be nothing: the interval of its size holds 0. The widest first; the
-/// others are looked at again without it.
+/// others are looked at again without it. With another log, too: that such a log is left with less tells no
+/// size.
 void withdraw_what_may_be_nothing(Sums& sums, std::vector<BesideFinding>& findings);
 
 /// rms that is left of the other log with all that is believed of the findings.

@@ -153,10 +153,7 @@ void tell_ringing(BesideValues& told_values, const Shape& shape, std::size_t pla
     tell_complex(told_values.values, place, polar, passing, plain_passing, sized, {0.0, 1.0});
     told_values.term.values[polar.size] = told_values.values[0].value;
     told_values.term.values[polar.phase] = told_values.values[1].value;
-    std::vector<FittedValue> both;
-    tell_complex(both, place, polar, direct, plain_direct, sized, {1.0, 0.0});
-    tell_complex(both, place, polar, direct + passing, plain_direct + plain_passing, sized, {1.0, 1.0});
-    told_values.is_told = !holds_0(told_values.values[0]) || !holds_0(both[0]) || !holds_0(both[2]);
+    told_values.is_told = !holds_0(told_values.values[0]);
     const Complex part = direct / passing;
     told_values.ringing = ringing_term(shape, part);
     tell_complex(told_values.ringing_values, place, direct_of(*shape.ringing->effect), part,

@@ -14,7 +14,7 @@ struct BesideValues {
     Term term;
     std::vector<FittedValue>
         values;           ///< of its sizes, phases and scales; FittedValue::term is its place here
-    bool is_told = true;  ///< no interval of all its sizes holds 0
+    bool is_told = true;  ///< the interval of its size does not hold 0
     /// What rings in a ripple, whose size and phase are then those of what passes the elastic joint.
     std::optional<Term> ringing = {};
     std::vector<FittedValue> ringing_values = {};
