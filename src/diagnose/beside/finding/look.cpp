@@ -188,7 +188,7 @@ Look::Look(const GivenCase& log, const GivenCase* validation, const Candidate& m
       named(named_beside(sums, {catalogue().size(), log.given.empty()})),
       other(named.findings.size()) {
     if (validation != nullptr) other = withdraw_on_other(sums, model, *validation, named.findings);
-    withdraw_what_may_be_nothing(sums, named.findings);
+    withdraw_what_may_be_nothing(sums, validation == nullptr, named.findings);
 }
 
 std::vector<double> carried_beside(Look& look, const Candidate& model) {

@@ -95,20 +95,27 @@ Believed believed_of(Sums& sums, const std::vector<BesideFinding>& findings) {
     return believed;
 }
 
-void withdraw_what_may_be_nothing(Sums& sums, std::vector<BesideFinding>& findings) {
+void withdraw_what_may_be_nothing(Sums& sums, bool of_ties_too, std::vector<BesideFinding>& findings) {
     while (true) {
         const Believed believed = believed_of(sums, findings);
         std::optional<std::size_t> worst;
         double most = 0.0;
         for (std::size_t i = 0; i < believed.place.size(); ++i) {
-            const double part = reach_beyond_0(believed.values[i]);
+            const bool asked = of_ties_too || findings[believed.place[i]].status == FindingStatus::confirmed;
+            const double part = asked ? reach_beyond_0(believed.values[i]) : 0.0;
             if (part <= most) continue;
             most = part;
             worst = believed.place[i];
         }
         if (!worst) return;
-        findings[*worst].status = FindingStatus::tentative;
-        findings[*worst].reason = "the interval of its size holds 0";
+        BesideFinding& finding = findings[*worst];
+        if (finding.shape.ringing) {  // the part that passes the joint may be nothing; the ripple as a whole
+                                      // is asked next
+            finding.shape.ringing.reset();
+            continue;
+        }
+        finding.status = FindingStatus::tentative;
+        finding.reason = "the interval of its size holds 0";
     }
 }
 

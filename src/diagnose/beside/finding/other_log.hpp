@@ -31,9 +31,10 @@ std::vector<OtherLeft> withdraw_on_other(Sums& sums, const Candidate& model, con
                                          std::vector<BesideFinding>& findings);
 
 /// Puts in doubt what is believed and may be nothing: the interval of its size holds 0. The widest first; the
-/// others are looked at again without it. With another log, too: that such a log is left with less tells no
-/// size.
-void withdraw_what_may_be_nothing(Sums& sums, std::vector<BesideFinding>& findings);
+/// others are looked at again without it. Another log that is left with less tells no size: what is confirmed
+/// is asked with it, too, and a side of a tie (`of_ties_too`) without it. A ripple of which the ringing part
+/// may be nothing is asked once more as one line.
+void withdraw_what_may_be_nothing(Sums& sums, bool of_ties_too, std::vector<BesideFinding>& findings);
 
 /// rms that is left of the other log with all that is believed of the findings.
 [[nodiscard]] double left_of_other(Sums& sums, const Candidate& model, const GivenCase& other,
