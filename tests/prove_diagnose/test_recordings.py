@@ -135,6 +135,13 @@ class Arm(unittest.TestCase):
 
 
 class Scores(unittest.TestCase):
+    def test_the_numbers_of_several_runs_are_told_with_their_gaps(self):
+        def cases(*numbers):
+            return [{"case": f"semi-a-ripple-{k}"} for k in numbers]
+        self.assertEqual(table.numbers_told(cases(7, 5, 6, 5)), "5 to 7")
+        self.assertEqual(table.numbers_told(cases(5, 6, 18, 20, 21)), "5 to 6 and 18 and 20 to 21")
+        self.assertEqual(table.numbers_told([]), "none")
+
     def test_kinds_are_planned_on_every_robot_and_bars_count_what_they_say(self):
         planned = semi_cases.planned(2, 40)
         self.assertEqual(len({case.name for case in planned}), len(planned))

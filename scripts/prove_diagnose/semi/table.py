@@ -59,13 +59,23 @@ def wrong(rows):
     return "\n".join(lines) or "Nothing."
 
 
+def numbers_told(rows):
+    """"17000 to 17003 and 18000": of the cases, each run of numbers without a gap."""
+    runs = []
+    for number in sorted({int(row["case"].rpartition("-")[2]) for row in rows}):
+        if runs and number == runs[-1][1] + 1:
+            runs[-1][1] = number
+        else:
+            runs.append([number, number])
+    return " and ".join(f"{first} to {last}" if last > first else f"{first}" for first, last in runs) or "none"
+
+
 def blocks(abouts, rows):
     """The tables by the name of their mark."""
     rows = sorted(rows, key=lambda r: r["case"])
     first = abouts[0] if abouts else {}
-    numbers = sorted({int(row["case"].rpartition("-")[2]) for row in rows}) or [0]
     options = f", options {' '.join(first['options'])}" if first.get("options") else ""
-    said = (f"{len(rows)} logs, numbers from {numbers[0]} to {numbers[-1]}, `diagnose` of commit `{first.get('commit', 'unknown')}`"
+    said = (f"{len(rows)} logs, numbers {numbers_told(rows)}, `diagnose` of commit `{first.get('commit', 'unknown')}`"
             f"{options}.")
     head = table.markdown(bars.HEAD, bar_lines(rows))
     return {"semi": f"{said}\n\n{head}\n\n{by_kind(rows)}\n\nWrong:\n\n{wrong(rows)}"}
