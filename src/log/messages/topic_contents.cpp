@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+
 #include "log/containers/stored_array.hpp"
 
 namespace ripplenotch {
@@ -10,7 +12,9 @@ namespace {
 
 std::optional<double> rate_of(const Topic& topic) {
     if (topic.seen < 2 || topic.to_ns <= topic.from_ns) return std::nullopt;
-    return 1e9 * static_cast<double>(topic.seen - 1) / static_cast<double>(topic.to_ns - topic.from_ns);
+    // A damaged recording may hold any two times: their distance fits an unsigned number only.
+    const auto ns = static_cast<std::uint64_t>(topic.to_ns) - static_cast<std::uint64_t>(topic.from_ns);
+    return 1e9 * static_cast<double>(topic.seen - 1) / static_cast<double>(ns);
 }
 
 // Elements of an array are one thing, position[0..6]: the last of those that begin with this one.
