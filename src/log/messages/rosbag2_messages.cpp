@@ -58,6 +58,8 @@ class Rosbag2Messages final : public MessageSource {
         // What lies in a stranger's schema is not run.
         ::sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
         ::sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+        // A cell that reaches beyond its page is a fault, not whatever lies in memory there.
+        ::sqlite3_exec(database_.get(), "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
         for (const char* const table : {"topics", "messages"}) {
             if (is_table(table)) continue;
             raise<DataError>(

@@ -44,7 +44,7 @@ void CsvReader::parse_carefully(std::string_view line, RowBlock& block, ParsedRo
                              cut ? "the last line is cut off: remove it, e.g. with head -n -1"
                                  : "mend or remove the line"));
     }
-    row.values[time_slot] = 0.0;
+    row.values[time_slot] = nothing_yet;
     for (const WantedColumn& wanted : wanted_) {
         const Cell& cell = cells[wanted.column];
         const double value = read_cell(line, cell, wanted, block);

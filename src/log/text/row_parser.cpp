@@ -65,7 +65,7 @@ bool RowParser::parse(const char* at, const char* end, ParsedRow& row) const {
         while (end > at && is_blank(end[-1])) --end;
     }
     std::size_t column = 0;
-    if (stamp_.careful) row.values[time_slot] = 0.0;
+    if (stamp_.careful) row.values[time_slot] = nothing_yet;
     const auto at_cell_end = [&](const char* p) {
         return p == end || *p == delimiter || (runs && *p == '\t');
     };

@@ -27,6 +27,9 @@ struct ParsedRow {
     const char* content_end = nullptr;  ///< just past the last cell
 };
 
+/// What a time that comes in parts begins with: a time of -0 stays one.
+constexpr double nothing_yet = -0.0;
+
 class RowParser {
   public:
     /// `wanted` sorted by column.

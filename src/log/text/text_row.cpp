@@ -37,7 +37,7 @@ std::string_view TextRow::cell(std::string_view line, std::size_t column) {
 bool TextRow::parse_carefully(std::string_view line) {
     split_cells(line, rules_.delimiter, split_);
     if (split_.cells.size() != columns_) return false;
-    row_.values[time_slot] = 0.0;
+    row_.values[time_slot] = nothing_yet;
     for (const WantedColumn& wanted : wanted_) {
         const std::string_view text = split_.cells[wanted.column].of(line);
         const bool stamp = stamp_.careful && wanted.slot == time_slot && !wanted.fraction;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "log/unpack/unpacked_source.hpp"
 
+#include <algorithm>
 #include <array>
 #include <condition_variable>
 #include <cstring>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::size_t packed_piece = std::size_t{1} << 16;
 constexpr std::size_t unpacked_piece = std::size_t{1} << 18;
+constexpr std::size_t room_size = std::size_t{1} << 17;
 constexpr std::size_t pieces_ahead = 4;
 
 /// In the thread of who reads.
@@ -27,20 +29,28 @@ class UnpackedBytes : public ByteSource {
           packing_(packing),
           unpacker_(unpacker_of(packing, packed_->name())),
           piece_(std::move(first_bytes)),
-          left_(piece_) {}
+          left_(piece_),
+          room_(room_size) {}
 
     std::size_t read(char* into, std::size_t size) override {
+        if (size == 0) return 0;
         try {
-            return unpack_some({into, size});
+            // Into a room of its own: libraries give more or less of what lies before the damage by how much
+            // room they have.
+            if (waiting_.empty()) waiting_ = {room_.data(), unpack_some(room_)};
         } catch (const DataError& error) {
             raise<DataError>("{}: read {} bytes out of {}, expected more of the log: {}", name(), given_,
                              packing_.name, error.what());
         }
+        const std::size_t count = std::min(size, waiting_.size());
+        std::copy_n(waiting_.data(), count, into);
+        waiting_.remove_prefix(count);
+        return count;
     }
 
   private:
     std::size_t unpack_some(std::span<char> into) {
-        while (!into.empty()) {
+        for (;;) {
             if (left_.empty() && !source_ended_) refill();
             if (!damage_.empty()) raise<DataError>("{}", damage_);
             const Unpacker::Step step = unpacker_->step(left_, into);
@@ -57,7 +67,6 @@ class UnpackedBytes : public ByteSource {
                 "the file is cut off; copy it again, or use what is there: {} FILE | ripplenotch ... -",
                 packing_.program);
         }
-        return 0;
     }
     void refill() {
         piece_.resize(packed_piece);
@@ -77,6 +86,8 @@ class UnpackedBytes : public ByteSource {
     std::unique_ptr<Unpacker> unpacker_;
     std::string piece_;
     std::string_view left_;  ///< of the piece
+    std::vector<char> room_;
+    std::string_view waiting_;  ///< of the room
     bool source_ended_ = false;
     std::string damage_;  ///< behind what was given
     std::uint64_t taken_ = 0, given_ = 0;

@@ -24,7 +24,8 @@ class ZstdUnpacker final : public Unpacker {
 
     Step step(std::string_view packed, std::span<char> into) override {
         Step step;
-        const std::string_view unit = units_.next(packed, step.taken);
+        // What waits within libzstd comes out first: with a damaged unit it would be lost.
+        const std::string_view unit = room_was_full_ ? std::string_view() : units_.next(packed, step.taken);
         // libzstd takes it for a fault to be called often for nothing.
         if (unit.empty() && !room_was_full_) return step;
         ZSTD_inBuffer in{unit.data(), unit.size(), 0};
