@@ -34,7 +34,8 @@ struct Searched {
 // in the noise that it began with.
 void measure_noise(Searched& found, const Case& c, Work& work, const DiagnosisRules& rules) {
     found.noise = noise_floor(c, found.last.stated, found.last.open, rules);
-    found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules);
+    auto kept = found.bench ? found.bench->kept() : std::make_shared<KeptScreenings>();
+    found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules, std::move(kept));
     found.bench->settle_on(found.last.stated);
     found.last = found.bench->fitted(found.last.open, found.last.stated, found.last.prices);
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/factorisations.hpp"
+#include "core/tall_triangle.hpp"
+#include "core/vectors/dot.hpp"
 #include "model/carriers.hpp"
 #include "model/fit_coordinates.hpp"
 #include "model/fit_errors.hpp"
@@ -24,6 +26,7 @@ struct Place {
     std::vector<double> point;
     Prediction prediction;
     VectorXd residual;  ///< weighed, measured less predicted
+    double squares;     ///< their sum
 };
 
 class Problem {
@@ -45,7 +48,10 @@ class Problem {
         applied_ += prediction.applied();
         std::vector<double> left = prediction.torque_nm();
         for (std::size_t k = 0; k < left.size(); ++k) left[k] = torque_nm_[k] - left[k];
-        return {std::move(point), std::move(prediction), weighed(left)};
+        VectorXd residual(static_cast<Index>(weighing_.size()));
+        weighing_.weigh(left, residual.data());
+        const double squares = dot(residual.data(), residual.data(), weighing_.size());
+        return {std::move(point), std::move(prediction), std::move(residual), squares};
     }
 
     // Change of the residual with each coordinate: exact for linear ones, central differences for the others.
@@ -53,8 +59,8 @@ class Problem {
         MatrixXd columns(place.residual.size(), static_cast<Index>(moving.size()));
         const std::size_t before = place.prediction.applied();
         for (std::size_t m = 0; m < moving.size(); ++m) {
-            columns.col(static_cast<Index>(m)) =
-                weighed(slope_nm(place.prediction, coordinates, place.point, moving[m]));
+            weighing_.weigh(slope_nm(place.prediction, coordinates, place.point, moving[m]),
+                            columns.col(static_cast<Index>(m)).data());
         }
         applied_ += place.prediction.applied() - before;
         return columns;
@@ -65,10 +71,6 @@ class Problem {
     Coordinates coordinates;
 
   private:
-    [[nodiscard]] VectorXd weighed(const std::vector<double>& torque_nm) const {
-        const std::vector<double> numbers = weighing_(torque_nm);
-        return Eigen::Map<const VectorXd>(numbers.data(), static_cast<Index>(numbers.size()));
-    }
     const Motion& motion_;
     std::span<const double> torque_nm_;
     const Weighing& weighing_;
@@ -83,15 +85,17 @@ struct Factored {
     VectorXd target, scale;
 };
 
-Factored factor(MatrixXd slopes, const VectorXd& residual) {
-    Factored factored;
-    factored.scale = slopes.colwise().norm();
-    for (Index c = 0; c < slopes.cols(); ++c) {
-        if (factored.scale[c] > 0.0) slopes.col(c) /= factored.scale[c];
+Factored factor(const MatrixXd& slopes, const VectorXd& residual) {
+    const Index count = slopes.cols();
+    const TallTriangle found = tall_triangle({slopes.data(), static_cast<std::size_t>(slopes.size())},
+                                             {residual.data(), static_cast<std::size_t>(residual.size())});
+    Factored factored{Eigen::Map<const MatrixXd>(found.triangle.data(), count, count),
+                      Eigen::Map<const VectorXd>(found.reached.data(), count),
+                      {}};
+    factored.scale = factored.triangle.colwise().norm();
+    for (Index c = 0; c < count; ++c) {
+        if (factored.scale[c] > 0.0) factored.triangle.col(c) /= factored.scale[c];
     }
-    const OrthogonalFactors factors(slopes);
-    factored.triangle = factors.triangle();
-    factored.target = factors.reached(residual);
     return factored;
 }
 
@@ -115,7 +119,9 @@ std::vector<std::size_t> free_to_move(const Problem& problem, const Place& place
         if (only_linear && !list[c].linear) continue;
         const bool low = place.point[c] <= list[c].lower, high = place.point[c] >= list[c].upper;
         if (low || high) {
-            const double downhill = problem.slopes(place, {c}).col(0).dot(place.residual);
+            const MatrixXd slope = problem.slopes(place, {c});
+            const double downhill =
+                dot(slope.data(), place.residual.data(), static_cast<std::size_t>(slope.size()));
             if ((low && downhill <= 0.0) || (high && downhill >= 0.0)) continue;
         }
         moving.push_back(c);
@@ -144,10 +150,10 @@ std::vector<double> moved(const Problem& problem, std::vector<double> point,
 bool step_down(const Problem& problem, Search& search, const std::vector<std::size_t>& moving,
                double& damping) {
     const Factored factored = factor(problem.slopes(search.place, moving), search.place.residual);
-    const double before = search.place.residual.squaredNorm();
+    const double before = search.place.squares;
     for (; damping <= 1e6; damping *= 10.0) {
         Place next = problem.at(moved(problem, search.place.point, moving, damped_step(factored, damping)));
-        if (next.residual.squaredNorm() >= before) continue;
+        if (next.squares >= before) continue;
         search.place = std::move(next);
         damping = std::max(damping / 10.0, 1e-12);
         return true;
@@ -166,9 +172,9 @@ void descend(const Problem& problem, Search& search, bool only_linear, const Fit
             return;
         }
         ++search.iterations;
-        const double before = search.place.residual.squaredNorm();
+        const double before = search.place.squares;
         const bool lower = step_down(problem, search, moving, damping);
-        const double gained = before - search.place.residual.squaredNorm();
+        const double gained = before - search.place.squares;
         // One step solves what is linear, unless a bound cut it short.
         const bool solved = std::all_of(moving.begin(), moving.end(), [&](std::size_t c) {
             return list[c].linear && search.place.point[c] > list[c].lower &&
@@ -242,8 +248,7 @@ Fit fit(const Model& model, const Motion& motion, std::span<const double> torque
     found.samples = weighing.rows().size();
     found.values =
         problem.coordinates.values(search.place.point, covariance_at(problem, search, weighing, options));
-    found.residual_rms_nm =
-        std::sqrt(search.place.residual.squaredNorm() / static_cast<double>(found.samples));
+    found.residual_rms_nm = std::sqrt(search.place.squares / static_cast<double>(found.samples));
     found.iterations = search.iterations;
     found.applied = problem.applied();
     found.converged = search.converged;

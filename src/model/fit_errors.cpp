@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/factorisations.hpp"
+#include "core/tall_triangle.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -78,12 +79,12 @@ std::vector<double> covariance_of(std::span<const double> slopes, std::span<cons
     const Slopes columns(slopes.data(), rows, static_cast<Index>(slopes.size()) / rows);
     const VectorXd left = Eigen::Map<const VectorXd>(residual.data(), rows);
     const Index m = columns.cols();
-    const VectorXd scale = columns.colwise().norm();
-    MatrixXd scaled = columns;
+    MatrixXd triangle = Eigen::Map<const MatrixXd>(tall_triangle(slopes, residual).triangle.data(), m, m);
+    const VectorXd scale = triangle.colwise().norm();
     for (Index c = 0; c < m; ++c) {
-        if (scale[c] > 0.0) scaled.col(c) /= scale[c];
+        if (scale[c] > 0.0) triangle.col(c) /= scale[c];
     }
-    const Told told = told_by(OrthogonalFactors(scaled).triangle());
+    const Told told = told_by(triangle);
     const double samples = static_cast<double>(weighing.rows().size() - weighing.used_up());
     const double variance = left.squaredNorm() / (samples - static_cast<double>(m));
     VectorXd larger = VectorXd::Ones(m);

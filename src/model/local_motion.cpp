@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/vectors/dot.hpp"
+
 namespace ripplenotch {
 namespace {
 
@@ -44,7 +46,7 @@ Row column_of_inverse(std::array<Row, unknowns> m, std::size_t n, std::size_t wa
     return x;
 }
 
-double dot(const Row& a, const Row& b) {
+double product(const Row& a, const Row& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < unknowns; ++i) sum += a[i] * b[i];
     return sum;
@@ -144,11 +146,11 @@ void LocalFit::weigh(std::size_t k, SampleWindow window) {
         weights->clear();
     for (std::size_t j = window.first; j < window.end; ++j) {
         const double u = (log_.time_s[j] - now_s) / reach_s;
-        velocity_by_velocity_.push_back(by_velocity * dot(value, velocity_row(u)));
-        acceleration_by_velocity_.push_back(by_velocity * dot(slope, velocity_row(u)) / reach_s);
+        velocity_by_velocity_.push_back(by_velocity * product(value, velocity_row(u)));
+        acceleration_by_velocity_.push_back(by_velocity * product(slope, velocity_row(u)) / reach_s);
         if (!both) continue;
-        velocity_by_position_.push_back(by_position * dot(value, position_row(u, reach_s)));
-        acceleration_by_position_.push_back(by_position * dot(slope, position_row(u, reach_s)) / reach_s);
+        velocity_by_position_.push_back(by_position * product(value, position_row(u, reach_s)));
+        acceleration_by_position_.push_back(by_position * product(slope, position_row(u, reach_s)) / reach_s);
     }
 }
 
@@ -172,7 +174,7 @@ void LocalFit::sum_up(std::size_t k, SampleWindow window) {
         side[i] = by_velocity * sums.velocity[i] +
                   by_position / reach_s * sums.position[i + 1] / static_cast<double>(i + 1);
     side[cubic] = by_position / reach_s * sums.position[0];
-    found_ = {dot(value, side), dot(slope, side) / reach_s};
+    found_ = {product(value, side), product(slope, side) / reach_s};
 }
 
 LocalMotion LocalFit::at(std::size_t k, SampleWindow window) {
@@ -181,19 +183,17 @@ LocalMotion LocalFit::at(std::size_t k, SampleWindow window) {
         return found_;
     }
     weigh(k, window);
-    LocalMotion found{0.0, 0.0};
+    const std::size_t count = window.end - window.first;
     const double* const velocity = log_.velocity_deg_s.data() + window.first;
-    for (std::size_t j = 0; j < velocity_by_velocity_.size(); ++j) {
-        found.velocity_deg_s += velocity_by_velocity_[j] * velocity[j];
-        found.acceleration_deg_s2 += acceleration_by_velocity_[j] * velocity[j];
-    }
+    LocalMotion found{dot(velocity_by_velocity_.data(), velocity, count),
+                      dot(acceleration_by_velocity_.data(), velocity, count)};
     if (noise_.position_deg == 0.0) return found;
-    const double* const position = log_.position_deg.data() + window.first;
-    const double here_deg = log_.position_deg[k];
-    for (std::size_t j = 0; j < velocity_by_position_.size(); ++j) {
-        found.velocity_deg_s += velocity_by_position_[j] * (position[j] - here_deg);
-        found.acceleration_deg_s2 += acceleration_by_position_[j] * (position[j] - here_deg);
-    }
+    // From here, or digits of the whole angle would be lost.
+    turned_deg_.resize(count);
+    for (std::size_t j = 0; j < count; ++j)
+        turned_deg_[j] = log_.position_deg[window.first + j] - log_.position_deg[k];
+    found.velocity_deg_s += dot(velocity_by_position_.data(), turned_deg_.data(), count);
+    found.acceleration_deg_s2 += dot(acceleration_by_position_.data(), turned_deg_.data(), count);
     return found;
 }
 

@@ -51,6 +51,7 @@ class LocalFit {
     std::size_t before_ = 0, after_ = 0;
     std::vector<double> velocity_by_velocity_, velocity_by_position_, acceleration_by_velocity_,
         acceleration_by_position_;
+    std::vector<double> turned_deg_;  ///< positions of the window, from that of its sample
     double variance_ = 0.0;
 };
 

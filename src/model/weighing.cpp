@@ -2,18 +2,19 @@
 #include "model/weighing.hpp"
 
 #include <algorithm>
+#include <cmath>
 
-#include "core/linear_algebra.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
 namespace {
 
-using Eigen::Index;
-using Eigen::VectorXd;
-
 // A nuisance of which less than this part lies outside the others brings rounding noise alone.
 constexpr double not_new = 1e-9;
+
+double length_of(const std::vector<double>& column) {
+    return std::sqrt(dot(column.data(), column.data(), column.size()));
+}
 
 }  // namespace
 
@@ -23,50 +24,62 @@ Weighing::Weighing(std::size_t samples, std::span<const unsigned char> use, std:
     for (std::size_t k = 0; k < samples; ++k) {
         const bool used = use.empty() || use[k] != 0;
         since_unused = used ? since_unused + 1 : 0;
-        if (since_unused > color_.size()) rows_.push_back(k);
+        if (since_unused <= color_.size()) continue;
+        if (rows_.empty() || rows_.back() + 1 != k) runs_.push_back({k, 0});
+        ++runs_.back().count;
+        rows_.push_back(k);
     }
+}
+
+void Weighing::whiten(std::span<const double> torque_nm, double* white) const {
+    for (const Run& run : runs_) {
+        prediction_errors(torque_nm.data() + run.first, run.count, color_.data(), color_.size(), white);
+        white += run.count;
+    }
+    std::fill_n(white, bounded_, 0.0);
 }
 
 std::vector<double> Weighing::whitened(std::span<const double> torque_nm) const {
-    std::vector<double> white(size(), 0.0);
-    const std::size_t order = color_.size();
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-        const double* const now = torque_nm.data() + rows_[r];
-        double value = now[0];
-        for (std::size_t i = 0; i < order; ++i) value -= color_[i] * now[-static_cast<std::ptrdiff_t>(i) - 1];
-        white[r] = value;
-    }
+    std::vector<double> white(size());
+    whiten(torque_nm, white.data());
     return white;
 }
 
-std::vector<double> Weighing::operator()(std::span<const double> torque_nm) const {
-    std::vector<double> white = whitened(torque_nm);
-    if (basis_.empty()) return white;
+void Weighing::weigh(std::span<const double> torque_nm, double* weighed) const {
+    whiten(torque_nm, weighed);
     for (std::size_t first = 0; first < basis_.size(); first += size()) {
         const double* const nuisance = basis_.data() + first;
-        add_scaled(-dot(nuisance, white.data(), size()), nuisance, white.data(), size());
+        add_scaled(-dot(nuisance, weighed, size()), nuisance, weighed, size());
     }
-    return white;
+}
+
+std::vector<double> Weighing::operator()(std::span<const double> torque_nm) const {
+    std::vector<double> weighed(size());
+    weigh(torque_nm, weighed.data());
+    return weighed;
 }
 
 void Weighing::set_nuisance(const std::vector<Nuisance>& nuisance, double noise_nm) {
     basis_.clear();
     bounded_ = static_cast<std::size_t>(std::count_if(
         nuisance.begin(), nuisance.end(), [](const Nuisance& entry) { return entry.usual_size > 0.0; }));
-    const auto n = static_cast<Index>(size());
-    Index bound = static_cast<Index>(rows_.size());
-    std::vector<VectorXd> kept;
+    const std::size_t n = size();
+    std::size_t bound = rows_.size();
     for (const Nuisance& entry : nuisance) {
-        const std::vector<double> white = whitened(entry.torque_nm);
-        VectorXd column = Eigen::Map<const VectorXd>(white.data(), n);
+        std::vector<double> column = whitened(entry.torque_nm);
         if (entry.usual_size > 0.0) column[bound++] = noise_nm / entry.usual_size;
-        const double length = column.norm();
+        const double length = length_of(column);
         for (int pass = 0; pass < 2; ++pass) {  // twice is enough (Kahan, Parlett)
-            for (const VectorXd& other : kept) column -= other.dot(column) * other;
+            for (std::size_t first = 0; first < basis_.size(); first += n) {
+                const double* const other = basis_.data() + first;
+                add_scaled(-dot(other, column.data(), n), other, column.data(), n);
+            }
         }
-        if (column.norm() > not_new * length) kept.push_back(column.normalized());
+        const double left = length_of(column);
+        if (!(left > not_new * length)) continue;
+        for (double& value : column) value /= left;
+        basis_.insert(basis_.end(), column.begin(), column.end());
     }
-    for (const VectorXd& column : kept) basis_.insert(basis_.end(), column.data(), column.data() + n);
 }
 
 }  // namespace ripplenotch

@@ -30,11 +30,19 @@ class Weighing {
     /// How many of those numbers nuisances use up: directions in which nothing is left to fit.
     [[nodiscard]] std::size_t used_up() const { return basis_.size() / (size() > 0 ? size() : 1); }
     [[nodiscard]] std::vector<double> operator()(std::span<const double> torque_nm) const;
+    /// The same into size() numbers from `weighed` on.
+    void weigh(std::span<const double> torque_nm, double* weighed) const;
     /// Whitened only.
     [[nodiscard]] std::vector<double> whitened(std::span<const double> torque_nm) const;
 
   private:
+    struct Run {
+        std::size_t first, count;  ///< samples that follow each other, and all count
+    };
+
+    void whiten(std::span<const double> torque_nm, double* white) const;
     std::vector<std::size_t> rows_;
+    std::vector<Run> runs_;  ///< the same rows
     std::vector<double> color_;
     std::size_t bounded_ = 0;
     std::vector<double> basis_;  ///< orthonormal columns of size() each

@@ -61,18 +61,48 @@ TEST_CASE("ripple behind a delay and a hysteresis that the model has is ranked f
     CHECK(*trials[0].start.values[0] == 4.0);
 }
 
-TEST_CASE("a screening beside the same model is kept, but not for other effects, and not after settling") {
+TEST_CASE("a screening is made once beside models whose torques differ by less than the noise can tell") {
     TestBench on(case_of(plain_log(joint(), 75)));
-    const Candidate model = on.fitted(joint());
     const Effects effects = four_effects();
-    CHECK(!on.bench.screened(model.stated, effects));
-    const auto first = screen(on.bench, model, effects);
-    const auto kept = on.bench.screened(model.stated, effects);
-    REQUIRE(kept);
-    CHECK(kept->size() == first.size());
-    const Effects fewer(effects.begin(), effects.begin() + 2);
-    CHECK(!on.bench.screened(model.stated, fewer));
-    for (const Trial& trial : screen(on.bench, model, fewer)) CHECK(trial.start.effect->name != "delay");
+    const Candidate model = on.fitted(joint());
+    const auto is_made = [&](const ModelBench& bench, const Candidate& beside, const Effects& tried) {
+        const double before = on.work.spent();
+        (void)screen(bench, beside, tried);
+        return on.work.spent() > before;
+    };
+    // Ripple of order 1 by so many times the noise, so that its squares come to half of them or to twice.
+    const auto with_ripple_of = [&](double squares) {
+        Candidate other = model;
+        double& amplitude_nm = *other.stated.terms[1].values[1];
+        amplitude_nm += noise_nm * std::sqrt(2.0 * squares / static_cast<double>(on.c.used()));
+        return other;
+    };
+    REQUIRE(model.stated.terms[1].effect->name == "ripple");
+    CHECK(is_made(on.bench, model, effects));
+    CHECK(!is_made(on.bench, model, effects));
+    CHECK(!is_made(on.bench, with_ripple_of(0.5), effects));
+    CHECK(is_made(on.bench, with_ripple_of(2.0), effects));
     on.bench.settle_on(model.stated);
-    CHECK(!on.bench.screened(model.stated, effects));
+    CHECK(!is_made(on.bench, model, effects));
+    const Effects fewer{&find_effect("offset"), &find_effect("delay")};
+    for (const Trial& trial : screen(on.bench, model, fewer)) CHECK(trial.start.effect->name != "gravity");
+    // Values that are not fitted make another model.
+    Candidate fixed = model;
+    fixed.open.terms[1] = fixed.stated.terms[1];
+    CHECK(is_made(on.bench, fixed, effects));
+}
+
+TEST_CASE("what was screened against another noise is told in units of this one") {
+    const Model truth = joint_with({"coulomb-friction,torque_nm=0.4,width_deg_s=0.2"});
+    TestBench on(case_of(plain_log(truth, 73)));
+    const Candidate model = on.fitted(joint());
+    const ModelBench louder(on.c, {2.0 * noise_nm, 2.0 * noise_nm, {}}, on.work, on.rules, on.bench.kept());
+    const auto first = screen(on.bench, model, four_effects());
+    const double spent = on.work.spent();
+    const auto again = screen(louder, model, four_effects());
+    CHECK(on.work.spent() == spent);
+    REQUIRE(again.size() == first.size());
+    CHECK(again[0].gain == Approx(first[0].gain / 4.0));
+    CHECK(again[0].price == first[0].price);
+    for (std::size_t i = 1; i < again.size(); ++i) CHECK(again[i].score() <= again[i - 1].score());
 }

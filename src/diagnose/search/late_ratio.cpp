@@ -18,10 +18,22 @@ const Effect* among(std::span<const Effect* const> effects, std::string_view nam
     return found == effects.end() ? nullptr : *found;
 }
 
-struct LateRatio {
-    double delay_s = 0.0;
-    RatioCandidates ratios;
-};
+LateRatio best_late_ratio(const ModelBench& bench, const Effect& delay, const Model& guess,
+                          const std::vector<double>& torque_nm) {
+    const StatedRipple ripple = stated_ripple(guess);
+    const auto ratios_at = [&](double delay_s) {
+        return LateRatio{delay_s, likely_ratios(seen_late(bench.looked_at(), Seconds(delay_s)), torque_nm,
+                                                ripple.orders, ripple.ratio.value(), bench.rules())};
+    };
+    LateRatio best = ratios_at(0.0);
+    const double alone_nm2 = best.ratios.strongest_nm2;
+    for (const double delay_s : delay.parameters[0].tried) {
+        LateRatio late = ratios_at(delay_s);
+        if (late.ratios.strongest_nm2 > best.ratios.strongest_nm2) best = std::move(late);
+    }
+    best.strongest_alone_nm2 = alone_nm2;
+    return best;
+}
 
 }  // namespace
 
@@ -78,18 +90,13 @@ std::optional<Candidate> with_late_ratio(const ModelBench& bench, const Candidat
     std::erase_if(without_ripple.terms,
                   [](const Term& term) { return term.effect->ripple_order.has_value(); });
     const std::vector<double> torque_nm = bench.raw_residual(without_ripple);
-    const auto ratios_at = [&](double delay_s) {
-        return LateRatio{delay_s, likely_ratios(seen_late(bench.looked_at(), Seconds(delay_s)), torque_nm,
-                                                ripple.orders, ripple.ratio.value(), bench.rules())};
-    };
-    LateRatio best = ratios_at(0.0);
-    const double alone = best.ratios.strongest_nm2;
-    for (const double delay_s : delay->parameters[0].tried) {
-        LateRatio late = ratios_at(delay_s);
-        if (late.ratios.strongest_nm2 > best.ratios.strongest_nm2) best = std::move(late);
-    }
+    const SeenModel seen{open, torque_nm, {}};
+    KeptBeside<LateRatio>& kept = bench.kept()->late_ratios;
+    const LateRatio* before = kept.find(seen, bench.looked_at().use, bench.same_model_nm2());
+    const LateRatio& best =
+        before != nullptr ? *before : kept.keep(seen, best_late_ratio(bench, *delay, guess, torque_nm));
     if (best.ratios.ratios.empty() ||
-        !(best.ratios.strongest_nm2 > bench.rules().screening.late_ratio * alone))
+        !(best.ratios.strongest_nm2 > bench.rules().screening.late_ratio * best.strongest_alone_nm2))
         return std::nullopt;
     const double cells = best.ratios.compared * static_cast<double>(delay->parameters[0].tried.size());
     const double price =

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/rms.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -21,28 +22,15 @@ std::string_view material_rule(const Case& looked_at) {
 }
 
 ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work,
-                       const DiagnosisRules& rules)
+                       const DiagnosisRules& rules, std::shared_ptr<KeptScreenings> kept)
     : case_(looked_at),
       noise_(noise),
       work_(work),
       rules_(rules),
-      weighing_(looked_at.size(), looked_at.use, noise.color) {}
-
-std::optional<std::vector<Trial>> ModelBench::screened(const Model& beside,
-                                                       std::span<const Effect* const> effects) const {
-    for (const Screened& before : screened_) {
-        if (before.beside == beside && std::ranges::equal(before.effects, effects)) return before.trials;
-    }
-    return std::nullopt;
-}
-
-void ModelBench::remember(const Model& beside, std::span<const Effect* const> effects,
-                          std::vector<Trial> trials) const {
-    screened_.push_back({beside, {effects.begin(), effects.end()}, std::move(trials)});
-}
+      weighing_(looked_at.size(), looked_at.use, noise.color),
+      kept_(std::move(kept)) {}
 
 void ModelBench::settle_on(const Model& model) {
-    screened_.clear();
     // A walk of the angle is weighed against all that the model leaves: against the sensor's noise alone, one
     // that nobody expects would stand in for what the model lacks, and blow up the ripple to do so.
     const std::vector<double> white = weighing_.whitened(raw_residual(model));

@@ -2,13 +2,14 @@
 #pragma once
 // A case with its noise, on which models are fitted and compared.
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/noise_floor.hpp"
+#include "diagnose/search/kept_screenings.hpp"
 #include "diagnose/search/work.hpp"
 #include "model/carriers.hpp"
 #include "ripplenotch/model/fit.hpp"
@@ -33,18 +34,11 @@ struct Candidate {
     [[nodiscard]] double criterion() const;
 };
 
-struct Trial {
-    Term open;          ///< values to be fitted are empty
-    Term start;         ///< with the place to begin at
-    double gain = 0.0;  ///< of the whole log, foreseen, in units of the noise's variance
-    double price = 0.0;
-    [[nodiscard]] double score() const { return gain - price; }
-};
-
 class ModelBench {
   public:
-    /// `looked_at`, `work` and `rules` must outlive it.
-    ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work, const DiagnosisRules& rules);
+    /// `looked_at`, `work` and `rules` must outlive it. `kept`: of other benches on the same case.
+    ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work, const DiagnosisRules& rules,
+               std::shared_ptr<KeptScreenings> kept = std::make_shared<KeptScreenings>());
 
     /// Takes up the motion errors of this model: what can be blamed on them is no gap.
     void settle_on(const Model& model);
@@ -77,29 +71,23 @@ class ModelBench {
     [[nodiscard]] const std::vector<std::size_t>& rows() const { return weighing_.rows(); }
     [[nodiscard]] double samples() const { return static_cast<double>(weighing_.rows().size()); }
 
-    /// What a screening of these effects found beside this model, where one took place since settle_on().
-    [[nodiscard]] std::optional<std::vector<Trial>> screened(const Model& beside,
-                                                             std::span<const Effect* const> effects) const;
-    /// Keeps what a screening found; a screening has no other outcome however often it is made.
-    void remember(const Model& beside, std::span<const Effect* const> effects,
-                  std::vector<Trial> trials) const;
+    /// What screenings along this case found, whichever bench they were made on.
+    [[nodiscard]] const std::shared_ptr<KeptScreenings>& kept() const { return kept_; }
+    /// Sum of squares by which two models may differ for what was found beside one to hold beside the other.
+    [[nodiscard]] double same_model_nm2() const {
+        return rules_.screening.same_model * noise_.rms_nm * noise_.rms_nm;
+    }
 
   private:
-    struct Screened {
-        Model beside;
-        std::vector<const Effect*> effects;
-        std::vector<Trial> trials;
-    };
-
     [[nodiscard]] Candidate fitted(const Model& open, std::vector<double> prices,
                                    const FitOptions& options) const;
-    mutable std::vector<Screened> screened_;
     mutable Carriers carriers_;
     const Case& case_;
     NoiseFloor noise_;
     Work& work_;
     const DiagnosisRules& rules_;
     Weighing weighing_;
+    std::shared_ptr<KeptScreenings> kept_;
 };
 
 }  // namespace ripplenotch

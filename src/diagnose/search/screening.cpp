@@ -49,21 +49,21 @@ bool is_there_already(const Term& tried, const Candidate& model) {
     });
 }
 
-// Of the samples that a screening looks at. The model itself is run along the whole log: what it remembers
+// Of the samples that a screening looks at, of what the model leaves along the whole log: what it remembers
 // (hysteresis, lag) lies in samples that were left out.
-Column residual_of(const ModelBench& bench, const Case& some, const Model& stated) {
-    const std::vector<double> whole = bench.raw_residual(stated);
+Column residual_of(const ModelBench& bench, const Case& some, const std::vector<double>& left_nm) {
     const std::vector<std::size_t>& rows = bench.looked_at().row;
     Column residual;
     for (const std::size_t row : some.row)
         residual.push_back(
-            whole[static_cast<std::size_t>(std::ranges::lower_bound(rows, row) - rows.begin())]);
+            left_nm[static_cast<std::size_t>(std::ranges::lower_bound(rows, row) - rows.begin())]);
     return residual;
 }
 
 class Screening {
   public:
-    Screening(const ModelBench& bench, const Candidate& model, Case some, const Hints& hints)
+    Screening(const ModelBench& bench, const Candidate& model, const std::vector<double>& left_nm, Case some,
+              const Hints& hints)
         : model_(model),
           rules_(bench.rules()),
           case_(std::move(some)),
@@ -71,7 +71,7 @@ class Screening {
           samples_(bench.samples()),
           work_(bench.work()),
           hints_(hints) {
-        residual_ = counted(residual_of(bench, case_, model.stated));
+        residual_ = counted(residual_of(bench, case_, left_nm));
         look_at_slopes();
         left_ = outside_of(basis_, residual_);
         // Gains of the thinned log in those of the whole one.
@@ -261,16 +261,31 @@ class Screening {
     const Hints& hints_;
 };
 
+std::vector<Trial> sorted(std::vector<Trial> trials) {
+    std::stable_sort(trials.begin(), trials.end(),
+                     [](const Trial& a, const Trial& b) { return a.score() > b.score(); });
+    return trials;
+}
+
 }  // namespace
 
 std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
                           std::span<const Effect* const> effects) {
-    if (const auto before = bench.screened(model.stated, effects)) return *before;
-    const Hints hints = hints_of(bench, model.stated);
+    const std::vector<double> left_nm = bench.raw_residual(model.stated);
+    const SeenModel seen{model.open, left_nm, effects};
+    const double unit_nm2 = bench.noise().rms_nm * bench.noise().rms_nm;
+    KeptBeside<Screened>& kept = bench.kept()->screened;
+    if (const Screened* before = kept.find(seen, bench.looked_at().use, bench.same_model_nm2())) {
+        std::vector<Trial> trials = before->trials;
+        for (Trial& trial : trials) trial.gain *= before->unit_nm2 / unit_nm2;
+        return sorted(std::move(trials));
+    }
+    const Hints hints = hints_of(bench, model.stated, left_nm);
     const std::size_t count = bench.rules().screening.sketch_samples;
-    const Screening thinned(bench, model, sketch(bench.looked_at(), count), hints);
+    const Screening thinned(bench, model, left_nm, sketch(bench.looked_at(), count), hints);
     // Delays and lags look at neighbouring samples, which a thinned log does not have.
-    const Screening stretches(bench, model, blocks(bench.looked_at(), count, bench.rules().recording), hints);
+    const Screening stretches(bench, model, left_nm,
+                              blocks(bench.looked_at(), count, bench.rules().recording), hints);
     std::vector<Trial> trials;
     // A thinned log has no delay of a few samples, and what lies behind one has the wrong phase there.
     const bool delayed = std::ranges::any_of(
@@ -279,10 +294,7 @@ std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
         const Screening& screening = delayed || effect->side == Side::sensor ? stretches : thinned;
         if (auto trial = screening.best(*effect, effects.size())) trials.push_back(*trial);
     }
-    std::stable_sort(trials.begin(), trials.end(),
-                     [](const Trial& a, const Trial& b) { return a.score() > b.score(); });
-    bench.remember(model.stated, effects, trials);
-    return trials;
+    return sorted(kept.keep(seen, {std::move(trials), unit_nm2}).trials);
 }
 
 }  // namespace ripplenotch

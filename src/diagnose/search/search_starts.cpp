@@ -48,9 +48,9 @@ double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio st
     return effect.parameters[parameter].neutral + (wanted - at_neutral.value()) / slope;
 }
 
-Hints hints_of(const ModelBench& bench, const Model& stated) {
+Hints hints_of(const ModelBench& bench, const Model& stated, const std::vector<double>& left_nm) {
     Hints hints;
-    hints.tones_hz = strongest_tones_hz(bench.looked_at(), bench.raw_residual(stated), bench.rules());
+    hints.tones_hz = strongest_tones_hz(bench.looked_at(), left_nm, bench.rules());
     StatedRipple ripple = stated_ripple(stated);
     hints.ratio = ripple.ratio;
     hints.orders = std::move(ripple.orders);

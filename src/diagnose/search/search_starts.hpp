@@ -21,7 +21,8 @@ struct Hints {
 [[nodiscard]] double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated,
                                      double wanted);
 
-[[nodiscard]] Hints hints_of(const ModelBench& bench, const Model& stated);
+[[nodiscard]] Hints hints_of(const ModelBench& bench, const Model& stated,
+                             const std::vector<double>& left_nm);
 
 /// The effect with every combination of the values at which its search may begin. `samples`: of the log.
 /// `cells` is multiplied by the number of places that were compared to choose them.

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The orthogonal factorisation of columns of many rows, of which only the triangle is wanted.
+
+#include <span>
+#include <vector>
+
+namespace ripplenotch {
+
+struct TallTriangle {
+    std::vector<double> triangle;  ///< R of Q R, column after column; 0 below the diagonal
+    std::vector<double> reached;   ///< the numbers of Q' `right` that the columns can reach, one for each
+};
+
+/// By Householder's reflections, a block of rows after another on what the ones before have left (Golub and
+/// Van Loan, Matrix Computations, 5.2; in blocks as of Demmel, Grigori, Hoemmen, Langou, 2012): columns of
+/// many rows are gone through once and not once for each other one. `columns`: one after another, each with
+/// a number for each of `right`. A column of zeros has a row of zeros.
+[[nodiscard]] TallTriangle tall_triangle(std::span<const double> columns, std::span<const double> right);
+
+}  // namespace ripplenotch
