@@ -25,6 +25,7 @@ namespace {
 
 struct Searched {
     std::unique_ptr<ModelBench> bench;  ///< on which the last model was found
+    NoiseGround ground;
     NoiseFloor noise;
     Candidate first, last;
     std::vector<RefusedCandidate> refused;
@@ -33,7 +34,7 @@ struct Searched {
 // The noise beside the last model, and that model fitted with it. What the search could not explain before is
 // in the noise that it began with.
 void measure_noise(Searched& found, const Case& c, Work& work, const DiagnosisRules& rules) {
-    found.noise = noise_floor(c, found.last.stated, found.last.open, rules);
+    found.noise = noise_floor(c, found.last.stated, found.last.open, rules, found.ground);
     auto kept = found.bench ? found.bench->kept() : std::make_shared<KeptScreenings>();
     found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules, std::move(kept));
     found.bench->settle_on(found.last.stated);
@@ -160,6 +161,7 @@ Searched search_straight(Case& whole, Case& part, const Model& model, std::span<
     if (has_position || !straightened_by(whole, found.last, found.bench->floor_nm(found.last.stated), rules))
         return found;
     found.bench.reset();
+    found.ground = {};
     for (std::size_t k = 0; k < part.size(); ++k)
         part.motion.position_deg[k] = whole.motion.position_deg[part.row[k]];
     measure_noise(found, part, work, rules);
@@ -255,8 +257,9 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     AngleBefore before(whole, log.has_position());
     if (!log.has_position()) straighten(whole, model, rules);
     Case part = excerpt(whole, rules.recording);
-    const Searched found =
+    Searched found =
         search_straight(whole, part, model, effects, diagnosis, aside, work, rules, log.has_position());
+    found.ground = {};  // nobody asks for the noise again
     if (other && !(log.has_position() && validation->has_position())) before.of_other(*other);
     Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr, before.has_other());
     diagnosis.angle = before.account(whole, other ? &*other : nullptr);

@@ -2,11 +2,25 @@
 #include "diagnose/case/noise_columns.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {
+
+void NoiseColumns::add(std::vector<double> column) {
+    const double squares = dot(column.data(), column.data(), column.size());
+    if (!(squares > 0.0) || !std::isfinite(squares)) return;
+    const double scale = std::sqrt(static_cast<double>(column.size()) / squares);
+    for (std::size_t k = 0; k < column.size(); ++k) column[k] = use_[k] != 0 ? scale * column[k] : 0.0;
+    columns_.push_back(std::move(column));
+}
+
+void NoiseColumns::cut(std::size_t count) {
+    columns_.resize(std::min(count, columns_.size()));
+    products_.resize(std::min(count, products_.size()));
+}
 
 // Of the columns that are new since the last time, two by two.
 void NoiseColumns::sum_products() {

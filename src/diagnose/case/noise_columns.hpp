@@ -3,9 +3,10 @@
 // The many columns that leave nothing of a log but its noise, and what they leave. There are over a hundred,
 // each as long as the log, and they come in turns: products that were summed up once are kept.
 
-#include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace ripplenotch {
@@ -15,17 +16,18 @@ class NoiseColumns {
     /// Rows with 0 in `use` count for nothing. It must outlive this.
     explicit NoiseColumns(std::span<const unsigned char> use) : use_(use) {}
 
-    /// A column of value_at(row), scaled to an rms of 1; nothing when it is 0 everywhere, or not finite.
+    /// A column of a number a row, scaled to an rms of 1; nothing when it is 0 everywhere, or not finite.
+    void add(std::vector<double> column);
+    /// The same of value_at(row).
     template <class Function>
+    requires std::invocable<Function, std::size_t>
     void add(const Function& value_at) {
         std::vector<double> column(use_.size());
-        double squares = 0.0;
-        for (std::size_t k = 0; k < column.size(); ++k) squares += (column[k] = value_at(k)) * column[k];
-        if (!(squares > 0.0) || !std::isfinite(squares)) return;
-        const double scale = std::sqrt(static_cast<double>(column.size()) / squares);
-        for (std::size_t k = 0; k < column.size(); ++k) column[k] = use_[k] != 0 ? scale * column[k] : 0.0;
-        columns_.push_back(std::move(column));
+        for (std::size_t k = 0; k < column.size(); ++k) column[k] = value_at(k);
+        add(std::move(column));
     }
+    /// Forgets all columns but the first `count`.
+    void cut(std::size_t count);
 
     [[nodiscard]] std::size_t count() const { return columns_.size(); }
 

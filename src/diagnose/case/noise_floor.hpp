@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnose/case/case.hpp"
+#include "diagnose/case/noise_ground.hpp"
 
 namespace ripplenotch {
 
@@ -21,5 +22,8 @@ struct NoiseFloor {
 /// `model`: the best one so far, wholly stated; its own slopes take part.
 [[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
                                      const DiagnosisRules& rules);
+/// The same, where the noise of this case is looked at again and again.
+[[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
+                                     const DiagnosisRules& rules, NoiseGround& ground);
 
 }  // namespace ripplenotch

@@ -131,6 +131,9 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
 std::optional<Candidate> late_ratio_instead(const ModelBench& bench, const Candidate& now,
                                             const std::optional<Candidate>& alone,
                                             std::span<const Effect* const> effects, std::size_t own_terms) {
+    // What hides so leaves the ripple: there is much to close.
+    if (now.gain_left - bench.samples() <= bench.rules().search.open_gap * bench.samples())
+        return std::nullopt;
     auto both = with_late_ratio(bench, now, own_terms, effects);
     if (!both ||
         both->criterion() >= (alone ? std::min(alone->criterion(), now.criterion()) : now.criterion()) ||
