@@ -125,7 +125,7 @@ struct Powers {
 template <class Allows>
 bool all_are(std::span<const double> numbers, Allows allows) {
     bool all = true;
-    for (const double number : numbers) all = all && allows(number);
+    for (const double number : numbers) all &= static_cast<bool>(allows(number));
     return all;
 }
 
@@ -149,7 +149,7 @@ void pow(std::span<const double> x, double p, std::span<double> value) {
     // What pow() itself does in another way than by logarithms.
     const bool plain = (p == std::round(p) && std::abs(p) <= 8.0) || p == 0.5;
     const bool fast = !plain && p > 0.0 && p <= 4.0 && all_are(x, [](double number) {
-        return number == 0.0 || (number > 1e-70 && number < 1e70 && number != 10.0);
+        return (number == 0.0) | ((number > 1e-70) & (number < 1e70) & (number != 10.0));
     });
     const std::size_t fours = fast ? x.size() / lane_count : 0;
     in_lanes<Powers>(x.data(), fours, p, value.data());

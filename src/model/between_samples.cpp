@@ -69,23 +69,18 @@ std::array<double, lag_points> lagrange_coefficients(int i) {
     return coefficients;
 }
 
-}  // namespace
-
-void shift_samples(std::span<double> values, double delay) {
-    if (values.empty()) return;
-    const double whole = std::ceil(delay);
-    const auto weights = lagrange_weights<shift_points>(whole - delay);
-    const auto steps = static_cast<std::ptrdiff_t>(whole);
-    const std::vector<double> before(values.begin(), values.end());
-    const auto n = static_cast<std::ptrdiff_t>(values.size());
-    constexpr std::ptrdiff_t points = shift_points, back = shift_points / 2 - 1;
+// values[k] becomes the sum of weights[i] * before[k + first + i], in this order, for every k.
+void weigh_neighbours(std::span<const double> before, std::span<const double> weights, std::ptrdiff_t first,
+                      std::span<double> values) {
+    const auto n = static_cast<std::ptrdiff_t>(before.size()),
+               points = static_cast<std::ptrdiff_t>(weights.size());
     // Where all points are samples, point after point for many samples at once: the same sums.
-    const std::ptrdiff_t begin = std::clamp<std::ptrdiff_t>(steps + back, 0, n),
-                         end = std::clamp<std::ptrdiff_t>(n + steps + back - points + 1, begin, n);
+    const std::ptrdiff_t begin = std::clamp<std::ptrdiff_t>(-first, 0, n),
+                         end = std::clamp<std::ptrdiff_t>(n - first - points + 1, begin, n);
     const auto by_itself = [&](std::ptrdiff_t k) {
         double sum = 0.0;
         for (std::ptrdiff_t i = 0; i < points; ++i)
-            sum += weights[static_cast<std::size_t>(i)] * at(before, k - steps - back + i);
+            sum += weights[static_cast<std::size_t>(i)] * at(before, k + first + i);
         values[static_cast<std::size_t>(k)] = sum;
     };
     for (std::ptrdiff_t k = 0; k < begin; ++k) by_itself(k);
@@ -94,11 +89,21 @@ void shift_samples(std::span<double> values, double delay) {
         const auto count = static_cast<std::size_t>(std::min(block, end - k));
         std::fill_n(values.data() + k, count, 0.0);
         for (std::ptrdiff_t i = 0; i < points; ++i) {
-            add_scaled(weights[static_cast<std::size_t>(i)], before.data() + k - steps - back + i,
-                       values.data() + k, count);
+            add_scaled(weights[static_cast<std::size_t>(i)], before.data() + k + first + i, values.data() + k,
+                       count);
         }
     }
     for (std::ptrdiff_t k = end; k < n; ++k) by_itself(k);
+}
+
+}  // namespace
+
+void shift_samples(std::span<double> values, double delay) {
+    if (values.empty()) return;
+    const double whole = std::ceil(delay);
+    const auto weights = lagrange_weights<shift_points>(whole - delay);
+    const std::vector<double> before(values.begin(), values.end());
+    weigh_neighbours(before, weights, -static_cast<std::ptrdiff_t>(whole) - (shift_points / 2 - 1), values);
 }
 
 void first_order_lag(std::span<double> values, double time_constant) {
@@ -113,14 +118,10 @@ void first_order_lag(std::span<double> values, double time_constant) {
     }
     const double kept = portable::exp(-std::min(rate, 700.0));
     const std::vector<double> before(values.begin(), values.end());
-    for (std::size_t k = 1; k < values.size(); ++k) {
-        // From sample k - 1 (u = 0) to sample k (u = 1).
-        const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(k) - 1 - (lag_points / 2 - 1);
-        double sum = kept * values[k - 1];
-        for (int i = 0; i < lag_points; ++i)
-            sum += weights[static_cast<std::size_t>(i)] * at(before, first + i);
-        values[k] = sum;
-    }
+    // From sample k - 1 (u = 0) to sample k (u = 1).
+    weigh_neighbours(before, weights, -1 - (lag_points / 2 - 1), values);
+    values[0] = before[0];
+    for (std::size_t k = 1; k < values.size(); ++k) values[k] += kept * values[k - 1];
 }
 
 }  // namespace ripplenotch

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "model/carriers.hpp"
 
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -43,7 +44,8 @@ bool Carriers::add_torque(const Term& term, const Situation& situation, const Ga
     const double* const along = found.along_nm.data();
     const double* const across = found.across_nm.data();
     if (gain.empty()) {
-        for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] += x * along[k] + y * across[k];
+        add_scaled(x, along, torque_nm.data(), torque_nm.size());
+        add_scaled(y, across, torque_nm.data(), torque_nm.size());
         return true;
     }
     // A quarter turn leads from along to across, and from across to the reverse of along.

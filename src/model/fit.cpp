@@ -217,11 +217,10 @@ std::vector<double> slope_nm(const Prediction& prediction, const Coordinates& co
     const double up = std::min(point[c] + coordinate.step, coordinate.upper);
     const double down = coordinate.linear ? point[c] : std::max(point[c] - coordinate.step, coordinate.lower);
     std::vector<double> slope = at(up);
-    if (!coordinate.linear) {
-        const auto below = at(down);
-        for (std::size_t k = 0; k < slope.size(); ++k) slope[k] -= below[k];
-    }
-    for (double& value : slope) value /= up - down;
+    if (!coordinate.linear) add_scaled(-1.0, at(down).data(), slope.data(), slope.size());
+    const double by_step = 1.0 / (up - down);
+    if (by_step == 1.0) return slope;
+    for (double& value : slope) value *= by_step;
     return slope;
 }
 

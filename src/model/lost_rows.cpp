@@ -26,21 +26,29 @@ double middle_step_s(std::span<const double> time_s) {
     return median_in(steps);
 }
 
-// The clock that the stamps tell together: the mean of the steps that hold one sample; 0 where none holds
-// more.
-double single_step_s(std::span<const double> time_s, double middle_s) {
-    std::size_t longer = 0, single = 0;
-    double sum_s = 0.0;
+// Steps that may hold more than one sample. Most logs lost none, and every delay asks.
+std::size_t long_steps(std::span<const double> time_s, double middle_s) {
+    std::size_t found = 0;
     for (std::size_t k = 1; k < time_s.size(); ++k) {
         const double here = time_s[k] - time_s[k - 1];
-        if (here >= is_gap * middle_s) continue;
-        const bool long_one = here > may_be_lost * middle_s;
-        longer += long_one ? 1 : 0;
-        single += long_one ? 0 : 1;
-        sum_s += long_one ? 0.0 : here;
+        found += static_cast<std::size_t>((here > may_be_lost * middle_s) & (here < is_gap * middle_s));
     }
-    const bool worth = static_cast<double>(longer) > worth_it * static_cast<double>(time_s.size());
-    return worth ? sum_s / static_cast<double>(single) : 0.0;
+    return found;
+}
+
+// The clock that the stamps tell together: the mean of the steps that hold one sample; 0 where too few hold
+// more.
+double single_step_s(std::span<const double> time_s, double middle_s) {
+    if (!(static_cast<double>(long_steps(time_s, middle_s)) > worth_it * static_cast<double>(time_s.size())))
+        return 0.0;
+    double single = 0.0, sum_s = 0.0;
+    for (std::size_t k = 1; k < time_s.size(); ++k) {
+        const double here = time_s[k] - time_s[k - 1];
+        if (here > may_be_lost * middle_s) continue;
+        single += 1.0;
+        sum_s += here;
+    }
+    return sum_s / single;
 }
 
 // How much later than the first stamp the stamps after it are in the mean, in steps from -0.5 to 0.5: the

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/vectors/dot.hpp"
 #include "model/carriers.hpp"
 #include "model/term_torque.hpp"
 #include "ripplenotch/model/prediction.hpp"
@@ -236,14 +237,10 @@ struct Prediction::State {
             const bool concerned = i == place || (loads && effect.bears_load && term.effect->uses_load) ||
                                    (ripple && term.effect->ripple_order);
             if (term.effect->side != Side::joint || !concerned) continue;
-            std::vector<double> now(sum.size(), 0.0);
             const Situation around = situation(with_load);
             applied += ripple ? 1 + changes : 1;
-            add(term, around, ripple ? gain_for(other, term, around) : gain(term), now);
-            for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += now[k];
-            if (i >= model.terms.size()) continue;
-            const std::vector<double>& before = own(i);
-            for (std::size_t k = 0; k < sum.size(); ++k) sum[k] -= before[k];
+            add(term, around, ripple ? gain_for(other, term, around) : gain(term), sum);
+            if (i < model.terms.size()) add_scaled(-1.0, own(i).data(), sum.data(), sum.size());
         }
         through_sensors(other, with_load, sum);
         return sum;
@@ -253,7 +250,7 @@ struct Prediction::State {
         ++applied;
         std::vector<double> torque = joint_nm;
         through_sensors(other, load, torque);
-        for (std::size_t k = 0; k < torque.size(); ++k) torque[k] -= torque_nm[k];
+        add_scaled(-1.0, torque_nm.data(), torque.data(), torque.size());
         return torque;
     }
 

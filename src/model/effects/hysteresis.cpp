@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <vector>
 
+#include "core/many_numbers.hpp"
 #include "model/direction.hpp"
 #include "model/effects.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -44,22 +45,25 @@ constexpr LookAlike look_alikes[] = {
 
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     const Motion& motion = situation.motion;
-    HeldDirection direction;
     // Within one direction the state depends on the angle gone since the reversal alone, so that noise on the
     // position does not ratchet it along.
-    double state = values[2], at_reversal = state, reversal_deg = 0.0;
-    int held = 0;
+    std::vector<signed char> direction(torque_nm.size());
+    std::vector<double> left(torque_nm.size());  // of what the last reversal found
+    HeldDirection direction_now;
+    double reversal_deg = 0.0;
     for (std::size_t k = 0; k < torque_nm.size(); ++k) {
-        const int now = direction.update(motion.velocity_deg_s[k]);
-        if (now != held) {
-            held = now;
-            at_reversal = state;
-            reversal_deg = motion.position_deg[k > 0 ? k - 1 : 0];
-        }
-        if (held != 0) {
-            const double gone_deg = std::max(held * (motion.position_deg[k] - reversal_deg), 0.0);
-            state = held + (at_reversal - held) * portable::exp(-std::min(gone_deg / values[1], 700.0));
-        }
+        const int held = direction_now.update(motion.velocity_deg_s[k]);
+        if (held != (k > 0 ? direction[k - 1] : 0)) reversal_deg = motion.position_deg[k > 0 ? k - 1 : 0];
+        direction[k] = static_cast<signed char>(held);
+        const double gone_deg = std::max(held * (motion.position_deg[k] - reversal_deg), 0.0);
+        left[k] = -std::min(gone_deg / values[1], 700.0);
+    }
+    portable::exp(left, left);
+    double state = values[2], at_reversal = state;
+    for (std::size_t k = 0; k < torque_nm.size(); ++k) {
+        const int held = direction[k];
+        if (held != (k > 0 ? direction[k - 1] : 0)) at_reversal = state;
+        if (held != 0) state = held + (at_reversal - held) * left[k];
         torque_nm[k] += values[0] * state;
     }
 }
