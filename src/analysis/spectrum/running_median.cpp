@@ -26,19 +26,32 @@ void RunningMedian::start(std::size_t first, std::size_t end) {
     std::nth_element(lowest, highest, window_.end());
     high_ = *highest;
     below_ = std::count_if(window_.begin(), lowest, [this](double value) { return value < low_; });
-    near_.clear();
+    const double apart = high_ - low_;
+    buckets_a_unit_ = apart > 1e-300 ? static_cast<double>(bucket_count) / apart : 0.0;
+    for (std::vector<double>& bucket : buckets_) bucket.clear();
+    near_ = 0;
     for (const double value : window_) {
-        if (value >= low_ && value <= high_) near_.push_back(value);
+        if (!(value >= low_ && value <= high_)) continue;
+        bucket_of(value).push_back(value);
+        ++near_;
     }
-    std::sort(near_.begin(), near_.end());
+}
+
+// Values rise with their buckets, whatever is rounded.
+std::vector<double>& RunningMedian::bucket_of(double value) {
+    const double place = std::min((value - low_) * buckets_a_unit_, static_cast<double>(bucket_count - 1));
+    return buckets_[static_cast<std::size_t>(place)];
 }
 
 // Where values come in no order, a branch on one is guessed wrong every other time: there are none but one.
 void RunningMedian::move_on(std::size_t first, std::size_t end) {
-    for (const double value : take_near(signal_.subspan(first_, first - first_), -1))
-        near_.erase(place_of(value));
+    for (const double value : take_near(signal_.subspan(first_, first - first_), -1)) {
+        std::vector<double>& bucket = bucket_of(value);
+        *std::find(bucket.begin(), bucket.end(), value) = bucket.back();
+        bucket.pop_back();
+    }
     for (const double value : take_near(signal_.subspan(end_, end - end_), 1))
-        near_.insert(place_of(value), value);
+        bucket_of(value).push_back(value);
 }
 
 std::span<const double> RunningMedian::take_near(std::span<const double> values, std::ptrdiff_t each) {
@@ -51,17 +64,20 @@ std::span<const double> RunningMedian::take_near(std::span<const double> values,
         taken += static_cast<std::size_t>(value >= low_ && value <= high_);
     }
     below_ += each * below;
+    near_ += each * static_cast<std::ptrdiff_t>(taken);
     return std::span(window_).first(taken);
 }
 
-std::vector<double>::const_iterator RunningMedian::place_of(double value) const {
-    const double* from = near_.data();
-    for (std::size_t left = near_.size(); left > 0;) {
-        const std::size_t half = (left + 1) / 2;
-        from = from[half - 1] < value ? from + half : from;
-        left -= half;
+double RunningMedian::near(std::size_t rank) {
+    for (std::vector<double>& bucket : buckets_) {
+        if (rank < bucket.size()) {
+            const auto place = bucket.begin() + static_cast<std::ptrdiff_t>(rank);
+            std::nth_element(bucket.begin(), place, bucket.end());
+            return *place;
+        }
+        rank -= bucket.size();
     }
-    return near_.begin() + (from - near_.data());
+    return high_;  // never: the rank is below near_
 }
 
 double RunningMedian::at(std::size_t first, std::size_t count) {
@@ -70,10 +86,10 @@ double RunningMedian::at(std::size_t first, std::size_t count) {
     const bool little = onward && first - first_ + end - end_ < count / 2;
     if (little) move_on(first, end);
     const auto rank = [&] { return static_cast<std::ptrdiff_t>(count / 2) - below_; };
-    if (!little || rank() < 0 || rank() >= static_cast<std::ptrdiff_t>(near_.size())) start(first, end);
+    if (!little || rank() < 0 || rank() >= near_) start(first, end);
     first_ = first;
     end_ = end;
-    return near_[static_cast<std::size_t>(rank())];
+    return near(static_cast<std::size_t>(rank()));
 }
 
 }  // namespace ripplenotch
