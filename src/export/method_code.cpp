@@ -8,6 +8,7 @@
 #include "export/c_code.hpp"
 #include "export/method_code_parts.hpp"
 #include "export/text.hpp"
+#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -87,12 +88,14 @@ std::string CodeStyle::array(std::string_view what, const std::vector<double>& v
 }
 
 std::string CodeStyle::filled(std::string_view code) const {
-    const std::array<std::pair<std::string_view, std::string>, 5> fields = {
+    const std::array<std::pair<std::string_view, std::string>, 7> fields = {
         {{"@name@", name},
          {"@NAME@", upper_case(name)},
          {"@real@", is_float ? "float" : "double"},
          {"@abs@", is_float ? "fabsf" : "fabs"},
-         {"@sqrt@", is_float ? "sqrtf" : "sqrt"}}};
+         {"@sqrt@", is_float ? "sqrtf" : "sqrt"},
+         {"@full@", decimal(full_below_rate)},
+         {"@none@", decimal(none_above_rate)}}};
     return c_code::filled(std::string(code), fields);
 }
 

@@ -49,8 +49,8 @@ static inline void @name@_begin(@name@_state* s, @real@ torque_nm) {
 
 /* An order that nears half the sample rate is let go; rate in cycles a sample. */
 static inline void @name@_fade(@real@ rate, @real@* cosine, @real@* sine, @real@* squares) {
-    if (rate > (@real@)0.45) {
-        const @real@ share = rate < (@real@)0.48 ? ((@real@)0.48 - rate) / ((@real@)0.48 - (@real@)0.45) : 0;
+    if (rate > (@real@)@full@) {
+        const @real@ share = rate < (@real@)@none@ ? ((@real@)@none@ - rate) / ((@real@)@none@ - (@real@)@full@) : 0;
         *cosine *= share;
         *sine *= share;
         *squares -= 1 - share * share;

@@ -17,6 +17,7 @@
 
 #include "export/map_run.hpp"
 #include "export/method_code_parts.hpp"
+#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 
@@ -57,7 +58,8 @@ class OscillatorRun {
           before_(m_ - 2),
           v_(m_),
           p_(m_ * m_),
-          slowest_fade_(static_cast<Real>(0.45 / *std::max_element(orders.begin(), orders.end()))) {}
+          slowest_fade_(
+              static_cast<Real>(full_below_rate / *std::max_element(orders.begin(), orders.end()))) {}
 
     double step(const CodeInput& in) {
         const Real turns = static_cast<Real>(in.motor_turns);
@@ -95,7 +97,7 @@ class OscillatorRun {
         slipped_ = slipped - static_cast<Real>(static_cast<int>(slipped));
     }
     void look(Real turns, Real size) {
-        const Real none = static_cast<Real>(0.48), full = static_cast<Real>(0.45);
+        const Real none = static_cast<Real>(none_above_rate), full = static_cast<Real>(full_below_rate);
         order_angles(orders_, turns, h_);
         squares_ = static_cast<Real>(orders_.size());
         if (!(size > slowest_fade_)) return;

@@ -9,6 +9,7 @@
 
 #include "export/map_code.hpp"
 #include "export/text.hpp"
+#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -90,7 +91,7 @@ class StepCode {
         text_ += slips_ ? std::string(slip_code) : "    const @real@ size = @abs@(moved);\n";
         text_ += order_angles_code(d_.orders, slips_ ? "motor_turns + s->slipped" : "motor_turns");
         const double fastest = *std::max_element(d_.orders.begin(), d_.orders.end());
-        line("    if (size > (@real@){}) {{", decimal(0.45 / fastest));
+        line("    if (size > (@real@){}) {{", decimal(full_below_rate / fastest));
         for (std::size_t i = 0; i < d_.orders.size(); ++i)
             line("        @name@_fade(@name@_orders[{0}] * size, &c{0}, &s{0}, &squares);", i);
         line("    }}");

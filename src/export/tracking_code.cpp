@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "export/method_code_parts.hpp"
+#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -56,7 +57,7 @@ static inline @real@ @name@_between(@real@ value, @real@ low, @real@ high) {
 static inline @real@ @name@_left(int order, @real@ hz) {
     const @real@* const c = @name@_values;
     @real@ gain = c[4];
-    @real@ share = @name@_weights[order] * @name@_between(((@real@)0.48 - hz / c[1]) / ((@real@)0.48 - (@real@)0.45), 0, 1);
+    @real@ share = @name@_weights[order] * @name@_between(((@real@)@none@ - hz / c[1]) / ((@real@)@none@ - (@real@)@full@), 0, 1);
     if (@NAME@_PARKS) {
         const @real@ on = @name@_between((hz / c[5] - (@real@)0.25) / (@real@)0.75, 0, 1);
         const @real@ root = 1 - on * (1 - @sqrt@(c[4]));
@@ -76,7 +77,7 @@ static inline void @name@_follow(@name@_state* s, int starts) {
     for (i = 0; i < @NAME@_ORDERS; ++i) {
         @name@_line* const line = s->line + i;
         const @real@ hz = @name@_orders[i] * c[0] * (s->speed < 0 ? -s->speed : s->speed) / 360;
-        const @real@ wanted = @name@_between(hz, c[5], (@real@)0.48 * c[1]);
+        const @real@ wanted = @name@_between(hz, c[5], (@real@)@none@ * c[1]);
         @real@ center = wanted;
         if (!starts && c[8] < 1) center = @name@_between(wanted, line->center * (1 - c[8]), line->center / (1 - c[8]));
         if (center != wanted) s->arrived = 0;
@@ -172,7 +173,7 @@ class Runner {
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             Line& line = lines_[i];
             const Real hz = orders_[i] * c_[0] * std::abs(speed_) / 360;
-            const Real wanted = std::clamp(hz, c_[5], static_cast<Real>(0.48) * c_[1]);
+            const Real wanted = std::clamp(hz, c_[5], static_cast<Real>(none_above_rate) * c_[1]);
             Real center = wanted;
             if (!starts && c_[8] < 1)
                 center = std::clamp(wanted, line.center * (1 - c_[8]), line.center / (1 - c_[8]));
@@ -198,7 +199,7 @@ class Runner {
     }
     [[nodiscard]] Real left(std::size_t i, Real hz) const {
         const auto share_of = [](Real value) { return std::clamp(value, Real(0), Real(1)); };
-        const Real none = static_cast<Real>(0.48), full = static_cast<Real>(0.45);
+        const Real none = static_cast<Real>(none_above_rate), full = static_cast<Real>(full_below_rate);
         Real gain = c_[4], share = weights_[i] * share_of((none - hz / c_[1]) / (none - full));
         if (parks_) {
             const Real on = share_of((hz / c_[5] - static_cast<Real>(0.25)) / static_cast<Real>(0.75));

@@ -8,8 +8,8 @@
 
 #include "core/factorisations.hpp"
 #include "filter/gain_schedule.hpp"
-#include "filter/rate_edge.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 namespace {

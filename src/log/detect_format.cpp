@@ -33,6 +33,11 @@ constexpr std::array strangers = {
              "unpack it, or convert a workbook: libreoffice --headless --convert-to csv {}"},
 };
 
+bool is_plain_name(const std::string& name) {
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._/+-";
+    return !name.starts_with('-') && name.find_first_not_of(plain) == std::string::npos;
+}
+
 }  // namespace
 
 const LogFormat& detect_format(std::string_view first_bytes, const std::string& source,
@@ -45,7 +50,8 @@ const LogFormat& detect_format(std::string_view first_bytes, const std::string& 
     for (const Stranger& stranger : strangers) {
         if (!first_bytes.starts_with(stranger.magic)) continue;
         std::string remedy(stranger.remedy);
-        remedy.replace(remedy.find("{}"), 2, source);
+        // The line is there to be pasted: a name that a shell or Python would read otherwise does not go in.
+        remedy.replace(remedy.find("{}"), 2, is_plain_name(source) ? source : "FILE");
         raise<DataError>("{}: read {}, expected a log as {}; {}", source, stranger.what,
                          fmt::join(names, " or "), remedy);
     }

@@ -114,6 +114,35 @@ class Maps(Case):
         self.assertEqual(done.returncode, 2)
         self.assertIn("map needs to know the gear", done.stderr)
 
+    def test_every_joint_has_a_map_of_its_own(self):
+        """Two joints of one log, the second with half of the ripple: the maps are those of each joint by its name."""
+        wide = self.folder / "wide.csv"
+        with open(wide, "w") as file:
+            file.write("time_s," + ",".join(f"j{j}_{name}" for j in (1, 2) for name in ("velocity_deg_s", "torque_nm", "position_deg")) + "\n")
+            for t, v, position, slow, theta, noise in motion(1):
+                cells = [t]
+                for share in (1.0, 0.5):
+                    cells += [v, slow + share * 0.8 * math.cos(theta) + noise, position]
+                file.write(",".join(f"{cell:.6f}" for cell in cells) + "\n")
+        done = run("map", wide, *GEAR, "--joint", "all", "-o", self.folder / "{joint}_map.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for joint, amplitude in (("j1", 0.8), ("j2", 0.4)):
+            found = json.loads((self.folder / f"{joint}_map.json").read_text())
+            self.made(wide, "--joint", joint)
+            alone = json.loads(self.map.read_text())
+            self.assertEqual({**found, "command": ""}, {**alone, "command": ""})
+            first = next(one for one in found["coefficients"] if one["order"] == 1)
+            self.assertAlmostEqual(first["cosine_nm"], amplitude, delta=0.02)
+            self.assertIn(f"{joint}: On blocks left out", done.stdout)
+        filtered = run("filter", wide, "--joint", "all", "--method", f"oscillator,map={self.folder}/{{joint}}_map.json",
+                       "-o", self.folder / "clean.csv")
+        self.assertEqual(filtered.returncode, 0, filtered.stderr)
+        for words, said in ((["-o", self.folder / "map.json"], "put {joint} into the name"), (["--json"], "put {joint} into the name")):
+            refused = run("map", wide, *GEAR, "--joint", "all", *words)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(said, refused.stderr)
+        self.assertIn("standard input can be read once only", run("map", "-", *GEAR, "--joint", "all").stderr)
+
 
 class Compensators(Case):
     def filtered(self, method):

@@ -50,8 +50,8 @@ class Case(unittest.TestCase):
         self.assertEqual(done.returncode, code, done.stderr.decode()[-2000:])
         return done
 
-    def identified(self, *words, stdin=None):
-        found = json.loads(self.run_tool("identify", "--json", *words, stdin=stdin).stdout)
+    def identified(self, *words, stdin=None, command=("identify",)):
+        found = json.loads(self.run_tool(command[0], "--json", *words, *command[1:], stdin=stdin).stdout)
         for field in ("inputs", "command"):
             found.pop(field)
         # The name of the log stands in sentences about it.

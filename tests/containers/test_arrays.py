@@ -40,6 +40,21 @@ class Npz(Case):
         self.write("bad.npz", data[:300] + bytes(200) + data[500:])
         self.refusal(self.folder / "bad.npz")
 
+    def test_numbers_that_do_not_have_their_checksum(self):
+        """One bit of a torque, which is a number as good as the right one; packed in blocks that are stored."""
+        import zipfile
+        import numpy
+        numpy.savez(self.folder / "run.npz", **{name: numpy.array(values) for name, values in self.columns.items()})
+        data = (self.folder / "run.npz").read_bytes()
+        with zipfile.ZipFile(self.folder / "run.npz") as whole, zipfile.ZipFile(self.folder / "packed.npz", "w") as packed:
+            for member in whole.namelist():
+                packed.writestr(member, whole.read(member), zipfile.ZIP_DEFLATED, 0)
+        for stored in (data, (self.folder / "packed.npz").read_bytes()):
+            at = stored.index(struct.pack("<2d", *self.columns["torque_nm"][2000:2002]))
+            self.assert_same(self.write("good.npz", stored))
+            flipped = self.write("flipped.npz", stored[:at + 2] + bytes([stored[at + 2] ^ 1]) + stored[at + 3:])
+            self.assertRegex(self.refusal(flipped, command="identify"), r"checksum [0-9a-f]{8}, expected [0-9a-f]{8}")
+
 
 @needs("scipy")
 class Mat(Case):
@@ -209,7 +224,12 @@ class Hdf5(Case):
         said = self.run_tool("info", self.folder / "links.h5").stdout.decode()
         self.assertRegex(said, r"/torque_nm +a link to another file, not followed")
         self.assertRegex(said, r"/position_deg +4000 +numbers outside of the file, not followed")
-        self.assertIn("expected a torque column", self.refusal(self.folder / "links.h5", command="identify"))
+        self.assertIn("/torque_nm (a link to another file, not followed), expected a torque column",
+                      self.refusal(self.folder / "links.h5", command="identify"))
+        file = self.file("away.h5")
+        file["torque_nm"] = h5py.ExternalLink("secret.h5", "/torque_nm")
+        file.close()
+        self.assertIn("/torque_nm (a link to another file", self.refusal(self.folder / "away.h5"))
 
     def test_matlab_head_and_paths(self):
         file = self.file("run.mat", userblock_size=512)

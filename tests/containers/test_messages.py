@@ -69,6 +69,14 @@ class Mcap(Messages):
         piped = self.identified("-", "--joint", "elbow", stdin=path.read_bytes())
         self.assertEqual(piped, self.identified(twin, "--joint", "elbow"))
 
+    def test_all_that_follows_is_the_same(self):
+        twin, path = self.twin(), self.bag()
+        for command in (("spectrum",), ("track", "--gear-ratio", "100", "--orders", "1,2"), ("diagnose", "--model", "auto")):
+            got, expected = (self.identified(log, "--joint", "elbow", command=command) for log in (path, twin))
+            self.assertEqual(got, expected, command[0])
+        method = ("--joint", "elbow", "--method", "oscillator,gear-ratio=100,orders=1:2", "--output-format", "npy")
+        self.assertEqual(self.run_tool("filter", path, *method).stdout, self.run_tool("filter", twin, *method).stdout)
+
     def test_either_byte_order_and_texts_of_any_length(self):
         states = [bags.joint_state(ns, NAMES, *motion, big_endian=k % 2 == 0, frame="b" * (k % 5)) for k, (ns, *motion) in enumerate(self.states)]
         self.assert_same(self.bag(states=states), "--joint", "elbow", twin=self.twin(), twin_options=("--joint", "elbow"))

@@ -9,6 +9,7 @@
 
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
+#include "cli/gear/joint_methods.hpp"
 #include "cli/map/map_text.hpp"
 #include "cli/options/plot_request.hpp"
 #include "cli/readings/readings.hpp"
@@ -32,6 +33,7 @@ struct Request {
     Degrees zero;
     bool require_conclusive = false;
     std::optional<std::string> temperature;  ///< column of the logs
+    bool heads = false;                      ///< what is printed begins with the joint
 };
 
 /// Logs of one joint, and its temperature at their rows where a column is stated.
@@ -97,8 +99,7 @@ MapFit fitted_by_readings(const Read& read, const Request& request, const GearAc
     return fit;
 }
 
-ExitCode run(Request& request, const std::string& command_line) {
-    if (request.log.joint == "all") raise<UsageError>("--joint all: map looks at one joint; name it");
+ExitCode run_one(const Request& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
@@ -112,7 +113,8 @@ ExitCode run(Request& request, const std::string& command_line) {
     fit.map.joint = read.logs.front().trace.joint;
     fit.map.temperature_column = request.temperature.value_or("");
     for (const std::string& note : fit.notes) say(request.common, note);
-    const std::string text = map_report(fit, request.logs);
+    const std::string heading = request.heads ? fit.map.joint + ": " : "";
+    const std::string text = heading + map_report(fit, request.logs);
     const bool json_file = ends_with_json(request.common.output);
     if (request.common.json || json_file) {
         write_text(request.common.output, map_text(fit, provenance), request.common.overwrite());
@@ -127,6 +129,42 @@ ExitCode run(Request& request, const std::string& command_line) {
         return map_figure(joint_in_words(request.logs.front(), fit.map.joint), fit);
     });
     return fit.conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
+}
+
+void check_each(const Request& request) {
+    if (std::find(request.logs.begin(), request.logs.end(), "-") != request.logs.end())
+        raise<UsageError>("--joint all: standard input can be read once only; give a file");
+    const auto require_joint = [](std::string_view option, const std::string& path) {
+        if (!names_joint(path))
+            raise<UsageError>("{} {}: each joint has a map of its own; put {{joint}} into the name", option,
+                              path);
+    };
+    if (request.common.output != "-" || request.common.json) require_joint("-o", request.common.output);
+    if (request.plot.path) require_joint("--plot", *request.plot.path);
+}
+
+// Each joint of the first log by itself, with files of its own.
+ExitCode run_each(const Request& request, const std::string& command_line) {
+    constexpr std::size_t for_names = 4096;  // rows
+    check_each(request);
+    ReadOptions options = request.log.resolve();
+    options.takes_motor_units = true;
+    ExitCode worst = ExitCode::done;
+    for (const Log& log : read_joints_in_part(request.logs.front(), options, for_names)) {
+        Request one = request;
+        const std::string& joint = log.trace.joint;
+        one.log.joint = joint;
+        one.heads = true;
+        one.common.output = with_joint(request.common.output, joint);
+        if (request.plot.path) one.plot.path = with_joint(*request.plot.path, joint);
+        if (request.gear.joint_file) one.gear.joint_file = with_joint(*request.gear.joint_file, joint);
+        worst = std::max(worst, run_one(one, command_line));
+    }
+    return worst;
+}
+
+ExitCode run(const Request& request, const std::string& command_line) {
+    return request.log.joint == "all" ? run_each(request, command_line) : run_one(request, command_line);
 }
 
 std::function<ExitCode()> attach(Options& options) {

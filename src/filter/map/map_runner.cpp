@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "filter/rate_edge.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 

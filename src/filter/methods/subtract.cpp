@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "filter/methods/list.hpp"
-#include "filter/rate_edge.hpp"
 #include "filter/ripple_course.hpp"
 #include "filter/ripple_keys.hpp"
 #include "filter/ripple_windows.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 namespace {

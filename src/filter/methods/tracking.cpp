@@ -10,13 +10,13 @@
 
 #include "filter/methods/designs.hpp"
 #include "filter/methods/list.hpp"
-#include "filter/rate_edge.hpp"
 #include "filter/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/state_variable.hpp"
 #include "ripplenotch/design/notch.hpp"
+#include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
 namespace {

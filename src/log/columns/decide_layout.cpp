@@ -185,8 +185,8 @@ class Decision {
             if (column || (role == Role::velocity && may_derive(layout_.chosen))) continue;
             if (role == Role::torque && options_.every_joint && !options_.torque_of_each) continue;
             raise<DataError>(
-                "{}: read {}, expected a {} column; say which it is, with --columns {}=NAME{}", source_,
-                names, role_name(role), role_name(role),
+                "{}: read {}{}, expected a {} column; say which it is, with --columns {}=NAME{}", source_,
+                names, facts_.left_out, role_name(role), role_name(role),
                 facts_.names.empty() ? ", or all by place, with --columns time,velocity,torque" : "");
         }
     }

@@ -35,6 +35,7 @@ struct ColumnFacts {
         return read_as.empty() ? names : read_as;
     }
     std::size_t columns = 0;
+    std::string left_out;  ///< of a container: what might have been meant and is not read, with the reason
     std::vector<std::vector<double>>
         sample;  ///< the first rows by column; not-a-number where a cell is no number
     std::vector<std::int64_t> first_counts;  ///< whole numbers of the first row, exact; 0 where there is none

@@ -1,123 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A log made of arrays: which of them belong together, and their columns side by side as records.
+// A log made of arrays: which of them belong together.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <map>
 
-#include "log/containers/stored_array.hpp"
-#include "log/records/strided_copy.hpp"
+#include "log/containers/joined_arrays.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
-
-constexpr std::size_t buffered = std::size_t{1} << 18;
-
-/// One column of an array under its own path.
-struct ArrayColumn {
-    std::string path, read_as;
-    const StoredArray* array;
-    std::size_t number;
-};
-
-std::vector<std::size_t> sizes_of(const std::vector<ArrayColumn>& columns) {
-    std::vector<std::size_t> sizes;
-    for (const ArrayColumn& column : columns) sizes.push_back(column.array->type.size);
-    return sizes;
-}
-
-class ArrayRecords final : public RecordSource {
-  public:
-    ArrayRecords(std::shared_ptr<StoredBytes> file, std::vector<StoredArray> arrays,
-                 const std::vector<ArrayColumn>& columns)
-        : RecordSource(Name{file->name()}, sizes_of(columns)),
-          file_(std::move(file)),
-          arrays_(std::move(arrays)) {
-        rows_left_ = columns.front().array->shape.rows;
-        for (const ArrayColumn& column : columns)
-            columns_.push_back({column.array->type.size, column.array->open(column.number)});
-    }
-
-  private:
-    struct Open {
-        std::size_t size;
-        std::unique_ptr<ColumnCursor> cursor;
-    };
-    void refill(std::string& bytes) override {
-        const std::size_t rows = std::min(rows_left_, std::max<std::size_t>(64, buffered / record_size()));
-        bytes.resize(rows * record_size());
-        rows_left_ -= rows;
-        std::size_t offset = 0;
-        for (const std::size_t c : kept()) {
-            const std::size_t size = columns_[c].size;
-            column_.resize(rows * size);
-            columns_[c].cursor->read(rows, column_.data());
-            copy_numbers({column_.data(), size}, {bytes.data() + offset, record_size()}, size, rows);
-            offset += size;
-        }
-        if (rows > 0 && rows_left_ == 0) file_->require_unchanged();
-    }
-
-    std::shared_ptr<StoredBytes> file_;
-    std::vector<StoredArray> arrays_;  ///< what the cursors are made of
-    std::vector<Open> columns_;
-    std::size_t rows_left_ = 0;
-    std::string column_;
-};
-
-std::string column_path(const StoredArray& array, std::size_t number, PathStyle style) {
-    if (array.shape.vector) return array.path;
-    if (style == PathStyle::matlab) {
-        return array.shape.time_is_first ? fmt::format("{}(:,{})", array.path, number + 1)
-                                         : fmt::format("{}({},:)", array.path, number + 1);
-    }
-    return array.shape.time_is_first ? fmt::format("{}[:,{}]", array.path, number)
-                                     : fmt::format("{}[{},:]", array.path, number);
-}
-
-// Without what all have in front, up to a separator: "log.q" and "log.dq" are q and dq.
-std::size_t common_prefix(const std::vector<const StoredArray*>& arrays) {
-    const std::string& first = arrays.front()->path;
-    std::size_t common = first.size();
-    for (const StoredArray* array : arrays) {
-        const std::size_t most = std::min(common, array->path.size());
-        common = static_cast<std::size_t>(std::mismatch(first.begin(),
-                                                        first.begin() + static_cast<std::ptrdiff_t>(most),
-                                                        array->path.begin())
-                                              .first -
-                                          first.begin());
-    }
-    const std::size_t end = first.substr(0, common).find_last_of("./");
-    return end == std::string::npos ? 0 : end + 1;
-}
-
-// Without a last part that says nothing: Octave's HDF5 has "tau/value", Simulink's structs "tau.Data".
-std::string without_empty_word(const std::string& path) {
-    constexpr std::array empty_words = {"value", "Value", "data", "Data"};
-    const std::size_t end = path.find_last_of("./");
-    if (end == std::string::npos || end == 0) return path;
-    const std::string last = path.substr(end + 1);
-    return std::find(empty_words.begin(), empty_words.end(), last) == empty_words.end() ? path
-                                                                                        : path.substr(0, end);
-}
-
-std::vector<ArrayColumn> columns_of(const std::vector<const StoredArray*>& arrays, PathStyle style) {
-    const std::size_t prefix = common_prefix(arrays);
-    std::vector<ArrayColumn> columns;
-    for (const StoredArray* array : arrays) {
-        const std::string below =
-            array->read_as.empty() ? without_empty_word(array->path.substr(prefix)) : array->read_as;
-        for (std::size_t c = 0; c < array->shape.columns; ++c) {
-            const std::size_t number = style == PathStyle::matlab ? c + 1 : c;
-            columns.push_back({column_path(*array, c, style),
-                               array->shape.vector ? below : fmt::format("{}[{}]", below, number), array, c});
-        }
-    }
-    return columns;
-}
 
 int names_tell(const std::vector<ArrayColumn>& columns) {
     std::vector<std::string> names;
@@ -125,51 +17,78 @@ int names_tell(const std::vector<ArrayColumn>& columns) {
     return ripplenotch::names_tell(names);
 }
 
-using Groups = std::map<std::size_t, std::vector<const StoredArray*>>;
-
-// The rows of the arrays that --columns names; none where it names none by path.
-std::optional<std::size_t> asked_rows(const std::string& source, const Groups& groups, PathStyle style,
-                                      const ReadOptions& options) {
-    std::optional<std::size_t> rows;
-    std::string first;
-    for (const std::string& entry : options.columns) {
-        const std::size_t equals = entry.find('=');
-        if (equals == std::string::npos) continue;
-        const std::string path = entry.substr(equals + 1);
-        for (const auto& [length, arrays] : groups) {
-            const auto columns = columns_of(arrays, style);
-            if (std::none_of(columns.begin(), columns.end(),
-                             [&](const ArrayColumn& c) { return c.path == path; }))
-                continue;
-            if (rows && *rows != length) {
-                raise<UsageError>(
-                    "--columns: {} of {} has {} rows, {} has {}: their clocks differ; name arrays of one "
-                    "length",
-                    first, source, *rows, path, length);
-            }
-            rows = length;
-            first = path;
+// What --columns names by path.
+class AskedPaths {
+  public:
+    explicit AskedPaths(const ReadOptions& options) {
+        for (const std::string& entry : options.columns) {
+            const std::size_t equals = entry.find('=');
+            if (equals != std::string::npos)
+                paths_.push_back({entry.substr(0, equals), entry.substr(equals + 1)});
         }
     }
-    return rows;
+    [[nodiscard]] bool has(const std::string& path) const { return !role_of(path).empty(); }
+    // The first of the group's columns that is asked for, the torque's before others; "" where there is none.
+    [[nodiscard]] std::string first_of(const ArrayGroup& group, PathStyle style) const {
+        std::string first;
+        for (const ArrayColumn& column : columns_of(group, style)) {
+            const std::string role = role_of(column.path);
+            if (role == "torque" || (first.empty() && !role.empty())) first = column.path;
+        }
+        return first;
+    }
+    [[nodiscard]] bool torque_in(const ArrayGroup& group, PathStyle style) const {
+        return role_of(first_of(group, style)) == "torque";
+    }
+
+  private:
+    struct Entry {
+        std::string role, path;
+    };
+    [[nodiscard]] std::string role_of(const std::string& path) const {
+        for (const Entry& entry : paths_)
+            if (entry.path == path) return entry.role;
+        return {};
+    }
+    std::vector<Entry> paths_;
+};
+
+// The groups that --columns names, that of the torque first.
+std::vector<const ArrayGroup*> asked_groups(const std::string& source, const std::vector<ArrayGroup>& groups,
+                                            PathStyle style, const AskedPaths& asked) {
+    std::vector<const ArrayGroup*> found;
+    for (const ArrayGroup& group : groups) {
+        if (asked.first_of(group, style).empty()) continue;
+        found.insert(asked.torque_in(group, style) ? found.begin() : found.end(), &group);
+    }
+    const bool joined = found.size() > 1;
+    if (joined && std::any_of(found.begin(), found.end(), [](const ArrayGroup* g) { return !g->clock; })) {
+        raise<UsageError>(
+            "--columns: {} of {} has {} rows, {} has {}: their clocks differ; name arrays of one length, or "
+            "with a time of their own beside each",
+            asked.first_of(*found[0], style), source, found[0]->rows, asked.first_of(*found[1], style),
+            found[1]->rows);
+    }
+    return found;
 }
 
 std::string listed(const std::vector<ContentEntry>& contents) {
     std::string text;
-    for (std::size_t i = 0; i < std::min<std::size_t>(contents.size(), 8); ++i)
-        text += fmt::format("{}{} ({})", i == 0 ? "" : ", ", contents[i].path, contents[i].shape);
+    for (std::size_t i = 0; i < std::min<std::size_t>(contents.size(), 8); ++i) {
+        const ContentEntry& entry = contents[i];
+        text += fmt::format("{}{} ({}{}{})", i == 0 ? "" : ", ", entry.path, entry.shape,
+                            entry.shape.empty() ? "" : ", ", entry.type);
+    }
     return text.empty() ? "nothing numeric" : text + (contents.size() > 8 ? ", ..." : "");
 }
 
 // The longest of the groups whose names say most; null where there is none.
-const std::vector<const StoredArray*>* choose_group(const Groups& groups, std::optional<std::size_t> asked,
-                                                    PathStyle style) {
-    const std::vector<const StoredArray*>* chosen = nullptr;
-    int best = 0;
-    for (const auto& [rows, group] : groups) {
-        if (asked && *asked != rows) continue;
-        const int tells = asked ? 1 : names_tell(columns_of(group, style));
-        if (tells < best) continue;
+const ArrayGroup* choose_group(const std::vector<ArrayGroup>& groups, PathStyle style) {
+    const ArrayGroup* chosen = nullptr;
+    int best = -1;
+    for (const ArrayGroup& group : groups) {
+        const int tells = names_tell(columns_of(group, style));
+        if (tells < best || (tells == best && group.rows == chosen->rows)) continue;
         best = tells;
         chosen = &group;
     }
@@ -177,59 +96,61 @@ const std::vector<const StoredArray*>* choose_group(const Groups& groups, std::o
 }
 
 std::vector<ContentEntry> contents_of(const std::vector<StoredArray>& arrays,
-                                      const std::vector<const StoredArray*>* chosen) {
+                                      const std::function<bool(const StoredArray&)>& is_read) {
     std::vector<ContentEntry> contents;
     for (const StoredArray& array : arrays) {
         const ArrayShape& shape = array.shape;
-        const bool read =
-            chosen != nullptr && std::find(chosen->begin(), chosen->end(), &array) != chosen->end();
         const std::string words = shape.vector          ? fmt::format("{}", shape.rows)
                                   : shape.time_is_first ? fmt::format("{} x {}", shape.rows, shape.columns)
                                                         : fmt::format("{} x {}", shape.columns, shape.rows);
-        contents.push_back({array.path, words, type_name(array.type), array.unit, std::nullopt, read});
+        contents.push_back(
+            {array.path, words, type_name(array.type), array.unit, std::nullopt, is_read(array)});
     }
     return contents;
-}
-
-void add_fields(const std::vector<ArrayColumn>& columns, RecordTable& table) {
-    bool units = false;
-    for (const ArrayColumn& column : columns) {
-        NpyField field = column.array->type;
-        field.name = column.path;
-        field.offset = table.record_size;
-        table.record_size += field.size;
-        table.fields.push_back(field);
-        table.read_as.push_back(column.read_as);
-        table.units.push_back(column.array->unit);
-        units = units || !column.array->unit.empty();
-    }
-    if (!units) table.units.clear();
 }
 
 }  // namespace
 
 Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format,
-                          PathStyle style, std::vector<StoredArray> arrays, std::vector<ContentEntry> extra,
-                          const ReadOptions& options) {
+                          PathStyle style, const std::vector<StoredArray>& arrays,
+                          const std::vector<ContentEntry>& extra, const ReadOptions& options) {
     RecordTable table;
     table.format = format;
-    Groups groups;
-    for (const StoredArray& array : arrays)
-        if (array.shape.rows >= 2) groups[array.shape.rows].push_back(&array);
-    const auto* const chosen = choose_group(groups, asked_rows(file->name(), groups, style, options), style);
-    table.contents = contents_of(arrays, chosen);
+    const std::vector<ArrayGroup> groups = groups_by_clock(arrays);
+    const AskedPaths asked(options);
+    std::vector<const ArrayGroup*> chosen = asked_groups(file->name(), groups, style, asked);
+    if (chosen.empty())
+        if (const ArrayGroup* const best = choose_group(groups, style)) chosen.push_back(best);
+    const auto reads = [&](const StoredArray& array) {
+        if (chosen.empty()) return false;
+        const auto& whole = chosen.front()->arrays;
+        if (std::find(whole.begin(), whole.end(), &array) != whole.end()) return true;
+        return std::any_of(chosen.begin() + 1, chosen.end(), [&](const ArrayGroup* group) {
+            const auto columns = columns_of(*group, style);
+            return std::any_of(columns.begin(), columns.end(), [&](const ArrayColumn& column) {
+                return column.array == &array && asked.has(column.path);
+            });
+        });
+    };
+    table.contents = contents_of(arrays, reads);
     table.contents.insert(table.contents.end(), extra.begin(), extra.end());
-    if (chosen == nullptr) {
+    if (chosen.empty()) {
         raise<DataError>(
             "{}: read {}, expected arrays of numbers, two rows or more, of time, velocity and torque; save "
             "them as vectors of one length",
             file->name(), listed(table.contents));
     }
-    const std::vector<ArrayColumn> columns = columns_of(*chosen, style);
+    if (chosen.size() > 1) {
+        const std::vector<const ArrayGroup*> others(chosen.begin() + 1, chosen.end());
+        auto joined = joined_arrays(
+            file, *chosen.front(), others, style, [&](const std::string& path) { return asked.has(path); },
+            options.join.value_or("linear"), table);
+        return {std::move(joined), std::move(table)};
+    }
+    const std::vector<ArrayColumn> columns = columns_of(*chosen.front(), style);
     add_fields(columns, table);
-    table.rows = chosen->front()->shape.rows;
-    auto bytes = std::make_unique<ArrayRecords>(file, std::move(arrays), columns);
-    return {std::move(bytes), std::move(table)};
+    table.rows = chosen.front()->rows;
+    return {array_records(file, columns), std::move(table)};
 }
 
 }  // namespace ripplenotch

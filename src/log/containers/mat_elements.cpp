@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <map>
 
 #include "ripplenotch/core/error.hpp"
 
@@ -19,7 +20,7 @@ constexpr std::uint64_t most_unpacked = std::uint64_t{1} << 33;
 constexpr std::size_t longest_name = 4096, most_fields = 4096, most_things = 100000;
 
 // Numbers of the format's data types and array classes.
-enum Type : std::uint32_t { int8 = 1, int32 = 5, uint32 = 6, matrix = 14, compressed = 15 };
+enum Type : std::uint32_t { uint16 = 4, matrix = 14, compressed = 15, utf16 = 17 };
 enum Class : unsigned {
     cell = 1,
     structure = 2,
@@ -102,6 +103,7 @@ class MatWalk {
                 at = element.next;
             }
         }
+        name_signals();
     }
     MatContents found;
 
@@ -154,8 +156,38 @@ class MatWalk {
         } else if (code >= first_number && code <= last_number) {
             add_numbers(bytes, element_at(*bytes, name.next), dimensions, own, flag_bits);
         } else {
+            if (code == text) keep_words(*bytes, element_at(*bytes, name.next), own);
             add_other(dimensions, own, std::string(class_name(code)));
         }
+    }
+    // What dSPACE's ControlDesk calls the signals of Y: "Model Root"/"Joint"/torque_nm, and their units.
+    void keep_words(StoredBytes& bytes, const Element& characters, const std::string& path) {
+        if (!path.ends_with(".Name") && !path.ends_with(".Unit")) return;
+        if (characters.size > longest_name) return;
+        std::string words;
+        const bool wide = characters.type == uint16 || characters.type == utf16;
+        for (const char c : bytes.text_at(characters.data, static_cast<std::size_t>(characters.size)))
+            if (c != '\0' || !wide) words.push_back(c);
+        words_[path] = words;
+    }
+    void name_signals() {
+        for (StoredArray& array : found.arrays) {
+            if (!array.path.ends_with(".Data")) continue;
+            const std::string folder = array.path.substr(0, array.path.rfind('.'));
+            const std::string axis = folder.substr(folder.rfind('.') + 1);
+            if (const auto unit = words_.find(folder + ".Unit"); unit != words_.end())
+                array.unit = unit->second;
+            const auto name = words_.find(folder + ".Name");
+            if (axis == "X" || axis.starts_with("X("))
+                array.read_as = "time";
+            else if (name != words_.end() && (axis == "Y" || axis.starts_with("Y(")))
+                array.read_as = signal_name(name->second);
+        }
+    }
+    static std::string signal_name(const std::string& words) {
+        std::string last = words.substr(words.rfind('/') + 1);
+        std::erase(last, '"');
+        return last.empty() ? words : last;
     }
 
     void read_struct(const std::shared_ptr<StoredBytes>& bytes, std::uint64_t at,
@@ -218,6 +250,7 @@ class MatWalk {
     std::shared_ptr<StoredBytes> file_;
     bool big_endian_ = false;
     std::size_t things_ = 0;
+    std::map<std::string, std::string> words_;  ///< by their paths
 };
 
 }  // namespace

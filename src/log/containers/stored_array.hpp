@@ -52,12 +52,13 @@ enum class PathStyle {
     numpy    ///< /log/q[:,2], counted from 0
 };
 
-/// The records of a log made of arrays of one length: of those that --columns names, else of those whose
-/// names say most. `extra` goes to the list of contents only. Throws DataError where there is nothing to
-/// take, UsageError where --columns names what is not there.
+/// The records of a log made of arrays of one clock or one length: of those that --columns names, else of
+/// those whose names say most. What --columns names of arrays with other clocks is joined by time. `extra`
+/// goes to the list of contents only. Throws DataError where there is nothing to take, UsageError where
+/// --columns names what does not fit together.
 [[nodiscard]] Records records_of_arrays(const std::shared_ptr<StoredBytes>& file, const std::string& format,
-                                        PathStyle style, std::vector<StoredArray> arrays,
-                                        std::vector<ContentEntry> extra, const ReadOptions& options);
+                                        PathStyle style, const std::vector<StoredArray>& arrays,
+                                        const std::vector<ContentEntry>& extra, const ReadOptions& options);
 
 /// How many of time, velocity, torque and position the names speak of, torque counting thrice; by which the
 /// part of a container is chosen that is read.

@@ -19,8 +19,15 @@ constexpr std::size_t piece_size = std::size_t{1} << 16;
 
 [[noreturn]] void complain_of_end(const std::string& name, std::uint64_t offset, std::uint64_t size) {
     raise<DataError>(
-        "{}: read {} bytes, expected more behind byte {}; the file is cut off or damaged, copy it again",
-        name, size, offset);
+        "{}: read up to byte {}, expected more than these {} bytes; the file is cut off or damaged, copy it "
+        "again",
+        name, offset, size);
+}
+
+[[noreturn]] void complain_of_sum(const std::string& name, std::uint32_t sum, std::uint32_t expected) {
+    raise<DataError>(
+        "{}: read numbers with the checksum {:08x}, expected {:08x}: the file is damaged, copy it again",
+        name, sum, expected);
 }
 
 class FileBytes final : public StoredBytes {
@@ -79,12 +86,13 @@ class KeptBytes final : public StoredBytes {
 class UnpackedPart final : public StoredBytes {
   public:
     UnpackedPart(std::shared_ptr<StoredBytes> packed, std::uint64_t offset, std::uint64_t size, Deflate kind,
-                 std::uint64_t most)
+                 std::uint64_t most, std::optional<std::uint32_t> checksum)
         : StoredBytes(packed->name()),
           packed_(std::move(packed)),
           at_(offset),
           end_(offset + size),
           most_(most),
+          checksum_(checksum),
           unpacker_(make_inflater(kind, name())) {}
     [[nodiscard]] std::uint64_t size() const override { return 0; }
     void read_at(std::uint64_t offset, char* into, std::size_t size) override {
@@ -113,11 +121,16 @@ class UnpackedPart final : public StoredBytes {
         if (have_ > most_)
             raise<DataError>("{}: read more than {} bytes packed into one array, expected no more", name(),
                              most_);
-        bytes_.put(std::string_view(unpacked).substr(0, step.given));
+        const std::string_view fresh = std::string_view(unpacked).substr(0, step.given);
+        if (checksum_) sum_ = crc32_of(fresh, sum_.value_or(0));
+        if (checksum_ && have_ == most_ && sum_ && *sum_ != *checksum_)
+            complain_of_sum(name(), *sum_, *checksum_);
+        bytes_.put(fresh);
     }
 
     std::shared_ptr<StoredBytes> packed_;
     std::uint64_t at_, end_, most_, have_ = 0;
+    std::optional<std::uint32_t> checksum_, sum_;
     std::unique_ptr<Unpacker> unpacker_;
     std::string piece_;
     std::string_view left_;  ///< of the piece
@@ -126,14 +139,24 @@ class UnpackedPart final : public StoredBytes {
 
 }  // namespace
 
+void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
+    std::optional<std::uint32_t> sum = 0;
+    for (std::uint64_t done = 0; done < size && sum; done += piece_size) {
+        const auto length = static_cast<std::size_t>(std::min<std::uint64_t>(piece_size, size - done));
+        sum = crc32_of(bytes.text_at(offset + done, length), *sum);
+    }
+    if (sum && *sum != checksum) complain_of_sum(bytes.name(), *sum, checksum);
+}
+
 std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source, std::string first_bytes) {
     if (source->by_place()) return std::make_shared<FileBytes>(std::move(source));
     return std::make_shared<KeptBytes>(*source, std::move(first_bytes));
 }
 
 std::shared_ptr<StoredBytes> unpack_part(std::shared_ptr<StoredBytes> packed, std::uint64_t offset,
-                                         std::uint64_t size, Deflate kind, std::uint64_t most) {
-    return std::make_shared<UnpackedPart>(std::move(packed), offset, size, kind, most);
+                                         std::uint64_t size, Deflate kind, std::uint64_t most,
+                                         std::optional<std::uint32_t> checksum) {
+    return std::make_shared<UnpackedPart>(std::move(packed), offset, size, kind, most, checksum);
 }
 
 }  // namespace ripplenotch

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "log/unpack/unpacker.hpp"
@@ -42,10 +43,14 @@ class StoredBytes {
 [[nodiscard]] std::shared_ptr<StoredBytes> store_bytes(std::unique_ptr<ByteSource> source,
                                                        std::string first_bytes);
 
+/// Throws DataError unless the part has this CRC-32. Reads it; says nothing in a build without zlib.
+void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum);
+
 /// What unpacks from a part of them, unpacked as far as it is asked for, into a temporary file. No more than
-/// `most` bytes.
+/// `most` bytes. With `checksum`, reading the last of `most` throws DataError unless it is theirs (CRC-32).
 [[nodiscard]] std::shared_ptr<StoredBytes> unpack_part(std::shared_ptr<StoredBytes> packed,
                                                        std::uint64_t offset, std::uint64_t size, Deflate kind,
-                                                       std::uint64_t most);
+                                                       std::uint64_t most,
+                                                       std::optional<std::uint32_t> checksum = {});
 
 }  // namespace ripplenotch

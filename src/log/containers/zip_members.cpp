@@ -81,13 +81,14 @@ std::vector<ZipMember> zip_members(const std::shared_ptr<StoredBytes>& archive) 
         const std::string local_head = archive->text_at(local, 30);
         const std::uint64_t data = local + 30 + number_at(local_head, 26, 2) + number_at(local_head, 28, 2);
         const std::uint64_t method = number_at(head, 10, 2);
-        ZipMember member{rest.substr(0, name_size), size, archive, data};
+        const auto checksum = static_cast<std::uint32_t>(number_at(head, 16, 4));
+        ZipMember member{rest.substr(0, name_size), size, archive, data, checksum, method == 8};
         if (method == 8 && size > unasked && size / most_for_one > packed) {
             raise<DataError>("{}: read '{}' of {} bytes out of {}, expected no more than {} for one",
                              archive->name(), member.name, size, packed, most_for_one);
         }
         if (method == 8) {
-            member.bytes = unpack_part(archive, data, packed, Deflate::bare, size);
+            member.bytes = unpack_part(archive, data, packed, Deflate::bare, size, checksum);
             member.offset = 0;
         } else if (method != 0 || number_at(head, 8, 2) % 2 == 1) {
             raise<DataError>(

@@ -16,6 +16,8 @@ struct ZipMember {
     std::uint64_t size = 0;              ///< unpacked
     std::shared_ptr<StoredBytes> bytes;  ///< of the whole archive, or unpacked
     std::uint64_t offset = 0;            ///< of the member in them
+    std::uint32_t checksum = 0;          ///< CRC-32
+    bool packed = false;                 ///< and checked when it is unpacked
 };
 
 /// In the order of the archive's directory. Throws DataError on a damaged one, and on members that are

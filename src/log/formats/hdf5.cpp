@@ -20,9 +20,9 @@ bool sniff(std::string_view bytes) { return bytes.starts_with(magic) || bytes.st
 Records make_hdf5(std::unique_ptr<ByteSource> source, std::string first_bytes, const ReadOptions& options) {
     const bool matlab = first_bytes.starts_with(matlab_head);
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
-    Hdf5Contents found = find_hdf5_arrays(file, matlab);
-    return records_of_arrays(file, "hdf5", matlab ? PathStyle::matlab : PathStyle::numpy,
-                             std::move(found.arrays), std::move(found.others), options);
+    const Hdf5Contents found = find_hdf5_arrays(file, matlab);
+    return records_of_arrays(file, "hdf5", matlab ? PathStyle::matlab : PathStyle::numpy, found.arrays,
+                             found.others, options);
 }
 
 #if defined(RIPPLENOTCH_HAS_HDF5)

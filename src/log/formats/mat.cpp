@@ -27,9 +27,8 @@ Records make_mat(std::unique_ptr<ByteSource> source, std::string first_bytes, co
     if (!sniff(first_bytes))
         raise<DataError>("{}: read no head of a MAT file, expected one; leave out --format", source->name());
     const auto file = store_bytes(std::move(source), std::move(first_bytes));
-    MatContents found = find_mat_arrays(file);
-    return records_of_arrays(file, "mat", PathStyle::matlab, std::move(found.arrays), std::move(found.others),
-                             options);
+    const MatContents found = find_mat_arrays(file);
+    return records_of_arrays(file, "mat", PathStyle::matlab, found.arrays, found.others, options);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <memory>
 #include <optional>
 
 #include "log/containers/stored_array.hpp"
@@ -26,16 +28,26 @@ bool sniff(std::string_view bytes) {
     return bytes.substr(30, size).ends_with(".npy");
 }
 
+// What is stored as it is is compared with its checksum before it is read.
+std::function<void()> checked_once(const ZipMember& member) {
+    return [member, done = std::make_shared<bool>(member.packed)] {
+        if (!*done) require_checksum(*member.bytes, member.offset, member.size, member.checksum);
+        *done = true;
+    };
+}
+
 // A plain array is one thing with columns; the fields of a structured one are vectors beside each other.
 void add_arrays(const ZipMember& member, const std::string& name, const NpyHeader& header,
                 std::vector<StoredArray>& arrays) {
     const std::uint64_t start = member.offset + header.data_offset;
     if (header.structured) {
+        const auto check = checked_once(member);
         for (const NpyField& field : header.fields) {
             if (field.kind == '\0') continue;
             StoredArray array{name + "." + field.name, {header.rows, 1, true, true}, field, "", {}, ""};
             array.open = [bytes = member.bytes, from = start + field.offset, stride = header.record_size,
-                          size = field.size](std::size_t) {
+                          size = field.size, check](std::size_t) {
+                check();
                 return strided_cursor(bytes, from, stride, size);
             };
             arrays.push_back(std::move(array));
@@ -46,7 +58,9 @@ void add_arrays(const ZipMember& member, const std::string& name, const NpyHeade
     const std::size_t columns = header.fields.size();
     StoredArray array{name, {header.rows, columns, columns == 1, !header.transposed}, type, "", {}, ""};
     array.open = [bytes = member.bytes, start, size = type.size, together = header.by_columns,
-                  rows = header.rows, record = header.record_size](std::size_t c) {
+                  rows = header.rows, record = header.record_size,
+                  check = checked_once(member)](std::size_t c) {
+        check();
         return strided_cursor(bytes, start + c * size * (together ? rows : 1), together ? size : record,
                               size);
     };
@@ -89,7 +103,7 @@ Records make_npz(std::unique_ptr<ByteSource> source, std::string first_bytes, co
         else
             others.push_back({name, "", "no log", "", {}, false});
     }
-    return records_of_arrays(archive, "npz", PathStyle::numpy, std::move(arrays), std::move(others), options);
+    return records_of_arrays(archive, "npz", PathStyle::numpy, arrays, others, options);
 }
 
 }  // namespace

@@ -7,18 +7,17 @@
 #include <bit>
 
 #include "log/containers/stored_array.hpp"
-#include "log/messages/joined_records.hpp"
 #include "log/messages/message_layout.hpp"
 #include "log/messages/message_rows.hpp"
 #include "log/messages/message_source.hpp"
 #include "log/messages/topic_contents.hpp"
+#include "log/records/joined_records.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr int asked = 1000;                                  // more than any names tell
-constexpr double periods_apart = 3.0;                        // of a signal that is joined
 constexpr std::uint64_t looked_at = std::uint64_t{1} << 23;  // bytes of messages, before the topic is chosen
 
 class TopicChoice {
@@ -80,8 +79,8 @@ class TopicChoice {
                 auto records =
                     std::make_unique<MessageRecords>(opened_up_to(c), c, topic.layout, header_clock);
                 records->keep({0, f + 1});
-                sides.push_back({path, leaf.read_as, std::move(records), leaf.type,
-                                 static_cast<std::int64_t>(periods_apart * std::max(period_ns, 1e6))});
+                sides.push_back({path, leaf.read_as, std::move(records), leaf.type, join_limit_ns(period_ns),
+                                 "", "message"});
             }
         }
         return sides;
@@ -91,23 +90,7 @@ class TopicChoice {
         const std::string how = options_.join.value_or("linear");
         std::vector<std::size_t> sizes;
         for (const NpyField& field : table.fields) sizes.push_back(field.size);
-        for (const SideSignal& side : sides) {
-            NpyField field;
-            field.name = side.path;
-            field.big_endian = std::endian::native == std::endian::big;
-            field.offset = table.record_size;
-            table.record_size += field.size;
-            table.fields.push_back(field);
-            table.read_as.push_back(side.read_as);
-            table.units.emplace_back();
-            table.warnings.push_back(
-                {"joined by time",
-                 fmt::format("{} has a clock of its own: joined to the rows by --join {}, from messages that "
-                             "are up to {} ms away; nearest, hold and linear can be said",
-                             side.path, how, static_cast<double>(side.limit_ns) / 1e6),
-                 true});
-        }
-        table.options += fmt::format(" --join {}", how);
+        add_sides(sides, how, table);
         return join_records(std::move(base), std::move(sizes), std::move(sides), join_named(how));
     }
     static void add_field(const std::string& topic, const MessageLeaf& leaf, RecordTable& table) {

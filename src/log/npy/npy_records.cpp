@@ -3,10 +3,12 @@
 // of either say.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "log/containers/stored_array.hpp"
 #include "log/npy/npy_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -15,6 +17,18 @@ namespace {
 
 constexpr std::size_t sample_size = std::size_t{1} << 16;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+// Links to other files, arrays of another length: what the names speak of and the records do not hold.
+std::string left_out_of(const std::vector<ContentEntry>& contents) {
+    constexpr std::size_t most = 4;
+    std::vector<std::string> found;
+    for (const ContentEntry& entry : contents) {
+        if (entry.read || found.size() == most || names_tell({entry.path}) == 0) continue;
+        found.push_back(
+            fmt::format("{} ({}{}{})", entry.path, entry.shape, entry.shape.empty() ? "" : ", ", entry.type));
+    }
+    return found.empty() ? std::string() : fmt::format(" and not {}", fmt::join(found, ", "));
+}
 
 }  // namespace
 
@@ -90,6 +104,7 @@ ColumnFacts NpyReader::column_facts() {
         facts.first_counts.push_back(rows > 0 ? load_count(carry_.data(), header_.fields[c]) : 0);
     }
     facts.read_as = table_.read_as;
+    facts.left_out = left_out_of(table_.contents);
     facts.units = table_.units;
     facts.dialect_options = table_.options;
     facts.motion_sample = [this](const MotionPlaces& places, std::size_t bytes) {

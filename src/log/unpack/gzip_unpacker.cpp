@@ -17,7 +17,7 @@ namespace {
 class GzipUnpacker final : public Unpacker {
   public:
     /// `window_bits` as zlib has them: they say the wrapping, too.
-    explicit GzipUnpacker(int window_bits = 16 + MAX_WBITS) {
+    explicit GzipUnpacker(int window_bits = 16 + MAX_WBITS, std::string_view kind = "gzip") : kind_(kind) {
         if (::inflateInit2(&stream_, window_bits) != Z_OK) raise<DataError>("no memory to unpack gzip");
     }
     ~GzipUnpacker() override { ::inflateEnd(&stream_); }
@@ -41,7 +41,7 @@ class GzipUnpacker final : public Unpacker {
         const int result = ::inflate(&stream_, Z_NO_FLUSH);
         Step step{packed.size() - stream_.avail_in, into.size() - stream_.avail_out, {}};
         if (result != Z_OK && result != Z_STREAM_END && result != Z_BUF_ERROR)
-            step.damage = fmt::format("the gzip data are damaged ({})",
+            step.damage = fmt::format("the {} data are damaged ({})", kind_,
                                       stream_.msg != nullptr ? stream_.msg : "unknown reason");
         ended_ = result == Z_STREAM_END;
         return step;
@@ -50,18 +50,19 @@ class GzipUnpacker final : public Unpacker {
 
   private:
     z_stream stream_{};
+    std::string_view kind_;
     bool ended_ = false;
 };
 
 }  // namespace
 
 std::unique_ptr<Unpacker> make_inflater(Deflate kind, const std::string& /*source*/) {
-    return std::make_unique<GzipUnpacker>(kind == Deflate::wrapped ? MAX_WBITS : -MAX_WBITS);
+    return std::make_unique<GzipUnpacker>(kind == Deflate::wrapped ? MAX_WBITS : -MAX_WBITS, "packed");
 }
 
-std::optional<std::uint32_t> crc32_of(std::string_view bytes) {
+std::optional<std::uint32_t> crc32_of(std::string_view bytes, std::uint32_t before) {
     return static_cast<std::uint32_t>(
-        ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+        ::crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 const Packing packings::gzip{"gzip", "\x1f\x8b\x08", "zcat", {}, []() -> std::unique_ptr<Unpacker> {
@@ -78,7 +79,9 @@ std::unique_ptr<Unpacker> make_inflater(Deflate /*kind*/, const std::string& sou
         source);
 }
 
-std::optional<std::uint32_t> crc32_of(std::string_view /*bytes*/) { return std::nullopt; }
+std::optional<std::uint32_t> crc32_of(std::string_view /*bytes*/, std::uint32_t /*before*/) {
+    return std::nullopt;
+}
 
 const Packing packings::gzip{"gzip", "\x1f\x8b\x08", "zcat", "zlib", nullptr};
 }  // namespace ripplenotch

@@ -35,7 +35,7 @@ enum class Deflate { wrapped, bare };
 [[nodiscard]] std::unique_ptr<Unpacker> make_inflater(Deflate kind, const std::string& source);
 
 /// CRC-32 as gzip and many others have it; none where this build lacks zlib.
-[[nodiscard]] std::optional<std::uint32_t> crc32_of(std::string_view bytes);
+[[nodiscard]] std::optional<std::uint32_t> crc32_of(std::string_view bytes, std::uint32_t before = 0);
 
 /// One kind of compressed file.
 struct Packing {

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "log/messages/joined_records.hpp"
+#include "log/records/joined_records.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <optional>
 
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::size_t clock_size = sizeof(std::int64_t), buffered = std::size_t{1} << 18;
+constexpr double periods_apart = 3.0, least_ns = 1e6;
 
 std::int64_t clock_of(const char* record) {
     std::int64_t clock = 0;
@@ -41,10 +46,10 @@ class Side {
                                                           : std::max(since, until);
         if (away > signal_.limit_ns) {
             raise<DataError>(
-                "{}: read no message of {} within {} s of the row at {} s, expected one; leave the gap out "
-                "with --from and --to, or read "
-                "one topic",
-                signal_.records->name(), signal_.path, shortest(1e-9 * static_cast<double>(signal_.limit_ns)),
+                "{}: read no {} of {} within {} s of the row at {} s, expected one; leave the gap out "
+                "with --from and --to, or read what has one clock",
+                signal_.records->name(), signal_.noun, signal_.path,
+                shortest(1e-9 * static_cast<double>(signal_.limit_ns)),
                 shortest(1e-9 * static_cast<double>(time_ns)));
         }
         if (how_ == Join::hold) return before_->value;
@@ -70,8 +75,8 @@ class Side {
         after_ = Point{clock_of(record_.data()), load_field(record_.data(), signal_.type)};
         if (before_ && after_->time_ns < before_->time_ns)
             raise<DataError>(
-                "{}: read a message of {} that is older than the one before, expected time to run forward",
-                signal_.records->name(), signal_.path);
+                "{}: read a {} of {} that is older than the one before, expected time to run forward",
+                signal_.records->name(), signal_.noun, signal_.path);
     }
 
     SideSignal signal_;
@@ -82,7 +87,7 @@ class Side {
 
 class JoinedRecords final : public RecordSource {
   public:
-    JoinedRecords(std::unique_ptr<MessageRecords> base, const std::vector<std::size_t>& base_sizes,
+    JoinedRecords(std::unique_ptr<RecordSource> base, const std::vector<std::size_t>& base_sizes,
                   std::vector<SideSignal> sides, Join how)
         : RecordSource(Name{base->name()}, with_sides(base_sizes, sides.size())), base_(std::move(base)) {
         for (const std::size_t size : base_sizes) {
@@ -130,7 +135,7 @@ class JoinedRecords final : public RecordSource {
         return true;
     }
 
-    std::unique_ptr<MessageRecords> base_;
+    std::unique_ptr<RecordSource> base_;
     std::vector<std::size_t> offsets_, sizes_;  ///< of its fields
     std::size_t base_record_ = 0;
     std::vector<Side> sides_;
@@ -146,7 +151,31 @@ Join join_named(std::string_view word) {
     raise<UsageError>("--join: '{}' is none of nearest, hold, linear", word);
 }
 
-std::unique_ptr<RecordSource> join_records(std::unique_ptr<MessageRecords> base,
+std::int64_t join_limit_ns(double period_ns) {
+    return static_cast<std::int64_t>(periods_apart * std::max(period_ns, least_ns));
+}
+
+void add_sides(const std::vector<SideSignal>& sides, std::string_view how, RecordTable& table) {
+    for (const SideSignal& side : sides) {
+        NpyField field;
+        field.name = side.path;
+        field.big_endian = std::endian::native == std::endian::big;
+        field.offset = table.record_size;
+        table.record_size += field.size;
+        table.fields.push_back(field);
+        table.read_as.push_back(side.read_as);
+        table.units.push_back(side.unit);
+        table.warnings.push_back(
+            {"joined by time",
+             fmt::format("{} has a clock of its own: joined to the rows by --join {}, from {}s that "
+                         "are up to {} ms away; nearest, hold and linear can be said",
+                         side.path, how, side.noun, static_cast<double>(side.limit_ns) / 1e6),
+             true});
+    }
+    table.options += fmt::format(" --join {}", how);
+}
+
+std::unique_ptr<RecordSource> join_records(std::unique_ptr<RecordSource> base,
                                            std::vector<std::size_t> base_sizes, std::vector<SideSignal> sides,
                                            Join how) {
     return std::make_unique<JoinedRecords>(std::move(base), base_sizes, std::move(sides), how);
