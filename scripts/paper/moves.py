@@ -3,7 +3,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
-from .tool import columns, csv_text, delay_samples, error, fixed, markdown, rms
+from .tool import columns, csv_text, delay_samples, error, fixed, markdown, rms, torque_of
 
 JOINT = ["--gear-ratio", "100", "--inertia", "0.992kgm2"]
 MOVE = ["--motion", "poly6,from=90deg,to=-90deg,duration=2s", "--sample-rate", "1kHz"]
@@ -219,9 +219,9 @@ def transitions(tool, data):
     for transition in TRANSITIONS:
         for log, guard in [("clean.csv", "")] + [("noisy.csv", g) for g in guards]:
             method = f"switching,table=q1.json,transition={transition}{guard}"
-            metrics = tool.json("filter", "--method", method, log, "-o", "switched.csv", "--force", "-q")
+            metrics = tool.json("filter", "--method", method, log, "-o", "switched.npy", "--force", "-q")
             metrics = metrics["logs"][0] if "logs" in metrics else metrics
-            out = columns((tool.folder / "switched.csv").read_text())["torque_nm"]
+            out = torque_of((tool.folder / "switched.npy").read_bytes())
             left = [v - 10.0 for v in out[1000:]]
             jump = max((abs(s["jump_nm"]) for s in metrics["switches"]), default=0.0)
             step = max(abs(b - a) for a, b in zip(out[1000:], out[1001:]))

@@ -37,21 +37,26 @@ class Tool:
                               capture_output=True, timeout=300)
         if done.returncode != 0:
             raise RuntimeError(f"ripplenotch {' '.join(map(str, words))}\nexit {done.returncode}: {done.stderr.decode()}")
-        length = int.from_bytes(done.stdout[8:10], "little")
-        head = ast.literal_eval(done.stdout[10:10 + length].decode("latin1"))
-        place = [name for name, _ in head["descr"]].index("torque_nm")
-        numbers = array.array("d", done.stdout[10 + length:])
-        return list(numbers[place::len(head["descr"])])
+        return torque_of(done.stdout)
 
     def write(self, name, text):
         (self.folder / name).write_text(text, encoding="utf-8")
         return name
 
 
+def torque_of(content):
+    """The torque of a log in .npy."""
+    length = int.from_bytes(content[8:10], "little")
+    head = ast.literal_eval(content[10:10 + length].decode("latin1"))
+    place = [name for name, _ in head["descr"]].index("torque_nm")
+    numbers = array.array("d", content[10 + length:])
+    return list(numbers[place::len(head["descr"])])
+
+
 def columns(text):
     rows = csv.reader(io.StringIO(text))
     names = next(rows)
-    return dict(zip(names, map(list, zip(*([float(cell) for cell in row] for row in rows)))))
+    return {name: list(map(float, cells)) for name, cells in zip(names, zip(*rows))}
 
 
 def csv_text(names, rows):

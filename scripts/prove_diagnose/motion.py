@@ -10,6 +10,14 @@ from numpy.polynomial import Polynomial
 SMOOTH_STEP = Polynomial([0, 0, 0, 10, -15, 6])  # 0 to 1 with speed and acceleration zero at both ends
 
 
+def value(coefficients, share):
+    """Of the polynomial, the constant first: the very steps of numpy's, without what it looks at before each."""
+    total = coefficients[-1] + share * 0.0
+    for coefficient in coefficients[-2::-1]:
+        total = coefficient + total * share
+    return total
+
+
 class Motion:
     """Pieces one after another; before the first and after the last the joint goes on at its speed there."""
 
@@ -23,10 +31,11 @@ class Motion:
 
     def _append(self, duration_s, angle):
         """angle: polynomial in the share of the piece, in degrees."""
-        self._pieces.append((duration_s, angle, angle.deriv(1), angle.deriv(2)))
+        speed = angle.deriv(1)
+        self._pieces.append((duration_s, *(curve.coef.tolist() for curve in (angle, speed, speed.deriv(1)))))
         self._ends.append(self._ends[-1] + duration_s)
         self.angle_deg = angle(1.0)
-        self.speed_deg_s = angle.deriv(1)(1.0) / duration_s
+        self.speed_deg_s = speed(1.0) / duration_s
         return self
 
     def rest(self, duration_s):
@@ -49,13 +58,15 @@ class Motion:
         """Angle (deg), speed (deg/s) and acceleration (deg/s2) at each time."""
         piece = np.clip(np.searchsorted(self._ends, time_s, side="right") - 1, 0, len(self._pieces) - 1)
         angle, speed, acceleration = (np.empty_like(time_s) for _ in range(3))
+        in_order = np.all(piece[1:] >= piece[:-1])
+        bounds = np.searchsorted(piece, np.arange(len(self._pieces) + 1)) if in_order else None
         for k, (duration, *curves) in enumerate(self._pieces):
-            here = piece == k
+            here = slice(bounds[k], bounds[k + 1]) if in_order else piece == k
             share = (time_s[here] - self._ends[k]) / duration
             inside = np.clip(share, 0.0, 1.0)
-            speed[here] = curves[1](inside) / duration
-            acceleration[here] = np.where(share == inside, curves[2](inside) / duration**2, 0.0)
-            angle[here] = curves[0](inside) + speed[here] * (share - inside) * duration
+            speed[here] = value(curves[1], inside) / duration
+            acceleration[here] = np.where(share == inside, value(curves[2], inside) / duration**2, 0.0)
+            angle[here] = value(curves[0], inside) + speed[here] * (share - inside) * duration
         return angle, speed, acceleration
 
 

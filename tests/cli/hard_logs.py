@@ -24,8 +24,10 @@ class Row:
         self.position_deg = 100 * math.sin(w * time_s)
         self.velocity_deg_s = 100 * w * math.cos(w * time_s) + 0.05 * noise.gauss(0, 1)
         motor = math.radians(RATIO * self.position_deg)
-        self.torque_nm = (3 * math.sin(1.3 * time_s) + sum(a * math.sin(n * motor + n) for n, a in RIPPLE_NM.items())
-                          + 0.05 * noise.gauss(0, 1))
+        ripple = 0.0
+        for n, a in RIPPLE_NM.items():
+            ripple += a * math.sin(n * motor + n)
+        self.torque_nm = 3 * math.sin(1.3 * time_s) + ripple + 0.05 * noise.gauss(0, 1)
 
 
 def swing(times_s):

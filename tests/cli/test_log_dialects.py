@@ -66,6 +66,12 @@ COLUMNS = {
 }
 
 
+@functools.cache
+def column(name):
+    """Its cells, made once for all dialects that have it."""
+    return [COLUMNS[name](row) for row in ROWS]
+
+
 def table(header, columns, delimiter=",", decimal=".", end="\n", head="", quote=False, units=None, tail=""):
     """The log as text: a header line, or none, and one cell a column."""
     def line(cells):
@@ -76,11 +82,10 @@ def table(header, columns, delimiter=",", decimal=".", end="\n", head="", quote=
         text += line(header if isinstance(header, list) else header.split("|"))
     if units:
         text += line(units.split("|"))
-    makers = [COLUMNS[name] for name in columns.split("|")]
-    for row in ROWS:
-        cells = [make(row) for make in makers]
-        text += line([cell.replace(".", decimal) for cell in cells])
-    return text.encode()
+    cells = [column(name) for name in columns.split("|")]
+    if decimal != ".":
+        cells = [[cell.replace(".", decimal) for cell in one] for one in cells]
+    return (text + "".join(line(row) for row in zip(*cells))).encode()
 
 
 def npy(fortran, transposed):

@@ -27,8 +27,13 @@ class Messages(Case):
             motion = [[row[3] * RAD, 0.5 * row[3] * RAD], [row[1] * RAD, 0.5 * row[1] * RAD], [row[2], 0.5 * row[2]]]
             self.states.append((EPOCH + 1_000_000 * k, *motion))
 
+    made = {}  # by options: every test has the same log
+
     def joint_states(self, **options):
-        return [bags.joint_state(ns, NAMES, *motion, **options) for ns, *motion in self.states]
+        key = tuple(sorted(options.items()))
+        if key not in self.made:
+            self.made[key] = [bags.joint_state(ns, NAMES, *motion, **options) for ns, *motion in self.states]
+        return list(self.made[key])
 
     def channels(self):
         return [("/joint_states", "sensor_msgs/msg/JointState", bags.JOINT_STATE), ("/hello", "std_msgs/msg/String", "string data\n"),

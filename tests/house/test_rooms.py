@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Who may include whom, floor by floor; where third-party headers live; what must not stand in the repository."""
 
+import functools
 import os
 import pathlib
 import re
@@ -98,7 +99,13 @@ def private_door(header, room):
     return any(header.startswith(door) and room in rooms for door, (rooms, _) in PRIVATE_DOORS.items())
 
 
+@functools.cache
 def sources():
+    """(path, room, what it includes) of each source; read once for all tests."""
+    return list(read_sources())
+
+
+def read_sources():
     for top in ("include/ripplenotch", "src"):
         for path in sorted((SOURCE / top).rglob("*")):
             if path.suffix in (".hpp", ".cpp"):
@@ -205,10 +212,10 @@ class Rooms(unittest.TestCase):
     def test_functions_that_libraries_choose_by_processor_are_our_own(self):
         open_functions = "a?cos|a?sin|a?tan|atan2|tanh|exp|exp2|expm1|log|log10|log2|log1p|pow|cbrt|hypot|polar|arg|lgamma|tgamma"
         for path, _, _ in sources():
-            for number, line in enumerate(path.read_text().split("\n"), 1):
-                found = re.search(rf"std::({open_functions})\(", line)
-                self.assertIsNone(found, f"{path.relative_to(SOURCE)}:{number} uses {found and found[0]}...); "
-                                         "take it from core/portable_math.hpp")
+            text = path.read_text()
+            if found := re.search(rf"std::({open_functions})\(", text):
+                number = text.count("\n", 0, found.start()) + 1
+                self.fail(f"{path.relative_to(SOURCE)}:{number} uses {found[0]}...); take it from core/portable_math.hpp")
 
     def test_processors_are_told_apart_in_one_folder(self):
         told_apart = r"\b_mm\d*_|\b__m(128|256|512)|\btarget(_clones)?\(\"|__builtin_(ia32|cpu|neon)|__(SSE|AVX|ARM_NEON|x86_64|aarch64)|\bvector_size\("

@@ -24,9 +24,9 @@ class Cdr:
         self.head = bytes([0, 0 if big_endian else 1, 0, 0])
 
     def number(self, code, *values):
-        size = struct.calcsize("=" + code)
-        for value in values:
-            self.body += b"\0" * (-len(self.body) % size) + struct.pack(self.order + code, value)
+        if values:
+            size = struct.calcsize("=" + code)
+            self.body += b"\0" * (-len(self.body) % size) + struct.pack(f"{self.order}{len(values)}{code}", *values)
         return self
 
     def text(self, value):
@@ -79,7 +79,7 @@ def mcap(channels, messages, chunk_bytes=4096, compression="", crc=True, summary
         topic, kind, schema, encoding, schema_encoding = (*channel, "cdr", "ros2msg")[:5]
         announced += record(0x03, struct.pack("<H", number + 1) + text(kind) + text(schema_encoding) + text(schema))
         announced += record(0x04, struct.pack("<HH", number, number + 1) + text(topic) + text(encoding) + text(b""))
-    out = MAGIC + record(0x01, text("ros2") + text("tests"))
+    out = bytearray(MAGIC + record(0x01, text("ros2") + text("tests")))
     chunk, times, counts = announced, [], {}
 
     def close():
@@ -108,7 +108,7 @@ def mcap(channels, messages, chunk_bytes=4096, compression="", crc=True, summary
         first, last = (messages[0][1], messages[-1][1]) if messages else (0, 0)
         out += announced + record(0x0b, struct.pack("<QHIIIIQQ", len(messages), len(channels), len(channels), 0, 0, 0, first, last)
                                   + text(pairs))
-    return out + record(0x02, struct.pack("<QQI", start, 0, 0)) + MAGIC
+    return bytes(out + record(0x02, struct.pack("<QQI", start, 0, 0)) + MAGIC)
 
 
 def db3(path, channels, messages, definitions=True):
