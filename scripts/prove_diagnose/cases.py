@@ -11,7 +11,7 @@ import zlib
 
 import numpy as np
 
-from . import disturbances, joint, motion, nulls, other_formulas, sensor, strengths
+from . import disturbances, joint, motion, nulls, other_formulas, sensor, strengths, two_mass
 
 SAMPLE_RATE_HZ = 1000.0
 
@@ -65,6 +65,7 @@ class Case:
     hidden: tuple = ()  # labels of strengths
     disturbance: str | None = None
     other: str | None = None
+    physics: str | None = None  # of two_mass.JOINTS: the whole joint is another's
     position: bool = True
     seconds: float = 40.0
     variant: str = ""
@@ -103,14 +104,17 @@ class Case:
         start_deg = rng.uniform(-90.0, 90.0) if self.position else 0.0  # without position every log begins at one stop
         travel = motion.MOTIONS[self.motion](rng, start_deg, 3.0 if self.motion == "one stroke" else self.seconds)
         time = np.arange(round(travel.duration_s * SAMPLE_RATE_HZ)) / SAMPLE_RATE_HZ
-        torque = joint.torque(travel, base + hidden, strengths.GEAR_RATIO, time, other)
+        q, v, _ = travel.at(time)
+        if self.physics:
+            torque, q, v = two_mass.measured(two_mass.JOINTS[self.physics], self.rng("other"), travel, base, strengths.GEAR_RATIO, time)
+        else:
+            torque = joint.torque(travel, base + hidden, strengths.GEAR_RATIO, time, other)
         place = None
         if self.disturbance:
             disturbing, place = disturbances.DISTURBANCES[self.disturbance](rng, time)
             torque = torque + disturbing
         noise = sensor.noise(rng, self.noise, len(time), strengths.TORQUE_NOISE_NM)
         torque = sensor.convert(torque + noise, hidden, rng)
-        q, v, _ = travel.at(time)
         v = v + strengths.VELOCITY_NOISE_DEG_S * rng.standard_normal(len(time))
         v = v + sum(e["bias_deg_s"] for e in joint.named(hidden, "velocity-bias"))
         position = np.round(q * 2**19 / 360) * 360 / 2**19 if self.position else None  # an encoder of 19 bits
@@ -123,7 +127,7 @@ RECORDED = {"single": 1, "pair": 8, "triple": 8}
 
 def without_hidden(case):
     """The same joint with nothing hidden, for the smallest residual that its logs allow."""
-    return dataclasses.replace(case, hidden=(), disturbance=None, other=None)
+    return dataclasses.replace(case, hidden=(), disturbance=None, other=None, physics=None)
 
 
 def studies(name, seeds, seed0=0):
@@ -150,6 +154,8 @@ def studies(name, seeds, seed0=0):
                 for k, label in enumerate(disturbances.DISTURBANCES) for n in numbers]
     if name == "formula":
         return [Case(name, label, n, other=label) for label in other_formulas.OTHERS for n in numbers]
+    if name == "physics":
+        return [Case(name, label, n, physics=label) for label in two_mass.JOINTS for n in numbers]
     if name == "noise":
         return [Case(name, label, n, noise=kind, hidden=(label,)) for kind in ("ar0.5", "t4")
                 for label in strengths.HIDDEN for n in numbers]

@@ -3,7 +3,7 @@
 is drawn. A new effect of the joint has its formula and its strength here, and nothing elsewhere.
 
 A truth is a list of effects as in model.json: {"effect": name, parameter: value, ...}. Written independently of the
-tool: motion is exact at every instant, a delay is the motion of an earlier time, a lag is integrated at 8 kHz.
+tool: motion is exact at every instant, a delay is the motion of an earlier time, lag and resonance are integrated at 8 kHz.
 """
 
 import math
@@ -39,7 +39,23 @@ def ripple(x, e, truth):
         if other["effect"] in RIPPLE_GAINS and other.get("order", 0) in (0, e["order"]):
             gain = gain * RIPPLE_GAINS[other["effect"]](x, other, e["order"])
     phase = e["order"] * x.gear_ratio * x.rad + math.radians(e["phase_deg"])
-    return np.real(e["amplitude_nm"] * gain * np.exp(1j * phase))
+    torque = np.real(e["amplitude_nm"] * gain * np.exp(1j * phase))
+    for spring in named(truth, "resonance"):  # the generator draws those of all orders
+        torque = oscillator(torque, x.t[1] - x.t[0], spring["frequency_hz"], spring["damping"])
+    return torque
+
+
+def oscillator(values, step_s, hertz, damping):
+    """y'' + 2 z w y' + w^2 y = w^2 x by the trapezoidal rule, exact at the oscillator's own frequency, settled at the start."""
+    c = 1.0 / math.tan(math.pi * hertz * step_s)
+    a0, a1, a2 = c * c + 2 * damping * c + 1, 2 - 2 * c * c, c * c - 2 * damping * c + 1
+    y1 = y2 = x1 = x2 = float(values[0])
+    result = []
+    for x in values.tolist():
+        y = (x + 2 * x1 + x2 - a1 * y1 - a2 * y2) / a0
+        x1, x2, y1, y2 = x, x1, y, y1
+        result.append(y)
+    return np.array(result)
 
 
 def hysteresis(x, e):
@@ -103,11 +119,6 @@ def modulation(x, e, _):
     return 1 + wave(e["depth_percent"] / 100, e["output_order"] * x.q / 360, e["phase_deg"])
 
 
-def resonance(x, e, order):
-    u = order * x.gear_ratio * x.v / 360 / e["frequency_hz"]
-    return 1 / (1 - u**2 + 2j * e["damping"] * u)
-
-
 def by_direction(x, e, _):
     sense = direction(x.v, 0.2)
     return (1 + e["gain_percent"] / 100 * sense) * np.exp(1j * np.radians(e["phase_deg"]) * sense)
@@ -118,7 +129,6 @@ RIPPLE_GAINS = {
     "ripple-load-dependence": lambda x, e, _: 1 + e["gain_percent_per_nm"] / 100 * x.load,
     "ripple-direction-dependence": by_direction,
     "ripple-modulation": modulation,
-    "resonance": resonance,
 }
 
 
@@ -150,7 +160,8 @@ def torque(motion, truth, gear_ratio, time_s, other=None):
         gear_ratio *= 1 + e["error_percent"] / 100
     late = sum(e["delay_s"] for e in named(truth, "delay"))
     lags = [e["time_constant_s"] for e in named(truth, "lag")]
-    step, finer = time_s[1] - time_s[0], SUBSTEPS if lags or (other and other.finer) else 1
+    integrated = lags or named(truth, "resonance") or (other and other.finer)
+    step, finer = time_s[1] - time_s[0], SUBSTEPS if integrated else 1
     times = time_s[0] + np.arange((len(time_s) - 1) * finer + 1) * step / finer - late
     x = Instants(times, motion, truth, gear_ratio)
     total = sum_of_torques(x, truth)

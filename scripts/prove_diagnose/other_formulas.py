@@ -57,25 +57,12 @@ def maxwell_slip(rng):
     return Other(change, ("hysteresis", "coulomb-friction"))
 
 
-def oscillator(values, step_s, hertz, damping):
-    """y'' + 2 z w y' + w^2 y = w^2 x by the trapezoidal rule, settled at the start."""
-    c = 2.0 / (2 * math.pi * hertz * step_s)
-    a0, a1, a2 = c * c + 2 * damping * c + 1, 2 - 2 * c * c, c * c - 2 * damping * c + 1
-    y1 = y2 = x1 = x2 = float(values[0])
-    result = []
-    for x in values.tolist():
-        y = (x + 2 * x1 + x2 - a1 * y1 - a2 * y2) / a0
-        x1, x2, y1, y2 = x, x1, y, y1
-        result.append(y)
-    return np.array(result)
-
-
 def second_order_lag(rng):
     """A Butterworth low-pass of second order over the whole torque."""
     hertz = rng.uniform(20.0, 60.0)
 
     def change(x, truth, torque):
-        return oscillator(torque, x.t[1] - x.t[0], hertz, math.sqrt(0.5))
+        return joint.oscillator(torque, x.t[1] - x.t[0], hertz, math.sqrt(0.5))
 
     return Other(change, ("lag", "delay", "resonance"), finer=True)
 
@@ -86,7 +73,7 @@ def two_masses(rng):
 
     def change(x, truth, torque):
         ripple = sum(joint.ripple(x, e, truth) for e in truth if e["effect"] == "ripple")
-        return torque - ripple + oscillator(ripple, x.t[1] - x.t[0], hertz, damping)
+        return torque - ripple + joint.oscillator(ripple, x.t[1] - x.t[0], hertz, damping)
 
     return Other(change, ("resonance",), finer=True)
 

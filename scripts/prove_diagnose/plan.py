@@ -12,8 +12,8 @@ from . import cases, recordings
 # How many of each kind: 5 of each single effect, 40 pairs, 200 logs with nothing hidden, ...
 SEEDS = {"single": 5, "rarer": 2, "pair": 40, "triple": 30, "null": 200, "null ar0.5": 20, "null t4": 20, "outside": 15,
          "outside+single": 5, "formula": 2, "noise": 1, "poor": 1, "variant": 1, "without": 1}
-# Run when asked for: the same logs as another recorder writes them, and nothing hidden in noise of ten kinds.
-ALL = {**SEEDS, "recorded": 1, "nulls": 300}
+# Run when asked for: the same logs as another recorder writes them, nothing hidden in noise of ten kinds, and joints from physics.
+ALL = {**SEEDS, "recorded": 1, "nulls": 300, "physics": 3}
 
 
 WAYS = tuple(recordings.WAYS)  # of recording the same log

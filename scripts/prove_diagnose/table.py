@@ -131,7 +131,7 @@ def yardsticks(rows):
 
 
 FORMS = {"single": by_label, "rarer": by_label, "pair": several, "triple": several, "null": null, "outside": outside,
-         "outside+single": outside, "formula": by_label, "noise": noise, "poor": poor,
+         "outside+single": outside, "formula": by_label, "physics": by_label, "noise": noise, "poor": poor,
          "variant": variant, "without": without}
 
 

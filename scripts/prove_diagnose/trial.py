@@ -7,7 +7,7 @@ import pathlib
 import shutil
 import tempfile
 
-from . import cases, measured, other_formulas, reach, recordings, score, strengths, tool, yardsticks
+from . import cases, measured, other_formulas, reach, recordings, score, strengths, tool, two_mass, yardsticks
 
 
 # A diagnosis that does not come counts as wrong in every way that can be counted.
@@ -39,9 +39,10 @@ def floor_nm(program, case, base, hidden, folder):
     The truth of another formula has no words in model.json; there the same log with nothing hidden stands for it.
     """
     log = folder / "validate.npy"
-    if case.other or case.recorded == "without position":
-        plain = cases.without_hidden(case) if case.other else case
-        hidden, log = [] if case.other else hidden, folder / "plain.npy"
+    foreign = case.other or case.physics
+    if foreign or case.recorded == "without position":
+        plain = cases.without_hidden(case) if foreign else case
+        hidden, log = [] if foreign else hidden, folder / "plain.npy"
         plain.log("validate").save(log)
     model = folder / "floor.json"
     model.write_text(json.dumps(tool.as_model(base + hidden)))
@@ -113,6 +114,7 @@ def diagnosed(program, case, folder, options, logs, acceptable):
 def scores(program, case, folder, options, methods):
     base, hidden = case.truth()
     acceptable = other_formulas.OTHERS[case.other](case.rng("other")).acceptable if case.other else ()
+    acceptable = two_mass.JOINTS[case.physics].acceptable if case.physics else acceptable
     logs = write_files(case, folder)
     if case.study == "nulls":  # names are counted and nothing else
         row = diagnosed(program, case, folder, options, logs, acceptable)

@@ -4,12 +4,13 @@
 import dataclasses
 import io
 import json
+import math
 import subprocess
 import unittest
 
 import prove  # first: it skips without numpy
 import numpy as np
-from prove_diagnose import agreement, cases, joint, motion, plan, score, sensor, strengths
+from prove_diagnose import agreement, cases, joint, motion, plan, score, sensor, strengths, two_mass
 
 
 class Agreement(unittest.TestCase):
@@ -111,6 +112,41 @@ class Sensor(unittest.TestCase):
         time = np.arange(80000) / 8000.0
         slow = joint.first_order(np.sin(time), 1.0 / 8000.0, 0.01)
         self.assertAlmostEqual(float(slow[40000]), float(np.sin(5.0 - 0.01)), delta=1e-4)
+
+
+class TwoMasses(unittest.TestCase):
+    TRUTH = [{"effect": "inertia", "inertia_kgm2": 0.4}, {"effect": "ripple", "order": 1, "amplitude_nm": 0.7, "phase_deg": 30.0}]
+
+    def ripple_at(self, gear, speed_deg_s):
+        """(of what the strain gauges see at a constant speed, of a spring that the motor holds) relative to the gear's ripple."""
+        kind = two_mass.Joint(gear, mode_hz=(40.0, 40.0), damping=(0.1, 0.1), motor=(1e6, 1e6))
+        travel = motion.Motion(0.0).speed_to(speed_deg_s, 0.5).stay(2.5)
+        time = np.arange(3000) / 1000.0
+        torque, angle, speed = two_mass.measured(kind, np.random.default_rng(1), travel, self.TRUTH, 100.0, time)
+        steady = time > 2.0
+        self.assertLess(np.max(np.abs(speed[steady] - speed_deg_s)), 1e-2)
+        drive = np.exp(1j * (np.radians(100.0 * angle[steady]) + math.radians(30.0)))
+        u = speed_deg_s / 3.6 / 40.0
+        return 2 * np.mean(torque[steady] * drive.conj()) / 0.7, 1 / (1 - u**2 + 0.2j * u), 1 + 0.2j * u
+
+    def test_a_torque_of_the_mesh_passes_the_mode_of_a_link_whose_motor_is_heavy(self):
+        for speed in (18.0, 72.0, 144.0, 216.0):
+            found, held, _ = self.ripple_at("mesh", speed)
+            self.assertLess(abs(found - held), 0.02 * abs(held), speed)
+
+    def test_an_error_of_the_angle_bends_the_spring_at_speed_alone(self):
+        for speed in (18.0, 72.0, 144.0, 216.0):
+            found, held, damper = self.ripple_at("angle", speed)
+            self.assertLess(abs(found - (1 - damper * held)), 0.03 * abs(held), speed)
+
+    def test_every_joint_of_the_study_logs_a_motor_that_follows(self):
+        for case in cases.studies("physics", 1):
+            log = case.log("train")
+            travel = motion.rich(case.rng("train"), 0.0, 40.0)
+            self.assertEqual(plan.by_name(case.name), case)
+            self.assertEqual(len(log.torque_nm), 1000 * round(travel.duration_s))
+            self.assertGreater(np.max(log.velocity_deg_s), 170.0)
+            self.assertLess(np.max(np.abs(log.torque_nm)), 30.0)
 
 
 if __name__ == "__main__":

@@ -33,8 +33,9 @@ def write_log(path, table):
 
 
 def chosen(first, seeds):
-    """Of each number a log with nothing hidden, one with an effect and one with two."""
-    return [cases.case(kind, number) for number in range(first, first + seeds) for kind in ("null", "single", "pair")]
+    """Of each number a log with one effect and one with two, and as many with nothing hidden, which come first."""
+    nulls = [cases.case("null", number) for number in range(first, first + 2 * seeds)]
+    return nulls + [cases.case(kind, number) for number in range(first, first + seeds) for kind in ("single", "pair")]
 
 
 def one(tool, case, keep=None):

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <vector>
+
 #include "model/effects.hpp"
+#include "model/mass_on_spring.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -59,16 +62,13 @@ constexpr LookAlike look_alikes[] = {
 void change_ripple(const Situation& situation, Order order, std::span<const double> values,
                    std::span<std::complex<double>> gain) {
     if (values[0] >= parameters[0].upper || !concerns(order, values[4])) return;
+    std::vector<std::complex<double>> passing(gain.size());
+    response_of({values[0], values[1]}, situation.motion, order.value() * situation.ratio.value() / 360.0,
+                passing);
     const auto direct = portable::polar(values[2], values[3] / degrees_per_radian);
-    const double cycles_per_deg = order.value() * situation.ratio.value() / 360.0;
     for (std::size_t k = 0; k < gain.size(); ++k) {
-        // In the direction of negative angle the torque's phasor turns backwards: there the response is its
-        // conjugate.
-        const double u = cycles_per_deg * situation.motion.velocity_deg_s[k] / values[0];
-        const double real = 1.0 - u * u, imaginary = 2.0 * values[1] * u;
-        const double square = real * real + imaginary * imaginary;
         const auto before = gain[k];
-        const double x = real / square + direct.real(), y = -imaginary / square + direct.imag();
+        const double x = passing[k].real() + direct.real(), y = passing[k].imag() + direct.imag();
         gain[k] = {before.real() * x - before.imag() * y, before.real() * y + before.imag() * x};
     }
 }
@@ -79,13 +79,13 @@ const Effect effects::resonance{
     .name = "resonance",
     .summary = "the joint's elasticity swells the ripple where the frequency of a line meets it",
     .equation =
-        "ripple * (H + direct * e^(i direct_phase_deg)), H = 1 / (1 - u^2 + 2 i damping u), "
-        "u = order * gear_ratio * v / 360 / frequency_hz",
+        "ripple * (H + direct * e^(i direct_phase_deg)), H = 1 / (1 - u^2 + 2 i damping u) and "
+        "what still rings, u = order * gear_ratio * v / 360 / frequency_hz",
     .symptom =
         "lines of the ripple in the residual in a band of speed, with a phase that turns by half a cycle "
         "through it",
     .look_alikes = look_alikes,
-    .source = "the steady response of a mass on a damped spring; Tuttle, 1992",
+    .source = "a mass on a damped spring; Tuttle, 1992",
     .side = Side::ripple,
     .domain = Domain::frequency,
     .parameters = parameters,

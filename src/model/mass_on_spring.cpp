@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "model/mass_on_spring.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+// Times are told to a few bits; steps that differ by less than this part are one step.
+constexpr double same_step = 1e-6;
+// Square of ringing that is no more than rounding.
+constexpr double died_away = 1e-36;
+
+// Displacement, and speed in displacements a radian of the undamped spring; both relative to the drive.
+struct State {
+    std::complex<double> at, moving;
+};
+
+std::complex<double> product(std::complex<double> a, std::complex<double> b) {
+    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+// What becomes of a free mass within so many radians of the undamped spring.
+struct FreeMove {
+    double at_of_at, at_of_moving, moving_of_moving;  // and -at_of_moving from at to moving
+
+    FreeMove(double damping, double radians) {
+        const double square = damping * damping - 1.0;
+        double even = 0.0, odd = 0.0;
+        if (const double root = std::sqrt(std::abs(square)); root * radians < 1e-4) {
+            // Near critical damping, or hardly any time: differences of exponentials are lost in rounding.
+            const double left = portable::exp(-std::min(damping * radians, 700.0));
+            even = left * (1.0 + square * radians * radians / 2.0);
+            odd = left * radians * (1.0 + square * radians * radians / 6.0);
+        } else if (square < 0.0) {
+            const double left = portable::exp(-std::min(damping * radians, 700.0));
+            even = left * portable::cos(root * radians);
+            odd = left * portable::sin(root * radians) / root;
+        } else {
+            const double slow = portable::exp(-std::min((damping - root) * radians, 700.0)),
+                         fast = portable::exp(-std::min((damping + root) * radians, 700.0));
+            even = 0.5 * (slow + fast);
+            odd = 0.5 * (slow - fast) / root;
+        }
+        at_of_at = even + damping * odd;
+        at_of_moving = odd;
+        moving_of_moving = even - damping * odd;
+    }
+
+    [[nodiscard]] State of(const State& state) const {
+        return {at_of_at * state.at + at_of_moving * state.moving,
+                moving_of_moving * state.moving - at_of_moving * state.at};
+    }
+};
+
+class Mass {
+  public:
+    Mass(const Spring& spring, double step_s, double u)
+        : damping_(spring.damping),
+          radians_per_s_(2.0 * std::numbers::pi * spring.frequency_hz),
+          step_s_(step_s),
+          move_(spring.damping, radians_per_s_ * step_s),
+          now_(steady(u)) {}
+
+    // To the next sample, at a constant frequency of the drive: exact where it is constant, and else the
+    // drive is off by an eighth of its change in the step times the step. `turned` is the drive's turn,
+    // reversed.
+    void go(double step_s, double u, std::complex<double> turned) {
+        if (step_s > 0.0 && std::abs(step_s - step_s_) > same_step * step_s_) {
+            step_s_ = step_s;
+            move_ = FreeMove(damping_, radians_per_s_ * step_s);
+        }
+        const State rest = steady(u);
+        const State ringing{now_.at - rest.at, now_.moving - rest.moving};
+        if (std::norm(ringing.at) + std::norm(ringing.moving) < died_away) {
+            now_ = rest;
+            return;
+        }
+        const State left = move_.of(ringing);
+        now_ = {rest.at + product(turned, left.at), rest.moving + product(turned, left.moving)};
+    }
+
+    [[nodiscard]] std::complex<double> response() const { return now_.at; }
+
+  private:
+    [[nodiscard]] State steady(double u) const {
+        const double real = 1.0 - u * u, imaginary = 2.0 * damping_ * u;
+        const double square = real * real + imaginary * imaginary;
+        const std::complex<double> at(real / square, -imaginary / square);
+        return {at, {-u * at.imag(), u * at.real()}};
+    }
+
+    double damping_, radians_per_s_, step_s_;
+    FreeMove move_;
+    State now_;
+};
+
+}  // namespace
+
+void response_of(const Spring& spring, const Motion& motion, double cycles_per_deg,
+                 std::span<std::complex<double>> response) {
+    const std::size_t samples = response.size();
+    if (samples == 0) return;
+    const double* const v = motion.velocity_deg_s.data();
+    const double* const t = motion.time_s.data();
+    Mass mass(spring, 1.0 / motion.sample_rate.value(), cycles_per_deg * v[0] / spring.frequency_hz);
+    response[0] = mass.response();
+    constexpr std::size_t block = 512;
+    std::vector<double> angle(block), cosine(block), sine(block);
+    for (std::size_t first = 1; first < samples; first += block) {
+        const std::size_t count = std::min(block, samples - first);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = first + i;
+            angle[i] = -360.0 * cycles_per_deg * 0.5 * (v[k - 1] + v[k]) * (t[k] - t[k - 1]);
+        }
+        portable::cos_degrees(std::span(angle).first(count), cosine);
+        portable::sin_degrees(std::span(angle).first(count), sine);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = first + i;
+            const double u = cycles_per_deg * (0.5 * (v[k - 1] + v[k])) / spring.frequency_hz;
+            mass.go(t[k] - t[k - 1], u, {cosine[i], sine[i]});
+            response[k] = mass.response();
+        }
+    }
+}
+
+}  // namespace ripplenotch

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// The response of a mass on a damped spring against the equation of motion, integrated in steps a hundred
+// times finer.
+#include "model/mass_on_spring.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "ripplenotch/model/motion.hpp"
+#include "support/catch.hpp"
+
+using namespace ripplenotch;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+using Complex = std::complex<double>;
+
+// Angle in deg and speed of a joint that goes from one speed to another and back to rest, smoothly.
+struct Ride {
+    double fastest_deg_s;
+    [[nodiscard]] double speed(double t) const {
+        const double part = std::clamp(t - 0.2, 0.0, 1.0);
+        return fastest_deg_s * (0.5 - 0.5 * std::cos(2.0 * pi * part));
+    }
+    [[nodiscard]] double angle(double t) const {
+        const double part = std::clamp(t - 0.2, 0.0, 1.0);
+        return fastest_deg_s * (0.5 * part - std::sin(2.0 * pi * part) / (4.0 * pi));
+    }
+};
+
+Motion motion_of(const Ride& ride, const std::vector<double>& times, double rate_hz) {
+    Motion motion{Hertz(rate_hz), times, {}, {}, {}};
+    for (const double t : times) {
+        motion.position_deg.push_back(ride.angle(t));
+        motion.velocity_deg_s.push_back(ride.speed(t));
+        motion.acceleration_deg_s2.push_back(0.0);
+    }
+    return motion;
+}
+
+// y'' + 2 damping w y' + w^2 y = w^2 x, x turning with the angle, by Runge and Kutta; y / x at the times.
+std::vector<Complex> integrated(const Spring& spring, const Ride& ride, const std::vector<double>& times,
+                                double cycles_per_deg) {
+    const double w = 2.0 * pi * spring.frequency_hz;
+    const auto drive = [&](double t) { return std::polar(1.0, 2.0 * pi * cycles_per_deg * ride.angle(t)); };
+    const auto slope = [&](double t, std::array<Complex, 2> y) {
+        return std::array<Complex, 2>{y[1], w * w * (drive(t) - y[0]) - 2.0 * spring.damping * w * y[1]};
+    };
+    const auto moved = [](std::array<Complex, 2> y, const std::array<Complex, 2>& by, double h) {
+        return std::array<Complex, 2>{y[0] + h * by[0], y[1] + h * by[1]};
+    };
+    std::array<Complex, 2> y{drive(times[0]), 0.0};
+    std::vector<Complex> response{1.0};
+    for (std::size_t k = 1; k < times.size(); ++k) {
+        constexpr int finer = 100;
+        const double h = (times[k] - times[k - 1]) / finer;
+        for (int i = 0; i < finer; ++i) {
+            const double t = times[k - 1] + i * h;
+            const auto a = slope(t, y), b = slope(t + h / 2, moved(y, a, h / 2)),
+                       c = slope(t + h / 2, moved(y, b, h / 2)), d = slope(t + h, moved(y, c, h));
+            for (std::size_t s = 0; s < 2; ++s) y[s] += h / 6.0 * (a[s] + 2.0 * b[s] + 2.0 * c[s] + d[s]);
+        }
+        response.push_back(y[0] / drive(times[k]));
+    }
+    return response;
+}
+
+std::vector<double> even_times(double rate_hz) {
+    std::vector<double> times;
+    for (double k = 0.0; k < 1.5 * rate_hz; ++k) times.push_back(k / rate_hz);
+    return times;
+}
+
+double largest(const std::vector<Complex>& a, const std::vector<Complex>& b) {
+    double most = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, std::abs(a[k] - b[k]));
+    return most;
+}
+
+std::vector<Complex> response(const Spring& spring, const Motion& motion, double cycles_per_deg) {
+    std::vector<Complex> found(motion.size());
+    response_of(spring, motion, cycles_per_deg, found);
+    return found;
+}
+
+constexpr double order_2_of_100 = 200.0 / 360.0;
+
+}  // namespace
+
+TEST_CASE("a mass that a ramp takes through its own frequency rings as the equation of motion says") {
+    const std::vector<double> times = even_times(1000.0);
+    for (const double fastest : {170.0, -170.0}) {
+        const Ride ride{fastest};
+        const Motion motion = motion_of(ride, times, 1000.0);
+        for (const Spring spring :
+             {Spring{45.0, 0.05}, Spring{45.0, 1.0}, Spring{45.0, 1.9}, Spring{8.0, 0.002}}) {
+            CAPTURE(fastest, spring.frequency_hz, spring.damping);
+            const auto expected = integrated(spring, ride, times, order_2_of_100);
+            const double most = largest(expected, std::vector<Complex>(expected.size()));
+            CHECK(largest(response(spring, motion, order_2_of_100), expected) < 3e-4 * most);
+        }
+        // The steady response is far from it.
+        const Spring sharp{45.0, 0.05};
+        const auto expected = integrated(sharp, ride, times, order_2_of_100);
+        double off = 0.0;
+        for (std::size_t k = 0; k < times.size(); ++k) {
+            const double u = order_2_of_100 * motion.velocity_deg_s[k] / sharp.frequency_hz;
+            off = std::max(off, std::abs(1.0 / Complex(1.0 - u * u, 2.0 * sharp.damping * u) - expected[k]));
+        }
+        CHECK(off > 1.0);
+    }
+}
+
+TEST_CASE("times that are uneven, and rows that are lost, ring as the time between them says") {
+    std::vector<double> times;
+    for (int k = 0; k < 1500; ++k) {
+        if (k % 37 == 5 || k % 37 == 6) continue;
+        times.push_back(k * 1e-3 + (k > 0 ? 2e-4 * std::sin(7.0 * k) : 0.0));
+    }
+    const Ride ride{170.0};
+    const Spring spring{45.0, 0.05};
+    CHECK(largest(response(spring, motion_of(ride, times, 1000.0), order_2_of_100),
+                  integrated(spring, ride, times, order_2_of_100)) < 3e-3);
+}
+
+TEST_CASE("at a constant speed a mass answers steadily, to the last bit") {
+    const std::vector<double> times = even_times(500.0);
+    Motion motion = motion_of({0.0}, times, 500.0);
+    for (const double speed : {0.0, 81.0, -300.0}) {
+        std::fill(motion.velocity_deg_s.begin(), motion.velocity_deg_s.end(), speed);
+        const double u = order_2_of_100 * speed / 45.0;
+        const double real = 1.0 - u * u, imaginary = 2.0 * 0.1 * u,
+                     square = real * real + imaginary * imaginary;
+        const Complex steady(real / square, -imaginary / square);
+        CHECK(response({45.0, 0.1}, motion, order_2_of_100) == std::vector<Complex>(times.size(), steady));
+    }
+}
+
+TEST_CASE("few samples of a ramp show nearly what many show") {
+    // As a search looks at a long log: every tenth sample, a step of nearly half a cycle.
+    const Ride ride{120.0};
+    const Spring spring{45.0, 0.2};
+    const std::vector<double> few = even_times(100.0);
+    const auto expected = integrated(spring, ride, few, order_2_of_100);
+    CHECK(largest(response(spring, motion_of(ride, few, 100.0), order_2_of_100), expected) < 0.05);
+}
