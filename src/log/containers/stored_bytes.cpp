@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "log/npy/temporary_bytes.hpp"
+#include "log/read_on.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -57,10 +58,9 @@ class FileBytes final : public StoredBytes {
 class KeptBytes final : public StoredBytes {
   public:
     KeptBytes(ByteSource& source, std::string piece) : StoredBytes(source.name()) {
-        for (; !piece.empty(); piece.resize(source.read(piece.data(), piece.size()))) {
-            bytes_.put(piece);
-            size_ += piece.size();
-            piece.resize(piece_size);
+        for (std::size_t have = piece.size(); have > 0; have = read_on(source, piece, 0, piece_size)) {
+            bytes_.put(std::string_view(piece).substr(0, have));
+            size_ += have;
         }
         char first = 0;
         if (size_ > 0) bytes_.read_at(0, &first, 1);  // all is in the file
@@ -96,7 +96,8 @@ class UnpackedPart final : public StoredBytes {
 
   private:
     void unpack_piece() {
-        std::string unpacked(4 * piece_size, '\0');
+        if (!room_) room_ = std::make_unique_for_overwrite<char[]>(piece_size);
+        const std::span<char> unpacked(room_.get(), piece_size);
         if (left_.empty() && at_ < end_) {
             piece_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(piece_size, end_ - at_)));
             packed_->read_at(at_, piece_.data(), piece_.size());
@@ -113,14 +114,15 @@ class UnpackedPart final : public StoredBytes {
         if (have_ > most_)
             raise<DataError>("{}: read more than {} bytes packed into one array, expected no more", name(),
                              most_);
-        bytes_.put(std::string_view(unpacked).substr(0, step.given));
+        bytes_.put({unpacked.data(), step.given});
     }
 
     std::shared_ptr<StoredBytes> packed_;
     std::uint64_t at_, end_, most_, have_ = 0;
     std::unique_ptr<Unpacker> unpacker_;
     std::string piece_;
-    std::string_view left_;  ///< of the piece
+    std::string_view left_;         ///< of the piece
+    std::unique_ptr<char[]> room_;  ///< for what comes out of it
     TemporaryBytes bytes_;
 };
 
