@@ -8,6 +8,7 @@
 #include "log/clock/stamp.hpp"
 #include "log/columns/derived_velocity.hpp"
 #include "log/detect_format.hpp"
+#include "log/read_on.hpp"
 #include "log/unpack/unpacked_source.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -52,11 +53,8 @@ std::unique_ptr<LogReader> open_cut(const LogFormat& format, std::unique_ptr<Byt
 }
 
 std::string first_bytes_of(ByteSource& source) {
-    std::string first_bytes(first_bytes_size, '\0');
-    std::size_t have = 0;
-    for (std::size_t got = 1; have < first_bytes.size() && got > 0; have += got)
-        got = source.read(first_bytes.data() + have, first_bytes.size() - have);
-    first_bytes.resize(have);
+    std::string first_bytes;
+    first_bytes.resize(read_on(source, first_bytes, 0, first_bytes_size));
     return first_bytes;
 }
 

@@ -242,6 +242,12 @@ class Rosbag2(Messages):
         bags.db3(path, self.channels()[:1], [m for m in self.messages() if m[0] == 0])
         data = path.read_bytes()
         self.assertIn("SQLite", self.refusal(self.write("cut.db3", data[:len(data) // 2]), "--joint", "elbow", command="identify"))
+        # A page of a tree's inside, whose first cell is told to lie beyond it: SQLite by itself does not mind.
+        page_size = int.from_bytes(data[16:18], "big")
+        inside = next(at for at in range(page_size, len(data), page_size) if data[at] == 5)
+        beyond = bytearray(data)
+        beyond[inside + 12] |= 0x20
+        self.assertIn("malformed", self.refusal(self.write("beyond.db3", bytes(beyond)), "--joint", "elbow", command="identify"))
         other = sqlite3.connect(self.folder / "other.db3")
         other.execute("CREATE TABLE topics(id INTEGER)")
         other.execute("CREATE VIEW messages AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT x FROM n")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Packed logs that are damaged on the way: what came before, and what is said, do not depend on the pieces in
-// which the bytes arrive. Their blocks are stored as they are, so that they can be written by hand.
+// which the bytes arrive. Their blocks are stored as they are, so that they can be written by hand, or are
+// the few bytes to which programs pack many equal rows.
+#include <array>
 #include <string>
 
 #include "fuzz/reading.hpp"
@@ -58,7 +60,51 @@ std::string damaged_gzip() {
     });
 }
 
+std::string bytes_of(std::string_view hex) {
+    std::string bytes;
+    for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+        bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
+    return bytes;
+}
+
+// "velocity_deg_s,torque_nm" and 150 times "60,1.5", packed with a checksum by zstd, lz4, gzip and xz.
+constexpr std::array<std::string_view, 4> packed_rows = {
+    "28b52ffd6433033d0100f876656c6f636974795f6465675f732c746f727175655f6e6d0a36302c312e35010047a0bf38014a869a"
+    "92",
+    "04224d186440a72e000000ff1076656c6f636974795f6465675f732c746f727175655f6e6d0a36302c312e350700ffffffff0050"
+    "2c312e350a00000000d76b1463",
+    "1f8b08000000000002032b4bcdc94fce2ca98c4f494d8f2fd629c92f2a2c4d8dcfcbe53233d031d4331da546a9516a9442a60040"
+    "46b15f33040000",
+    "fd377a585a0000016922de360200210116000000742fe5a3e00432002c5d003b1949dbc9ba28292e3137c074583856fdae848820"
+    "2e9fcfd603a141a7b6308a4a3a6ba23d9835b93431af00004046b15f000144b3080000008cc64fc53e300d8b020000000001595"
+    "a"};
+
 }  // namespace
+
+// The reader looks at the first 512 bytes before it reads on, so that a damaged end comes behind them or not.
+TEST_CASE("a packed log is read alike in pieces of any size, whichever byte of it is wrong", "[log]") {
+    for (const std::string_view hex : packed_rows) {
+        const std::string good = bytes_of(hex);
+        const Packing* const packing = packing_of(good);
+        REQUIRE(packing != nullptr);
+        if (packing->make == nullptr) continue;
+        const ReadOptions options = fuzz::options_of(4);  // a log without time, at 1 kHz
+        CHECK(fuzz::reading(good, options, good.size() + 1).back() == '|');
+        std::size_t refused = 0;
+        for (std::size_t at = 4; at < good.size(); ++at) {
+            for (const int wrong : {0x01, 0x10, 0xff}) {
+                std::string bytes = good;
+                bytes[at] = static_cast<char>(bytes[at] ^ wrong);
+                CAPTURE(packing->name, at, wrong);
+                const std::string whole = fuzz::reading(bytes, options, bytes.size() + 1);
+                refused += whole.back() == '|' ? 0U : 1U;
+                for (const std::size_t piece : {1U, 5U, 40U})
+                    REQUIRE(fuzz::reading(bytes, options, piece) == whole);
+            }
+        }
+        CHECK(refused > good.size());  // some bytes of a head say nothing of the rows
+    }
+}
 
 TEST_CASE("where a packed log is damaged is said alike, however its bytes arrive", "[log]") {
     for (const std::string& bytes :

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <random>
 
 #include "core/vectors/dispatch.hpp"
@@ -54,7 +55,46 @@ void mutate(std::string& text, std::mt19937& random) {
     }
 }
 
+/// The same rows, or the same words, by vectors, plainly, carefully and in pieces.
+void check_every_way(const std::string& text, const ReadOptions& options) {
+    INFO(text);
+    const std::string usual = fuzz::reading(text, options, text.size() + 1);
+    {
+        const NarrowVectors narrow;
+        CHECK(fuzz::reading(text, options, text.size() + 1) == usual);
+    }
+    {
+        const CarefulRows careful;
+        CHECK(fuzz::reading(text, options, text.size() + 1) == usual);
+    }
+    for (const std::size_t piece : {1U, 7U, 100U}) CHECK(fuzz::reading(text, options, piece) == usual);
+}
+
 }  // namespace
+
+TEST_CASE("a time of -0 is one however it is read", "[log]") {
+    const std::string head = "time_s,velocity_deg_s,torque_nm,note\n";
+    const std::string rest = "0.001,60,1,x\n0.002,60,2,x\n0.003,60,3,x\n";
+    for (const std::string first : {"-0.000,60,0,x\n", "\"-0.000\",60,0,x\n", "-0e5,60,0,\"x\"\n"}) {
+        check_every_way(head + first + rest, {});
+        const auto reader = open_log(
+            std::make_unique<ByteSource>("log", std::make_shared<const std::string>(head + first + rest)),
+            {});
+        RowBlock block;
+        REQUIRE(reader->next(block));
+        CHECK(std::signbit(block.time_s.front()));
+    }
+}
+
+// Found by the fuzz target of logs: a time of -0 in a row, and bytes in the last that are no text.
+TEST_CASE("a log that the careful and the quick way once took differently", "[log]") {
+    check_every_way(
+        "time_s\tvelocity_deg_s\ttorque_nm\tnote\r-.000\t60.5\t-0.25\tx\r0.001\t60.05\t-0.25\tx\r"
+        "0.022\t60.5\t-\xff\xff"
+        "0.2\xff\xff\xff\xff\xff"
+        "5\r",
+        fuzz::options_of(1));
+}
 
 TEST_CASE("mutated logs read the same way by vectors, plainly, carefully and in pieces", "[log]") {
     constexpr std::size_t whole = std::string::npos;

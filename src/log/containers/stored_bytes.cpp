@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "log/npy/temporary_bytes.hpp"
+#include "log/read_on.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
@@ -64,10 +65,9 @@ class FileBytes final : public StoredBytes {
 class KeptBytes final : public StoredBytes {
   public:
     KeptBytes(ByteSource& source, std::string piece) : StoredBytes(source.name()) {
-        for (; !piece.empty(); piece.resize(source.read(piece.data(), piece.size()))) {
-            bytes_.put(piece);
-            size_ += piece.size();
-            piece.resize(piece_size);
+        for (std::size_t have = piece.size(); have > 0; have = read_on(source, piece, 0, piece_size)) {
+            bytes_.put(std::string_view(piece).substr(0, have));
+            size_ += have;
         }
         char first = 0;
         if (size_ > 0) bytes_.read_at(0, &first, 1);  // all is in the file
@@ -104,7 +104,8 @@ class UnpackedPart final : public StoredBytes {
 
   private:
     void unpack_piece() {
-        std::string unpacked(4 * piece_size, '\0');
+        if (!room_) room_ = std::make_unique_for_overwrite<char[]>(piece_size);
+        const std::span<char> unpacked(room_.get(), piece_size);
         if (left_.empty() && at_ < end_) {
             piece_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(piece_size, end_ - at_)));
             packed_->read_at(at_, piece_.data(), piece_.size());
@@ -121,7 +122,7 @@ class UnpackedPart final : public StoredBytes {
         if (have_ > most_)
             raise<DataError>("{}: read more than {} bytes packed into one array, expected no more", name(),
                              most_);
-        const std::string_view fresh = std::string_view(unpacked).substr(0, step.given);
+        const std::string_view fresh(unpacked.data(), step.given);
         if (checksum_) sum_ = crc32_of(fresh, sum_.value_or(0));
         if (checksum_ && have_ == most_ && sum_ && *sum_ != *checksum_)
             complain_of_sum(name(), *sum_, *checksum_);
@@ -133,7 +134,8 @@ class UnpackedPart final : public StoredBytes {
     std::optional<std::uint32_t> checksum_, sum_;
     std::unique_ptr<Unpacker> unpacker_;
     std::string piece_;
-    std::string_view left_;  ///< of the piece
+    std::string_view left_;         ///< of the piece
+    std::unique_ptr<char[]> room_;  ///< for what comes out of it
     TemporaryBytes bytes_;
 };
 

@@ -21,7 +21,7 @@ class Behind final : public ByteSource {
   public:
     Behind(std::unique_ptr<ByteSource> source, std::string first_bytes, std::uint64_t skip)
         : ByteSource(Name{source->name()}), source_(std::move(source)), first_(std::move(first_bytes)) {
-        std::string piece(std::size_t{1} << 16, '\0');
+        std::string piece(std::min<std::uint64_t>(skip, std::size_t{1} << 16), '\0');
         for (std::uint64_t left = skip; left > 0;) {
             const std::size_t got =
                 read(piece.data(), static_cast<std::size_t>(std::min<std::uint64_t>(left, piece.size())));

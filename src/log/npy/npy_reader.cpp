@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "log/read_on.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/reading.hpp"
@@ -49,10 +50,7 @@ void NpyReader::read_up_to(std::string& bytes, std::size_t size) {
 
 // Behind the first `have` bytes, until there are `size`; returns how many there are.
 std::size_t NpyReader::read_behind(std::string& bytes, std::size_t have, std::size_t size) {
-    if (bytes.size() < size) bytes.resize(size);
-    for (std::size_t got = 1; have < size && got > 0; have += got)
-        got = source_->read(bytes.data() + have, size - have);
-    return have;
+    return read_on(*source_, bytes, have, size);
 }
 
 void NpyReader::decide(const ReadOptions& options) {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "log/columns/decide_layout.hpp"
+#include "log/read_on.hpp"
 #include "log/text/text_sample.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -21,15 +22,8 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 // Reads on until `size` bytes are there; true when the source ended before.
 bool read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
-    std::size_t have = bytes.size();
-    bytes.resize(size);
-    std::size_t got = 1;
-    while (have < size && got > 0) {
-        got = source.read(bytes.data() + have, size - have);
-        have += got;
-    }
-    bytes.resize(have);
-    return got == 0;
+    bytes.resize(read_on(source, bytes, bytes.size(), size));
+    return bytes.size() < size;
 }
 
 std::size_t line_ends(std::string_view bytes) {
@@ -88,8 +82,14 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
     return facts;
 }
 
+// At once. A log that was read whole, to see how it is written, needs no more room.
+std::size_t CsvReader::most_to_come() const {
+    if (ahead_at_ < ahead_.size()) return std::min(piece_size, ahead_.size() - ahead_at_);
+    return source_ended_ ? 0 : piece_size;
+}
+
 // What was read ahead first, then the source.
-std::size_t CsvReader::read_on(char* into, std::size_t size) {
+std::size_t CsvReader::next_bytes(char* into, std::size_t size) {
     if (ahead_at_ < ahead_.size()) {
         const std::size_t taken = ahead_.copy(into, size, ahead_at_);
         ahead_at_ += taken;
@@ -136,8 +136,9 @@ bool CsvReader::fetch(RowBlock& block) {
     };
     std::size_t lines = whole_lines();
     for (; lines == 0 && !at_end_ && have <= longest_line; lines = whole_lines()) {
-        if (bytes.size() < have + piece_size) bytes.resize(have + piece_size);
-        const std::size_t got = read_on(bytes.data() + have, piece_size);
+        const std::size_t most = most_to_come();
+        if (bytes.size() < have + most) bytes.resize(have + most);
+        const std::size_t got = next_bytes(bytes.data() + have, most);
         at_end_ = got == 0;
         have += got;
     }

@@ -30,7 +30,8 @@ class CsvReader : public LogReader {
 
   private:
     [[nodiscard]] ColumnFacts facts_of(std::string& opening);
-    std::size_t read_on(char* into, std::size_t size);
+    [[nodiscard]] std::size_t most_to_come() const;
+    std::size_t next_bytes(char* into, std::size_t size);
     void plan_columns();
     void note_quick_rows(RowBlock& block, std::size_t before);
     [[nodiscard]] bool continues(const RowBlock& block) const;

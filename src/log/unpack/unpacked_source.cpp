@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t packed_piece = std::size_t{1} << 16;
 constexpr std::size_t unpacked_piece = std::size_t{1} << 18;
-constexpr std::size_t room_size = std::size_t{1} << 17;
+constexpr std::size_t room_size = std::size_t{1} << 16;
 constexpr std::size_t pieces_ahead = 4;
 
 /// In the thread of who reads.
@@ -28,16 +28,17 @@ class UnpackedBytes : public ByteSource {
           packed_(std::move(packed)),
           packing_(packing),
           unpacker_(unpacker_of(packing, packed_->name())),
-          piece_(std::move(first_bytes)),
-          left_(piece_),
-          room_(room_size) {}
+          first_(std::move(first_bytes)),
+          left_(first_),
+          packed_room_(std::make_unique_for_overwrite<char[]>(packed_piece)),
+          room_(std::make_unique_for_overwrite<char[]>(room_size)) {}
 
     std::size_t read(char* into, std::size_t size) override {
         if (size == 0) return 0;
         try {
             // Into a room of its own: libraries give more or less of what lies before the damage by how much
             // room they have.
-            if (waiting_.empty()) waiting_ = {room_.data(), unpack_some(room_)};
+            if (waiting_.empty()) waiting_ = {room_.get(), unpack_some({room_.get(), room_size})};
         } catch (const DataError& error) {
             raise<DataError>("{}: read {} bytes out of {}, expected more of the log: {}", name(), given_,
                              packing_.name, error.what());
@@ -69,10 +70,8 @@ class UnpackedBytes : public ByteSource {
         }
     }
     void refill() {
-        piece_.resize(packed_piece);
-        piece_.resize(packed_->read(piece_.data(), piece_.size()));
-        source_ended_ = piece_.empty();
-        left_ = piece_;
+        left_ = {packed_room_.get(), packed_->read(packed_room_.get(), packed_piece)};
+        source_ended_ = left_.empty();
     }
     void refuse_bomb() const {
         if (given_ < unpacked_unasked || given_ / most_unpacked_for_one < taken_) return;
@@ -84,9 +83,9 @@ class UnpackedBytes : public ByteSource {
     std::unique_ptr<ByteSource> packed_;
     const Packing& packing_;
     std::unique_ptr<Unpacker> unpacker_;
-    std::string piece_;
-    std::string_view left_;  ///< of the piece
-    std::vector<char> room_;
+    std::string first_;      ///< of the packed bytes
+    std::string_view left_;  ///< of them, or of what was read last
+    std::unique_ptr<char[]> packed_room_, room_;
     std::string_view waiting_;  ///< of the room
     bool source_ended_ = false;
     std::string damage_;  ///< behind what was given
