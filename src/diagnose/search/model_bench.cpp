@@ -30,6 +30,10 @@ ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& wor
       weighing_(looked_at.size(), looked_at.use, noise.color),
       kept_(std::move(kept)) {}
 
+double ModelBench::same_model_nm2() const {
+    return rules_.screening.same_model * noise_.rms_nm * noise_.rms_nm;
+}
+
 void ModelBench::settle_on(const Model& model) {
     // A walk of the angle is weighed against all that the model leaves: against the sensor's noise alone, one
     // that nobody expects would stand in for what the model lacks, and blow up the ripple to do so.

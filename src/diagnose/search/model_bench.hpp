@@ -74,9 +74,7 @@ class ModelBench {
     /// What screenings along this case found, whichever bench they were made on.
     [[nodiscard]] const std::shared_ptr<KeptScreenings>& kept() const { return kept_; }
     /// Sum of squares by which two models may differ for what was found beside one to hold beside the other.
-    [[nodiscard]] double same_model_nm2() const {
-        return rules_.screening.same_model * noise_.rms_nm * noise_.rms_nm;
-    }
+    [[nodiscard]] double same_model_nm2() const;
 
   private:
     [[nodiscard]] Candidate fitted(const Model& open, std::vector<double> prices,
