@@ -62,6 +62,16 @@ class HelpLists(unittest.TestCase):
         for (command, option), names in HELP_LISTS.items():
             self.assertIn(names, self.help_of(command, option), f"{command} {option}")
 
+    def test_every_option_stands_on_the_page_of_its_command(self):
+        """Or on the page of all commands, but for what only some of them have."""
+        common = (SOURCE / "docs/commands/README.md").read_text()
+        for command in listed("commands"):
+            page = f"docs/commands/{command}.md"
+            text = (SOURCE / page).read_text()
+            for option in re.findall(r"^ +(?:-\w,)?(--[a-z][a-z0-9-]+)", run(command, "--help").stdout, re.M):
+                places = text if option == "--plot" else text + common
+                self.assertTrue(re.search(rf"{option}(?![\w-])", places), f"{page} has no {option}")
+
     def test_no_list_is_written_by_hand(self):
         for kind in REGISTRIES:
             if kind == "commands":

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "diagnose/beside/naming/evidence.hpp"
+#include "diagnose/beside/naming/exchanges.hpp"
 #include "diagnose/beside/weighing/sameness.hpp"
 
 namespace ripplenotch {
