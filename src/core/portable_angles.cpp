@@ -114,8 +114,8 @@ std::complex<double> phasor(double angle_rad) {
 
 double tan(double angle_rad) {
     if (angle_rad == 0.0) return angle_rad;
-    const Reduced r = reduce_radians(angle_rad);
-    return cosine_in(r.quadrant + 3, r.remainder) / cosine_in(r.quadrant, r.remainder);
+    const std::complex<double> on_circle = phasor(angle_rad);
+    return on_circle.imag() / on_circle.real();
 }
 
 double cos_degrees(double angle_deg) {

@@ -2,6 +2,7 @@
 #include "design/band_fit.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,6 +14,8 @@ namespace {
 constexpr int points_a_side = 9;        // over which the largest gain of a trial band is looked for
 constexpr double as_exact = 1e-9;       // share of a Q or a centre to which searches go
 constexpr double edge_as_exact = 1e-7;  // of a band's edge, from the side on which it still holds
+constexpr int most_secants = 8;
+constexpr double secant_as_exact = 1e-6, bracket_width = 1e-10;
 
 // The end of the first stretch, from `low` upward, on which `holds` is true; `high` when it never fails.
 template <class Holds>
@@ -32,6 +35,35 @@ double first_failure(double low, double high, const Holds& holds) {
         step = std::min(2.0 * step, 0.05 * good);
     }
     return high;
+}
+
+// Two Q close to each other, with the one of which the delay is more than `most_s` and with the other not.
+struct Bracket {
+    double beyond, within;
+};
+
+// By secants against 1/Q, with which an analogue notch's delay goes.
+template <class Delay>
+Bracket bracket(const Delay& delay_at, double most_s, Bracket known, std::array<double, 2> delay_s) {
+    const auto look = [&](double q) {
+        const double found_s = delay_at(q);
+        (found_s <= most_s ? known.within : known.beyond) = q;
+        return found_s;
+    };
+    double before = 1.0 / known.beyond, here = 1.0 / known.within;
+    for (int step = 0; step < most_secants; ++step) {
+        const double next = here + (most_s - delay_s[1]) * (here - before) / (delay_s[1] - delay_s[0]);
+        const double q = 1.0 / next;
+        if (!(q > known.beyond && q < known.within)) break;
+        const bool close = std::abs(next - here) < secant_as_exact * next;
+        before = here;
+        here = next;
+        delay_s = {delay_s[1], look(q)};
+        if (close) break;
+    }
+    for (const double q : {(1.0 - bracket_width) / here, (1.0 + bracket_width) / here})
+        if (q > known.beyond && q < known.within) look(q);
+    return known;
 }
 
 }  // namespace
@@ -60,11 +92,15 @@ double BandFit::q_each(std::size_t order, double q) const {
     return shaped_ ? std::clamp(q * shape_[order], widest_q, narrowest_q) : q;
 }
 
+BandFit::Centre BandFit::centre(double warped) const {
+    if (spec_.width == WidthRule::analog) return {warped, 0.0, 0.0};
+    return {warped, portable::atan(warped), 2.0 * warped / (1.0 + warped * warped)};
+}
+
 // The digital rule is the analogue one at another Q: alpha = sin W / (2 Q') there.
-double BandFit::damping(double warped, double q) const {
+double BandFit::damping(const Centre& centre, double q) const {
     if (spec_.width == WidthRule::analog) return 1.0 / q;
-    const double sine = 2.0 * warped / (1.0 + warped * warped);
-    return 2.0 * portable::tan(portable::atan(warped) / q) / sine;
+    return 2.0 * portable::tan(centre.half_angle / q) / centre.sine;
 }
 
 double BandFit::warped(std::size_t order, double speed_deg_s) const {
@@ -76,7 +112,7 @@ Tuning BandFit::tuned(double center_deg_s, double q) const {
     for (std::size_t i = 0; i < shape_.size(); ++i) {
         tuning.q.push_back(q_each(i, q));
         tuning.warped.push_back(warped(i, center_deg_s));
-        tuning.damping.push_back(damping(tuning.warped.back(), tuning.q.back()));
+        tuning.damping.push_back(damping(centre(tuning.warped.back()), tuning.q.back()));
     }
     return tuning;
 }
@@ -89,21 +125,34 @@ std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) cons
         low = std::min(low, widest_q / shape);
         high = std::max(high, narrowest_q / shape);
     }
-    std::vector<double> tangents;
-    for (std::size_t i = 0; i < shape_.size(); ++i) tangents.push_back(warped(i, center_deg_s));
-    const auto within = [&](double q) {
+    std::vector<Centre> centres;
+    for (std::size_t i = 0; i < shape_.size(); ++i) centres.push_back(centre(warped(i, center_deg_s)));
+    const auto delay_at = [&](double q) {
         double samples = 0.0;
-        for (std::size_t i = 0; i < tangents.size(); ++i)
-            samples += delay_samples(tangents[i], damping(tangents[i], q_each(i, q)));
-        return samples / spec_.sample_rate.value() <= *rule.delay_s;
+        for (std::size_t i = 0; i < centres.size(); ++i)
+            samples += delay_samples(centres[i].warped, damping(centres[i], q_each(i, q)));
+        return samples / spec_.sample_rate.value();
     };
-    if (within(low)) return tuned(center_deg_s, low);
-    if (!within(high)) return std::nullopt;
+    const double most_s = *rule.delay_s, at_low_s = delay_at(low), at_high_s = delay_at(high);
+    if (at_low_s <= most_s) return tuned(center_deg_s, low);
+    if (!(at_high_s <= most_s)) return std::nullopt;
+    // Halving comes to one Q of those that are as exact. Where that is, a few steps along the delay find
+    // sooner, so that most halves are known before they are looked at.
+    Bracket known{low, high};
+    if (falls_with_q(centres, low)) known = bracket(delay_at, most_s, {low, high}, {at_low_s, at_high_s});
     while (high - low > as_exact * high) {
         const double middle = std::sqrt(low * high);
-        (within(middle) ? high : low) = middle;
+        const bool within = middle >= known.within || (middle > known.beyond && delay_at(middle) <= most_s);
+        (within ? high : low) = middle;
     }
     return tuned(center_deg_s, high);
+}
+
+// A digital notch of so low a Q that it would be wider than half the sample rate has no delay to go by.
+bool BandFit::falls_with_q(const std::vector<Centre>& centres, double least_q) const {
+    for (std::size_t i = 0; i < centres.size(); ++i)
+        if (!(centres[i].half_angle / q_each(i, least_q) < 0.5 * std::numbers::pi)) return false;
+    return true;
 }
 
 // theory.md, equation 5, with alpha = sin W damping / 2 and sin W / (1 - cos W) = 1 / tan(W/2).
@@ -118,7 +167,7 @@ double BandFit::delay_s(const Tuning& tuning) const {
     return samples / spec_.sample_rate.value();
 }
 
-double BandFit::gain(const Tuning& tuning, double speed_deg_s) const {
+double BandFit::power(const Tuning& tuning, double speed_deg_s) const {
     double together = 0.0, largest = 0.0;
     for (std::size_t line = 0; line < hz_per_deg_s_.size(); ++line) {
         const double t = warped(line, speed_deg_s);
@@ -126,38 +175,49 @@ double BandFit::gain(const Tuning& tuning, double speed_deg_s) const {
         for (std::size_t i = 0; i < tuning.warped.size(); ++i) {
             const double r = t / tuning.warped[i];
             const double off = (1.0 - r * r) * (1.0 - r * r),
-                         across = portable::pow(r * tuning.damping[i], 2);
+                         across = (r * tuning.damping[i]) * (r * tuning.damping[i]);
             power *= (off + floor_gain_ * floor_gain_ * across) / (off + across);
         }
         largest = std::max(largest, power);
         if (!weight_.empty()) together += weight_[line] * power;
     }
-    return std::sqrt(weight_.empty() ? largest : together);
+    return weight_.empty() ? largest : together;
+}
+
+double BandFit::speed_in(double from_deg_s, double to_deg_s, int point) const {
+    const double from = from_deg_s * (1.0 - spec_.ratio_error), to = to_deg_s * (1.0 + spec_.ratio_error);
+    const double share = static_cast<double>(point) / (points_a_side - 1);
+    return from + share * (to - from);
 }
 
 double BandFit::worst_gain(const Tuning& tuning, double from_deg_s, double to_deg_s) const {
-    const double from = from_deg_s * (1.0 - spec_.ratio_error), to = to_deg_s * (1.0 + spec_.ratio_error);
     double worst = 0.0;
+    for (int i = 0; i < points_a_side; ++i)
+        worst = std::max(worst, power(tuning, speed_in(from_deg_s, to_deg_s, i)));
+    return std::sqrt(worst);
+}
+
+// Ends first: where a band does not hold, it does not hold there, mostly.
+bool BandFit::holds(const Tuning& tuning, double from_deg_s, double to_deg_s, double most_gain) const {
     for (int i = 0; i < points_a_side; ++i) {
-        const double share = static_cast<double>(i) / (points_a_side - 1);
-        worst = std::max(worst, gain(tuning, from + share * (to - from)));
+        const int point = i % 2 == 0 ? i / 2 : points_a_side - 1 - i / 2;
+        if (std::sqrt(power(tuning, speed_in(from_deg_s, to_deg_s, point))) > most_gain) return false;
     }
-    return worst;
+    return true;
 }
 
 std::optional<double> BandFit::reach(double from_deg_s, double end_deg_s, double most_gain,
                                      const QRule& rule) const {
     const auto held = [&](double center, double from, double to) {
         const auto tuning = tune(center, rule);
-        return tuning && worst_gain(*tuning, from, to) <= most_gain;
+        return tuning && holds(*tuning, from, to, most_gain);
     };
     if (!held(from_deg_s, from_deg_s, from_deg_s)) return std::nullopt;
     // A centre further up serves speeds further up, as far as the lower edge is still held.
     const double center =
         first_failure(from_deg_s, end_deg_s, [&](double at) { return held(at, from_deg_s, at); });
     const Tuning tuning = *tune(center, rule);
-    return first_failure(center, end_deg_s,
-                         [&](double to) { return worst_gain(tuning, center, to) <= most_gain; });
+    return first_failure(center, end_deg_s, [&](double to) { return holds(tuning, center, to, most_gain); });
 }
 
 std::optional<Tuning> BandFit::balanced(double from_deg_s, double to_deg_s, const QRule& rule) const {

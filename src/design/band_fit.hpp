@@ -39,11 +39,12 @@ class BandFit {
 
     /// Empty when the rule's delay cannot be met with narrowest_q.
     [[nodiscard]] std::optional<Tuning> tune(double center_deg_s, const QRule& rule) const;
-    /// Gain of the ripple at one speed, with the nominal gear ratio: of all orders by their amplitudes, else
-    /// of the line that is attenuated least.
-    [[nodiscard]] double gain(const Tuning& tuning, double speed_deg_s) const;
-    /// The largest gain over from..to and the interval of the gear ratio.
+    /// The largest gain of the ripple over from..to and the interval of the gear ratio: of all orders by
+    /// their amplitudes, else of the line that is attenuated least.
     [[nodiscard]] double worst_gain(const Tuning& tuning, double from_deg_s, double to_deg_s) const;
+    /// Whether that is at most `most_gain`.
+    [[nodiscard]] bool holds(const Tuning& tuning, double from_deg_s, double to_deg_s,
+                             double most_gain) const;
     [[nodiscard]] double delay_s(const Tuning& tuning) const;
 
     /// Highest speed up to which a band from `from` can reach, `end` at most; empty when not even its own
@@ -61,7 +62,16 @@ class BandFit {
   private:
     [[nodiscard]] Tuning tuned(double center_deg_s, double q) const;
     [[nodiscard]] double q_each(std::size_t order, double q) const;
-    [[nodiscard]] double damping(double warped, double q) const;
+    struct Centre {
+        double warped;            ///< tan(pi f / fs)
+        double half_angle, sine;  ///< pi f / fs and the sine of its double, for the digital rule
+    };
+    [[nodiscard]] Centre centre(double warped) const;
+    [[nodiscard]] double damping(const Centre& centre, double q) const;
+    [[nodiscard]] bool falls_with_q(const std::vector<Centre>& centres, double least_q) const;
+    /// Square of the gain at one speed, with the nominal gear ratio.
+    [[nodiscard]] double power(const Tuning& tuning, double speed_deg_s) const;
+    [[nodiscard]] double speed_in(double from_deg_s, double to_deg_s, int point) const;
     [[nodiscard]] double warped(std::size_t order, double speed_deg_s) const;
     [[nodiscard]] double delay_samples(double warped, double damping) const;
 

@@ -61,10 +61,10 @@ std::optional<std::size_t> BandSearch::bands(double attenuation_db, const QRule&
     return found ? std::optional(found->size() - 1) : std::nullopt;
 }
 
-std::optional<double> BandSearch::attenuation_db(std::size_t bands, const QRule& rule,
-                                                 double known_db) const {
+std::optional<double> BandSearch::attenuation_db(std::size_t bands, const QRule& rule, double known_db,
+                                                 double held_db) const {
     const auto holds = [&](double db) {
-        return fit_.edges(from_, to_, gain_of(db), rule, bands).has_value();
+        return db <= held_db || fit_.edges(from_, to_, gain_of(db), rule, bands).has_value();
     };
     double low = std::max(known_db, least_db), high = low + 1.0;
     if (known_db < least_db && !holds(low)) return std::nullopt;
@@ -79,14 +79,15 @@ std::optional<double> BandSearch::attenuation_db(std::size_t bands, const QRule&
     return low;
 }
 
-std::optional<double> BandSearch::delay_s(double attenuation_db, std::size_t bands) const {
+std::optional<double> BandSearch::delay_s(double attenuation_db, std::size_t bands, KnownDelays known) const {
     const auto holds = [&](double delay_s) {
+        if (delay_s <= known.short_s || delay_s >= known.enough_s) return delay_s >= known.enough_s;
         return fit_.edges(from_, to_, gain_of(attenuation_db), rule(delay_s), bands).has_value();
     };
     double low = least_delay_s(), high = most_delay_s();
     if (!holds(high)) return std::nullopt;
     if (holds(low)) return low;
-    while (high / low > 1.0 + 1e-4) {
+    while (high / low > 1.0 + delay_as_exact) {
         const double middle = std::sqrt(low * high);
         (holds(middle) ? high : low) = middle;
     }

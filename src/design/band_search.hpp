@@ -2,6 +2,7 @@
 #pragma once
 // The three-way trade of a designed table, attenuation, delay and number of bands: any two give the third.
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,8 @@ inline constexpr double gain_worth_a_band_db = 0.25;
 /// What rounding of edges and Q may take off an attenuation; searches aim this much higher.
 inline constexpr double rounding_db = 0.002;
 
+inline constexpr double delay_as_exact = 1e-4;  ///< share of a delay to which it is searched
+
 class BandSearch {
   public:
     /// `spec` (kept by reference) without bands; covers goal.from .. goal.to with Q by `goal.q`, if stated.
@@ -25,11 +28,17 @@ class BandSearch {
     /// Fewest bands; empty when no number (up to most_bands_ever) holds it.
     [[nodiscard]] std::optional<std::size_t> bands(double attenuation_db, const QRule& rule) const;
     /// Most attenuation that so many bands hold; empty when they hold less than 0.1 dB. `known_db` may give
-    /// an attenuation that they surely hold.
+    /// an attenuation that they surely hold, to begin from; what is told to be held, `held_db`, is not looked
+    /// at again, and changes nothing of what is found.
     [[nodiscard]] std::optional<double> attenuation_db(std::size_t bands, const QRule& rule,
-                                                       double known_db = 0.0) const;
-    /// Least delay with which so many bands hold it; empty when they do not with any.
-    [[nodiscard]] std::optional<double> delay_s(double attenuation_db, std::size_t bands) const;
+                                                       double known_db = 0.0, double held_db = 0.0) const;
+    /// Delays that are known to be too short and to be enough: not looked at again.
+    struct KnownDelays {
+        double short_s = 0.0, enough_s = std::numeric_limits<double>::infinity();
+    };
+    /// Least delay with which so many bands hold it, up to delay_as_exact; empty when they do not with any.
+    [[nodiscard]] std::optional<double> delay_s(double attenuation_db, std::size_t bands,
+                                                KnownDelays known) const;
     /// As many bands as add gain_worth_a_band_db each.
     [[nodiscard]] std::size_t bands_worth_it(const QRule& rule) const;
 

@@ -34,11 +34,13 @@ TradePoint point_of(const CandidateTable& table) {
     return point;
 }
 
-/// A table with so many bands at that delay, as good as it gets.
-std::optional<TradePoint> best(const BandSearch& search, std::size_t bands, double delay_s) {
+/// A table with so many bands at that delay, as good as it gets; they are known to hold `held_db`, which
+/// becomes what they hold.
+std::optional<TradePoint> best(const BandSearch& search, std::size_t bands, double delay_s, double& held_db) {
     const QRule rule = search.rule(delay_s);
-    const auto held = search.attenuation_db(bands, rule);
+    const auto held = search.attenuation_db(bands, rule, 0.0, held_db);
     if (!held) return std::nullopt;
+    held_db = *held;
     return point_of(search.table(*held, rule));
 }
 
@@ -53,10 +55,13 @@ std::vector<std::size_t> counts(std::size_t from, std::size_t to) {
 
 // Attenuation against delay with so many bands.
 void add_by_attenuation(std::vector<TradePoint>& points, const BandSearch& search, std::size_t bands) {
+    BandSearch::KnownDelays known;  // what is too short for one attenuation is so for more
     for (const double db : attenuations_db) {
-        const auto delay = search.delay_s(db + rounding_db, bands);
+        double held_db = db + rounding_db;
+        const auto delay = search.delay_s(held_db, bands, known);
         if (!delay) return;
-        const auto point = best(search, bands, *delay);
+        known.short_s = *delay * (1.0 - delay_as_exact);
+        const auto point = best(search, bands, *delay, held_db);
         // At the narrowest notches several demands have one answer.
         if (point && (points.empty() || point->attenuation_db > points.back().attenuation_db + 0.05))
             points.push_back(*point);
@@ -72,18 +77,22 @@ void add_by_bands(std::vector<TradePoint>& points, const BandSearch& search, dou
     const auto at_narrowest = search.bands(attenuation_db + rounding_db, search.rule(search.least_delay_s()));
     const std::size_t last =
         std::min(most_bands.value_or(most_bands_ever), at_narrowest.value_or(most_bands_ever));
+    BandSearch::KnownDelays known;  // what is enough for some bands is so for more
     for (const std::size_t count : counts(*fewest, std::min(last, 32 * *fewest))) {
-        const auto delay = search.delay_s(attenuation_db + rounding_db, count);
+        double held_db = attenuation_db + rounding_db;
+        const auto delay = search.delay_s(held_db, count, known);
         if (!delay) continue;
-        if (const auto point = best(search, count, *delay)) points.push_back(*point);
+        known.enough_s = *delay;
+        if (const auto point = best(search, count, *delay, held_db)) points.push_back(*point);
     }
 }
 
 // Bands against attenuation for one delay.
 void add_by_delay(std::vector<TradePoint>& points, const BandSearch& search, double delay_s,
                   std::size_t last) {
+    double held_db = 0.0;  // what some bands hold, more do
     for (const std::size_t count : counts(1, last))
-        if (const auto point = best(search, count, delay_s)) points.push_back(*point);
+        if (const auto point = best(search, count, delay_s, held_db)) points.push_back(*point);
 }
 
 // The point a design would take, put in its place among the others; one that it beats by nothing gives way.

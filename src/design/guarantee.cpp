@@ -113,7 +113,7 @@ std::string delay_text(double delay_s) { return fmt::format("{} ms", plain(1e3 *
     std::string instead;
     if (const auto held = search.attenuation_db(most, rule))
         instead = fmt::format("; so many hold {:.1f} dB", std::floor(10.0 * *held) / 10.0);
-    const auto delay = goal.q ? std::nullopt : search.delay_s(wanted + rounding_db, most);
+    const auto delay = goal.q ? std::nullopt : search.delay_s(wanted + rounding_db, most, {});
     if (delay)
         instead += fmt::format(", or {} dB with {:.1f} ms of delay", plain(wanted), 1e3 * *delay + 0.05);
     refuse("--min-attenuation {} dB{} takes {} bands, more than --max-bands {}{}", plain(wanted),
@@ -157,9 +157,11 @@ DesignChoice choose_bands(const TableSpec& spec, const DesignGoal& goal) {
     const Budget budget = budget_of(spec, goal, search);
     const QRule rule = search.rule(budget.delay_s);
     std::size_t count = 0;
+    double held_db = 0.0;
     std::string reason;
     if (goal.min_attenuation_db) {
-        const auto needed = search.bands(*goal.min_attenuation_db + rounding_db, rule);
+        held_db = *goal.min_attenuation_db + rounding_db;
+        const auto needed = search.bands(held_db, rule);
         if (!needed) refuse_attenuation(spec, goal, search, rule);
         if (goal.most_bands && *needed > static_cast<std::size_t>(*goal.most_bands))
             refuse_bands(goal, search, rule, *needed);
@@ -174,7 +176,7 @@ DesignChoice choose_bands(const TableSpec& spec, const DesignGoal& goal) {
         reason = fmt::format("the most attenuation {} until a further band adds less than {} dB",
                              budget.reason, plain(gain_worth_a_band_db));
     }
-    const auto held = search.attenuation_db(count, rule);
+    const auto held = search.attenuation_db(count, rule, 0.0, held_db);
     if (!held) refuse("{} bands hold nothing {}; allow more with --max-bands", count, budget.reason);
     CandidateTable table = search.table(*held, rule);
     check_held(table, goal);

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <vector>
 
 #include "core/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -66,8 +68,8 @@ double sine_amplitude(std::span<const double> y, std::size_t from, double omega)
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (std::size_t k = from; k < y.size(); ++k) {
-        const double phase = omega * static_cast<double>(k);
-        const Eigen::Vector3d row(portable::cos(phase), portable::sin(phase), 1.0);
+        const std::complex<double> on_circle = portable::phasor(omega * static_cast<double>(k));
+        const Eigen::Vector3d row(on_circle.real(), on_circle.imag(), 1.0);
         normal += row * row.transpose();
         right += row * y[k];
     }

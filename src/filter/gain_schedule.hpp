@@ -24,4 +24,8 @@ class GainSchedule {
     std::vector<double> gains_;  ///< states_ entries a speed, slowest first
 };
 
+/// What GainSchedule::at gives, where one speed is all that is asked: of the hundred or so that a schedule
+/// holds, only the two beside it are worked out.
+[[nodiscard]] std::vector<double> scheduled_gain(const RippleModel& model, double step_turns);
+
 }  // namespace ripplenotch

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <utility>
 
 #include "core/factorisations.hpp"
 #include "filter/gain_schedule.hpp"
+#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/rate_edge.hpp"
 
@@ -58,8 +60,9 @@ void RippleKalman::look(double motor_turns, double step_turns) noexcept {
     for (std::size_t i = 0; i < model_.orders.size(); ++i) {
         const double phase = radians(model_.orders[i] * motor_turns);
         const double share = model_.share(model_.orders[i], step_turns);
-        h_[2 + 2 * i] = share * portable::cos(phase);
-        h_[3 + 2 * i] = share * portable::sin(phase);
+        const std::complex<double> on_circle = portable::phasor(phase);
+        h_[2 + 2 * i] = share * on_circle.real();
+        h_[3 + 2 * i] = share * on_circle.imag();
     }
 }
 

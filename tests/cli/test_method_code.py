@@ -30,18 +30,17 @@ METHODS = {
     RICH: "map",
     RICH + ",output=minus-ripple,memory=0.4": "map",
 }
-HARNESS = """#include <stdio.h>
-#include "code.h"
-int main(void) {
-    static code_state state;
+# One function for each header, all of them in one program, which is told the number of the one to run.
+RUN = """#include "code%(k)d.h"
+static void run%(k)d(void) {
+    static code%(k)d_state state;
     double torque, speed, angle, position;
-    code_init(&state);
-    while (scanf("%lf %lf %lf %lf", &torque, &speed, &angle, &position) == 4)
-        printf("%.17g\\n", (double)code_step(&state, (REAL)torque, MOTION));
-    return 0;
+    code%(k)d_init(&state);
+    while (scanf("%%lf %%lf %%lf %%lf", &torque, &speed, &angle, &position) == 4)
+        printf("%%.17g\\n", (double)code%(k)d_step(&state, (%(real)s)torque, %(motion)s));
 }
 """
-MOTIONS = {"speed": "(REAL)speed", "angle": "(REAL)angle", "map": "(REAL)angle,(REAL)speed,(REAL)position"}
+MOTIONS = {"speed": ("speed",), "angle": ("angle",), "map": ("angle", "speed", "position")}
 
 
 def run(*words):
@@ -69,31 +68,43 @@ class Code(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def export(self, method, *words, code=0, to="c-header,name=code"):
-        done = run("export", "--method", method, "--sample-rate", "1kHz", "--to", to, "-o", self.folder / "code.h", "--force", *words)
+    def export(self, method, *words, code=0, to="c-header,name=code", header="code.h"):
+        done = run("export", "--method", method, "--sample-rate", "1kHz", "--to", to, "-o", self.folder / header, "--force", *words)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
+
+    def filtered(self, log, method):
+        out = self.folder / "out.csv"
+        done = run("filter", log, "--method", method, "-o", out, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return [float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
 
     @unittest.skipUnless(shutil.which("cc"), "SKIPPED: there is no C compiler")
     def test_the_compiled_code_is_the_method(self):
         log, made = self.folder / "log.csv", rows()
         log.write_text("time_s,velocity_deg_s,torque_nm,position_deg\n" + "".join(f"{t!r},{v!r},{nm!r},{q!r}\n" for t, v, nm, q, _ in made))
         fed = "".join(f"{nm!r} {v!r} {turns!r} {q!r}\n" for _, v, nm, q, turns in made)
-        (self.folder / "main.c").write_text(HARNESS)
-        for method, motion in METHODS.items():
-            out = self.folder / "out.csv"
-            done = run("filter", log, "--method", method, "-o", out, "--force")
-            self.assertEqual(done.returncode, 0, done.stderr)
-            expected = [float(line.split(",")[2]) for line in out.read_text().split("\n")[1:] if line]
-            for precision, most in MOST.items():
-                self.export(method, to=f"c-header,name=code,precision={precision}")
-                done = subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-O2", "-ffp-contract=off",
-                                       f"-DREAL={precision}", f"-DMOTION={MOTIONS[motion]}", "main.c", "-lm", "-o", "main"], cwd=self.folder, capture_output=True, text=True)
-                self.assertEqual(done.returncode, 0, f"{method}: {done.stderr}")
-                found = subprocess.run(["./main"], cwd=self.folder, input=fed, capture_output=True, text=True).stdout.split()
-                self.assertEqual(len(found), len(expected))
-                errors = [abs(float(a) - b) for a, b in zip(found, expected)]
-                self.assertLess(max(errors), most, f"{method} in {precision}")
+        cases = [(method, motion, precision) for method, motion in METHODS.items() for precision in MOST]
+        program = "#include <stdio.h>\n#include <stdlib.h>\n"
+        for k, (method, motion, precision) in enumerate(cases):
+            self.export(method, to=f"c-header,name=code{k},precision={precision}", header=f"code{k}.h")
+            program += RUN % {"k": k, "real": precision, "motion": ", ".join(f"({precision}){word}" for word in MOTIONS[motion])}
+        runs = ", ".join(f"run{k}" for k in range(len(cases)))
+        program += f"static void (*const runs[])(void) = {{{runs}}};\n"
+        program += "int main(int count, char** words) {\n    if (count == 2) runs[atoi(words[1])]();\n    return 0;\n}\n"
+        (self.folder / "main.c").write_text(program)
+        done = subprocess.run(["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-Wdouble-promotion", "-O2", "-ffp-contract=off", "main.c",
+                               "-lm", "-o", "main"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        alone = ["cc", "-std=c99", "-fsyntax-only", "-x", "c", *(f"code{k}.h" for k in range(len(cases)))]
+        done = subprocess.run(alone, cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""), "what a header needs, it includes itself")
+        expected = {method: self.filtered(log, method) for method in METHODS}
+        for k, (method, _, precision) in enumerate(cases):
+            done = subprocess.run(["./main", str(k)], cwd=self.folder, input=fed, capture_output=True, text=True)
+            found = list(map(float, done.stdout.split()))
+            self.assertEqual(len(found), len(expected[method]))
+            self.assertLess(max(abs(a - b) for a, b in zip(found, expected[method])), MOST[precision], f"{method} in {precision}")
 
     def test_verify_runs_it_beside_the_method_over_a_million_samples(self):
         for method in "tracking,gear-ratio=100,orders=1:2", "oscillator,gear-ratio=100,orders=1:2", RICH:

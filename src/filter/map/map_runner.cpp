@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <utility>
 
+#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/rate_edge.hpp"
 
@@ -65,8 +67,8 @@ double MapRunner::ripple(double motor_turns, double step_turns) const noexcept {
         if (share == 0.0) continue;
         const double cycles = order * motor_turns;
         const double phase = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
-        sum += share *
-               (amplitudes_[i].real() * portable::cos(phase) + amplitudes_[i].imag() * portable::sin(phase));
+        const std::complex<double> on_circle = portable::phasor(phase);
+        sum += share * (amplitudes_[i].real() * on_circle.real() + amplitudes_[i].imag() * on_circle.imag());
     }
     return sum;
 }

@@ -212,8 +212,7 @@ FrozenFilter frozen(const Settings& settings, Hertz sample_rate, const Candidate
     const double step_turns = p.ripple.gear_ratio * speed.value() / 360.0 / p.sample_rate_hz;
     std::vector<double> gain;
     if (p.scheduled) {
-        gain.resize(p.model.states());
-        GainSchedule(p.model).at(step_turns, gain);
+        gain = scheduled_gain(p.model, step_turns);
     } else {
         gain = settled_gain(p.model, step_turns);
     }
