@@ -26,17 +26,17 @@ std::string little_endian(std::size_t number, int bytes) {
     return text;
 }
 
-// Three blocks, then one of a kind that there is none of.
+// Blocks of equal size, then one of a kind that there is none of.
 template <class Block>
-std::string stored(const std::string& text, const std::string& front, const std::string& wrong,
+std::string stored(const std::string& text, std::size_t blocks, std::string front, const std::string& wrong,
                    const Block& block) {
-    const std::size_t part = text.size() / 3;
-    return front + block(text.substr(0, part)) + block(text.substr(part, part)) +
-           block(text.substr(2 * part)) + wrong + std::string(300, 'x');
+    const std::size_t size = (text.size() + blocks - 1) / blocks;
+    for (std::size_t at = 0; at < text.size(); at += size) front += block(text.substr(at, size));
+    return front + wrong + std::string(300, 'x');
 }
 
-std::string damaged_zstd(const std::string& text) {
-    return stored(text, {"\x28\xb5\x2f\xfd\0\x50", 6}, {"\x06\0\0", 3},
+std::string damaged_zstd(const std::string& text, std::size_t blocks) {
+    return stored(text, blocks, {"\x28\xb5\x2f\xfd\0\x50", 6}, {"\x06\0\0", 3},
                   [](const std::string& part) { return little_endian(part.size() << 3U, 3) + part; });
 }
 
@@ -48,13 +48,13 @@ std::string zstd_of_another_length(const std::string& text) {
            little_endian((text.size() - half) << 3U | 1U, 3) + text.substr(half);
 }
 
-std::string damaged_lz4(const std::string& text) {
-    return stored(text, {"\x04\x22\x4d\x18\x60\x40\x82", 7}, "\xff\xff\xff\x7f",
+std::string damaged_lz4(const std::string& text, std::size_t blocks) {
+    return stored(text, blocks, {"\x04\x22\x4d\x18\x60\x40\x82", 7}, "\xff\xff\xff\x7f",
                   [](const std::string& part) { return little_endian(part.size() | 0x80000000U, 4) + part; });
 }
 
-std::string damaged_gzip(const std::string& text) {
-    return stored(text, {"\x1f\x8b\x08\0\0\0\0\0\0\x03", 10}, "\x06", [](const std::string& part) {
+std::string damaged_gzip(const std::string& text, std::size_t blocks) {
+    return stored(text, blocks, {"\x1f\x8b\x08\0\0\0\0\0\0\x03", 10}, "\x06", [](const std::string& part) {
         return '\0' + little_endian(part.size(), 2) + little_endian(~part.size(), 2) + part;
     });
 }
@@ -104,16 +104,17 @@ TEST_CASE("a packed log is read alike in pieces of any size, whichever byte of i
     }
 }
 
-// Of more than 512 bytes, too: those are looked at before the reader reads on, and a block may be half given.
+// Of more than 512 bytes, too: those are looked at before the reader reads on, and what is left of their
+// block waits within the library while the next one, damaged, comes.
 TEST_CASE("where a packed log is damaged is said alike, however its bytes arrive", "[log]") {
-    for (const int rows : {30, 300}) {
+    for (const auto& [rows, blocks] : {std::pair{30, 3U}, std::pair{300, 3U}, std::pair{300, 1U}}) {
         const std::string text = text_of(rows), other_length = zstd_of_another_length(text);
-        for (const std::string& bytes :
-             {damaged_zstd(text), other_length, damaged_lz4(text), damaged_gzip(text)}) {
+        for (const std::string& bytes : {damaged_zstd(text, blocks), other_length, damaged_lz4(text, blocks),
+                                         damaged_gzip(text, blocks)}) {
             const Packing* const packing = packing_of(bytes);
             REQUIRE(packing != nullptr);
             if (packing->make == nullptr) continue;
-            CAPTURE(rows, packing->name);
+            CAPTURE(rows, blocks, packing->name);
             const std::string whole = fuzz::reading(bytes, {}, bytes.size() + 1);
             CHECK_THAT(whole, Contains("damaged"));
             // How much of a last block of the wrong length comes is up to libzstd.
