@@ -23,7 +23,7 @@ TARGETS = {
     "mcap": ("MCAP recordings", "the same"),
     "rosbag2": ("recordings in SQLite", "the same"),
     "raw": ("dumps told by --layout", "the same"),
-    "packed": ("gzip, zstd, lz4, xz", "the same bytes, or rows, or words at once and in pieces; sanitizers"),
+    "packed": ("gzip, zstd, lz4, xz", "same bytes or same words at once and in pieces; sanitizers"),
     "documents": ("tables, models, joints, figures, diagnoses, pages", "an answer or a page, read again; sanitizers"),
     "arms": ("URDF, MuJoCo, Denavit-Hartenberg, axes", "an answer; sanitizers"),
     "texts": ("quantities, methods, numbers, visible names", "bounds, written and read again; sanitizers"),

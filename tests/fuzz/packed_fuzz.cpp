@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Compressed files, found by their first bytes: what comes out, and what is said of damage, is the same from
-// a pipe in pieces as at once. One in eight is read as a log; what the bytes of the others say is
-// logs_fuzz.cpp's.
+// a pipe in pieces, into little room, as at once. What the bytes say as a log is for logs_fuzz.cpp.
 #include <algorithm>
-#include <array>
 
 #include "fuzz/fuzz.hpp"
-#include "fuzz/reading.hpp"
 #include "log/detect_format.hpp"
 #include "log/read_on.hpp"
 #include "log/unpack/unpacked_source.hpp"
@@ -17,7 +14,7 @@ using namespace ripplenotch::fuzz;
 namespace {
 
 // What comes out, as far as it is looked at: few bytes may hold many.
-std::string unpacked(std::string_view bytes, std::size_t piece) {
+std::string unpacked(std::string_view bytes, std::size_t piece, std::size_t room_size) {
     constexpr std::size_t most = std::size_t{1} << 18;
     std::string out;
     const std::string answer = answer_of([&] {
@@ -27,8 +24,8 @@ std::string unpacked(std::string_view bytes, std::size_t piece) {
         const Packing* const packing = packing_of(first_bytes);
         if (packing == nullptr) return;
         const auto log = unpack(std::move(source), std::move(first_bytes), *packing);
-        std::array<char, 4096> room;
-        for (std::size_t got = 1; got > 0 && out.size() < most; out.append(room.data(), got))
+        std::string room(room_size, '\0');
+        for (std::size_t got = 1; got > 0 && out.size() < most; out.append(room, 0, got))
             got = log->read(room.data(), std::min(room.size(), most - out.size()));
     });
     return out + "|" + answer;
@@ -38,12 +35,9 @@ std::string unpacked(std::string_view bytes, std::size_t piece) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     Bytes input(data, size);
-    const bool as_log = input.choice(8) == 0;
-    const std::size_t piece = 1 + input.choice(200);
-    const auto taken = [&](std::size_t most) {
-        return as_log ? reading(input.rest(), {}, most) : unpacked(input.rest(), most);
-    };
-    const std::string at_once = taken(size + 1), pieces = taken(piece);
+    const std::size_t room = 16 * (1 + std::size_t{input.choice(256)}), piece = 1 + input.choice(200);
+    const std::string at_once = unpacked(input.rest(), size + 1, std::size_t{1} << 16);
+    const std::string pieces = unpacked(input.rest(), piece, room);
     if (pieces != at_once) fail("pieces and the whole differ", at_once, pieces);
     return 0;
 }
