@@ -131,7 +131,7 @@ def yardsticks(rows):
 
 
 FORMS = {"single": by_label, "rarer": by_label, "pair": several, "triple": several, "null": null, "outside": outside,
-         "outside+single": outside, "formula": by_label, "physics": by_label, "noise": noise, "poor": poor,
+         "outside+single": outside, "formula": by_label, "noise": noise, "poor": poor,
          "variant": variant, "without": without}
 
 
@@ -191,7 +191,21 @@ def of_nulls(abouts, rows, failed):
             f"\n\n{wrong}")
 
 
-APART = {"recorded": of_recorders, "nulls": of_nulls}
+def of_physics(abouts, rows, failed):
+    """Joints from physics: bars, table, what went wrong."""
+    def closed(row):
+        return row["exact"] and row["gap"]["closed"] >= 0.95
+
+    named = [row for row in rows if "named" in row]
+    asked = markdown(bars.HEAD, [
+        bars.line("resonance or ripple by speed named, nothing false", "17 of 18", [row["exact"] for row in named], 17 / 18),
+        bars.line("the same, and at least 95 % of the gap closed on the other log", "17 of 18", map(closed, named), 17 / 18)])
+    wrong = [f"{failure(row)}; {100 * row['gap']['closed']:.1f} % closed" for row in named if not closed(row)]
+    wrong = "\n".join(f"* {line}" for line in wrong) or "Nothing went wrong."
+    return f"{about(abouts, rows)}\n\n{asked}\n\n{by_label(named)}\n\n{wrong}"
+
+
+APART = {"recorded": of_recorders, "nulls": of_nulls, "physics": of_physics}
 
 
 def blocks(abouts, rows, failed):
