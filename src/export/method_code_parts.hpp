@@ -3,6 +3,7 @@
 // One method as C and as the same loops here: a file each.
 
 #include <cmath>
+#include <complex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "export/text_reader.hpp"
+#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/export/method_code.hpp"
 
@@ -47,7 +49,8 @@ struct OnCircle {
 /// The same, operation by operation.
 [[nodiscard]] inline OnCircle<double> on_circle(double turns) {
     const double angle = 6.283185307179586 * (turns - std::floor(turns));
-    return {portable::cos(angle), portable::sin(angle)};
+    const std::complex<double> at = portable::phasor(angle);
+    return {at.real(), at.imag()};
 }
 /// What is beyond the nearest whole number.
 [[nodiscard]] inline double beside_whole(double value) { return value - std::floor(value + 0.5); }

@@ -4,8 +4,7 @@
 usage: tests/bench/instructions.py [--update]      (environment: RIPPLENOTCH, the tool; RIPPLENOTCH_BUILD, compiler and flags)
 
 Times are noise on a shared machine; the number of instructions of one build is not. Every case runs the tool on a short
-and on a long log and divides the difference by the rows between, so that the start of the process does not count; of what
-works over the whole log the start is a hundredth part or less, and one run is divided by its rows. More than
+and on a long log and divides the difference by the rows between, so that the start of the process does not count. More than
 `limit_percent` above the figure in instructions.json is exit code 1. Exit code 77, for ctest "skipped": without
 valgrind, or on a build that the figures were not recorded with. --update records what is measured.
 """
@@ -29,7 +28,6 @@ SKIPPED = 77
 COUNT = ["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", "--vgdb=no",
          "--vex-guest-chase=no", "--vex-iropt-level=0"]
 SHORT, LONG = 17_000, 29_000  # both beyond the first 16384 rows, which filter looks at before it begins
-WHOLE = ("identify", "--domain")  # of a word of these the whole run counts
 COLUMNS = ("time_s", "velocity_deg_s", "torque_nm")
 
 CASES = {
@@ -82,8 +80,6 @@ def per_row(tool, folder, words):
         filled = [word.format(log=folder / str(length), table=folder / "table.json", out=folder / "out") for word in words]
         one_thread = ["--threads", "1"] if words[0] == "filter" else []
         return instructions([tool, *filled, "--force", *one_thread], folder / f"{length}.npy")
-    if any(word in WHOLE for word in words):
-        return count(SHORT) / SHORT
     return (count(LONG) - count(SHORT)) / (LONG - SHORT)
 
 

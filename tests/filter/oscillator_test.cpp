@@ -376,6 +376,12 @@ TEST_CASE(
     }
     schedule.at(0.0, gain);
     for (std::size_t i = 2; i < 6; ++i) CHECK(gain[i] == 0.0);
+    // Of one speed alone the same bits: at standstill, below the first point, between points and beyond the
+    // last.
+    for (const double step : {0.0, 1e-6, 0x1p-15, 0.0007, -0.013, 0.2, 0.25, -0.4, 3.0}) {
+        schedule.at(step, gain);
+        CHECK(scheduled_gain(model, step) == gain);
+    }
     RippleModel alone = model;
     alone.orders.clear();
     CHECK(gain[0] == Approx(settled_gain(alone, 1.0)[0]).epsilon(1e-12));
