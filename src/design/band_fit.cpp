@@ -127,6 +127,7 @@ std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) cons
     }
     std::vector<Centre> centres;
     for (std::size_t i = 0; i < shape_.size(); ++i) centres.push_back(centre(warped(i, center_deg_s)));
+    low = std::max(low, least_q(centres));
     const auto delay_at = [&](double q) {
         double samples = 0.0;
         for (std::size_t i = 0; i < centres.size(); ++i)
@@ -138,8 +139,7 @@ std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) cons
     if (!(at_high_s <= most_s)) return std::nullopt;
     // Halving comes to one Q of those that are as exact. Where that is, a few steps along the delay find
     // sooner, so that most halves are known before they are looked at.
-    Bracket known{low, high};
-    if (falls_with_q(centres, low)) known = bracket(delay_at, most_s, {low, high}, {at_low_s, at_high_s});
+    const Bracket known = bracket(delay_at, most_s, {low, high}, {at_low_s, at_high_s});
     while (high - low > as_exact * high) {
         const double middle = std::sqrt(low * high);
         const bool within = middle >= known.within || (middle > known.beyond && delay_at(middle) <= most_s);
@@ -148,11 +148,13 @@ std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) cons
     return tuned(center_deg_s, high);
 }
 
-// A digital notch of so low a Q that it would be wider than half the sample rate has no delay to go by.
-bool BandFit::falls_with_q(const std::vector<Centre>& centres, double least_q) const {
+// A digital notch of a lower Q would be wider than half the sample rate, and is none.
+double BandFit::least_q(const std::vector<Centre>& centres) const {
+    constexpr double inside = 1.0 + 1e-6;
+    double least = 0.0;
     for (std::size_t i = 0; i < centres.size(); ++i)
-        if (!(centres[i].half_angle / q_each(i, least_q) < 0.5 * std::numbers::pi)) return false;
-    return true;
+        least = std::max(least, inside * centres[i].half_angle / (0.5 * std::numbers::pi * shape_[i]));
+    return least;
 }
 
 // theory.md, equation 5, with alpha = sin W damping / 2 and sin W / (1 - cos W) = 1 / tan(W/2).

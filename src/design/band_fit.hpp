@@ -68,7 +68,7 @@ class BandFit {
     };
     [[nodiscard]] Centre centre(double warped) const;
     [[nodiscard]] double damping(const Centre& centre, double q) const;
-    [[nodiscard]] bool falls_with_q(const std::vector<Centre>& centres, double least_q) const;
+    [[nodiscard]] double least_q(const std::vector<Centre>& centres) const;
     /// Square of the gain at one speed, with the nominal gear ratio.
     [[nodiscard]] double power(const Tuning& tuning, double speed_deg_s) const;
     [[nodiscard]] double speed_in(double from_deg_s, double to_deg_s, int point) const;

@@ -35,6 +35,10 @@ TEST_CASE("the Q for a delay is the one that halving alone comes to, to the last
                 INFO(center_deg_s << " deg/s, " << most_s << " s");
                 const auto found = fit.tune(center_deg_s, {std::nullopt, most_s});
                 double low = widest_q, high = narrowest_q;
+                // A digital notch of a Q below f over half the sample rate would be wider than that half.
+                const double line_hz = center_deg_s * 2.0 * 100.0 / 360.0;
+                if (width == WidthRule::digital) low = std::max(low, (1.0 + 1e-6) * line_hz / 500.0);
+                const bool begins_lower = low == widest_q;
                 if (delay_s(center_deg_s, low) <= most_s) {
                     high = low;
                 } else if (!(delay_s(center_deg_s, high) <= most_s)) {
@@ -46,7 +50,11 @@ TEST_CASE("the Q for a delay is the one that halving alone comes to, to the last
                     (delay_s(center_deg_s, middle) <= most_s ? high : low) = middle;
                 }
                 REQUIRE(found);
-                REQUIRE(found->q.front() == high);
+                // Of a search that begins elsewhere by a bit no more is equal than it is exact.
+                if (begins_lower)
+                    REQUIRE(found->q.front() == high);
+                else
+                    REQUIRE(found->q.front() == Approx(high).epsilon(2e-9));
             }
         }
     }

@@ -348,3 +348,26 @@ TEST_CASE("the point that a frontier recommends is the table that the same goal 
         }
     }
 }
+
+// A digital notch of Q 0.25 at an eighth of the sample rate would be half of it wide: the search took such
+// notches for quick ones, and what it designed held nothing.
+TEST_CASE("a table of digital notches near half the sample rate holds what was asked, within its delay") {
+    TableSpec spec = paper_ripple();
+    spec.gear_ratio = GearRatio(50.0);
+    spec.orders = {Order(0.5), Order(2.0), Order(4.0)};
+    spec.sample_rate = 500_Hz;
+    spec.width = WidthRule::digital;
+    for (const double delay_ms : {18.1, 40.0}) {
+        for (const double wanted_db : {10.0, 16.4, 20.0}) {
+            DesignGoal asked = goal(wanted_db, delay_ms);
+            asked.from = DegPerSec(39.9);
+            asked.to = DegPerSec(199.5);
+            const CandidateTable table = design_for(spec, asked).table;
+            CHECK(largest_delay_s(table) <= delay_ms / 1e3 * (1.0 + 1e-9));
+            for (const Band& band : table.bands()) {
+                for (const double speed : {band.from.value(), band.to.value()})
+                    CHECK(attenuation_db(band, spec, 50.0, speed) >= wanted_db - 1e-6);
+            }
+        }
+    }
+}
