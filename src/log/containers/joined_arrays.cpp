@@ -54,8 +54,7 @@ double ns_per_unit(const std::string& source, const StoredArray& clock) {
     if (clock.type.kind != 'f')
         raise<DataError>(
             "{}: read whole numbers without a unit in {}, expected seconds, or a name or attribute with the "
-            "unit; "
-            "read arrays of one clock, or save them with it",
+            "unit; read arrays of one clock, or save them with it",
             source, clock.path);
     return ns_per_s;
 }
@@ -107,8 +106,7 @@ std::unique_ptr<RecordSource> joined_arrays(const std::shared_ptr<StoredBytes>& 
             if (column.array == other->clock)
                 raise<UsageError>(
                     "--columns: {} is not the clock of the torque, whose rows are taken; leave it out: each "
-                    "array is "
-                    "joined by its own",
+                    "array is joined by its own",
                     column.path);
             const std::vector<ArrayColumn> pair = {{clock->path, "", clock, 0}, column};
             sides.push_back({column.path, column.read_as, array_records(file, pair), column.array->type,
