@@ -19,7 +19,7 @@ class SensorSearch {
         : log_(log), validation_(validation), model_(model), effects_(effects), rules_(rules), work_(work) {}
 
     [[nodiscard]] BesideOutcome run() const {
-        const std::unique_ptr<Look> plain = look(model_);
+        std::unique_ptr<Look> plain = look(model_);
         std::optional<Finding> doubted;
         if (is_arm_alone(log_.given)) {
             const Unsensed unsensed{log_.given, model_, plain->sums, plain->named.now.names};
@@ -36,6 +36,7 @@ class SensorSearch {
                 }
                 look_at_other(verdict.finding, *plain, *behind, with);
                 if (!is_doubtful(verdict.finding)) {
+                    plain.reset();  // an arm's columns are large
                     BesideOutcome outcome = outcome_of(*behind, log_, with, effects_);
                     outcome.sensor = std::move(verdict.finding);
                     return outcome;

@@ -232,7 +232,7 @@ BesideOutcome outcome_of(Look& look, const GivenCase& log, const Candidate& mode
         outcome.findings.push_back(std::move(ringing));
     }
     std::optional<OffsetBeside> offset;
-    if (is_arm_alone(log.given)) offset = offset_beside(look.lens, model, log.given, effects, shapes);
+    if (is_arm_alone(log.given)) offset = offset_beside(look.lens, model, effects, shapes);
     std::vector<double> explained_nm = sum_of(believed.values, model.stated, motion);
     if (offset && !matters(*offset, look, believed, explained_nm)) offset.reset();
     if (offset) {

@@ -9,12 +9,11 @@
 namespace ripplenotch {
 
 std::optional<OffsetBeside> offset_beside(const Lens& lens, const Candidate& model,
-                                          std::span<const GivenTerm> given,
                                           std::span<const Effect* const> examined,
                                           std::vector<Shape> believed) {
     const Effect* const offset = &find_effect("offset");
     if (std::find(examined.begin(), examined.end(), offset) == examined.end()) return std::nullopt;
-    const Lens open(lens, model, given, {&offset, 1}, true);
+    const Lens open(Lens::OffsetIsOpen{}, lens, model, {&offset, 1});
     Sums sums(open);
     if (sums.listed() != 1) return std::nullopt;
     const double part = open.weighed(sums.shapes()[0]).part;

@@ -20,7 +20,6 @@ struct OffsetBeside {
 /// `lens`: in which `believed` was found beside `model`. Nothing where the offset is not examined, the model
 /// has one, the arm explains it as well, or it is not worth its price.
 [[nodiscard]] std::optional<OffsetBeside> offset_beside(const Lens& lens, const Candidate& model,
-                                                        std::span<const GivenTerm> given,
                                                         std::span<const Effect* const> examined,
                                                         std::vector<Shape> believed);
 

@@ -170,7 +170,7 @@ void measure(Finding& finding, const Unsensed& plain, const Lens& lens) {
     const std::vector<double> values = lens.plain_values(std::vector<double>(c.size(), 0.0));
     std::vector<double> at_joint_nm = predict_nm(plain.model.stated, c.motion);
     for (std::size_t i = 0; i < lens.columns().stated; ++i)
-        add_scaled(values[i], lens.columns().at_joint_nm[i].data(), at_joint_nm.data(), at_joint_nm.size());
+        add_scaled(values[i], lens.columns().at_joint_nm(i).data(), at_joint_nm.data(), at_joint_nm.size());
     std::vector<double> change_nm = at_joint_nm;
     through_sensors({plain.model.stated.gear_ratio, {finding.term}}, c.motion, change_nm);
     add_scaled(-1.0, at_joint_nm.data(), change_nm.data(), change_nm.size());

@@ -55,9 +55,9 @@ void add(AlwaysOn& columns, std::vector<double> torque_nm, double mean, double d
 // A torque at the joint; the model's delay and lag act on all of it.
 void add_stated(AlwaysOn& columns, std::vector<double> at_joint_nm, const Model& model,
                 const Motion& motion) {
-    columns.torque_nm.push_back(at_joint_nm);
-    through_sensors(model, motion, columns.torque_nm.back());
-    columns.at_joint_nm.push_back(std::move(at_joint_nm));
+    if (has_sensors(model)) columns.before_delay_nm.push_back(at_joint_nm);
+    through_sensors(model, motion, at_joint_nm);
+    columns.torque_nm.push_back(std::move(at_joint_nm));
 }
 
 }  // namespace
@@ -68,6 +68,7 @@ AlwaysOn given_columns(const Case& looked_at, const Model& model, std::span<cons
     for (const GivenTerm& term : given) {
         for (std::size_t i = 0; i < term.torque_nm.size(); ++i) {
             std::vector<double> torque_nm;
+            torque_nm.reserve(looked_at.size());
             for (const std::size_t row : looked_at.row) torque_nm.push_back(term.torque_nm[i][row]);
             add_stated(columns, std::move(torque_nm), model, looked_at.motion);
             columns.mean.push_back(term.mean[i]);
@@ -123,7 +124,7 @@ std::vector<double> carried_nm(const AlwaysOn& columns, std::span<const double> 
     std::vector<double> sum(columns.torque_nm.empty() ? 0 : columns.torque_nm[0].size(), 0.0);
     for (std::size_t i = 0; i < columns.stated; ++i) {
         if (columns.bears_load[i])
-            add_scaled(values[i], columns.at_joint_nm[i].data(), sum.data(), sum.size());
+            add_scaled(values[i], columns.at_joint_nm(i).data(), sum.data(), sum.size());
     }
     return sum;
 }

@@ -14,14 +14,19 @@ namespace ripplenotch {
 
 /// Columns over the samples of a case, one a value, and what their values are drawn to.
 struct AlwaysOn {
-    std::vector<std::vector<double>> torque_nm;    ///< as the sensor tells it
-    std::vector<std::vector<double>> at_joint_nm;  ///< of the stated ones, before the sensor
+    std::vector<std::vector<double>> torque_nm;        ///< as the sensor tells it
+    std::vector<std::vector<double>> before_delay_nm;  ///< of the stated ones; none without a delay or a lag
     std::vector<double> mean, deviation;
     std::vector<bool> bears_load;  ///< of the stated ones
     std::size_t given = 0;  ///< the first so many are the given terms', in their order; then what mends them
 
     std::size_t stated = 0;    ///< of the given terms and of what mends them
     std::size_t of_model = 0;  ///< the same with the model's own; the rest are errors of the motion
+
+    /// A stated one at the joint, before the sensor's delays and lags.
+    [[nodiscard]] const std::vector<double>& at_joint_nm(std::size_t column) const {
+        return before_delay_nm.empty() ? torque_nm[column] : before_delay_nm[column];
+    }
 };
 
 /// Given terms alone, for the samples of this case; `given` has a row per row of the whole log. What mends a

@@ -40,52 +40,83 @@ std::vector<double> swelled(const std::vector<double>& column, const Motion& mot
 
 Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenTerm> given,
            std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work)
-    : Lens(looked_at, model, given, effects, rules, work, nullptr, false) {}
+    : Lens(looked_at, rules, work, model) {
+    if (!given.empty() && case_.motion.carried_nm.empty()) carry(given, model);
+    begin(model, columns_of(model, given), effects);
+    const std::vector<double> left = left_by_all();
+    left_nm_ = rms(left);
+    color_ = long_color(left, ground_.memory(), rules_.beside.color_floor);
+    ground_.color(color_);
+    sigma_ = std::max(rms(ground_.whitened(left)), 1e-12);
+    whiten();
+}
 
 Lens::Lens(const Lens& like, const Candidate& model, std::span<const GivenTerm> given,
-           std::span<const Effect* const> effects, bool offset_is_open)
-    : Lens(like.case_, model, given, effects, like.rules_, like.work_, &like, offset_is_open) {}
+           std::span<const Effect* const> effects)
+    : Lens(like.case_, like.rules_, like.work_, model) {
+    begin(model, columns_of(model, given), effects);
+    take_color(like);
+    whiten();
+}
 
-Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenTerm> given,
-           std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work, const Lens* like,
-           bool offset_is_open)
+Lens::Lens(OffsetIsOpen, const Lens& like, const Candidate& model, std::span<const Effect* const> effects)
+    : Lens(like.case_, like.rules_, like.work_, model) {
+    begin(model, like.columns_, effects);
+    // Of what is stated it is the last (always_on.cpp).
+    deviation_[columns_->always.stated - 1] = stated_deviation;
+    take_color(like);
+    whiten();
+}
+
+Lens::Lens(const Case& looked_at, const DiagnosisRules& rules, Work& work, const Candidate& model)
     : case_(looked_at),
       rules_(rules),
       work_(work),
       ground_(looked_at, rules.beside),
-      bounds_(scale_bounds(looked_at, model.stated.gear_ratio.value(), rules.beside)) {
-    if (!given.empty() && case_.motion.carried_nm.empty()) carry(given, model);
+      bounds_(scale_bounds(looked_at, model.stated.gear_ratio.value(), rules.beside)) {}
+
+std::shared_ptr<Lens::HeldColumns> Lens::columns_of(const Candidate& model,
+                                                    std::span<const GivenTerm> given) const {
+    auto columns = std::make_shared<HeldColumns>();
+    columns->always = always_on(case_, model, given, rules_);
+    columns->bridged = bridged(columns->always.torque_nm);
+    return columns;
+}
+
+void Lens::begin(const Candidate& model, std::shared_ptr<HeldColumns> columns,
+                 std::span<const Effect* const> effects) {
     prediction_.emplace(model.stated, case_.motion);
-    always_ = always_on(case_, model, given, rules);
-    // Of what is stated it is the last (always_on.cpp).
-    if (offset_is_open) always_.deviation[always_.stated - 1] = stated_deviation;
+    columns_ = std::move(columns);
+    const AlwaysOn& always = columns_->always;
+    deviation_ = always.deviation;
     open_nm_ = case_.torque_nm;
     add_scaled(-1.0, prediction_->torque_nm().data(), open_nm_.data(), open_nm_.size());
-    for (std::size_t i = 0; i < always_.mean.size(); ++i)
-        add_scaled(-always_.mean[i], always_.torque_nm[i].data(), open_nm_.data(), open_nm_.size());
+    for (std::size_t i = 0; i < always.mean.size(); ++i)
+        add_scaled(-always.mean[i], always.torque_nm[i].data(), open_nm_.data(), open_nm_.size());
     bridged_open_ = ground_.bridged(open_nm_);
-    bridged_always_ = bridged(always_.torque_nm);
     shapes_ = shapes_of(effects, bounds_, ground_.rate_hz());
     // What the model has is always on.
     std::erase_if(shapes_, [&](const Shape& shape) {
         return std::any_of(model.stated.terms.begin(), model.stated.terms.end(),
                            [&](const Term& term) { return same_name({term}, shape); });
     });
-    take_color(like);
-    for (const auto& column : bridged_always_) white_always_.push_back(ground_.whitened(column));
-    white_.emplace(white_always_, always_.deviation, sigma_);
-    target_ = white_->left(ground_.whitened(bridged_open_));
-    bridged_open_.shrink_to_fit();
 }
 
-void Lens::take_color(const Lens* like) {
-    std::vector<double> left;
-    if (like == nullptr) left = left_by_all();
-    left_nm_ = like != nullptr ? like->left_nm_ : rms(left);
-    color_ = like != nullptr ? like->color_ : long_color(left, ground_.memory(), rules_.beside.color_floor);
-    plain_.emplace(bridged_always_, always_.deviation, left_nm_);
+void Lens::take_color(const Lens& like) {
+    left_nm_ = like.left_nm_;
+    color_ = like.color_;
     ground_.color(color_);
-    sigma_ = like != nullptr ? like->sigma_ : std::max(rms(ground_.whitened(left)), 1e-12);
+    sigma_ = like.sigma_;
+}
+
+void Lens::whiten() {
+    plain_.emplace(columns_->bridged, deviation_, left_nm_);
+    if (columns_->white.empty()) {
+        for (const auto& column : columns_->bridged) columns_->white.push_back(ground_.whitened(column));
+    }
+    white_.emplace(columns_->white, deviation_, sigma_);
+    target_ = white_->left(ground_.whitened(bridged_open_));
+    bridged_open_.shrink_to_fit();
 }
 
 // The load that the given terms bring: from a fit beside Coulomb's and viscous friction, to which they would
@@ -111,8 +142,8 @@ void Lens::carry(std::span<const GivenTerm> given, const Candidate& model) {
 }
 
 std::vector<double> Lens::left_by_all() const {
-    Columns all = bridged_always_;
-    std::vector<double> deviation = always_.deviation;
+    Columns all = columns_->bridged;
+    std::vector<double> deviation = deviation_;
     for (const Shape& shape : shapes_) {
         // However a ripple goes with the speed: columns in proportion stand for what rings.
         if (shape.ringing) continue;
@@ -204,7 +235,7 @@ std::vector<double> Lens::plain_values(std::span<const double> explained_nm) con
     std::vector<double> left = open_nm_;
     add_scaled(-1.0, explained_nm.data(), left.data(), left.size());
     std::vector<double> values = plain_->solve(ground_.bridged(left));
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] += always_.mean[i];
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += columns_->always.mean[i];
     return values;
 }
 

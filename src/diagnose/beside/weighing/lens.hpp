@@ -3,6 +3,7 @@
 // The log as names are weighed against it: what is left of torque and columns when they are whitened by the
 // leftover's own colour and the always-on columns are taken out.
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,16 +24,18 @@ class Lens {
     Lens(const Case& looked_at, const Candidate& model, std::span<const GivenTerm> given,
          std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work);
     /// The same log made white as `like` does, so that what two models leave of it can be compared.
-    /// `offset_is_open`: the offset is not always on.
     Lens(const Lens& like, const Candidate& model, std::span<const GivenTerm> given,
-         std::span<const Effect* const> effects, bool offset_is_open = false);
+         std::span<const Effect* const> effects);
+    struct OffsetIsOpen {};
+    /// `like` with the model that it has, whose columns it shares, but that the offset is not always on.
+    Lens(OffsetIsOpen, const Lens& like, const Candidate& model, std::span<const Effect* const> effects);
     Lens(const Lens&) = delete;
     Lens& operator=(const Lens&) = delete;
 
     [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }
     [[nodiscard]] const ScaleBounds& bounds() const { return bounds_; }
     [[nodiscard]] const Ground& ground() const { return ground_; }
-    [[nodiscard]] const AlwaysOn& columns() const { return always_; }
+    [[nodiscard]] const AlwaysOn& columns() const { return columns_->always; }
     [[nodiscard]] const DiagnosisRules& rules() const { return rules_; }
 
     /// Torque of the shape over the samples of the case, a column each.
@@ -68,11 +71,18 @@ class Lens {
 
   private:
     using Columns = std::vector<std::vector<double>>;
-    Lens(const Case& looked_at, const Candidate& model, std::span<const GivenTerm> given,
-         std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work, const Lens* like,
-         bool offset_is_open);
+    struct HeldColumns {
+        AlwaysOn always;
+        Columns bridged, white;
+    };
+    Lens(const Case& looked_at, const DiagnosisRules& rules, Work& work, const Candidate& model);
+    [[nodiscard]] std::shared_ptr<HeldColumns> columns_of(const Candidate& model,
+                                                          std::span<const GivenTerm> given) const;
+    void begin(const Candidate& model, std::shared_ptr<HeldColumns> columns,
+               std::span<const Effect* const> effects);
+    void whiten();
     void carry(std::span<const GivenTerm> given, const Candidate& model);
-    void take_color(const Lens* like);
+    void take_color(const Lens& like);
     /// What everything at once leaves of the bridged torque.
     [[nodiscard]] std::vector<double> left_by_all() const;
     [[nodiscard]] Columns bridged(const Columns& columns) const;
@@ -83,11 +93,11 @@ class Lens {
     Work& work_;
     Ground ground_;
     ScaleBounds bounds_;
-    AlwaysOn always_;
     std::optional<Prediction> prediction_;
     std::vector<Shape> shapes_;
     std::vector<double> open_nm_, bridged_open_;
-    std::vector<std::vector<double>> bridged_always_, white_always_;
+    std::shared_ptr<HeldColumns> columns_;  ///< of an arm they are most of what a diagnosis holds
+    std::vector<double> deviation_;         ///< of the always-on values
     std::optional<Ridge> plain_, white_;
     std::vector<double> target_, color_;
     double sigma_ = 0.0, left_nm_ = 0.0;
