@@ -16,8 +16,8 @@
 namespace ripplenotch {
 namespace {
 
-// With all that is made of them, 256 MiB, also with an arm of seven joints, most of which is its columns along
-// the samples searched.
+// With all that is made of them, 256 MiB, also with an arm of seven joints, most of which is its columns
+// along the samples searched.
 constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17, most_rows_with_arm = 40'960;
 
 std::string source_of(const std::string& model) { return model == "-" ? "standard input" : model; }
