@@ -144,6 +144,10 @@ class Scores(unittest.TestCase):
 
     def test_kinds_are_planned_on_every_robot_and_bars_count_what_they_say(self):
         planned = semi_cases.planned(2, 40)
+        self.assertEqual([semi_cases.by_name(case.name) for case in planned], planned)
+        for unknown in ("semi-ur10-nonesuch-40", "semi-ur10-drift", "single-drift-40"):
+            with self.assertRaisesRegex(SystemExit, "there is no semi-synthetic case"):
+                semi_cases.by_name(unknown)
         self.assertEqual(len({case.name for case in planned}), len(planned))
         rows = [{"case": f"semi-a-{k}", "label": "ripple", "sizes": [size], "least": size, "exact": right, "false": [],
                  "named": ["ripple 1"] if right else [], "offered": right, "parameters": [{"beyond": 0.5}]}

@@ -2,6 +2,7 @@
 """One semi-synthetic log from its making to its scores."""
 
 import pathlib
+import shutil
 import tempfile
 
 import numpy as np
@@ -39,8 +40,8 @@ NO_ANSWER = {"exact": False, "in_set": False, "false": [], "named": ["no answer"
              "verdict": "no answer", "statuses": [], "joint": "-"}
 
 
-def trial(program, case, logs, options=()):
-    """Scores of a case; logs: folder of the real logs."""
+def trial(program, case, logs, options=(), keep=None):
+    """Scores of a case; logs: folder of the real logs; keep: where the files of a case that is not right stay."""
     about = {"study": "semi", "robot": case.robot, "label": case.kind, "case": case.name}
     try:
         log = cases.made(case, logs)
@@ -55,4 +56,6 @@ def trial(program, case, logs, options=()):
             row = scored(log, found)
         except (tool.ToolFailed, KeyError, TypeError, ValueError) as failure:
             row = {**NO_ANSWER, "error": f"{type(failure).__name__}: {failure}"}
+        if keep and not row["exact"]:
+            shutil.copytree(folder, keep / case.name, dirs_exist_ok=True)
         return {**about, **row, "seconds": tool.cpu_seconds() - before}
