@@ -206,9 +206,11 @@ void state_uses(LogInfo& info) {
             filter.reason +=
                 fmt::format("; {} rows at another rate pass unfiltered", info.clock.rows_left_out);
     }
-    Use clock{"clock-check", joint.clock_factor.has_value(), "position and velocity can be compared"};
+    Use clock{"clock-check", joint.clock_factor.has_value() && info.clock.refusal.empty(),
+              "position and velocity can be compared"};
     if (!clock.possible) {
-        clock.reason = !joint.position_deg
+        clock.reason = !info.clock.refusal.empty() ? info.clock.refusal
+                       : !joint.position_deg
                            ? "no position column"
                            : "too few rows, too little motion, or position and velocity of different things";
     }

@@ -2,6 +2,7 @@
 
 #include "ripplenotch/analysis/steady.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -40,6 +41,20 @@ TEST_CASE("steady stretches are found with their speeds, and standstill is calle
     CHECK_THAT(found[1].duration.value(), WithinAbs(3.0, 0.25));
     CHECK_THAT(found[2].speed.value(), WithinAbs(-30.0, 0.2));
     CHECK(found[2].first + found[2].count == trace.size());
+}
+
+TEST_CASE("the ramps at the ends of a stretch do not move its speed") {
+    const bool position = GENERATE(true, false);
+    const double ramp_s = GENERATE(0.1, 0.3, 0.6);
+    const auto trapezoid = [=](double t) {
+        return 80.0 * std::clamp(std::min(t - 1.5, 6.5 - t) / ramp_s, 0.0, 1.0);
+    };
+    const Trace trace = tests::make_trace({.seconds = 8.0, .speed_deg_s = trapezoid, .position = position});
+    const auto found = steady_stretches(trace.view(), {});
+    REQUIRE(found.size() == 3);
+    CHECK(found[1].count > static_cast<std::size_t>(1000.0 * (4.9 - 2.0 * ramp_s)));
+    // Evenly weighed, their share of the stretch, up to 5 % slow, makes the mean 3e-4 low.
+    CHECK_THAT(found[1].speed.value() / 80.0 - 1.0, WithinAbs(0.0, 1e-5));
 }
 
 TEST_CASE("a log of one speed is one stretch, and its speed carries an error that covers the truth") {

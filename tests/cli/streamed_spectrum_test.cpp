@@ -101,8 +101,8 @@ std::vector<Case> cases() {
          .change = [](std::size_t, Row& row) { row.time_s *= 0.4; },
          .time_decimals = 3},
         {.name = "mostly repeated times",
-         .change = [](std::size_t, Row& row) { row.time_s *= 0.4; },
-         .time_decimals = 2},
+         .change = [](std::size_t, Row& row) { row.time_s *= 0.25; },
+         .time_decimals = 3},
         {.name = "slower from some row on",
          .change =
              [](std::size_t i, Row& row) {

@@ -201,7 +201,9 @@ TEST_CASE("where rows are lost the steps tell the controller's rate, and rounded
     }
 }
 
-TEST_CASE("a clock coarser than the rows runs at rows over time, and one that stands not at all", "[log]") {
+TEST_CASE(
+    "a clock coarser than the rows runs at rows over time, one far coarser, in bursts or standing not at all",
+    "[log]") {
     std::vector<double> coarse;
     for (std::size_t k = 0; k < 9000; ++k) coarse.push_back(static_cast<double>(k - k % 3) / 1000.0);
     const ClockFacts facts = watch(coarse).facts;
@@ -209,6 +211,15 @@ TEST_CASE("a clock coarser than the rows runs at rows over time, and one that st
     CHECK(facts.gap_count == 0);
     CHECK(facts.repeated_times == 6000);
     CHECK(facts.refusal.empty());
+    std::vector<double> seconds;
+    for (std::size_t k = 0; k < 9000; ++k) seconds.push_back(static_cast<double>(k - k % 16) / 1000.0);
+    CHECK_THAT(watch(seconds).facts.refusal,
+               Contains("time advances once in 16 rows") && Contains("--sample-rate 1000Hz"));
+    std::vector<double> bursts;
+    for (std::size_t k = 0; k < 9000; ++k)
+        bursts.push_back(static_cast<double>(k - k % 8) / 1000.0 + 20e-6 * static_cast<double>(k % 8));
+    CHECK_THAT(watch(bursts).facts.refusal,
+               Contains("in bursts of 8 rows, 2e-05 s apart") && Contains("--sample-rate 1000Hz"));
     const ClockFacts standing = watch(std::vector<double>(500, 2.0)).facts;
     CHECK_THAT(standing.refusal, Contains("does not advance"));
     CHECK(standing.nominal_rate.value() == 0.0);

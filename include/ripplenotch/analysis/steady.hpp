@@ -24,7 +24,9 @@ struct SteadyRule {
 struct Stretch {
     std::size_t first = 0, count = 0;
     Seconds duration;
-    DegPerSec speed;  ///< signed mean: change of position over time where there is one, else mean velocity
+    /// Signed mean: the slope of position over time where there is one, else mean velocity, each weighed as
+    /// the window of a spectrum weighs the torque.
+    DegPerSec speed;
     double speed_error_deg_s = 0.0;  ///< standard error of that mean
     bool rest = false;               ///< standstill
     /// Mean and standard deviation of the speed's size over the angle that is turned: rests do not count, and
@@ -58,6 +60,19 @@ class StretchMeter {
 
   private:
     static constexpr std::size_t blocks = 10;
+    /// Sums for a line through weighed places in seconds and degrees.
+    class Slope {
+      public:
+        void add(double t, double p, double weight);
+        [[nodiscard]] double weight() const { return sum_; }
+        [[nodiscard]] double tt() const { return tt_ - t_ * t_ / sum_; }
+        [[nodiscard]] double tp() const { return tp_ - t_ * p_ / sum_; }
+        [[nodiscard]] double pp() const { return pp_ - p_ * p_ / sum_; }
+        [[nodiscard]] double square_t() const { return square_t_; }
+
+      private:
+        double sum_ = 0.0, t_ = 0.0, p_ = 0.0, tt_ = 0.0, tp_ = 0.0, pp_ = 0.0, square_t_ = 0.0;
+    };
     [[nodiscard]] std::size_t end_of(std::size_t block) const { return count_ * (block + 1) / blocks; }
     void end_block();
     void speed_from_velocity(Stretch& stretch) const;
@@ -68,8 +83,10 @@ class StretchMeter {
     double mean_s_, mean_position_deg_;
     bool has_position_ = false;
     std::size_t rows_ = 0, block_ = 0;
-    double first_s_ = 0.0, last_s_ = 0.0, block_sum_ = 0.0, sum_ = 0.0, square_ = 0.0;
-    double tt_ = 0.0, tp_ = 0.0, pp_ = 0.0;
+    double first_s_ = 0.0, last_s_ = 0.0;
+    double block_weight_ = 0.0, block_sum_ = 0.0;  ///< of the block in hand
+    double weight_ = 0.0, squared_weight_ = 0.0, sum_ = 0.0, square_ = 0.0;
+    Slope slope_;
     double speeds_ = 0.0, squares_ = 0.0, cubes_ = 0.0;  ///< of the speed's size
     double velocity_deg_s_ = 0.0, change_deg_s_ = 0.0;   ///< of the last row, and from the one before it
     double bends_deg_s_ = 0.0;                           ///< sum of the sizes of changes of that change

@@ -116,6 +116,9 @@ class Clock {
     std::string source_;
     double gap_steps_;
     bool timed_ = false, advances_ = false;
+    double rows_a_time_ = 0.0;   ///< more than 1 where times repeat
+    double rows_a_burst_ = 0.0;  ///< 0 where rows do not come in bursts
+    Hertz over_all_;             ///< rows over time, gaps included, of the opening
     ClockFacts facts_;
     Rate now_;
     double limit_s_ = 0.0;
