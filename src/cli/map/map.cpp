@@ -17,6 +17,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/map_figure.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
+#include "ripplenotch/core/version.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/filter/warm_map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -141,15 +142,30 @@ void check_each(const Request& request) {
     };
     if (request.common.output != "-" || request.common.json) require_joint("-o", request.common.output);
     if (request.plot.path) require_joint("--plot", *request.plot.path);
+    if (!request.gear.joint_file && !request.gear.ratio) raise_no_gear("map");
 }
 
-// Each joint of the first log by itself, with files of its own.
+// A joint that has no map is no reason to keep those of the others back.
+ExitCode run_or_complain(const Request& request, const std::string& command_line) {
+    try {
+        return run_one(request, command_line);
+    } catch (const MemoryError&) {
+        throw;
+    } catch (const Error& error) {
+        talk(fmt::format("{} map: joint {}: {}", tool_name, *request.log.joint, error.what()));
+        return error.code();
+    }
+}
+
+// Each joint of the first log by itself, with files of its own. The exit code is that of the first joint that
+// failed; where none did, what the maps come to.
 ExitCode run_each(const Request& request, const std::string& command_line) {
     constexpr std::size_t for_names = 4096;  // rows
     check_each(request);
     ReadOptions options = request.log.resolve();
     options.takes_motor_units = true;
-    ExitCode worst = ExitCode::done;
+    ExitCode maps = ExitCode::done;
+    std::optional<ExitCode> failed;
     for (const Log& log : read_joints_in_part(request.logs.front(), options, for_names)) {
         Request one = request;
         const std::string& joint = log.trace.joint;
@@ -158,9 +174,13 @@ ExitCode run_each(const Request& request, const std::string& command_line) {
         one.common.output = with_joint(request.common.output, joint);
         if (request.plot.path) one.plot.path = with_joint(*request.plot.path, joint);
         if (request.gear.joint_file) one.gear.joint_file = with_joint(*request.gear.joint_file, joint);
-        worst = std::max(worst, run_one(one, command_line));
+        const ExitCode code = run_or_complain(one, command_line);
+        if (code == ExitCode::done || code == ExitCode::inconclusive)
+            maps = std::max(maps, code);
+        else if (!failed)
+            failed = code;
     }
-    return worst;
+    return failed.value_or(maps);
 }
 
 ExitCode run(const Request& request, const std::string& command_line) {
