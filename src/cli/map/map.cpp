@@ -55,10 +55,7 @@ Read read_logs(const Request& request, const GearAccount& gear, Provenance& prov
                 raise<UsageError>("--temperature: standard input cannot be read twice; name a file");
             read.temperatures_degc.push_back(
                 side_column(path, *request.temperature, log.trace.joint, options, most));
-            if (read.temperatures_degc.back().size() != log.trace.size())
-                raise<DataError>("{}: column '{}' has {} numbers at {} rows of the motion", path,
-                                 *request.temperature, read.temperatures_degc.back().size(),
-                                 log.trace.size());
+            require_beside(read.temperatures_degc.back(), log.trace, path, *request.temperature);
         }
         say_layout(request.common, log.layout);
         say_warnings(request.common, log.recording.warnings);

@@ -59,6 +59,13 @@ std::vector<double> side_column(const std::string& path, std::string column, con
     return read_log_in_part(path, beside(column, joint, std::move(read)), most_rows).trace.torque_nm;
 }
 
+void require_beside(const std::vector<double>& values, const Trace& motion, const std::string& path,
+                    const std::string& column) {
+    if (values.size() != motion.size())
+        raise<DataError>("{}: column '{}' has {} numbers at {} rows of the motion", path, column,
+                         values.size(), motion.size());
+}
+
 double mean_of_side_column(const std::string& path, const std::string& column, const std::string& joint,
                            const ReadOptions& read, std::size_t most_rows) {
     const std::vector<double> values = side_column(path, column, joint, read, most_rows);

@@ -19,6 +19,9 @@ namespace ripplenotch {
 [[nodiscard]] std::vector<double> side_column(const std::string& path, std::string column,
                                               const std::string& joint, ReadOptions read,
                                               std::size_t most_rows = most_rows_held);
+/// Throws DataError where they are not as many as the rows of the motion beside which they stand.
+void require_beside(const std::vector<double>& values, const Trace& motion, const std::string& path,
+                    const std::string& column);
 /// Their mean.
 [[nodiscard]] double mean_of_side_column(const std::string& path, const std::string& column,
                                          const std::string& joint, const ReadOptions& read,

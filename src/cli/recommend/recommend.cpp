@@ -92,13 +92,8 @@ void read_temperature(const Request& request, const std::optional<GearAccount>& 
         held_side_column(request.log, *request.temperature, joint, read_options(parts.judge_options, gear),
                          notes)};
     say_warnings(request.common, notes);
-    const auto check = [&](const std::vector<double>& values, const Log& part) {
-        if (values.size() != part.trace.size())
-            raise<DataError>("{}: column '{}' has {} numbers at {} rows of the motion", request.log,
-                             *request.temperature, values.size(), part.trace.size());
-    };
-    check(parts.temperature->train_degc, parts.train);
-    check(parts.temperature->judge_degc, parts.judge);
+    require_beside(parts.temperature->train_degc, parts.train.trace, request.log, *request.temperature);
+    require_beside(parts.temperature->judge_degc, parts.judge.trace, request.log, *request.temperature);
 }
 
 // The gear that the first part of the log shows; empty, with the reason told, where it shows none.
