@@ -13,7 +13,8 @@ from .measure import Side
 
 TABLE_WORDS = ["--gear-ratio", "40", "--orders", "1,2", "--sample-rate", "2kHz", "--speed", "20:200:20", "--q", "5",
                "--width", "digital", "--above", "pass"]
-COLUMNS = ["--columns", "time,velocity,torque"]
+# An array says neither names nor units; the CSV logs' header says both.
+COLUMNS = ["--columns", "time,velocity,torque", "--unit", "velocity=deg/s"]
 TOOL = "ripplenotch"
 PIECES = ("--segment", "4.096s")
 MODEL = pathlib.Path(__file__).resolve().parents[2] / "data" / "paper_model.json"

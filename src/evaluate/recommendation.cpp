@@ -189,18 +189,18 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
                          const GearAccount& lines, const RecommendationLimits& limits) {
     Recommendation found;
     found.limits = limits;
-    found.orders = orders_in_log(log, lines);
     LogLevels levels = measure_on_log(contenders, log, lines);
     found.windows = levels.windows;
     if (levels.windows < fewest_judged_windows) {
         found.why = levels.windows == 0
                         ? fmt::format("nothing can be judged on this log: {}", levels.why_none)
                         : fmt::format(
-                              "the log is too short to judge by: {} window{} of eight motor turns, "
-                              "and {} are needed",
+                              "the part of the log to judge by is too short: {} window{} of eight motor "
+                              "turns, and {} are needed",
                               levels.windows, levels.windows == 1 ? "" : "s", fewest_judged_windows);
         return found;
     }
+    found.orders = orders_in_log(log, lines);
     if (std::none_of(found.orders.begin(), found.orders.end(),
                      [](const OrderInLog& one) { return one.shows; })) {
         found.finding = RecommendationFinding::no_ripple;

@@ -114,16 +114,47 @@ class Maps(Case):
         self.assertEqual(done.returncode, 2)
         self.assertIn("map needs to know the gear", done.stderr)
 
-    def test_every_joint_has_a_map_of_its_own(self):
-        """Two joints of one log, the second with half of the ripple: the maps are those of each joint by its name."""
+    def wide_log(self, shares):
+        """A log of one joint for each share, j1 first, which has that share of 0.8 Nm of ripple."""
         wide = self.folder / "wide.csv"
         with open(wide, "w") as file:
-            file.write("time_s," + ",".join(f"j{j}_{name}" for j in (1, 2) for name in ("velocity_deg_s", "torque_nm", "position_deg")) + "\n")
+            file.write("time_s," + ",".join(f"j{j + 1}_{name}" for j in range(len(shares))
+                                            for name in ("velocity_deg_s", "torque_nm", "position_deg")) + "\n")
             for t, v, position, slow, theta, noise in motion(1):
                 cells = [t]
-                for share in (1.0, 0.5):
+                for share in shares:
                     cells += [v, slow + share * 0.8 * math.cos(theta) + noise, position]
                 file.write(",".join(f"{cell:.6f}" for cell in cells) + "\n")
+        return wide
+
+    def test_a_joint_without_a_gear_does_not_keep_the_maps_of_the_others_back(self):
+        """identify finds no line of the second joint, so that its joint.json has no ratio."""
+        wide = self.wide_log((1.0, 0.0, 0.5))
+        files = ["--joint-file", self.folder / "{joint}.json"]
+        self.assertEqual(run("identify", wide, "--joint", "all", "-o", self.folder / "{joint}.json").returncode, 0)
+        done = run("map", wide, "--joint", "all", *files, "-o", self.folder / "{joint}_map.json")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual([line for line in done.stderr.split("\n") if "joint j" in line],
+                         [f"ripplenotch map: joint j2: {self.folder}/j2.json: its gear ratio is null, because identify found none; give --gear-ratio"])
+        for joint, amplitude in (("j1", 0.8), ("j3", 0.4)):
+            found = json.loads((self.folder / f"{joint}_map.json").read_text())
+            self.assertAlmostEqual(found["left_out"][0]["ripple_nm"], amplitude, delta=0.02)
+            self.assertIn(f"{joint}: On blocks left out", done.stdout)
+        self.assertFalse((self.folder / "j2_map.json").exists())
+        self.assertNotIn("j2: ", done.stdout)
+        # The first joint that failed names the code; a file that is missing is another kind of failure.
+        (self.folder / "j1.json").unlink()
+        again = run("map", wide, "--joint", "all", *files, "-o", self.folder / "{joint}_map.json", "--force", "-q")
+        self.assertEqual(again.returncode, 4, again.stderr)
+        self.assertEqual([line.split(":")[1] for line in again.stderr.strip().split("\n")], [" joint j1", " joint j2"])
+        # Without any gear there is one complaint, not one for each joint.
+        none = run("map", wide, "--joint", "all", "-o", self.folder / "{joint}_map.json", "--force")
+        self.assertEqual(none.returncode, 2)
+        self.assertEqual(none.stderr.count("map needs to know the gear"), 1)
+
+    def test_every_joint_has_a_map_of_its_own(self):
+        """Two joints of one log, the second with half of the ripple: the maps are those of each joint by its name."""
+        wide = self.wide_log((1.0, 0.5))
         done = run("map", wide, *GEAR, "--joint", "all", "-o", self.folder / "{joint}_map.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         for joint, amplitude in (("j1", 0.8), ("j2", 0.4)):

@@ -5,11 +5,12 @@ import ctypes
 import functools
 import json
 import math
+import shlex
 import shutil
 import subprocess
 import unittest
 
-from test_map import GEAR, Case, motion, run
+from test_map import GEAR, TOOL, Case, motion, run
 
 
 @functools.cache
@@ -201,6 +202,54 @@ class Warm(Case):
                        "-o", self.folder / "b.h", "--verify", "--force")
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertLess(float(done.stdout.split("largest difference")[1].split()[0]), most)
+
+    def test_recommend_trains_a_map_along_the_temperature_and_says_how_to(self):
+        self.write(lambda k: 30 + 8 * math.sin(k / 700))
+        judged = {}
+        for column in [], self.COLUMN:
+            done = run("recommend", self.log, *GEAR, *column, "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            told = json.loads(done.stdout)
+            judged[bool(column)] = {one["method"]: one for one in told["methods"]}
+        # Beside a ripple that is off by 8 degC x 3 %, the noise in eight motor turns is nothing.
+        plain, warm = (judged[one]["map,map=map.json"]["ripple_rms_nm"] for one in (False, True))
+        self.assertLess(warm, 0.2 * plain)
+        self.assertIn("map=map.json", told["take"])
+        commands = [line.replace("ripplenotch ", "", 1) for line in told["take_commands"] + told["runner_up_commands"]]
+        self.assertTrue(any(line.startswith("map ") and "--temperature drive_degc" in line for line in commands), commands)
+        for line in dict.fromkeys(commands):
+            self.pasted(line)
+        compared = {one["method"].split(",temperature")[0]: one for one in json.loads(self.pasted(told["check"].replace("ripplenotch ", "", 1) + " --json"))["methods"]}
+        for name in told["take"], told["runner_up"]:
+            self.assertAlmostEqual(compared[name]["ripple_rms_nm"], judged[True][name]["ripple_rms_nm"], places=8)
+
+    def test_recommend_for_code_judges_what_the_code_can_do(self):
+        self.write(lambda k: 30 + 8 * math.sin(k / 700))
+        done = run("recommend", self.log, *GEAR, *self.COLUMN, "--target", "c-header", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = json.loads(done.stdout)
+        methods = [one["method"] for one in told["methods"]]
+        self.assertIn("map,map=map.json", methods)  # the map's code takes each row's temperature
+        self.assertNotIn("oscillator,map=map.json", methods)  # the oscillator's has one for good
+        self.assertRegex(",".join(methods), r"oscillator,map=map.json,temperature=\d\d\.\d,")
+        for line in told["take_commands"]:
+            self.pasted(line.replace("ripplenotch ", "", 1))
+
+    def test_recommend_says_when_the_temperature_says_nothing(self):
+        self.write((20, 40), grows=0.0)
+        done = run("recommend", self.log, *GEAR, *self.COLUMN)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("a map by temperature: 'drive_degc' foretells nothing of this ripple", done.stdout)
+        refused = run("recommend", self.log, *GEAR, "--temperature", "nix")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("has no column 'nix'", refused.stderr)
+
+    def pasted(self, line):
+        words = shlex.split(line)
+        done = subprocess.run([TOOL, *words, *([] if words[0] == "compare" else ["--force"])], capture_output=True, text=True, timeout=120, cwd=self.folder,
+                              stdin=subprocess.DEVNULL)
+        self.assertEqual(done.returncode, 0, f"{line}: {done.stderr}")
+        return done.stdout
 
 
 if __name__ == "__main__":

@@ -160,14 +160,21 @@ class Honest(Case):
         self.assertIn("Nothing to take", told["verdict"])
 
     def test_a_short_log_is_no_ground(self):
-        write_log(self.folder / "short.csv", seconds=1.2)
-        self.assertEqual(self.recommended(log="short.csv")["finding"], "cannot-tell")
-        self.recommended("--require-conclusive", log="short.csv", code=5)
+        """Fewer windows than it takes are no ground, and what they say of orders and methods is no table, either."""
+        for seconds, windows in (1.2, 1), (2.4, 2):
+            write_log(self.folder / "short.csv", seconds=seconds)
+            told = self.recommended(log="short.csv")
+            self.assertEqual((told["finding"], told["windows"]), ("cannot-tell", windows))
+            self.assertEqual((told["orders"], told["methods"], told["left_out"]), ([], [], []))
+            self.recommended("--require-conclusive", log="short.csv", code=5)
+            text = self.run_tool("recommend", "short.csv", *GEAR).stdout
+            self.assertTrue(text.startswith("Cannot tell: "), text)
+            self.assertEqual([part.split("\n")[0] for part in text.split("\n\n")[1:]], ["Assumed:"])
 
     def test_a_joint_at_rest_is_no_ground(self):
         write_log(self.folder / "rest.csv", seconds=5, speed=0.0)
         told = self.recommended(log="rest.csv")
-        self.assertEqual(told["finding"], "cannot-tell")
+        self.assertEqual((told["finding"], told["windows"], told["orders"], told["left_out"]), ("cannot-tell", 0, [], []))
         self.assertRegex(told["verdict"], "^Cannot tell: nothing can be judged on this log")
 
     def test_a_gear_that_nobody_states_is_found_in_the_first_part(self):

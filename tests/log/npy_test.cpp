@@ -60,6 +60,27 @@ TEST_CASE("a plain array is taken by place, with a warning, or as told", "[log]"
     CHECK(log.trace.position_deg[1] == 0.01);
 }
 
+TEST_CASE("an array whose unit is looked for far ahead still comes in small blocks", "[log]") {
+    constexpr std::size_t rows = 400'000, largest_block = std::size_t{1} << 18;  // 9.6 MB
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < rows; ++k)
+        numbers.insert(numbers.end(), {0.001 * static_cast<double>(k), 50.0, static_cast<double>(k)});
+    const std::string file =
+        make_npy_header("'<f8'", std::to_string(rows) + ", 3", false) +
+        std::string(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+    const auto reader = open_log(in_memory(file), {});
+    RowBlock block;
+    std::size_t row = 0;
+    while (reader->next(block)) {
+        CHECK(block.bytes.size() <= largest_block);
+        for (const double torque : block.joints[0].torque_nm)
+            if (torque != static_cast<double>(row++)) FAIL("row " << row - 1 << " has " << torque);
+    }
+    CHECK(row == rows);
+    CHECK_THAT(complaint(file + "abc"), Contains("more bytes after the 400000 rows"));
+    CHECK_THAT(complaint(file.substr(0, file.size() - 1)), Contains("a part of one"));
+}
+
 TEST_CASE("an array in Fortran order, or with a row a signal, is the same log", "[log]") {
     const Log plain = read_text(reference("plain_f8.npy"));
     const Log fortran = read_text(reference("plain_fortran.npy"));

@@ -52,9 +52,9 @@ struct Recommendation {
     RecommendationFinding finding = RecommendationFinding::cannot_tell;
     std::string why;  ///< of no_ripple and cannot_tell: a sentence
     RecommendationLimits limits;
-    std::vector<OrderInLog> orders;
-    std::size_t windows = 0;        ///< that the methods were measured in
-    double torque_rate_nm_s = 0.0;  ///< at which the log's torque moves from motor turn to motor turn, rms
+    std::vector<OrderInLog> orders;  ///< empty where nothing can be told
+    std::size_t windows = 0;         ///< that the methods were measured in
+    double torque_rate_nm_s = 0.0;   ///< at which the log's torque moves from motor turn to motor turn, rms
     std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
 
     /// The one to take, or the nearest; null without methods.

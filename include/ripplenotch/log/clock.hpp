@@ -77,7 +77,6 @@ class Clock {
     std::span<const RunPart> add(std::span<const double> time_s);
     [[nodiscard]] ClockFacts facts() const;
     [[nodiscard]] Hertz nominal_rate() const { return facts_.nominal_rate; }
-    [[nodiscard]] double gap_s() const { return limit_s_; }  ///< a longer step is a gap
 
     /// Throws DataError with ClockFacts::refusal, where there is one.
     void require() const;

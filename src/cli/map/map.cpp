@@ -17,6 +17,7 @@
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/map_figure.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
+#include "ripplenotch/core/version.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/filter/warm_map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
@@ -54,10 +55,7 @@ Read read_logs(const Request& request, const GearAccount& gear, Provenance& prov
                 raise<UsageError>("--temperature: standard input cannot be read twice; name a file");
             read.temperatures_degc.push_back(
                 side_column(path, *request.temperature, log.trace.joint, options, most));
-            if (read.temperatures_degc.back().size() != log.trace.size())
-                raise<DataError>("{}: column '{}' has {} numbers at {} rows of the motion", path,
-                                 *request.temperature, read.temperatures_degc.back().size(),
-                                 log.trace.size());
+            require_beside(read.temperatures_degc.back(), log.trace, path, *request.temperature);
         }
         say_layout(request.common, log.layout);
         say_warnings(request.common, log.recording.warnings);
@@ -141,15 +139,30 @@ void check_each(const Request& request) {
     };
     if (request.common.output != "-" || request.common.json) require_joint("-o", request.common.output);
     if (request.plot.path) require_joint("--plot", *request.plot.path);
+    if (!request.gear.joint_file && !request.gear.ratio) raise_no_gear("map");
 }
 
-// Each joint of the first log by itself, with files of its own.
+// A joint that has no map is no reason to keep those of the others back.
+ExitCode run_or_complain(const Request& request, const std::string& command_line) {
+    try {
+        return run_one(request, command_line);
+    } catch (const MemoryError&) {
+        throw;
+    } catch (const Error& error) {
+        talk(fmt::format("{} map: joint {}: {}", tool_name, *request.log.joint, error.what()));
+        return error.code();
+    }
+}
+
+// Each joint of the first log by itself, with files of its own. The exit code is that of the first joint that
+// failed; where none did, what the maps come to.
 ExitCode run_each(const Request& request, const std::string& command_line) {
     constexpr std::size_t for_names = 4096;  // rows
     check_each(request);
     ReadOptions options = request.log.resolve();
     options.takes_motor_units = true;
-    ExitCode worst = ExitCode::done;
+    ExitCode maps = ExitCode::done;
+    std::optional<ExitCode> failed;
     for (const Log& log : read_joints_in_part(request.logs.front(), options, for_names)) {
         Request one = request;
         const std::string& joint = log.trace.joint;
@@ -158,9 +171,13 @@ ExitCode run_each(const Request& request, const std::string& command_line) {
         one.common.output = with_joint(request.common.output, joint);
         if (request.plot.path) one.plot.path = with_joint(*request.plot.path, joint);
         if (request.gear.joint_file) one.gear.joint_file = with_joint(*request.gear.joint_file, joint);
-        worst = std::max(worst, run_one(one, command_line));
+        const ExitCode code = run_or_complain(one, command_line);
+        if (code == ExitCode::done || code == ExitCode::inconclusive)
+            maps = std::max(maps, code);
+        else if (!failed)
+            failed = code;
     }
-    return worst;
+    return failed.value_or(maps);
 }
 
 ExitCode run(const Request& request, const std::string& command_line) {

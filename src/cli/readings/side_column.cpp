@@ -42,11 +42,6 @@ std::string joint_of(const RippleMap& map, const ReadOptions& read) {
     return read.joint.value_or(names_joint(map.temperature_column) ? map.joint : "");
 }
 
-bool follows_rows(const Contender& method) {
-    return method.map != nullptr && method.map->form.by_temperature &&
-           method.settings.has("temperature-of") && method.settings.text("temperature-of") == "rows";
-}
-
 ReadOptions held(ReadOptions read) {
     read.hold_bad_values = true;
     return read;
@@ -64,11 +59,35 @@ std::vector<double> side_column(const std::string& path, std::string column, con
     return read_log_in_part(path, beside(column, joint, std::move(read)), most_rows).trace.torque_nm;
 }
 
+void require_beside(const std::vector<double>& values, const Trace& motion, const std::string& path,
+                    const std::string& column) {
+    if (values.size() != motion.size())
+        raise<DataError>("{}: column '{}' has {} numbers at {} rows of the motion", path, column,
+                         values.size(), motion.size());
+}
+
 double mean_of_side_column(const std::string& path, const std::string& column, const std::string& joint,
                            const ReadOptions& read, std::size_t most_rows) {
     const std::vector<double> values = side_column(path, column, joint, read, most_rows);
     return std::accumulate(values.begin(), values.end(), 0.0) /
            static_cast<double>(std::max<std::size_t>(values.size(), 1));
+}
+
+std::vector<double> held_side_column(const std::string& path, std::string column, const std::string& joint,
+                                     const ReadOptions& read, std::vector<std::string>& notes) {
+    Log side = read_log_in_part(path, held(beside(column, joint, read)));
+    if (side.held_bad_values > 0) notes.push_back(held_in_words(path, column, side.held_bad_values));
+    return std::move(side.trace.torque_nm);
+}
+
+std::string at_rows_temperature(const std::string& method, double degc) {
+    return fmt::format("{},temperature={},temperature-of=rows", method,
+                       shortest(std::round(1000.0 * degc) / 1000.0));
+}
+
+bool follows_temperature(const Contender& method) {
+    return method.map != nullptr && method.map->form.by_temperature &&
+           method.settings.has("temperature-of") && method.settings.text("temperature-of") == "rows";
 }
 
 std::string at_log_temperature(const std::string& method, const std::string& log, const ReadOptions& read) {
@@ -86,8 +105,7 @@ std::string at_log_temperature(const std::string& method, const std::string& log
             spec.name, path, column, remedy);
     try {
         const double degc = mean_of_side_column(log, column, joint_of(map, read), held(read));
-        return fmt::format("{},temperature={},temperature-of=rows", method,
-                           shortest(std::round(1000.0 * degc) / 1000.0));
+        return at_rows_temperature(method, degc);
     } catch (const UsageError&) {
         raise<DataError>("{}: read no column '{}', expected the temperature that {} depends on; {}", log,
                          column, path, remedy);
@@ -124,7 +142,7 @@ std::vector<std::string> FollowedRows::notes() const {
 
 std::unique_ptr<FollowedRows> followed_rows(const Contender& method, const std::string& log,
                                             const ReadOptions& read) {
-    if (!follows_rows(method)) return nullptr;
+    if (!follows_temperature(method)) return nullptr;
     std::string column = method.map->temperature_column;
     const ReadOptions side = held(beside(column, joint_of(*method.map, read), read));
     return std::make_unique<FollowedRows>(log, column, side);
@@ -132,11 +150,8 @@ std::unique_ptr<FollowedRows> followed_rows(const Contender& method, const std::
 
 std::vector<double> followed_values(const Contender& method, const std::string& log, const ReadOptions& read,
                                     std::vector<std::string>& notes) {
-    if (!follows_rows(method)) return {};
-    std::string column = method.map->temperature_column;
-    Log side = read_log_in_part(log, held(beside(column, joint_of(*method.map, read), read)));
-    if (side.held_bad_values > 0) notes.push_back(held_in_words(log, column, side.held_bad_values));
-    return std::move(side.trace.torque_nm);
+    if (!follows_temperature(method)) return {};
+    return held_side_column(log, method.map->temperature_column, joint_of(*method.map, read), read, notes);
 }
 
 }  // namespace ripplenotch

@@ -19,10 +19,25 @@ namespace ripplenotch {
 [[nodiscard]] std::vector<double> side_column(const std::string& path, std::string column,
                                               const std::string& joint, ReadOptions read,
                                               std::size_t most_rows = most_rows_held);
+/// Throws DataError where they are not as many as the rows of the motion beside which they stand.
+void require_beside(const std::vector<double>& values, const Trace& motion, const std::string& path,
+                    const std::string& column);
 /// Their mean.
 [[nodiscard]] double mean_of_side_column(const std::string& path, const std::string& column,
                                          const std::string& joint, const ReadOptions& read,
                                          std::size_t most_rows = most_rows_held);
+
+/// The same for a method that follows the column: a cell without a number is the one before it, and `notes`
+/// gets one sentence about such cells, if there were any.
+[[nodiscard]] std::vector<double> held_side_column(const std::string& path, std::string column,
+                                                   const std::string& joint, const ReadOptions& read,
+                                                   std::vector<std::string>& notes);
+
+/// A method whose map depends on the temperature, as it is on a log whose rows tell theirs; `degc` is their
+/// mean.
+[[nodiscard]] std::string at_rows_temperature(const std::string& method, double degc);
+/// Whether this is such a method.
+[[nodiscard]] bool follows_temperature(const Contender& method);
 
 /// A method as --method takes it, with the temperature of this log behind it where its map depends on one and
 /// the text states none: the mean of the column that the map was made by, and the word to follow that column

@@ -7,14 +7,17 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "cli/gear/chosen_method.hpp"
+#include "cli/options/shell_word.hpp"
+#include "cli/readings/side_column.hpp"
 #include "cli/recommend/pasted.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
-#include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/filter/map_keys.hpp"
+#include "ripplenotch/filter/warm_map_fit.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -32,6 +35,11 @@ constexpr std::array oscillator_settings = {"", ",output=minus-ripple", ",memory
 constexpr std::array mapped_settings = {"", ",output=minus-ripple"};
 constexpr std::array table_qs = {std::pair{"table.json", 0.25}, std::pair{"table_narrow.json", 1.0}};
 constexpr std::array low_pass_shares = {0.5, 0.25, 0.1};  ///< of the lowest line at the median speed
+
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) /
+           static_cast<double>(std::max<std::size_t>(values.size(), 1));
+}
 
 double three_digits(double value) { return *parse_number(fmt::format("{:.3g}", value)); }
 
@@ -86,6 +94,31 @@ class Maker {
         take(choose_method(text, std::nullopt, request_.choice, maps));
     }
 
+    // filter and compare take the temperature from the log's own column, so that no text has to state it; the
+    // oscillator's code has one for good.
+    void add_with(const RippleMap& map, const std::string& text, const MapSource& maps = {}) {
+        if (!map.form.by_temperature) return add(text, maps);
+        const SidesOfLog& warmth = *request_.temperature;
+        if (!maps || (request_.target && text.starts_with("oscillator")))
+            return add(fmt::format("{},temperature={:.1f}", text, mean(warmth.train_degc)), maps);
+        Contender contender = choose_method(at_rows_temperature(text, mean(warmth.judge_degc)), std::nullopt,
+                                            request_.choice, maps);
+        contender.text = text;
+        take(std::move(contender));
+    }
+
+    MapFit fitted() {
+        std::vector<std::vector<double>> degc;
+        if (request_.temperature) degc.push_back(request_.temperature->train_degc);
+        MapFit fit = fit_warm_ripple_map({&view_, 1}, request_.gear, 0.0, degc);
+        fit.map.joint = request_.train.trace.joint;
+        fit.map.temperature_column = request_.temperature ? request_.temperature->column : "";
+        if (request_.temperature && !fit.map.orders.empty() && !fit.map.form.by_temperature)
+            leave_out(fmt::format("a map by temperature: '{}' foretells nothing of this ripple",
+                                  request_.temperature->column));
+        return fit;
+    }
+
     double line_hz(std::size_t order, double speed_deg_s) const {
         return ripple_frequency(request_.gear.orders[order], request_.gear.ratio, DegPerSec(speed_deg_s))
             .value();
@@ -93,8 +126,7 @@ class Maker {
 
     // What a method reads is what stands in the file, not what was fitted.
     void add_mapped() {
-        MapFit fit = fit_ripple_map({&view_, 1}, request_.gear);
-        fit.map.joint = request_.train.trace.joint;
+        const MapFit fit = fitted();
         if (fit.map.orders.empty()) {
             leave_out("map and oscillator,map=: " + map_verdict(fit));
             return;
@@ -107,16 +139,18 @@ class Maker {
         if (const auto held = request_.target ? request_.target->held(map) : std::nullopt) {
             std::string text = "map";
             for (const auto& [key, value] : map_as_keys(*held)) text += "," + key + "=" + value;
-            add(text);
+            add_with(*held, text);
         } else {
             const auto source = [&map](const std::string&) { return map; };
-            add(fmt::format("map,map={}", map_file), source);
+            add_with(map, fmt::format("map,map={}", map_file), source);
             for (const char* const settings : mapped_settings)
-                add(fmt::format("oscillator,map={}{}", map_file, settings), source);
+                add_with(map, fmt::format("oscillator,map={}{}", map_file, settings), source);
         }
+        const std::string column =
+            request_.temperature ? " --temperature " + shell_quoted(request_.temperature->column) : "";
         made_.files.push_back(
-            {std::string(map_file), fmt::format("ripplenotch map {}{} -o {}", request_.train_words,
-                                                gear_words(request_.gear), map_file)});
+            {std::string(map_file), fmt::format("ripplenotch map {}{}{} -o {}", request_.train_words,
+                                                gear_words(request_.gear), column, map_file)});
     }
 
     void add_switching(const std::string& file, double q) {

@@ -11,7 +11,9 @@
 #include "cli/options/gates.hpp"
 #include "cli/options/shell_word.hpp"
 #include "cli/readings/readings.hpp"
+#include "cli/readings/side_column.hpp"
 #include "cli/recommend/candidates.hpp"
+#include "cli/recommend/command_lines.hpp"
 #include "cli/recommend/pasted.hpp"
 #include "cli/recommend/recommend_text.hpp"
 #include "cli/talk.hpp"
@@ -27,7 +29,7 @@ struct Request {
     CommonOptions common;
     LogOptions log_options;
     std::string log;
-    std::optional<std::string> target;
+    std::optional<std::string> target, temperature;
     GearOptions gear;
     Gates limits;
     double train_percent = 60.0;
@@ -38,6 +40,7 @@ struct Request {
 struct Parts {
     Log whole, train, judge;
     LogOptions train_options, judge_options;
+    std::optional<SidesOfLog> temperature;
 };
 
 void check(const Request& request) {
@@ -76,6 +79,21 @@ Parts read_parts(const Request& request, const std::optional<GearAccount>& gear,
     parts.train = read_log_in_part(request.log, read_options(parts.train_options, gear));
     parts.judge = read_log_in_part(request.log, read_options(parts.judge_options, gear));
     return parts;
+}
+
+// The joint's temperature beside the rows of both parts, as map and filter read it.
+void read_temperature(const Request& request, const std::optional<GearAccount>& gear, Parts& parts) {
+    if (!request.temperature) return;
+    const std::string& joint = parts.whole.trace.joint;
+    std::vector<std::string> notes;
+    parts.temperature = SidesOfLog{
+        *request.temperature,
+        side_column(request.log, *request.temperature, joint, read_options(parts.train_options, gear)),
+        held_side_column(request.log, *request.temperature, joint, read_options(parts.judge_options, gear),
+                         notes)};
+    say_warnings(request.common, notes);
+    require_beside(parts.temperature->train_degc, parts.train.trace, request.log, *request.temperature);
+    require_beside(parts.temperature->judge_degc, parts.judge.trace, request.log, *request.temperature);
 }
 
 // The gear that the first part of the log shows; empty, with the reason told, where it shows none.
@@ -125,52 +143,8 @@ void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation&
     found.why =
         fmt::format("there is ripple {}, too; {} settles it", others, settling_options({&parts.whole, 1}));
     found.methods.clear();
+    found.orders.clear();  // of the one reading alone
 }
-
-class Commands {
-  public:
-    Commands(const Request& request, const Parts& parts, const TriedMethods& candidates,
-             const std::optional<TargetChoice>& target, const GearAccount& gear)
-        : request_(request), parts_(parts), candidates_(candidates), target_(target), gear_(gear) {}
-
-    /// What makes use of a method, one command after the other.
-    [[nodiscard]] std::vector<std::string> of(const MethodFigures& figures) const {
-        const auto contender = std::find_if(candidates_.contenders.begin(), candidates_.contenders.end(),
-                                            [&](const Contender& one) { return one.text == figures.method; });
-        std::vector<std::string> lines;
-        if (contender->method->part == MethodPart::control) return lines;
-        for (const MadeFile& file : candidates_.files) {
-            const auto& files = contender->files;
-            if (std::find(files.begin(), files.end(), file.name) != files.end())
-                lines.push_back(file.command);
-        }
-        lines.push_back(fmt::format("ripplenotch filter {}{} --method {} -o {}", shell_quoted(request_.log),
-                                    log_words(request_.log_options), shell_quoted(figures.method),
-                                    filtered_name(request_.log)));
-        if (!target_) return lines;
-        // A target that does not hold the whole map is given the map all the same.
-        if (contender->method->name == "map" && contender->files.empty() && !candidates_.files.empty())
-            lines.insert(lines.begin(), candidates_.files.front().command);
-        lines.push_back(target_->command(*contender, parts_.judge.recording.clock.nominal_rate));
-        return lines;
-    }
-
-    /// Measures methods as they were measured here.
-    [[nodiscard]] std::string check(const std::vector<const JudgedMethod*>& methods) const {
-        std::string line = fmt::format("ripplenotch compare {}{}{}", shell_quoted(request_.log),
-                                       log_words(parts_.judge_options), gear_words(gear_));
-        for (const JudgedMethod* method : methods)
-            if (method != nullptr) line += " --method " + shell_quoted(method->figures.method);
-        return line;
-    }
-
-  private:
-    const Request& request_;
-    const Parts& parts_;
-    const TriedMethods& candidates_;
-    const std::optional<TargetChoice>& target_;
-    const GearAccount& gear_;
-};
 
 std::vector<std::string> assumptions(const Request& request, const Parts& parts, const GearAccount& gear,
                                      bool stated) {
@@ -188,18 +162,30 @@ std::vector<std::string> assumptions(const Request& request, const Parts& parts,
     return all;
 }
 
+// Those that follow the temperature beside the log's rows are given it.
+Recommendation judged_at(const std::vector<Contender>& contenders, const Parts& parts,
+                         const GearAccount& gear, const RecommendationLimits& limits) {
+    ComparedLog log{parts.judge.trace.view()};
+    log.trace.sample_rate = parts.judge.recording.clock.nominal_rate;
+    for (const Contender& contender : contenders)
+        log.temperatures_degc.push_back(follows_temperature(contender)
+                                            ? std::span<const double>(parts.temperature->judge_degc)
+                                            : std::span<const double>());
+    return recommend(contenders, log, gear, limits);
+}
+
 // A map that does not reach as far as the judged part of the log moves is refused there; the others are
 // judged without it.
-Recommendation judged_methods(TriedMethods& candidates, const ComparedLog& log, const GearAccount& gear,
+Recommendation judged_methods(TriedMethods& candidates, const Parts& parts, const GearAccount& gear,
                               const RecommendationLimits& limits) {
     try {
-        return recommend(candidates.contenders, log, gear, limits);
+        return judged_at(candidates.contenders, parts, gear, limits);
     } catch (const DataError& error) {
         if (std::erase_if(candidates.contenders, [](const Contender& one) { return one.map != nullptr; }) ==
             0)
             throw;
         candidates.left_out.emplace_back(error.what());
-        return recommend(candidates.contenders, log, gear, limits);
+        return judged_at(candidates.contenders, parts, gear, limits);
     }
 }
 
@@ -208,7 +194,8 @@ RecommendationReport report_of(const Request& request, Provenance& provenance) {
     report.target = request.target.value_or("");
     const auto target = request.target ? std::optional(find_any_target(*request.target)) : std::nullopt;
     const GearChoice stated(request.gear);
-    const Parts parts = read_parts(request, stated.of(), report.split_s, provenance);
+    Parts parts = read_parts(request, stated.of(), report.split_s, provenance);
+    read_temperature(request, stated.of(), parts);
     if (stated.joint()) provenance.inputs.push_back(input_record(stated.joint()->path));
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db};
@@ -222,18 +209,18 @@ RecommendationReport report_of(const Request& request, Provenance& provenance) {
     report.gear = choice.of();
     if (!stated.of()) report.gear->source = "identify, on the log's first part";
     say(request.common, gear_in_words(*report.gear));
-    ComparedLog judged{parts.judge.trace.view()};
-    judged.trace.sample_rate = parts.judge.recording.clock.nominal_rate;
     TriedMethods candidates =
         candidates_for({parts.train, shell_quoted(request.log) + log_words(parts.train_options), choice,
-                        *report.gear, request.offline, target});
-    report.found = judged_methods(candidates, judged, *report.gear, report.found.limits);
-    report.left_out = candidates.left_out;
+                        *report.gear, request.offline, target, parts.temperature});
+    report.found = judged_methods(candidates, parts, *report.gear, report.found.limits);
     doubt_readings(parts, *report.gear, report.found);
     report.assumed = assumptions(request, parts, *report.gear, stated.of().has_value());
     report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;
+    // Where nothing can be told, nothing was tried: no list of what was not.
+    if (report.conclusive) report.left_out = candidates.left_out;
     if (report.found.methods.empty()) return report;
-    const Commands commands(request, parts, candidates, target, *report.gear);
+    const CommandLines commands({request.log, request.log_options, parts.judge_options,
+                                 parts.judge.recording.clock.nominal_rate, candidates, target, *report.gear});
     const JudgedMethod* const next = report.found.runner_up();
     report.take = commands.of(report.found.taken()->figures);
     if (next != nullptr) report.runner_up = commands.of(next->figures);
@@ -264,6 +251,9 @@ std::function<ExitCode()> attach(Options& options) {
                  "only methods that this export target holds; see docs/export");
     options.flag("--offline", request->offline,
                  "the log is filtered afterwards: methods that look at all of it first count, too");
+    options.text("--temperature", request->temperature, "COLUMN",
+                 "the joint's temperature, for the map: a column in degrees Celsius, {joint} in it for a "
+                 "joint's name");
     options.number("--train", request->train_percent, Dimension::none,
                    "per cent of the log that methods learn from; they are judged on the rest");
     options.flag("--require-conclusive", request->require_conclusive,

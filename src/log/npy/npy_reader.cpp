@@ -101,6 +101,18 @@ bool NpyReader::next(RowBlock& block) {
     return true;
 }
 
+// Of what was read ahead, no more than `most`: how the log is written may have been looked for in 8 MiB.
+std::size_t NpyReader::unload(std::string& bytes, std::size_t most) {
+    const std::size_t count = std::min(carry_.size() - carried_, most);
+    if (bytes.size() < count) bytes.resize(count);
+    std::copy_n(carry_.data() + carried_, count, bytes.data());
+    carried_ += count;
+    if (carried_ < carry_.size()) return count;
+    carry_ = {};
+    carried_ = 0;
+    return count;
+}
+
 // Whole records into block.bytes, the rest into carry_. The block's old bytes and numbers are read over: what
 // is made longer is filled first.
 bool NpyReader::fetch(RowBlock& block) {
@@ -108,10 +120,8 @@ bool NpyReader::fetch(RowBlock& block) {
     block.joints.resize(1 + layout_.others.size());
     std::string& bytes = block.bytes;
     const std::size_t size = header_.record_size, left = header_.rows - fetched_;
-    std::size_t have = carry_.size();
-    if (bytes.size() < have) bytes.resize(have);
-    std::copy(carry_.begin(), carry_.end(), bytes.begin());
-    carry_.clear();
+    const std::size_t wanted = std::min(left, std::max<std::size_t>(1, piece_size / size));
+    std::size_t have = unload(bytes, std::max<std::size_t>(1, wanted * size));
     if (left == 0) {
         if (have == 0) have = read_behind(bytes, have, 1);
         if (have > 0) {
@@ -122,7 +132,6 @@ bool NpyReader::fetch(RowBlock& block) {
         block.clear();
         return false;
     }
-    const std::size_t wanted = std::min(left, std::max<std::size_t>(1, piece_size / size));
     if (have < size) have = read_behind(bytes, have, wanted * size);
     const std::size_t rows = std::min(left, have / size);
     if (rows == 0 && endless_) {
@@ -135,7 +144,7 @@ bool NpyReader::fetch(RowBlock& block) {
             "{}: read {} rows and a part of one, expected {} rows; the file is cut off, save the array again",
             source_->name(), fetched_, header_.rows);
     }
-    carry_.assign(bytes, rows * size, have - rows * size);
+    if (have > rows * size) carry_.assign(bytes, rows * size, have - rows * size);
     bytes.resize(rows * size);
     fetched_ += rows;
     return true;

@@ -50,6 +50,7 @@ class NpyReader : public LogReader {
     bool read_column(const char* records, const WantedColumn& wanted, std::span<double> numbers) const;
     void read_up_to(std::string& bytes, std::size_t size);
     std::size_t read_behind(std::string& bytes, std::size_t have, std::size_t size);
+    std::size_t unload(std::string& bytes, std::size_t most);
     void plan_columns(const std::vector<std::string>& names);
     bool read_columns(RowBlock& block) const;
     [[nodiscard]] bool continues(const RowBlock& block) const;
@@ -63,6 +64,7 @@ class NpyReader : public LogReader {
     RecordTable table_;  ///< of records without a head
     Layout layout_;
     std::string head_, carry_;
+    std::size_t carried_ = 0;  ///< of carry_, into blocks
     bool hold_bad_values_ = false;
     bool endless_ = false;  ///< the end of the bytes is the end of the rows
     std::size_t fetched_ = 0, rows_ = 0;

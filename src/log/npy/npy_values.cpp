@@ -45,6 +45,9 @@ double NpyReader::value_at(const char* record, const WantedColumn& wanted) const
 MotionSample NpyReader::motion_sample(const MotionPlaces& places) const {
     MotionSample sample;
     const std::size_t rows = std::min(header_.rows, carry_.size() / header_.record_size);
+    sample.time.reserve(rows);
+    if (places.velocity) sample.velocity.reserve(rows);
+    if (places.position) sample.position.reserve(rows);
     for (std::size_t r = 0; r < rows; ++r) {
         const char* const record = carry_.data() + r * header_.record_size;
         sample.time.push_back(places.layout.chosen.time ? time_at(record, places.layout)
