@@ -96,6 +96,15 @@ TEST_CASE("a log that the careful and the quick way once took differently", "[lo
         fuzz::options_of(1));
 }
 
+// Found by the same target: "sep=" and a carriage return stated the line's own end as the separator.
+TEST_CASE("a line's end is no separator", "[log]") {
+    check_every_way("SEP=\r\r\n0\r\r\n0.0EP\"0\r\r\n0.0EP=\r\r\n0\r\r\n" + std::string(25, '\xff') +
+                        "0.1c=\r\r\n0\r\n\r0.1cur\r0",
+                    fuzz::options_of(13));
+    CHECK(fuzz::reading("sep=\r\r\ntime_s\rvelocity_deg_s\n0\r60\n0.001\r60\n", fuzz::options_of(1), 1000)
+              .back() != '|');
+}
+
 TEST_CASE("mutated logs read the same way by vectors, plainly, carefully and in pieces", "[log]") {
     constexpr std::size_t whole = std::string::npos;
     std::mt19937 random(20261122);

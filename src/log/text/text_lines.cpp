@@ -51,13 +51,17 @@ std::vector<TextLine> lines_of(std::string_view bytes, bool whole, char line_end
     return lines;
 }
 
+// No control character, least of all a line's end, and nothing that a number or a name may have.
+bool may_separate(char c) { return std::string_view(",;\t |").find(c) != std::string_view::npos; }
+
 // "sep=;" or "sep=\t"
 std::optional<char> stated_delimiter(std::string_view line) {
     if (line.size() > 1 && line.front() == '"' && line.back() == '"') line = line.substr(1, line.size() - 2);
     const std::string_view value =
         line.substr(0, 4) == "sep=" || line.substr(0, 4) == "SEP=" ? line.substr(4) : "";
     if (value == "\\t") return '\t';
-    return value.size() == 1 ? std::optional<char>(value.front()) : std::nullopt;
+    return value.size() == 1 && may_separate(value.front()) ? std::optional<char>(value.front())
+                                                            : std::nullopt;
 }
 
 }  // namespace
