@@ -115,7 +115,7 @@ class Maps(Case):
         self.assertIn("map needs to know the gear", done.stderr)
 
     def wide_log(self, shares):
-        """A log of one joint for each share, j1 first, which has that share of 0.8 Nm of ripple."""
+        """A log of one joint for each share, j1 first, which has that share of ripple of 0.8 and 0.3 Nm (orders 1 and 2)."""
         wide = self.folder / "wide.csv"
         with open(wide, "w") as file:
             file.write("time_s," + ",".join(f"j{j + 1}_{name}" for j in range(len(shares))
@@ -123,7 +123,7 @@ class Maps(Case):
             for t, v, position, slow, theta, noise in motion(1):
                 cells = [t]
                 for share in shares:
-                    cells += [v, slow + share * 0.8 * math.cos(theta) + noise, position]
+                    cells += [v, slow + share * (0.8 * math.cos(theta) + 0.3 * math.cos(2 * theta)) + noise, position]
                 file.write(",".join(f"{cell:.6f}" for cell in cells) + "\n")
         return wide
 
