@@ -22,7 +22,7 @@ def line(verdict, rows):
     if not names:
         return [verdict, str(len(rows)), "0", "-", "-", "-", "-", "-"]
     low, high = bars.wilson(wrong, names)
-    told = {row.get("told_wrong") for row in named}
+    told = {row["told_wrong"] for row in named if row.get("told_wrong") is not None}
     chance = told.pop() if len(told) == 1 else None  # one to a verdict; records of earlier programs have none
     return [verdict, str(len(rows)), str(names), str(wrong), f"{100 * wrong / names:.1f} %", f"{100 * low:.1f} to {100 * high:.1f} %",
             *(["-", "-"] if chance is None else [f"{chance:.1f} %", "yes" if low <= chance / 100 <= high else "**no**"])]
