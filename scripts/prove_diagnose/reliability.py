@@ -22,13 +22,20 @@ def line(verdict, rows):
     if not names:
         return [verdict, str(len(rows)), "0", "-", "-", "-", "-", "-"]
     low, high = bars.wilson(wrong, names)
-    told = {row["told_wrong"] for row in named if row.get("told_wrong") is not None}
-    chance = told.pop() if len(told) == 1 else None  # one to a verdict; records of earlier programs have none
+    told = {row.get("told_wrong") for row in named}
+    chance = told.pop() if len(told) == 1 else None
     return [verdict, str(len(rows)), str(names), str(wrong), f"{100 * wrong / names:.1f} %", f"{100 * low:.1f} to {100 * high:.1f} %",
-            *(["-", "-"] if chance is None else [f"{chance:.1f} %", "yes" if low <= chance / 100 <= high else "**no**"])]
+            *(["-", "-"] if chance is None else [f"{chance:.2g} %", "yes" if low <= chance / 100 <= high else "**no**"])]
 
 
 def lines(rows):
     counted = [row for row in rows if row["study"] in STUDIES and "named" in row and not row.get("recorded")]
-    groups = {verdict: [row for row in counted if row["verdict"] == verdict] for verdict in VERDICTS}
-    return [line(verdict, group) for verdict, group in groups.items() if group]
+    found = []
+    for verdict in VERDICTS:
+        of_verdict = [row for row in counted if row["verdict"] == verdict]
+        # Names beside a leftover come without a chance, and so did all those of earlier programs.
+        untold = [row for row in of_verdict if row["named"] and row.get("told_wrong") is None]
+        told = [row for row in of_verdict if row not in untold]
+        found += [line(verdict, told)] if told else []
+        found += [line(f"{verdict}, no chance told", untold)] if untold else []
+    return found

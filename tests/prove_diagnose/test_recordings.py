@@ -103,9 +103,11 @@ class Reliability(unittest.TestCase):
     def test_a_told_chance_within_the_interval_of_the_counted_share_is_met(self):
         row = {"study": "single", "verdict": "explained", "named": ["offset"], "false": []}
         self.assertEqual(reliability.lines([{**row, "told_wrong": 0.5}] * 100)[0][-2:], ["0.5 %", "yes"])
-        self.assertEqual(reliability.lines([{**row, "told_wrong": 5.0}] * 100)[0][-2:], ["5.0 %", "**no**"])
-        # A record of a program that told none.
-        self.assertEqual(reliability.lines([row] * 100)[0][-2:], ["-", "-"])
+        self.assertEqual(reliability.lines([{**row, "told_wrong": 5.0}] * 100)[0][-2:], ["5 %", "**no**"])
+        # Names beside a leftover have a line of their own.
+        lines = reliability.lines([{**row, "told_wrong": 0.5}] * 3 + [{**row, "told_wrong": None}] * 2)
+        self.assertEqual([line[:3] for line in lines], [["explained", "3", "3"], ["explained, no chance told", "2", "2"]])
+        self.assertEqual(lines[1][-2:], ["-", "-"])
 
 
 class Arm(unittest.TestCase):
