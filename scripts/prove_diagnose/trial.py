@@ -96,7 +96,7 @@ def diagnosed(program, case, folder, options, logs, acceptable):
     hidden = case.truth()[1]
     without = ["--without", case.without] if case.without else []
     found, seconds = tool.diagnose(program, folder, [*options, *without])
-    row = {"verdict": found["verdict"], "seconds": seconds, "samples": len(logs["train"].time_s),
+    row = {"verdict": found["verdict"], "told_wrong": found.get("wrong_percent"), "seconds": seconds, "samples": len(logs["train"].time_s),
            **score.names(case, acceptable, hidden, found, recordings.BROUGHT.get(case.recorded, ())),
            "parameters": score.parameters(hidden, found, case.seconds),
            "unexplained": len(found["unexplained"]), **laws(program, case, found, folder), "found": found}

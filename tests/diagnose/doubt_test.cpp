@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bench_fixture.hpp"
+#include "diagnose/judging/judge.hpp"
 #include "diagnose/judging/wandering.hpp"
 #include "support/catch.hpp"
 
@@ -96,6 +97,25 @@ TEST_CASE("what leaves the gap as it was, or explains one stretch alone, is tent
     evidence.elsewhere = 0.1;
     CHECK(doubted(evidence).last.rule == "doubt.least_elsewhere");
     CHECK(doubted(evidence).status == FindingStatus::tentative);
+}
+
+TEST_CASE(
+    "a torque that is largest in rows that do not count is held against what it explains in those that do") {
+    const Model truth = joint_with({"quadratic-viscous-friction,coefficient_nm_per_deg2_s2=4e-4"});
+    Case slow = case_of(plain_log(truth, 82));
+    double squares = 0.0;
+    for (std::size_t k = 0; k < slow.size(); ++k) {
+        const double v = slow.motion.velocity_deg_s[k];
+        if (std::abs(v) > 30.0) slow.use[k] = 0;
+        if (slow.use[k] != 0) squares += 16e-8 * v * v * v * v;
+    }
+    const double counted_nm = std::sqrt(squares / static_cast<double>(slow.used()));
+    const TestBench on(slow);
+    Candidate model = on.fitted(truth);
+    const auto findings = judge(on.bench, model, 3, std::vector<const Effect*>{}, {});
+    REQUIRE(findings.size() == 1);
+    CHECK(findings[0].evidence.own_nm == Approx(counted_nm).epsilon(0.05));
+    CHECK(rms(on.bench.torque_of(model.stated, 3)) > 8.0 * counted_nm);
 }
 
 TEST_CASE("beside more than it explains a finding is in doubt, and beside a leftover of its own kind") {

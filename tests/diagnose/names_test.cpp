@@ -173,3 +173,23 @@ TEST_CASE("faults that may not be named are unexplained at their samples") {
     CHECK(found.unexplained[0].rms_nm > 3.0);
     CHECK(found.unexplained[0].where.time_s.size() >= 5);
 }
+
+TEST_CASE("a name comes with the chance that it is wrong, larger where something is left") {
+    Diagnosis found;
+    found.verdict = DiagnosisVerdict::matches;
+    CHECK(!wrong_percent(found));
+    found.named = {"offset"};
+    found.verdict = DiagnosisVerdict::explained;
+    const double explained = wrong_percent(found).value_or(0.0);
+    CHECK(explained > 0.1);
+    CHECK(explained < 1.0);
+    found.verdict = DiagnosisVerdict::partly_explained;
+    CHECK(wrong_percent(found).value_or(0.0) > 3.0 * explained);
+    // Beside a leftover, or an arm that was given, the studies that it was counted in say nothing.
+    Diagnosis beside = found;
+    beside.rounds.emplace_back().out_of_fold.emplace();
+    CHECK(!wrong_percent(beside));
+    beside = found;
+    beside.given = {{"arm", 1.0, std::nullopt}};
+    CHECK(!wrong_percent(beside));
+}

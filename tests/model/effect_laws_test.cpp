@@ -66,6 +66,8 @@ TEST_CASE("effects have unique names in kebab-case, are found by them, and descr
         CHECK((effect->apply != nullptr) == !(is_motion || is_ripple));
         CHECK((!effect->chance || effect->side == Side::converter));
         CHECK((!effect->bears_load || effect->side == Side::joint));
+        CHECK((effect->restate != nullptr) == effect->stated_from.has_value());
+        if (effect->stated_from) CHECK(effect->parameters[*effect->stated_from].unit == "deg/s");
         if (effect->ripple_order) CHECK(effect->parameters[*effect->ripple_order].name == "order");
         if (effect->polar) {
             CHECK(effect->parameters[effect->polar->size].linear);

@@ -117,12 +117,38 @@ TEST_CASE("ripple that depends on speed, load, direction: gains worked by hand")
     CHECK(at_speed({one, two, "ripple-speed-dependence,gain_percent=40,exponent=1"}, 100.0) == Approx(4.2));
     CHECK(at_speed({one, two, "ripple-speed-dependence,gain_percent=40,exponent=1,order=2"}, 100.0) ==
           Approx(3.4));
+    CHECK(at_speed({one, "ripple-speed-dependence,gain_percent=40,exponent=2,from_deg_s=50"}, 50.0) ==
+          Approx(2.0));
+    CHECK(at_speed({one, "ripple-speed-dependence,gain_percent=40,exponent=2,from_deg_s=50"}, 0.0) ==
+          Approx(1.2));
+    CHECK(at_speed({one, "ripple-speed-dependence,gain_percent=100,exponent=2,from_deg_s=50"}, -100.0) ==
+          Approx(8.0));
     CHECK(at_speed(
               {one, "gravity,amplitude_nm=3,phase_deg=180", "ripple-load-dependence,gain_percent_per_nm=10"},
               0.0) == Approx(2.0 * 1.3 - 3.0));
     CHECK(at_speed({one, "ripple-direction-dependence,gain_percent=25,phase_deg=0"}, 50.0) == Approx(2.5));
     CHECK(at_speed({one, "ripple-direction-dependence,gain_percent=25,phase_deg=0"}, -50.0) == Approx(1.5));
     CHECK(at_speed({one, "ripple-direction-dependence,gain_percent=0,phase_deg=60"}, -50.0) == Approx(1.0));
+}
+
+TEST_CASE("a change of the ripple stated from another speed is the same torque with another amplitude") {
+    for (const Effect* effect : catalogue()) {
+        if (!effect->restate) continue;
+        CAPTURE(effect->name);
+        std::mt19937_64 engine(12);
+        for (const auto& [from, to] : {std::pair(0.0, 60.0), {60.0, 0.0}, {60.0, 25.0}}) {
+            auto values = random_values(*effect, engine);
+            values[*effect->stated_from] = from;
+            const auto before = predict_nm(with(base_model(), *effect, values), rich_motion());
+            const double amplitude = effect->restate(to, values);
+            CHECK(values[*effect->stated_from] == to);
+            Model after = with(base_model(), *effect, values);
+            for (Term& term : after.terms) {
+                if (term.effect->ripple_order) *term.values[term.effect->polar->size] *= amplitude;
+            }
+            CHECK(largest_difference(predict_nm(after, rich_motion()), before) < 1e-11);
+        }
+    }
 }
 
 TEST_CASE("modulation splits a line into three") {

@@ -93,12 +93,21 @@ class Nulls(unittest.TestCase):
 
 class Reliability(unittest.TestCase):
     def test_names_are_counted_by_verdict_and_not_those_of_logs_that_are_parts_of_others(self):
-        rows = [{"study": study, "verdict": "explained", "named": ["offset", "lag"], "false": ["lag"] * wrong}
+        rows = [{"study": study, "verdict": "explained", "named": ["offset", "lag"], "false": ["lag"] * wrong, "told_wrong": 0.5}
                 for study, wrong in (("single", 0), ("pair", 1), ("variant", 1), ("without", 1))]
         rows += [{"study": "null", "verdict": "matches", "named": [], "false": []}]
         lines = reliability.lines(rows)
-        self.assertEqual(lines[0][:5], ["explained", "2", "4", "1", "25.0 %"])
-        self.assertEqual(lines[1], ["matches", "1", "0", "-", "-", "-"])
+        self.assertEqual(lines[0], ["explained", "2", "4", "1", "25.0 %", "4.6 to 69.9 %", "0.5 %", "**no**"])
+        self.assertEqual(lines[1], ["matches", "1", "0", "-", "-", "-", "-", "-"])
+
+    def test_a_told_chance_within_the_interval_of_the_counted_share_is_met(self):
+        row = {"study": "single", "verdict": "explained", "named": ["offset"], "false": []}
+        self.assertEqual(reliability.lines([{**row, "told_wrong": 0.5}] * 100)[0][-2:], ["0.5 %", "yes"])
+        self.assertEqual(reliability.lines([{**row, "told_wrong": 5.0}] * 100)[0][-2:], ["5 %", "**no**"])
+        # Names beside a leftover have a line of their own.
+        lines = reliability.lines([{**row, "told_wrong": 0.5}] * 3 + [{**row, "told_wrong": None}] * 2)
+        self.assertEqual([line[:3] for line in lines], [["explained", "3", "3"], ["explained, no chance told", "2", "2"]])
+        self.assertEqual(lines[1][-2:], ["-", "-"])
 
 
 class Arm(unittest.TestCase):

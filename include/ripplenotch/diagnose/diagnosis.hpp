@@ -229,6 +229,11 @@ struct Diagnosis {
     double false_alarm = 0.01;          ///< chance that a log with nothing hidden gets a name, by design
 };
 
+/// Chance in percent that one of the confirmed names is wrong, as counted over simulated logs that ended with
+/// the same verdict. Empty where nothing is named, and of names beside a leftover, which those logs do not
+/// have.
+[[nodiscard]] std::optional<double> wrong_percent(const Diagnosis& diagnosis);
+
 struct DiagnosisOptions {
     Seconds smoothing = default_smoothing;
     std::span<const std::string> without = {};  ///< names of effects that are not tried

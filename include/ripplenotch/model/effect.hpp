@@ -121,6 +121,8 @@ struct Effect {
     std::optional<std::size_t> ripple_order = std::nullopt;  ///< joint: it is a ripple term, and this
                                                              ///< parameter is its order
 
+    /// ripple: this parameter is the speed at which the ripple has the amplitude of its term
+    std::optional<std::size_t> stated_from = std::nullopt;
     /// converter: this parameter is the end of the range in Nm, so that torques near it are cut on one side
     std::optional<std::size_t> range_limit = std::nullopt;
     /// converter: detectors of a lower turn have marked what they spoiled before this one looks
@@ -138,6 +140,9 @@ struct Effect {
     /// amplitude * Re(gain * exp(i * angle)).
     void (*change_ripple)(const Situation& situation, Order order, std::span<const double> values,
                           std::span<std::complex<double>> gain) = nullptr;
+    /// ripple, with stated_from: states the values from another speed. Returns by what the amplitude of the
+    /// ripple terms it concerns has to be multiplied for the torque to be the same.
+    double (*restate)(double from_deg_s, std::span<double> values) = nullptr;
 
     /// converter, beside apply: whether a log shows this effect, and where. Every one has it: no fit sees
     /// what a converter did.

@@ -85,7 +85,10 @@ Finding finding_of(const ModelBench& bench, const Candidate& model, const Candid
     evidence.price = model.prices[term];
     evidence.share_sigma = bench.share(model, fewer);
     evidence.share_nm = evidence.share_sigma * bench.noise().rms_nm;
-    evidence.own_nm = rms(torque_nm);
+    // Of the rows that the share is of: where a resonance is largest may be what is left out.
+    std::vector<double> counted_nm;
+    for (const std::size_t k : bench.rows()) counted_nm.push_back(torque_nm[k]);
+    evidence.own_nm = rms(counted_nm);
     evidence.raw_gain = squares(bench, fewer.stated) - squares(bench, model.stated);
     evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
     finding.where = place_of(bench.looked_at(), torque_nm, finding.term, bench.rules().place);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/rms.hpp"
+#include "diagnose/search/stated_speed.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
@@ -44,13 +45,15 @@ void ModelBench::settle_on(const Model& model) {
 
 Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
                              int most_iterations, double settled) const {
-    return fitted(open, std::move(prices),
-                  {.first_guess = &first_guess,
-                   .most_iterations = most_iterations,
-                   .settled = settled,
-                   .errors = false,
-                   .weighing = &weighing_,
-                   .carriers = &carriers_});
+    Candidate found = fitted(open, std::move(prices),
+                             {.first_guess = &first_guess,
+                              .most_iterations = most_iterations,
+                              .settled = settled,
+                              .errors = false,
+                              .weighing = &weighing_,
+                              .carriers = &carriers_});
+    state_where_told(found, case_, rules_);
+    return found;
 }
 
 std::vector<double> ModelBench::torque_of(const Model& stated, std::size_t term) const {

@@ -40,7 +40,7 @@ bool is_there_already(const Term& tried, const Candidate& model) {
         for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
             if (!term.values[p]) {
                 fitted = true;
-            } else if (effect.parameters[p].left_out != LeftOut::fitted &&
+            } else if (effect.stated_from != p && effect.parameters[p].left_out != LeftOut::fitted &&
                        term.values[p] != tried.values[p]) {
                 return false;
             }

@@ -184,6 +184,7 @@ void put_diagnosis(Json& json, const Diagnosis& diagnosis, const GearAccount& ge
     if (!diagnosis.doubt.empty()) json["doubt"] = diagnosis.doubt;
     json["gear"] = gear_to_json(gear);
     json["named"] = diagnosis.named;
+    json["wrong_percent"] = six_digits(wrong_percent(diagnosis));
     json["rounds"] = Json::array();
     for (const Finding& finding : diagnosis.rounds) list_in(json, "rounds").push_back(round_json(finding));
     json["decisions"] = decisions_json(diagnosis);

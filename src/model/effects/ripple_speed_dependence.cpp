@@ -3,6 +3,7 @@
 
 #include "core/many_numbers.hpp"
 #include "model/effects.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -13,7 +14,9 @@ constexpr double tried_exponents[] = {0.5, 1.0, 2.0};
 constexpr Parameter parameters[] = {
     {.name = "gain_percent",
      .unit = "%",
-     .help = "by which the ripple is larger at 100 deg/s than at rest",
+     .help =
+         "by which the ripple is larger at 100 deg/s than at rest; with from_deg_s: which part of the ripple "
+         "at that speed is gone at rest",
      .start = 30.0,
      .lower = -1000.0,
      .upper = 1e6,
@@ -27,7 +30,14 @@ constexpr Parameter parameters[] = {
      .upper = 4.0,
      .tried = tried_exponents},
     ripple_order_parameter,
+    {.name = "from_deg_s",
+     .unit = "deg/s",
+     .help = "speed at which the ripple has the amplitude of its term; below 0.001 at rest",
+     .upper = 1e5,
+     .left_out = LeftOut::assumed},
 };
+constexpr std::size_t from_place = 3;
+constexpr double slowest_from_deg_s = 0.001;
 
 constexpr LookAlike look_alikes[] = {
     {"resonance", "its frequency is above the fastest ripple",
@@ -38,13 +48,39 @@ constexpr LookAlike look_alikes[] = {
      "the same speed with and without acceleration"},
 };
 
+bool is_from_rest(double from_deg_s) { return from_deg_s < slowest_from_deg_s; }
+
+// 1 + gain * growth, or in its other form 1 + gain * (growth - 1).
+struct Line {
+    double at_rest, growth, unit_deg_s;
+};
+
+Line line_of(std::span<const double> values) {
+    const double growth = 0.01 * values[0], from_deg_s = values[from_place];
+    if (is_from_rest(from_deg_s)) return {1.0, growth, 100.0};
+    return {1.0 - growth, growth, from_deg_s};
+}
+
 void change_ripple(const Situation& situation, Order order, std::span<const double> values,
                    std::span<std::complex<double>> gain) {
     if (!concerns(order, values[2])) return;
-    const auto speed = [&](std::size_t k) { return std::abs(situation.motion.velocity_deg_s[k]) / 100.0; };
+    const Line line = line_of(values);
+    const auto speed = [&](std::size_t k) {
+        return std::abs(situation.motion.velocity_deg_s[k]) / line.unit_deg_s;
+    };
     const auto raise = [&](std::span<double> speeds) { portable::pow(speeds, values[1], speeds); };
     with_values(gain.size(), speed, raise,
-                [&](std::size_t k, double growth) { gain[k] *= 1.0 + 0.01 * values[0] * growth; });
+                [&](std::size_t k, double grown) { gain[k] *= line.at_rest + line.growth * grown; });
+}
+
+double restate(double from_deg_s, std::span<double> values) {
+    const Line line = line_of(values);
+    const double unit_deg_s = is_from_rest(from_deg_s) ? 100.0 : from_deg_s;
+    const double growth = line.growth * portable::pow(unit_deg_s / line.unit_deg_s, values[1]);
+    const double there = is_from_rest(from_deg_s) ? line.at_rest : line.at_rest + growth;
+    values[0] = 100.0 * growth / there;
+    values[from_place] = from_deg_s;
+    return there;
 }
 
 }  // namespace
@@ -52,7 +88,9 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
 const Effect effects::ripple_speed_dependence{
     .name = "ripple-speed-dependence",
     .summary = "ripple whose size changes with the speed",
-    .equation = "ripple amplitude * (1 + gain_percent / 100 * (|v| / 100 deg/s)^exponent)",
+    .equation =
+        "ripple amplitude * (1 + gain_percent / 100 * (|v| / 100 deg/s)^exponent); with from_deg_s: "
+        "ripple amplitude * (1 + gain_percent / 100 * ((|v| / from_deg_s)^exponent - 1))",
     .symptom = "lines of the ripple in the residual that grow, or change sign, with the speed",
     .look_alikes = look_alikes,
     .source =
@@ -61,7 +99,9 @@ const Effect effects::ripple_speed_dependence{
     .side = Side::ripple,
     .domain = Domain::order,
     .parameters = parameters,
+    .stated_from = from_place,
     .change_ripple = change_ripple,
+    .restate = restate,
 };
 
 }  // namespace ripplenotch
