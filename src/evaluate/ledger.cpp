@@ -100,10 +100,9 @@ std::vector<LedgerEntry> delay_ledger(const Contender& contender, Hertz sample_r
     return ledger;
 }
 
-LongestDelay longest_delay(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
-                           DegPerSec fastest) {
-    const double high = fastest.value(), low = std::max(slowest.value(), 0.01 * high);
-    LongestDelay longest{Seconds(0.0), fastest, ""};
+LongestDelay longest_delay(const Contender& contender, Hertz sample_rate, const SpeedSpan& speeds) {
+    const double high = speeds.to.value(), low = std::max(speeds.from.value(), 0.01 * high);
+    LongestDelay longest{Seconds(0.0), speeds.to, ""};
     for (int i = 0; i < speeds_looked_at; ++i) {
         const double share = static_cast<double>(i) / (speeds_looked_at - 1);
         const double speed = high > 0.0 ? low * portable::pow(high / low, share) : 0.0;

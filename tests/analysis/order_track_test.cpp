@@ -207,6 +207,6 @@ TEST_CASE("tracks at one speed gather into one range, and ranges without rows ar
     CHECK_THAT(one.lines[0].amplitude_nm[0], WithinAbs(0.5, 1e-12));
     CHECK_THAT(one.lines[0].phase_deg[0], WithinAbs(170.0, 1e-9));
     CHECK(gather_by_speed(OrderTracks{}, DegPerSec(0.0)).speed_deg_s.empty());
-    CHECK(speed_step(0.0, 0.0) == 1.0);
-    CHECK(speed_step(0.0, 180.0) == 10.0);
+    CHECK(speed_step({DegPerSec(0.0), DegPerSec(0.0)}) == 1.0);
+    CHECK(speed_step({DegPerSec(0.0), DegPerSec(180.0)}) == 10.0);
 }

@@ -225,7 +225,7 @@ TEST_CASE("orders count by their amplitudes: a weak one may stay and saves delay
 
 TEST_CASE("stated bands keep their edges and get the Q with the least delay that holds") {
     TableSpec spec = paper_ripple();
-    spec.bands = bands_by_spacing(36_deg_s, 180_deg_s, 18_deg_s);
+    spec.bands = bands_by_spacing({36_deg_s, 180_deg_s}, 18_deg_s);
     const auto table = design_for(spec, goal(20.0, std::nullopt)).table;
     REQUIRE(table.spec().bands == spec.bands);
     for (const Band& band : table.bands()) {

@@ -51,8 +51,8 @@ struct Stretch {
 class StretchMeter {
   public:
     /// So many rows will come, with these mean values; the position's is 0 where there is none.
-    StretchMeter(std::size_t count, double mean_s, double mean_position_deg)
-        : count_(count), mean_s_(mean_s), mean_position_deg_(mean_position_deg) {}
+    StretchMeter(std::size_t count, Seconds mean_time, Degrees mean_position)
+        : count_(count), mean_s_(mean_time.value()), mean_position_deg_(mean_position.value()) {}
     void add(const TraceView& rows);
     [[nodiscard]] Stretch stretch(Hertz rate, const SteadyRule& rule = {}) const;
 

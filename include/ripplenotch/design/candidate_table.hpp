@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ripplenotch/core/biquad.hpp"
+#include "ripplenotch/core/speed_span.hpp"
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/design/notch.hpp"
 
@@ -59,7 +60,7 @@ struct TableSpec {
 };
 
 /// Bands of equal width, e.g. 18:180:18. Throws UsageError on an empty, backward, non-finite or uneven range.
-[[nodiscard]] std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(DegPerSec from, DegPerSec to,
+[[nodiscard]] std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(const SpeedSpan& speeds,
                                                                             DegPerSec spacing);
 
 /// Throws UsageError unless everything in `spec` but its bands and notches makes sense.

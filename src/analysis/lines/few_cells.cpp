@@ -43,8 +43,9 @@ std::vector<SignificantPeak> significant_peaks_of_few_cells(const PowerSpectrum&
         const double local = std::max(mean(below), mean(above));
         const double cells = static_cast<double>(around.size()) / spectrum.bins_per_cell / median_knowledge;
         if (!(local > 0.0)) continue;
-        const double chance =
-            std::min(1.0, tries * exceedance(power[k] / local, spectrum.averages_at(k), cells));
+        const double chance = std::min(1.0, tries * exceedance({.ratio = power[k] / local,
+                                                                .averages = spectrum.averages_at(k),
+                                                                .cells = cells}));
         if (chance <= false_alarm) peaks.push_back({k, local, chance});
     }
     return peaks;

@@ -93,7 +93,9 @@ bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {
         squares += piece.weight * piece.weight;
     }
     if (!(weights > 0.0)) return false;
-    return exceedance(sum / weights, weights * weights / squares, floor_cells) < recurrence_chance;
+    return exceedance(
+               {.ratio = sum / weights, .averages = weights * weights / squares, .cells = floor_cells}) <
+           recurrence_chance;
 }
 
 double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin) {

@@ -63,7 +63,7 @@ bool LineMeter::search_moments(const Piece& piece, Maximum& found) const {
 LineMeter::Maximum LineMeter::search(const Piece& piece) const {
     Maximum found;
     if (piece.even && half_s_ > 0.0 && search_moments(piece, found)) return found;
-    found.hz = refine_peak(piece.time_s, piece.value, start_hz_, bin_hz_);
+    found.hz = refine_peak(piece.time_s, piece.value, {.frequency = start_hz_, .reach = bin_hz_});
     found.sum = fourier_point(piece.time_s, piece.value, found.hz).value;
     return found;
 }

@@ -82,7 +82,9 @@ double detectable(const Stack& stack, double false_alarm) {
     const double averages = stack.averages[(stack.first + stack.averages.size()) / 2];
     const double tries = static_cast<double>(floors.size()) * stack.spacing / stack.resolution;
     double ratio = 1.0;
-    while (ratio < 1e3 && exceedance(ratio, averages, floor_cells) * tries > false_alarm) ratio *= 1.05;
+    while (ratio < 1e3 &&
+           exceedance({.ratio = ratio, .averages = averages, .cells = floor_cells}) * tries > false_alarm)
+        ratio *= 1.05;
     return median_in(floors) * std::sqrt(ratio - 1.0);
 }
 
@@ -211,7 +213,8 @@ void complete(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Riva
         line.hz_stderr = stacks.time.resolution;
     }
     line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, stacks.angle, rivals.hz);
-    line.folds = folds_of(sweeps, stacks.angle, line.order_seen, options.stack.highest_order);
+    line.folds =
+        folds_of(sweeps, stacks.angle, {.seen = line.order_seen, .highest = options.stack.highest_order});
 }
 
 void state_resolution(const Stack& angle, double least_amplitude, double false_alarm, MotionLines& found) {
@@ -278,7 +281,7 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
         found.lines.push_back(std::move(line));
         if (found.lines.size() < options.most_lines) stacks = stacked(sweeps, options);
     }
-    found.humps = stacks.time.humps(options.false_alarm, options.lowest_tone_hz);
+    found.humps = stacks.time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
     return found;
 }
 

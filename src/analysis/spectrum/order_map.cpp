@@ -162,8 +162,8 @@ SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
     const double highest = options.highest.value_or(angle ? half_rate / fastest_rate : half_rate);
     const auto bins = static_cast<std::size_t>(highest / map.spacing) + 1;
     const auto [low, high] = std::minmax_element(speeds.begin(), speeds.end());
-    map.speed_step_deg_s =
-        options.speed_step.value() > 0.0 ? options.speed_step.value() : speed_step(*low, *high);
+    map.speed_step_deg_s = options.speed_step.value() > 0.0 ? options.speed_step.value()
+                                                            : speed_step({DegPerSec(*low), DegPerSec(*high)});
 
     std::map<long long, Gathered> rows;
     for (std::size_t i = 0; i < windows.size(); ++i) {
