@@ -15,8 +15,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double slow_turn_s = 0.5;
-constexpr double stands_out = 2.0;
+constexpr double slow_turn_s = 0.5;  // by hand
+constexpr double stands_out = 2.0;   // by hand
 
 // What passes a torque unchanged, to measure the log itself by.
 const Contender& control() {

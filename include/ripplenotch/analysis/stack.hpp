@@ -45,8 +45,8 @@ struct Stack {
 };
 
 struct StackRule {
-    double lowest_order = 20.0, highest_order = 2400.0;
-    double lowest_hz = 0.5;
+    double lowest_order = 20.0, highest_order = 2400.0;  ///< by hand, per output turn
+    double lowest_hz = 0.5;                              ///< by hand
     bool few_cells = false;      ///< sweeps so short that their spectra have some ten cells
     double fewest_cycles = 4.0;  ///< per sweep: what turns less often in it is not told from the trend
 };

@@ -16,7 +16,7 @@ struct SteadyRule {
     double band_percent = 5.0;  ///< speed stays within this share of its middle value to both sides ...
     double band_deg_s = 0.0;    ///< ... or within this, whichever is wider
     double rest_percent = 1.0;  ///< of the log's highest speed: slower is standstill, whatever the band
-    Seconds at_least{1.0};
+    Seconds at_least{1.0};      ///< by hand
     Seconds smoothing{
         0.1};  ///< velocity is averaged over this time before it is judged, against sensor noise
 };
@@ -57,7 +57,7 @@ class StretchMeter {
     [[nodiscard]] Stretch stretch(Hertz rate, const SteadyRule& rule = {}) const;
 
   private:
-    static constexpr std::size_t blocks = 10;
+    static constexpr std::size_t blocks = 10;  ///< by hand: means, of which the spread is told
     [[nodiscard]] std::size_t end_of(std::size_t block) const { return count_ * (block + 1) / blocks; }
     void end_block();
     void speed_from_velocity(Stretch& stretch) const;

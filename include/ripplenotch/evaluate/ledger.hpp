@@ -43,8 +43,8 @@ struct CrossoverFigures {
 [[nodiscard]] std::vector<LedgerEntry> delay_ledger(const Contender& contender, Hertz sample_rate,
                                                     const LedgerRequest& request);
 
-/// The longest DC delay of a method, and at which speed, for |v| from `slowest` to `fastest`; a joint slower
-/// than a hundredth of `fastest` counts as standing.
+/// The longest DC delay of a method, and at which speed, for |v| in `speeds`; a joint slower than a hundredth
+/// of the fastest counts as standing.
 struct LongestDelay {
     Seconds delay;
     DegPerSec speed;

@@ -12,12 +12,12 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double decisive_nats = 5.0;
-constexpr double floor_doubt = 0.15;
-constexpr double comb_share = 0.006;  // as wide as the fit of the ratio takes its combs
-constexpr std::size_t most_samples = 20000;
-constexpr std::size_t most_folds = 40;
-constexpr double most_grid = 300.0;
+constexpr double decisive_nats = 5.0;        // by hand: odds of 150 to 1
+constexpr double floor_doubt = 0.15;         // by hand: of a gain, since the noise is not known better
+constexpr double comb_share = 0.006;         // as wide as the fit of the ratio takes its combs
+constexpr std::size_t most_samples = 20000;  // by hand: bounds the time
+constexpr std::size_t most_folds = 40;       // by hand: bounds the time
+constexpr double most_grid = 300.0;          // by hand: bounds the time
 constexpr int most_comb = 4;  // n beyond which a hinted comb is so dense that images lie on it by chance
 // How often the leading line of a drive stands at n = 1 to 4.
 constexpr std::array<double, most_comb> share_of_n{0.25, 0.55, 0.02, 0.06};

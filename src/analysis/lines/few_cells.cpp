@@ -9,9 +9,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double guard_cells = 2.0;    // a Hann line's main lobe
-constexpr double fewest_beside = 1.5;  // cells beyond the guard on each side
-constexpr double tries_per_cell = 1.6;
+constexpr double guard_cells = 2.0;        // a Hann line's main lobe
+constexpr double fewest_beside = 1.5;      // cells beyond the guard on each side
+constexpr double tries_per_cell = 1.6;     // as in line_test.cpp
 constexpr double median_knowledge = 0.48;  // of a mean's: exceedance() counts cells behind a median
 
 double mean(const std::vector<double>& values) {

@@ -13,8 +13,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double recurrence_chance = 0.01;
-constexpr double most_of_log = 0.6;
+constexpr double recurrence_chance = 0.01;  // by hand: as the false alarms allowed by default
+constexpr double most_of_log = 0.6;         // by hand: no second piece to ask
 
 double noise_at(const Stack& stack, std::size_t sweep, double place) {
     const auto bin = static_cast<std::size_t>(std::lround(std::max(0.0, place / stack.spacing)));

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double tau = 2.0 * std::numbers::pi;
 constexpr double reach_bins = 0.5;  // of the moments
-constexpr int most_rounds = 8;
-constexpr double settled = 1e-9;  // bins
+constexpr int most_rounds = 8;      // by hand
+constexpr double settled = 1e-9;    // bins
 
 /// S(x) = sum over d of (-i x)^d / d! M_d with its first two derivatives; x is 2 pi (f - start) half a piece.
 struct Point {

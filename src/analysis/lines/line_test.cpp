@@ -11,19 +11,19 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double guard_cells = 3.0;  // the main lobe of a Hann line and its first side lobe
-constexpr double near_cells = 12.0;
-constexpr double far_cells = 40.0;
+constexpr double guard_cells = 3.0;       // the main lobe of a Hann line and its first side lobe
+constexpr double near_cells = 12.0;       // by hand: from a line, for a floor that slopes
+constexpr double far_cells = 40.0;        // by hand: for a median that is known better
 constexpr double inner_from_cells = 2.0;  // noise through a lightly damped resonance is only a few cells wide
-constexpr double inner_to_cells = 5.0;
-constexpr double fewest_cells = 4.0;
+constexpr double inner_to_cells = 5.0;    // by hand
+constexpr double fewest_cells = 4.0;      // by hand
 // Maxima are looked for among correlated bins: about this many independent tries per cell. With it, white
 // noise raises a false alarm somewhat less often than allowed.
 constexpr double tries_per_cell = 1.6;
 
 /// Continued fraction of the incomplete beta function, by the modified method of Lentz.
 double beta_fraction(double x, double a, double b) {
-    constexpr double tiny = 1e-300;
+    constexpr double tiny = 1e-300;  // no division by 0, as Lentz has it
     double c = 1.0;
     double d = 1.0 - (a + b) * x / (a + 1.0);
     d = 1.0 / (std::abs(d) < tiny ? tiny : d);

@@ -14,9 +14,9 @@ namespace {
 
 // An axis must explain a line better than the other by this factor of likelihood (in nats) to own it.
 constexpr double decisive_nats = 5.0;
-constexpr double kept_share = 0.8;
-constexpr double floor_doubt = 0.15;
-constexpr double line_cells = 2.0;  // half width of a line's main lobe, in resolutions
+constexpr double kept_share = 0.8;    // by hand: of a gain, left once the other line is out
+constexpr double floor_doubt = 0.15;  // by hand: as in alias.cpp
+constexpr double line_cells = 2.0;    // half width of a line's main lobe, in resolutions
 
 struct Candidate {
     SignificantPeak peak;

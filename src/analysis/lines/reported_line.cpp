@@ -41,7 +41,7 @@ std::optional<double> phase_in_angle(std::span<const TraceView> logs, const Stea
         together += sum;
         lengths += 0.5 * seen.amplitude_nm;
     }
-    constexpr double agreement = 0.7;
+    constexpr double agreement = 0.7;  // by hand
     if (!(lengths > 0.0) || std::abs(together) < agreement * lengths) return std::nullopt;
     return portable::arg(together) * degrees_per_radian;
 }

@@ -15,12 +15,12 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_peaks = 16;  // per stretch, the clearest
-constexpr std::size_t fewest_samples = 64;
+constexpr std::size_t most_peaks = 16;      // per stretch, the clearest
+constexpr std::size_t fewest_samples = 64;  // as for a spectrum
 constexpr double same_fold_share = 0.0005;  // the same for orders beyond half the sample rate: many are tried
-constexpr double chance_of_fold = 0.01;
-constexpr double highest_folded_order = 1000.0;
-constexpr double other_speed_share = 0.02;  // speeds further apart are different ones
+constexpr double chance_of_fold = 0.01;     // by hand: as the false alarms allowed by default
+constexpr double highest_folded_order = 1000.0;  // by hand: per output turn
+constexpr double other_speed_share = 0.02;       // speeds further apart are different ones
 
 std::vector<StretchLines> measure_stretches(std::span<const TraceView> logs, const SteadyRule& rule,
                                             double false_alarm) {

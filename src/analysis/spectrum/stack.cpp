@@ -14,7 +14,7 @@ constexpr double hann_cell = 1.5;  // bins of one over the length
 constexpr double overlap_correlation =
     1.06;  // half-overlapping Hann pieces count a little less than independent ones
 
-constexpr double smeared_cells = 20.0;
+constexpr double smeared_cells = 20.0;  // by hand
 
 struct Reach {
     std::size_t first = 0, end = 0;  // bins

@@ -12,7 +12,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double ranges_wanted = 24.0;
+constexpr double ranges_wanted = 24.0;  // by hand: rows that a person reads
 constexpr double finest_share =
     0.01;  ///< of the highest speed: a steady log is not cut up by its speed noise
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -14,7 +14,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t scouted_rows = 512;  ///< that tell how the opening begins
-constexpr double alike_steps = 1.25;
+constexpr double alike_steps = 1.25;       // by hand: as a factor
 
 bool within(double a, double b, double factor) { return a <= factor * b && b <= factor * a; }
 
