@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/factorisations.hpp"
-#include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

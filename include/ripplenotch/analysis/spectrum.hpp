@@ -52,7 +52,6 @@ struct Spectrum {
     Hertz resolution;  ///< bin_width times 1.5, the noise bandwidth of a Hann window
     std::size_t pieces = 0;
     Seconds piece_duration;
-    double trend_removed_to_hz = 0.0;  ///< below, amplitudes are those of what the straight line left
 };
 
 inline constexpr std::size_t fewest_spectrum_samples = 64;  ///< by hand

@@ -7,7 +7,6 @@
 
 #include "analysis/lines/place_error.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
-#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

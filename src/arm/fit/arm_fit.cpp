@@ -9,7 +9,6 @@
 #include "arm/fit/smooth_along.hpp"
 #include "core/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 
 namespace ripplenotch {
