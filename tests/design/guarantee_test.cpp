@@ -345,6 +345,13 @@ TEST_CASE("the point that a frontier recommends is the table that the same goal 
             CHECK(point.bands == choice.table.bands().size());
             CHECK(point.delay.value() == largest_delay_s(choice.table));
             CHECK(frontier.reason == choice.reason);
+            double overshoot_percent = 0.0, settle_s = 0.0;
+            for (const Band& band : choice.table.bands()) {
+                overshoot_percent = std::max(overshoot_percent, band.overshoot_percent);
+                settle_s = std::max(settle_s, band.settle.value());
+            }
+            CHECK(point.overshoot_percent == overshoot_percent);
+            CHECK(point.settle.value() == settle_s);
         }
     }
 }
