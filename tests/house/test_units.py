@@ -47,6 +47,19 @@ def parameters(text):
     return found
 
 
+def public(code):
+    """Without what stands behind private:, to the end of the class or its next public:."""
+    lines, hidden = [], None
+    for line in code.splitlines():
+        depth = len(line) - len(line.lstrip())
+        if hidden is not None and line.strip() and (depth < hidden or (depth == hidden and line.strip() == "public:")):
+            hidden = None
+        if hidden is None and line.strip() == "private:":
+            hidden = depth
+        lines.append("" if hidden is not None else line)
+    return "\n".join(lines)
+
+
 def kind(number):
     """What -Wconversion tells apart; it says nothing of a sign."""
     if re.search(r"size_t|ptrdiff_t|64_t|long", number):
@@ -56,7 +69,7 @@ def kind(number):
 
 def swappable(header):
     """Names of the functions of a header that take two numbers of one type side by side."""
-    code = COMMENT_OR_TEXT.sub(" ", header)
+    code = public(COMMENT_OR_TEXT.sub(" ", header))
     names = []
     for name, inside in DECLARED.findall(code):
         types = [kind(found[1]) if (found := NUMBER.match(one)) else None for one in parameters(inside)]
@@ -78,11 +91,14 @@ class Swappable(unittest.TestCase):
         for text in ("void cut(double low, double high);", "Line(const double rate, double speed = 1.0) : rate_(rate) {}",
                      "int of(std::span<const double> at,\n       std::size_t first,  // where\n       std::size_t count) const {",
                      "Hertz edge(std::vector<int> all = {}, Hertz low = Hertz(1.0), Hertz high = Hertz(2.0)) noexcept;",
+                     "class Meter {\n  private:\n    double low_;\n};\nvoid cut(double low, double high);",
                      "double operator()(int row, int column) const;", "void of(std::int64_t count, std::size_t origin);"):
             self.assertEqual(len(swappable(text)), 1, text)
         for text in ("void cut(Seconds from, Hertz to);", "void fixed(double value, int digits);", "// of(int a, int b);",
                      "void cut(const Range& range, double q);", "struct Point { double x, y; };",
-                     "void of(std::map<int, int> all, double, double);"):
+                     "void of(std::map<int, int> all, double, double);",
+                     "class Meter {\n  public:\n    void add(Seconds at);\n\n  private:\n    class Sum {\n      public:\n        void add(double t, double p);\n"
+                     "    };\n    void put(double low, double high);\n};\nvoid of();"):
             self.assertEqual(swappable(text), [], text)
 
 
