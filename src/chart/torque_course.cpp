@@ -15,7 +15,8 @@ constexpr std::size_t most_in_stretch = 4096, fewest_stretches = 3;
 
 }  // namespace
 
-void CloseUp::add(double time_s, double before_nm, double after_nm) {
+void CloseUp::add(const CourseSample& sample) {
+    const auto& [time_s, speed_deg_s, before_nm, after_nm] = sample;
     const bool full = now_.time_s.size() == most_in_stretch;
     if (!now_.time_s.empty() && (full || time_s - now_.time_s.front() >= stretch_s)) end_stretch();
     if (!now_.time_s.empty()) {
@@ -44,14 +45,15 @@ std::optional<Panel> CloseUp::panel() const {
     return panel;
 }
 
-void TorqueCourse::add(double time_s, double speed_deg_s, double before_nm, double after_nm) {
+void TorqueCourse::add(const CourseSample& sample) {
+    const auto& [time_s, speed_deg_s, before_nm, after_nm] = sample;
     if (!any_) first_s_ = time_s;
     any_ = true;
     last_s_ = time_s;
     speed_.add(time_s, speed_deg_s);
     before_.add(time_s, before_nm);
     after_.add(time_s, after_nm);
-    close_up_.add(time_s, before_nm, after_nm);
+    close_up_.add(sample);
 }
 
 Figure TorqueCourse::figure(const std::string& source, const std::string& method,

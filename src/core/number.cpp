@@ -127,7 +127,8 @@ double to_digits(double value, int digits) {
     return parse_number(fmt::format("{:.{}g}", value, digits)).value_or(value);
 }
 
-double to_digits_of(double largest, double value, int digits) {
+double to_digits_in_row(const ValueInRow& cell, int digits) {
+    const auto [value, largest] = cell;
     if (!std::isfinite(value) || !std::isnormal(largest)) return value;
     const int places = digits - 1 - static_cast<int>(std::floor(portable::log10(std::abs(largest))));
     if (places < 0 || places > 300) return to_digits(value, digits);

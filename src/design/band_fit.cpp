@@ -14,8 +14,8 @@ namespace {
 constexpr int points_a_side = 9;        // over which the largest gain of a trial band is looked for
 constexpr double as_exact = 1e-9;       // share of a Q or a centre to which searches go
 constexpr double edge_as_exact = 1e-7;  // of a band's edge, from the side on which it still holds
-constexpr int most_secants = 8;
-constexpr double secant_as_exact = 1e-6, bracket_width = 1e-10;
+constexpr int most_secants = 8;         // by hand: bisection follows
+constexpr double secant_as_exact = 1e-6, bracket_width = 1e-10;  // by hand: checked by its bracket
 
 // The end of the first stretch, from `low` upward, on which `holds` is true; `high` when it never fails.
 template <class Holds>
@@ -150,7 +150,7 @@ std::optional<Tuning> BandFit::tune(double center_deg_s, const QRule& rule) cons
 
 // A digital notch of a lower Q would be wider than half the sample rate, and is none.
 double BandFit::least_q(const std::vector<Centre>& centres) const {
-    constexpr double inside = 1.0 + 1e-6;
+    constexpr double inside = 1.0 + 1e-6;  // by hand: off the edge by rounding
     double least = 0.0;
     for (std::size_t i = 0; i < centres.size(); ++i)
         least = std::max(least, inside * centres[i].half_angle / (0.5 * std::numbers::pi * shape_[i]));

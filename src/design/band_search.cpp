@@ -14,8 +14,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double most_db = 140.0, least_db = 0.1;
-constexpr int settling_trials = 49;  // Q from widest to narrowest, 6 % apart
+constexpr double most_db = 140.0, least_db = 0.1;  // complete_null_gain in dB; and by hand
+constexpr int settling_trials = 49;                // Q from widest to narrowest, 6 % apart
 
 double gain_of(double attenuation_db) { return portable::pow(10.0, -attenuation_db / 20.0); }
 

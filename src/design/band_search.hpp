@@ -11,8 +11,8 @@
 
 namespace ripplenotch {
 
-inline constexpr std::size_t most_bands_ever = 1000;
-inline constexpr double gain_worth_a_band_db = 0.25;
+inline constexpr std::size_t most_bands_ever = 1000;  // by hand: bounds the time
+inline constexpr double gain_worth_a_band_db = 0.25;  // by hand
 /// What rounding of edges and Q may take off an attenuation; searches aim this much higher.
 inline constexpr double rounding_db = 0.002;
 

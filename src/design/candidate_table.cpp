@@ -156,9 +156,8 @@ Cascade Band::cascade() const {
     return sections;
 }
 
-std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(DegPerSec from, DegPerSec to,
-                                                              DegPerSec spacing) {
-    const double a = from.value(), b = to.value(), width = spacing.value();
+std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(const SpeedSpan& speeds, DegPerSec spacing) {
+    const double a = speeds.from.value(), b = speeds.to.value(), width = spacing.value();
     if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(width)) {
         raise<UsageError>("speed range {}:{}:{} is not finite", shortest(a), shortest(b), shortest(width));
     }

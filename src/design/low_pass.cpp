@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr int highest_order = 20;
+constexpr int highest_order = 20;  // by hand
 
 void check(const LowPassSpec& spec, Hertz sample_rate) {
     if (!std::isfinite(sample_rate.value()) || !(sample_rate.value() > 0.0)) {

@@ -16,11 +16,11 @@ namespace {
 
 constexpr double longest_run = 5e7;  // samples; about half a second of work per section
 
-constexpr std::size_t samples_a_look = 32;
+constexpr std::size_t samples_a_look = 32;        // by hand: each look costs
 constexpr double least_overshoot_percent = 1e-6;  // less is rounding
 constexpr double for_rounding = 1.25;  // of the bound, which is good to nine digits where it is used
 constexpr double least_band = 1e-6;  // of the final value; in less the rounding of the run itself would show
-constexpr double most_cancelling = 1e6;
+constexpr double most_cancelling = 1e6;  // by hand: ten of a double's digits are left
 
 /// What is still to come of a step response at most. It is target + sum of residue p^k over the poles p: with
 /// their magnitudes for residues and poles that is a bound which no later sample passes.

@@ -17,7 +17,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t longest_run = 10'000'000;  // samples; 80 MB of output
-constexpr std::size_t block = 16384;
+constexpr std::size_t block = 16384;             // by hand
 
 // One filter and one signal, run on for as long as somebody wants to see more of it.
 class Run {
@@ -118,7 +118,7 @@ Seconds Bench::ramp_delay(double slope_nm_s) const {
     const double rise = slope_nm_s / sample_rate_.value();  // per sample
     const auto signal = [rise](std::size_t k) { return rise * static_cast<double>(k); };
     Run run(contender_, sample_rate_, speed_);
-    constexpr double rest_s = 1e-8;
+    constexpr double rest_s = 1e-8;  // by hand
     std::size_t count = first_length(sample_rate_);
     while (true) {
         run.extend(count, signal);

@@ -12,7 +12,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t block_rows = 4096;
+constexpr std::size_t block_rows = 4096;  // by hand
 
 // One method on its way through a log.
 struct Runner {

@@ -36,7 +36,7 @@ std::string lettered(const std::string& method, const MethodFigures& figures, co
         if (&other == &figures) break;
         if (!is(other, "none")) ++before;
     }
-    constexpr std::size_t letters = 'Z' - 'A' + 1;
+    constexpr std::size_t letters = 'Z' - 'A' + 1;  // of the alphabet
     return before < letters ? fmt::format("{} {}", method, static_cast<char>('A' + before))
                             : fmt::format("{} M{}", method, before + 1);
 }

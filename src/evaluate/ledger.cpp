@@ -15,8 +15,8 @@ namespace {
 // The paper's step and ramp; a linear filter's figures do not depend on them.
 constexpr double step_nm = 10.0, ramp_nm_s = 20.0;
 constexpr std::array typical_speeds_deg_s = {5.0, 10.0, 20.0, 50.0, 100.0, 200.0};
-constexpr int speeds_looked_at = 97;
-constexpr double slowest_searched_deg_s = 0.1, fastest_searched_deg_s = 3000.0;
+constexpr int speeds_looked_at = 97;  // steps of 5 % over two decades at most
+constexpr double slowest_searched_deg_s = 0.1, fastest_searched_deg_s = 3000.0;  // by hand
 
 // The same method with a table of one band: at the band's middle speed it does the same, and a table of a
 // thousand bands does not run a thousand filters a thousand times.
@@ -100,10 +100,9 @@ std::vector<LedgerEntry> delay_ledger(const Contender& contender, Hertz sample_r
     return ledger;
 }
 
-LongestDelay longest_delay(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
-                           DegPerSec fastest) {
-    const double high = fastest.value(), low = std::max(slowest.value(), 0.01 * high);
-    LongestDelay longest{Seconds(0.0), fastest, ""};
+LongestDelay longest_delay(const Contender& contender, Hertz sample_rate, const SpeedSpan& speeds) {
+    const double high = speeds.to.value(), low = std::max(speeds.from.value(), 0.01 * high);
+    LongestDelay longest{Seconds(0.0), speeds.to, ""};
     for (int i = 0; i < speeds_looked_at; ++i) {
         const double share = static_cast<double>(i) / (speeds_looked_at - 1);
         const double speed = high > 0.0 ? low * portable::pow(high / low, share) : 0.0;

@@ -14,8 +14,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr double lowest_cutoff = 1e-5, highest_cutoff = 0.49;  // of the sample rate
-constexpr double wanted_precision = 1e-5;
-constexpr std::size_t cutoffs_a_pass = 15;
+constexpr double wanted_precision = 1e-5;                      // by hand, and told in match_low_pass.hpp
+constexpr std::size_t cutoffs_a_pass = 15;                     // by hand: tried in one pass over a log
 
 struct Bracket {
     double low_hz, high_hz;

@@ -15,8 +15,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double slow_turn_s = 0.5;
-constexpr double stands_out = 2.0;
+constexpr double slow_turn_s = 0.5;  // by hand
+constexpr double stands_out = 2.0;   // by hand
 
 // What passes a torque unchanged, to measure the log itself by.
 const Contender& control() {
@@ -48,7 +48,7 @@ std::vector<Order> beside(Order order, const GearAccount& lines) {
 std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
                                          DegPerSec fastest) {
     if (contender.table == nullptr) {
-        const LongestDelay longest = longest_delay(contender, sample_rate, slowest, fastest);
+        const LongestDelay longest = longest_delay(contender, sample_rate, {slowest, fastest});
         return {longest.delay, longest.speed};
     }
     std::pair<Seconds, DegPerSec> longest{Seconds(0.0), fastest};

@@ -29,7 +29,7 @@ std::string late(const JudgedMethod& method) {
 }
 
 std::string short_text(const MethodFigures& figures) {
-    constexpr std::size_t longest_text = 60;
+    constexpr std::size_t longest_text = 60;  // by hand: of a line of the page
     if (figures.method.size() <= longest_text) return figures.method;
     return figures.method.substr(0, figures.method.find(',')) + ",...";
 }

@@ -33,14 +33,14 @@ void SwitchLedger::add(std::span<const double> time_s, std::span<const double> o
         if (watched_) entries_.back().stretch = Seconds(time_s[k]) - entries_.back().time;
         if (truth_nm_.empty()) continue;
         const double error_nm = std::abs(out_nm[k] - truth_nm_[done_]);
-        if (watched_) follow(time_s[k], error_nm);
+        if (watched_) follow(Seconds(time_s[k]), error_nm);
         last_error_nm_ = error_nm;
     }
 }
 
-void SwitchLedger::follow(double time_s, double error_nm) {
+void SwitchLedger::follow(Seconds time, double error_nm) {
     SwitchEntry& entry = entries_.back();
-    const Seconds after = Seconds(time_s) - entry.time;
+    const Seconds after = time - entry.time;
     if (!entry.peak_error_nm || error_nm > *entry.peak_error_nm) {
         entry.peak_error_nm = error_nm;
         entry.peak_after = after;

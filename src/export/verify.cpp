@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/factorisations.hpp"
-#include "export/text.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -17,8 +16,8 @@ namespace {
 
 constexpr double settled_to = 1e-10;  // of the first step; a hundredth of the deepest measured notch
 constexpr std::size_t longest_run = 4'000'000;  // samples; slower sections are judged by their coefficients
-constexpr std::size_t shortest_window = 4096;
-constexpr double periods_in_window = 8.0;
+constexpr std::size_t shortest_window = 4096;   // by hand
+constexpr double periods_in_window = 8.0;       // by hand
 
 double as_db(double gain) { return 20.0 * portable::log10(gain); }
 

@@ -134,8 +134,8 @@ class PanelScript {
         const HeatMap& whole = *panel_.map;
         const std::size_t columns = pixels(box_.right - box_.left, whole.x_edges.size() - 1);
         const std::size_t rows = pixels(box_.bottom - box_.top, whole.y_edges.size() - 1);
-        const HeatMap raster =
-            rasterised(whole, box_.x, panel_.x.scale, box_.y, panel_.y.scale, columns, rows);
+        const HeatMap raster = rasterised(whole, box_.x, panel_.x.scale, box_.y, panel_.y.scale,
+                                          {.columns = columns, .rows = rows});
         script_.line("set palette defined ({})\nset cbrange [{:.10g}:{:.10g}]", palette, whole.lowest,
                      whole.highest);
         if (whole.scale == PlotScale::logarithmic) script_.line("set logscale cb");

@@ -56,9 +56,10 @@ class TextPanel {
         axis("y", panel_.y, y_);
         std::vector<std::string> parts;
         if (panel_.map) {
-            const HeatMap raster = rasterised(*panel_.map, x_, panel_.x.scale, y_, panel_.y.scale,
-                                              static_cast<std::size_t>(columns_) - left_columns - 4,
-                                              static_cast<std::size_t>(rows_of_panel) - 4);
+            const HeatMap raster =
+                rasterised(*panel_.map, x_, panel_.x.scale, y_, panel_.y.scale,
+                           {.columns = static_cast<std::size_t>(columns_) - left_columns - 4,
+                            .rows = static_cast<std::size_t>(rows_of_panel) - 4});
             parts.push_back(script_.cells(raster, level_characters) + " using 1:2:3 with labels");
         }
         for (std::size_t i = 0; i < panel_.curves.size(); ++i) draw(panel_.curves[i], i, parts);

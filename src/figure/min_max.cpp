@@ -102,7 +102,8 @@ Curve thinned(const Curve& curve, std::size_t buckets) {
 }
 
 HeatMap rasterised(const HeatMap& map, const PlotRange& x, PlotScale x_scale, const PlotRange& y,
-                   PlotScale y_scale, std::size_t columns, std::size_t rows) {
+                   PlotScale y_scale, const RasterSize& size) {
+    const auto [columns, rows] = size;
     HeatMap raster{map.label,
                    map.unit,
                    map.scale,

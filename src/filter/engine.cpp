@@ -32,7 +32,8 @@ std::string per_cent(double share) { return percent_text(100.0 * share) + " %"; 
 
 }  // namespace
 
-void refuse_table_rate(Hertz table, Hertz log, const std::string& source) {
+void refuse_table_rate(const TableAndLogRate& rates, const std::string& source) {
+    const auto [table, log] = rates;
     const double off = std::abs(log / table - 1.0);
     if (off <= rate_refused) return;
     raise<DataError>(
@@ -42,7 +43,8 @@ void refuse_table_rate(Hertz table, Hertz log, const std::string& source) {
         source, log.value(), table.value(), per_cent(off), log.value());
 }
 
-std::optional<std::string> table_rate_warning(Hertz table, Hertz log, const std::string& source) {
+std::optional<std::string> table_rate_warning(const TableAndLogRate& rates, const std::string& source) {
+    const auto [table, log] = rates;
     const double off = std::abs(log / table - 1.0);
     if (off <= rate_worth_a_word) return std::nullopt;
     return fmt::format(
@@ -52,9 +54,9 @@ std::optional<std::string> table_rate_warning(Hertz table, Hertz log, const std:
         source, log.value(), table.value(), per_cent(off), log.value());
 }
 
-std::optional<std::string> compare_table_rate(Hertz table, Hertz log, const std::string& source) {
-    refuse_table_rate(table, log, source);
-    return table_rate_warning(table, log, source);
+std::optional<std::string> compare_table_rate(const TableAndLogRate& rates, const std::string& source) {
+    refuse_table_rate(rates, source);
+    return table_rate_warning(rates, source);
 }
 
 struct LogStream::State {

@@ -31,7 +31,7 @@ class FilterBank {
     [[nodiscard]] static constexpr std::size_t capacity() { return most_samples; }
 
   private:
-    static constexpr std::size_t lanes = 4, most_samples = 128;
+    static constexpr std::size_t lanes = 4, most_samples = 128;  ///< by hand
     /// Not a multiple of 4096 bytes: groups would be in one another's way in the first cache, a sixth of the
     /// speed.
     static constexpr std::size_t stride = most_samples + 2;

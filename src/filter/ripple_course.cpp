@@ -31,8 +31,8 @@ struct Sum {
 
 // Speeds in quarter octaves, two directions; what a window takes from another falls with their distance.
 constexpr int bins = 160;
-constexpr int most_bins_apart = 6;
-constexpr double bins_an_octave = 4.0, reach_bins = 1.5;
+constexpr int most_bins_apart = 6;                        // by hand
+constexpr double bins_an_octave = 4.0, reach_bins = 1.5;  // by hand
 
 int speed_bin(double speed_turns_s) {
     const double octave = portable::log2(std::max(std::abs(speed_turns_s), 1e-6)) + 20.0;

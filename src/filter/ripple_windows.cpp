@@ -15,9 +15,9 @@ namespace ripplenotch {
 namespace {
 
 constexpr Eigen::Index trend_terms = 4;
-constexpr double reversal_turns = 0.25;
-constexpr double samples_a_period = 3.0;
-constexpr double beyond_a_gap = 1e9;
+constexpr double reversal_turns = 0.25;    // by hand: of the motor
+constexpr double samples_a_period = 3.0;   // as in ripple_meter.cpp
+constexpr double beyond_a_gap = 1e9;       // by hand: farther than any window
 constexpr double trend_terms_reach = 1.5;  ///< cycles a window that a cubic may follow
 
 }  // namespace

@@ -19,8 +19,8 @@ double at(std::span<const double> values, std::ptrdiff_t place) {
     return values[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(place, 0, last))];
 }
 
-constexpr int shift_points = 16;
-constexpr int lag_points = 6;
+constexpr int shift_points = 16;  // by hand
+constexpr int lag_points = 6;     // by hand
 
 // Weights of the samples at -(count / 2 - 1), ..., count / 2 for the value at u in [0, 1).
 template <int count>
@@ -47,7 +47,7 @@ std::array<double, lag_points> moments(double rate) {
             found[static_cast<std::size_t>(m)] = 1.0 - m / rate * found[static_cast<std::size_t>(m - 1)];
         return found;
     }
-    constexpr int far = 60;
+    constexpr int far = 60;  // by hand: where the recurrence begins
     double moment = rate / (far + 1.0);
     for (int m = far; m > 0; --m) {
         moment = (1.0 - moment) * rate / m;

@@ -10,7 +10,7 @@ namespace ripplenotch {
 /// The direction in which the joint last clearly moved: -1, 1, or 0 before it first did.
 class HeldDirection {
   public:
-    static constexpr double clear_deg_s = 0.5;
+    static constexpr double clear_deg_s = 0.5;  // by hand
     int update(double velocity_deg_s) {
         if (std::abs(velocity_deg_s) > clear_deg_s) held_ = velocity_deg_s > 0.0 ? 1 : -1;
         return held_;
@@ -23,6 +23,7 @@ class HeldDirection {
 /// Starts and stops. A log may begin in motion; that is no start.
 class Movement {
   public:
+    // By hand: apart, so that noise does not start it again.
     static constexpr double start_deg_s = 1.0, stop_deg_s = 0.5;
     /// At a start the direction, 1 or -1; at a stop the direction before it, negated; else 0.
     double kick(double velocity_deg_s) {

@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double unbounded = 1e300;
+constexpr double unbounded = 1e300;  // beyond any value
 
 FittedValue told(std::size_t term, std::size_t parameter, double value, double variance, double per_unit) {
     FittedValue fitted;

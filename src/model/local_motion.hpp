@@ -33,7 +33,7 @@ class LocalFit {
     /// rms error that the noise leaves in the velocity at sample k, deg/s.
     [[nodiscard]] double velocity_error(std::size_t k, SampleWindow window);
 
-    static constexpr std::size_t fewest_samples = 5;
+    static constexpr std::size_t fewest_samples = 5;  ///< a cubic and one more
 
   private:
     void weigh(std::size_t k, SampleWindow window);

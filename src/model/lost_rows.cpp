@@ -19,7 +19,7 @@ constexpr double worth_it = 1e-3;
 
 // Of steps here and there, which gaps do not change.
 double middle_step_s(std::span<const double> time_s) {
-    constexpr std::size_t looks = 200;
+    constexpr std::size_t looks = 200;  // by hand: bounds the time
     std::vector<double> steps;
     for (std::size_t k = 1; k < time_s.size(); k += std::max<std::size_t>(1, time_s.size() / looks))
         steps.push_back(time_s[k] - time_s[k - 1]);
@@ -54,7 +54,7 @@ double single_step_s(std::span<const double> time_s, double middle_s) {
 // How much later than the first stamp the stamps after it are in the mean, in steps from -0.5 to 0.5: the
 // first may itself be early or late by nearly half a step.
 double first_lateness(std::span<const double> time_s, double step_s) {
-    constexpr std::size_t looks = 50;
+    constexpr std::size_t looks = 50;  // by hand: bounds the time
     std::complex<double> sum{0.0, 0.0};
     for (std::size_t k = 0; k < std::min(looks, time_s.size()); ++k) {
         if (k > 0 && time_s[k] - time_s[k - 1] >= is_gap * step_s) break;

@@ -110,7 +110,7 @@ void response_of(const Spring& spring, const Motion& motion, double cycles_per_d
     const double* const t = motion.time_s.data();
     Mass mass(spring, 1.0 / motion.sample_rate.value(), cycles_per_deg * v[0] / spring.frequency_hz);
     response[0] = mass.response();
-    constexpr std::size_t block = 512;
+    constexpr std::size_t block = 512;  // by hand
     std::vector<double> angle(block), cosine(block), sine(block);
     for (std::size_t first = 1; first < samples; first += block) {
         const std::size_t count = std::min(block, samples - first);

@@ -41,8 +41,8 @@ double Noise::normal() {
     return x * stretch;
 }
 
-void add_noise(std::span<double> values, double rms, double correlation, std::uint64_t seed,
-               NoiseChannel channel) {
+void add_noise(std::span<double> values, const NoiseKind& kind, std::uint64_t seed, NoiseChannel channel) {
+    const auto [rms, correlation] = kind;
     if (rms == 0.0) return;
     Noise noise(seed, channel);
     // The first number is drawn from where the process settles, so that the rms is the same from the start.
@@ -56,7 +56,7 @@ void add_noise(std::span<double> values, double rms, double correlation, std::ui
 }
 
 void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel) {
-    add_noise(values, rms, 0.0, seed, channel);
+    add_noise(values, {.rms = rms}, seed, channel);
 }
 
 }  // namespace ripplenotch

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "page/json_words.hpp"
-
 namespace ripplenotch {
 namespace {
 

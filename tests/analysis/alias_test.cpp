@@ -39,11 +39,13 @@ double short_move(double t, double top) {
 
 TEST_CASE("2 Kg at 60 deg/s sampled at 25 Hz is seen at output order 50, and order 50 unfolds to it") {
     const double hz = 200.0 * 60.0 / 360.0;
-    CHECK_THAT(folded_hz(hz, 25.0) * 360.0 / 60.0, WithinAbs(50.0, 1e-9));
-    const std::vector<double> orders = unfolded_orders(50.0, 25.0, 60.0, 420.0);
+    CHECK_THAT(folded_hz({.hz = hz, .rate_hz = 25.0}) * 360.0 / 60.0, WithinAbs(50.0, 1e-9));
+    const std::vector<double> orders =
+        unfolded_orders({.seen = 50.0, .highest = 420.0}, Hertz(25.0), DegPerSec(60.0));
     CHECK(orders == std::vector<double>{100.0, 200.0, 250.0, 350.0, 400.0});
     for (const double order : orders)
-        CHECK_THAT(folded_hz(order * 60.0 / 360.0, 25.0), WithinAbs(folded_hz(hz, 25.0), 1e-9));
+        CHECK_THAT(folded_hz({.hz = order * 60.0 / 360.0, .rate_hz = 25.0}),
+                   WithinAbs(folded_hz({.hz = hz, .rate_hz = 25.0}), 1e-9));
 }
 
 TEST_CASE("a folded order at three steady speeds is an alias, unfolded without any hint") {

@@ -157,6 +157,7 @@ TEST_CASE("recordings of two joints of different ratios are no one ratio") {
 
 TEST_CASE("a hum that outdoes the ripple is told with its band") {
     std::vector<Trace> logs;
+    double hum_square = 0.0;
     for (const double speed : {40.0, 65.0}) {
         Trace log = tests::make_trace({.rate_hz = 500.0,
                                        .seconds = 15.0,
@@ -168,12 +169,14 @@ TEST_CASE("a hum that outdoes the ripple is told with its band") {
         tests::Noise noise(static_cast<std::uint32_t>(speed) + 7);
         const double pole = std::exp(-std::numbers::pi * 3.0 / 500.0);
         double last = 0.0, before = 0.0;
+        const double samples = 2.0 * static_cast<double>(log.size());
         for (double& torque : log.torque_nm) {
             const double now = 2.0 * pole * std::cos(2.0 * std::numbers::pi * 70.0 / 500.0) * last -
                                pole * pole * before + 0.15 * noise();
             before = last;
             last = now;
             torque += now;
+            hum_square += now * now / samples;
         }
         logs.push_back(std::move(log));
     }
@@ -183,6 +186,7 @@ TEST_CASE("a hum that outdoes the ripple is told with its band") {
     CHECK(found.hums[0].from_hz < 70.0);
     CHECK(found.hums[0].to_hz > 70.0);
     CHECK(std::sqrt(2.0) * found.hums[0].rms_nm > 0.2);
+    CHECK_THAT(found.hums[0].rms_nm, WithinRel(std::sqrt(hum_square), 0.15));
     CHECK_THAT(found.verdict, Contains("a hum stronger than the ripple: "));
 }
 

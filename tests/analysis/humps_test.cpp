@@ -118,6 +118,16 @@ TEST_CASE("a resonance is a hump, with its band and the torque in it, and no lin
         CHECK_THAT(hump.peak_hz, WithinAbs(hz, 4.0));
         // The band ends where its power is twice the noise's; a tenth of the torque lies beyond.
         CHECK_THAT(hump.rms_nm, WithinRel(0.5, 0.15));
+        // A sine's power is half its amplitude's square, and a Hann window spreads it over 1.5 bins.
+        double square = 0.0, highest = 0.0;
+        for (std::size_t k = 0; k < spectrum.hz.size(); ++k) {
+            if (spectrum.hz[k] < hump.from_hz - 1e-9 || spectrum.hz[k] > hump.to_hz + 1e-9) continue;
+            const double amplitude = spectrum.amplitude_nm[k];
+            square += (amplitude * amplitude - hump.floor_nm * hump.floor_nm) / (2.0 * 1.5);
+            highest = std::max(highest, amplitude);
+        }
+        CHECK_THAT(hump.rms_nm, WithinRel(std::sqrt(square), 1e-6));
+        CHECK_THAT(hump.peak_nm, WithinRel(highest, 1e-9));
     }
     CHECK(found == 5);
 }

@@ -55,11 +55,31 @@ TEST_CASE("the paper's four logs give ratio 100, orders 1 and 2, and no line at 
         CHECK(line.kind == LineKind::order);
         CHECK_THAT(line.amplitude_nm, WithinRel(*line.order == 1.0 ? 0.8 : 0.5, 0.02));
         REQUIRE(line.by_speed.size() == 3);
-        for (const auto& at : line.by_speed)
+        double clearest = 0.0;
+        for (const auto& at : line.by_speed) {
             CHECK_THAT(at.hz, WithinRel(*line.order * 100.0 * at.speed_deg_s / 360.0, 1e-3));
+            clearest = std::max(clearest, at.snr);
+        }
+        CHECK(line.snr == clearest);
+        CHECK_THAT(line.speed_from_deg_s, WithinRel(60.0, 1e-3));
+        CHECK_THAT(line.speed_to_deg_s, WithinRel(180.0, 1e-3));
         REQUIRE(line.phase_known);
         CHECK_THAT(line.phase_deg, WithinAbs((*line.order == 1.0 ? 0.3 : 1.1) * degrees_per_radian, 3.0));
     }
+}
+
+TEST_CASE("the standard error of an order is the scatter that it claims") {
+    double square = 0.0;
+    constexpr unsigned runs = 150;
+    for (unsigned run = 0; run < runs; ++run) {
+        const std::vector<Trace> logs{at_speed(90.0, 500 + run, 2.0)};
+        const Identification found = identify_all(logs);
+        REQUIRE_FALSE(found.lines.empty());
+        const Line& line = found.lines.front();
+        REQUIRE(line.order_output_stderr.value_or(0.0) > 0.0);
+        square += std::pow((*line.order_output - 100.0) / *line.order_output_stderr, 2) / runs;
+    }
+    CHECK_THAT(std::sqrt(square), WithinAbs(1.0, 0.15));  // three standard errors of 150 runs
 }
 
 TEST_CASE("eight speeds of 20 s give the ratio within 0.01") {

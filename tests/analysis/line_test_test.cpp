@@ -16,14 +16,17 @@ TEST_CASE("the median of one exponential lies at ln 2 of its mean, that of many 
 
 TEST_CASE("with a floor known exactly, one average exceeds r times it with chance exp(-r)") {
     for (const double ratio : {1.0, 5.0, 12.0})
-        CHECK_THAT(exceedance(ratio, 1.0, 1e7), WithinRel(std::exp(-ratio), 1e-3));
+        CHECK_THAT(exceedance({.ratio = ratio, .averages = 1.0, .cells = 1e7}),
+                   WithinRel(std::exp(-ratio), 1e-3));
     // Two averages: (1 + 2 r) exp(-2 r).
-    CHECK_THAT(exceedance(4.0, 2.0, 1e7), WithinRel(9.0 * std::exp(-8.0), 1e-3));
+    CHECK_THAT(exceedance({.ratio = 4.0, .averages = 2.0, .cells = 1e7}),
+               WithinRel(9.0 * std::exp(-8.0), 1e-3));
 }
 
 TEST_CASE("a floor known from few cells makes high ratios likelier, by (1 + r/k)^-k") {
     const double k = 0.48 * 20.0;
-    CHECK_THAT(exceedance(10.0, 1.0, 20.0), WithinRel(std::pow(1.0 + 10.0 / k, -k), 1e-9));
+    CHECK_THAT(exceedance({.ratio = 10.0, .averages = 1.0, .cells = 20.0}),
+               WithinRel(std::pow(1.0 + 10.0 / k, -k), 1e-9));
 }
 
 TEST_CASE("the noise floor is the mean power of the noise and is not raised by a line") {

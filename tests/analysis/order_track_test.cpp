@@ -196,8 +196,8 @@ TEST_CASE("tracks at one speed gather into one range, and ranges without rows ar
     for (const double speed : {60.0, 60.02, 59.98}) {
         tracks.time_s.push_back(0.0);
         tracks.speed_deg_s.push_back(speed);
-        tracks.lines[0].amplitude_nm.push_back(0.5);
-        tracks.lines[0].standard_error_nm.push_back(0.1);
+        tracks.lines[0].amplitude_nm.push_back(0.5 + 5.0 * (speed - 60.0));
+        tracks.lines[0].standard_error_nm.push_back(0.07);
         tracks.lines[0].phase_deg.push_back(170.0);
         tracks.lines[0].hz.push_back(16.7);
     }
@@ -206,7 +206,11 @@ TEST_CASE("tracks at one speed gather into one range, and ranges without rows ar
     CHECK(one.rows[0] == 3);
     CHECK_THAT(one.lines[0].amplitude_nm[0], WithinAbs(0.5, 1e-12));
     CHECK_THAT(one.lines[0].phase_deg[0], WithinAbs(170.0, 1e-9));
+    CHECK_THAT(one.lines[0].spread_nm[0], WithinAbs(0.1, 1e-12));  // of 0.4, 0.5 and 0.6
+    const SpeedTrack each = gather_by_speed(tracks, DegPerSec(0.01));
+    REQUIRE(each.speed_deg_s.size() == 3);
+    CHECK_THAT(each.lines[0].spread_nm[0], WithinAbs(0.07, 1e-12));  // of one row, its own error
     CHECK(gather_by_speed(OrderTracks{}, DegPerSec(0.0)).speed_deg_s.empty());
-    CHECK(speed_step(0.0, 0.0) == 1.0);
-    CHECK(speed_step(0.0, 180.0) == 10.0);
+    CHECK(speed_step({DegPerSec(0.0), DegPerSec(0.0)}) == 1.0);
+    CHECK(speed_step({DegPerSec(0.0), DegPerSec(180.0)}) == 10.0);
 }

@@ -23,7 +23,7 @@ CandidateTable nine_bands() {
         {.gear_ratio = GearRatio(40.0),
          .orders = {Order(1.0), Order(2.0)},
          .sample_rate = rate,
-         .bands = bands_by_spacing(DegPerSec(20.0), DegPerSec(200.0), DegPerSec(20.0)),
+         .bands = bands_by_spacing({DegPerSec(20.0), DegPerSec(200.0)}, DegPerSec(20.0)),
          .q = 5.0,
          .above = OutsideRule::pass});
 }

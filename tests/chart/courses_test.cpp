@@ -14,7 +14,7 @@ TEST_CASE("a filter's figure opens where it takes off most, with every sample of
     for (int k = 0; k < 5000; ++k) {
         const double t = 0.001 * k;
         const double ripple = t >= 2.0 && t < 2.5 ? (k % 20 < 10 ? 0.8 : -0.8) : 0.1;
-        course.add(t, 90.0, 3.0 + ripple, 3.0);
+        course.add({.time_s = t, .speed_deg_s = 90.0, .before_nm = 3.0 + ripple, .after_nm = 3.0});
     }
     const Figure figure = course.figure("log.csv", "switching", {});
     check_figure(figure);
@@ -24,7 +24,8 @@ TEST_CASE("a filter's figure opens where it takes off most, with every sample of
     CHECK(*close_up.x.to == Approx(2.499));
     CHECK(close_up.curves[0].x.size() == 500);
     TorqueCourse brief;
-    for (int k = 0; k < 900; ++k) brief.add(0.001 * k, 90.0, k % 2, 0.0);
+    for (int k = 0; k < 900; ++k)
+        brief.add({.time_s = 0.001 * k, .speed_deg_s = 90.0, .before_nm = 1.0 * (k % 2)});
     CHECK(brief.figure("log.csv", "switching", {}).panels.size() == 2);
 }
 

@@ -51,6 +51,9 @@ class Accept(unittest.TestCase):
         self.assertNotIn("load-friction", after["named"])
         self.assertEqual(after["gap"]["before_nm"], before["gap"]["before_nm"])
         self.assertLess(after["gap"]["after_nm"], 0.6 * before["gap"]["after_nm"])
+        # Of the squares above the floor.
+        open_before, open_after, floor = (after["gap"][name] ** 2 for name in ("before_nm", "after_nm", "noise_floor_nm"))
+        self.assertAlmostEqual(after["gap"]["closed_percent"], 100 * (1 - max(open_after - floor, 0) / (open_before - floor)), delta=1e-2)
         effects = [one["effect"] for one in json.loads((self.folder / "improved.json").read_text())["effects"]]
         self.assertEqual(effects[:4], ["inertia", "ripple", "ripple", "load-friction"])
         left = self.json_of("simulate", "--model", "improved.json", "log.csv", "-o", "again.csv")["along_log"]["residual_rms_nm"]

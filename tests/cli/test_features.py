@@ -74,6 +74,25 @@ class Values(Case):
             self.assertLess(high - low, 0.3 * abs(value), name)
         self.assertAlmostEqual(line["noise_floor_nm"], 0.05, delta=0.005)
 
+    def test_the_motion_and_the_load_of_a_line_are_those_of_the_log(self):
+        path = self.log()
+        line = self.line(path, *GEAR)
+        rows = [[float(cell) for cell in row] for row in list(csv.reader(path.read_text().splitlines()))[1:]]
+        speed, torque, position = ([row[column] for row in rows] for column in (1, 2, 3))
+
+        def rms(values):
+            mean = sum(values) / len(values)
+            return (sum((value - mean) ** 2 for value in values) / len(values)) ** 0.5
+
+        self.assertAlmostEqual(line["travel_deg"], max(position) - min(position), delta=0.05)
+        self.assertAlmostEqual(line["torque_rms_nm"] / rms(torque), 1, delta=0.01)
+        moving = sorted(abs(one) for one in speed if abs(one) > 1)
+        self.assertAlmostEqual(line["speed_p50_deg_s"] / moving[len(moving) // 2], 1, delta=0.03)
+        self.assertAlmostEqual(line["forward_share"], sum(one > 1 for one in speed) / len(moving), delta=0.02)
+        load = self.log("load.csv", joint=["--gear-ratio", "100", "--inertia", "1.2", "--effect", "gravity,amplitude_nm=8,phase_deg=20"], friction=[])
+        carried = [float(row[2]) for row in list(csv.reader(load.read_text().splitlines()))[1:]]
+        self.assertAlmostEqual(line["load_rms_nm"] / (sum(one * one for one in carried) / len(carried)) ** 0.5, 1, delta=0.03)
+
     def test_sharp_friction_has_no_lost_motion_and_the_same_size(self):
         line = self.line(self.log(friction=SHARP), *GEAR)
         self.assertAlmostEqual(line["coulomb_friction_nm"], 2, delta=0.05)

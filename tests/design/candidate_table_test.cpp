@@ -20,7 +20,7 @@ TableSpec paper_spec() {
     spec.gear_ratio = GearRatio(100.0);
     spec.orders = {Order(1.0), Order(2.0)};
     spec.sample_rate = 1000_Hz;
-    spec.bands = bands_by_spacing(18_deg_s, 180_deg_s, 18_deg_s);
+    spec.bands = bands_by_spacing({18_deg_s, 180_deg_s}, 18_deg_s);
     return spec;
 }
 
@@ -120,26 +120,27 @@ TEST_CASE("looking a speed up agrees with trying every band in turn") {
 }
 
 TEST_CASE("bands by spacing touch, cover the range, and carry no dust") {
-    const auto bands = bands_by_spacing(DegPerSec(0.1), DegPerSec(1.0), DegPerSec(0.1));
+    const auto bands = bands_by_spacing({DegPerSec(0.1), DegPerSec(1.0)}, DegPerSec(0.1));
     REQUIRE(bands.size() == 9);
     CHECK(bands[2].first.value() == 0.3);
     for (std::size_t i = 1; i < bands.size(); ++i) CHECK(bands[i].first == bands[i - 1].second);
     CHECK(bands.front().first.value() == 0.1);
     CHECK(bands.back().second.value() == 1.0);
-    CHECK(bands_by_spacing(0_deg_s, 18_deg_s, 18_deg_s).size() == 1);
+    CHECK(bands_by_spacing({0_deg_s, 18_deg_s}, 18_deg_s).size() == 1);
 }
 
 TEST_CASE("a range that cannot be cut into whole bands is refused with a width that can") {
-    CHECK_THROWS_WITH(bands_by_spacing(18_deg_s, 180_deg_s, 20_deg_s), Contains("18 deg/s gives 9"));
-    CHECK_THROWS_WITH(bands_by_spacing(18_deg_s, 30_deg_s, 20_deg_s), Contains("12 deg/s gives 1"));
-    CHECK_THROWS_WITH(bands_by_spacing(180_deg_s, 18_deg_s, 18_deg_s), Contains("must end above its start"));
-    CHECK_THROWS_WITH(bands_by_spacing(18_deg_s, 18_deg_s, 18_deg_s), Contains("must end above its start"));
-    CHECK_THROWS_WITH(bands_by_spacing(DegPerSec(-18.0), 18_deg_s, 18_deg_s), Contains("-18"));
-    CHECK_THROWS_WITH(bands_by_spacing(18_deg_s, 180_deg_s, 0_deg_s), Contains("not above 0"));
-    CHECK_THROWS_WITH(bands_by_spacing(18_deg_s, 180_deg_s, DegPerSec(1e-9)),
+    CHECK_THROWS_WITH(bands_by_spacing({18_deg_s, 180_deg_s}, 20_deg_s), Contains("18 deg/s gives 9"));
+    CHECK_THROWS_WITH(bands_by_spacing({18_deg_s, 30_deg_s}, 20_deg_s), Contains("12 deg/s gives 1"));
+    CHECK_THROWS_WITH(bands_by_spacing({180_deg_s, 18_deg_s}, 18_deg_s),
+                      Contains("must end above its start"));
+    CHECK_THROWS_WITH(bands_by_spacing({18_deg_s, 18_deg_s}, 18_deg_s), Contains("must end above its start"));
+    CHECK_THROWS_WITH(bands_by_spacing({DegPerSec(-18.0), 18_deg_s}, 18_deg_s), Contains("-18"));
+    CHECK_THROWS_WITH(bands_by_spacing({18_deg_s, 180_deg_s}, 0_deg_s), Contains("not above 0"));
+    CHECK_THROWS_WITH(bands_by_spacing({18_deg_s, 180_deg_s}, DegPerSec(1e-9)),
                       Contains("more than 10000 bands"));
     CHECK_THROWS_WITH(
-        bands_by_spacing(18_deg_s, DegPerSec(std::numeric_limits<double>::infinity()), 18_deg_s),
+        bands_by_spacing({18_deg_s, DegPerSec(std::numeric_limits<double>::infinity())}, 18_deg_s),
         Contains("not finite"));
 }
 

@@ -225,7 +225,7 @@ TEST_CASE("orders count by their amplitudes: a weak one may stay and saves delay
 
 TEST_CASE("stated bands keep their edges and get the Q with the least delay that holds") {
     TableSpec spec = paper_ripple();
-    spec.bands = bands_by_spacing(36_deg_s, 180_deg_s, 18_deg_s);
+    spec.bands = bands_by_spacing({36_deg_s, 180_deg_s}, 18_deg_s);
     const auto table = design_for(spec, goal(20.0, std::nullopt)).table;
     REQUIRE(table.spec().bands == spec.bands);
     for (const Band& band : table.bands()) {
@@ -345,6 +345,13 @@ TEST_CASE("the point that a frontier recommends is the table that the same goal 
             CHECK(point.bands == choice.table.bands().size());
             CHECK(point.delay.value() == largest_delay_s(choice.table));
             CHECK(frontier.reason == choice.reason);
+            double overshoot_percent = 0.0, settle_s = 0.0;
+            for (const Band& band : choice.table.bands()) {
+                overshoot_percent = std::max(overshoot_percent, band.overshoot_percent);
+                settle_s = std::max(settle_s, band.settle.value());
+            }
+            CHECK(point.overshoot_percent == overshoot_percent);
+            CHECK(point.settle.value() == settle_s);
         }
     }
 }

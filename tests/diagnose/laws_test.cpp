@@ -139,6 +139,12 @@ TEST_CASE("each name closes part of the gap, and taken out again it opens its sh
         const double opens_nm =
             std::sqrt(std::pow(found.gap.after_nm, 2) + std::pow(finding.evidence.share_nm, 2));
         CHECK(rms(left) > 0.9 * opens_nm);
+        // Against white noise the gain is the squares that it takes off, in units of the noise's.
+        const double sigmas = finding.evidence.share_nm / found.gap.noise_floor_nm;
+        CHECK(finding.evidence.gain ==
+              Approx(static_cast<double>(found.samples_used) * sigmas * sigmas).epsilon(0.05));
+        if (finding.term.effect->name == "offset")
+            CHECK(finding.evidence.own_nm == Approx(std::abs(*finding.term.values[0])).epsilon(1e-6));
     }
     // The corners of the ramps, where the acceleration is not known, are in it.
     CHECK(found.gap.after_nm < 1.25 * found.gap.noise_floor_nm);

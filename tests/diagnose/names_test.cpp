@@ -158,6 +158,7 @@ TEST_CASE("on a short way without position, what depends on where the joint is c
     const auto gravity = std::find_if(found.undecidable.begin(), found.undecidable.end(),
                                       [](const Undecidable& entry) { return entry.effect == "gravity"; });
     CHECK(gravity->would_explain_nm > 0.45);
+    CHECK(gravity->would_explain_nm < found.gap.before_nm);
     // What is missing does not blow up the ripple, by which a walk of the angle could stand in for it.
     CHECK(found.gap.after_nm < 1.01 * found.gap.before_nm);
     CHECK(*found.model.terms[2].values[1] == Approx(0.45).margin(0.1));

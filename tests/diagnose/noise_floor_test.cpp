@@ -35,7 +35,7 @@ TEST_CASE("noise with a memory is told with it, and sums of it scatter more") {
     Case c = case_of(plain_log(joint(), 69));
     const std::vector<double> silent = predict_nm(joint(), c.motion);
     c.torque_nm = silent;
-    add_noise(c.torque_nm, noise_nm, 0.5, 70, NoiseChannel::torque);
+    add_noise(c.torque_nm, {.rms = noise_nm, .correlation = 0.5}, 70, NoiseChannel::torque);
     const NoiseFloor floor = floor_of(c);
     REQUIRE(!floor.color.empty());
     CHECK(floor.color[0] == Approx(0.5).margin(0.06));

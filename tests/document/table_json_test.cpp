@@ -18,7 +18,7 @@ TableSpec paper_spec() {
     spec.gear_ratio = GearRatio(100.0);
     spec.orders = {Order(1.0), Order(2.0)};
     spec.sample_rate = 1000_Hz;
-    spec.bands = bands_by_spacing(18_deg_s, 180_deg_s, 18_deg_s);
+    spec.bands = bands_by_spacing({18_deg_s, 180_deg_s}, 18_deg_s);
     return spec;
 }
 

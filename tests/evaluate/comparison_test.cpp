@@ -58,6 +58,13 @@ TEST_CASE("on a log, attenuation per order is what the method's response says at
     CHECK(levels.methods[0].ripple_rms_nm.value() == Approx(std::sqrt(0.5 * (0.64 + 0.25))).epsilon(1e-3));
     CHECK(levels.methods[0].residual_rms_nm.value() == Approx(std::sqrt(0.5 * (0.64 + 0.25))).epsilon(1e-2));
     CHECK_FALSE(levels.methods[1].switches.has_value());
+    double lowest = 0.0, highest = 0.0;
+    for (double angle = 0.0; angle < 2.0 * std::numbers::pi; angle += 1e-3) {
+        const double ripple = 0.8 * std::sin(angle) + 0.5 * std::cos(2.0 * angle);
+        lowest = std::min(lowest, ripple);
+        highest = std::max(highest, ripple);
+    }
+    CHECK(levels.methods[0].residual_peak_to_peak_nm.value() == Approx(highest - lowest).epsilon(0.02));
 }
 
 TEST_CASE("a gap restarts every method, so that nothing rings across it") {

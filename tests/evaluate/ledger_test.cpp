@@ -81,10 +81,10 @@ TEST_CASE("a long row of notches has the published phase lag, beyond a half turn
 TEST_CASE("the longest delay of a range of speeds is that of the slowest notch in it") {
     const auto table = paper_table();
     const Contender method = contender("switching,table=table.json", table);
-    CHECK(longest_delay(method, 1000_Hz, 40_deg_s, 170_deg_s).delay == table->bands()[1].dc_delay);
-    CHECK(longest_delay(method, 1000_Hz, 100_deg_s, 170_deg_s).delay == table->bands()[4].dc_delay);
-    CHECK(longest_delay(contender("none"), 1000_Hz, 0_deg_s, 100_deg_s).delay.value() == 0.0);
-    CHECK(longest_delay(contender("lowpass,cutoff=13rad/s"), 1000_Hz, 0_deg_s, 0_deg_s).delay.value() ==
+    CHECK(longest_delay(method, 1000_Hz, {40_deg_s, 170_deg_s}).delay == table->bands()[1].dc_delay);
+    CHECK(longest_delay(method, 1000_Hz, {100_deg_s, 170_deg_s}).delay == table->bands()[4].dc_delay);
+    CHECK(longest_delay(contender("none"), 1000_Hz, {0_deg_s, 100_deg_s}).delay.value() == 0.0);
+    CHECK(longest_delay(contender("lowpass,cutoff=13rad/s"), 1000_Hz, {0_deg_s, 0_deg_s}).delay.value() ==
           Approx(0.0769).margin(1e-4));
 }
 
@@ -95,8 +95,8 @@ TEST_CASE("from the speed that a method names on, it keeps the delay, and just b
         REQUIRE(from);
         // 1.5 / (2 pi f1 Q), equation 4
         CHECK(from->value() == Approx(3.6 * 1.5 / (2.0 * std::numbers::pi * 2.0 * 1e-3 * ms)).epsilon(0.03));
-        CHECK(longest_delay(method, 1000_Hz, *from, 300_deg_s).delay.value() <= 1e-3 * ms);
-        CHECK(longest_delay(method, 1000_Hz, 0.97 * *from, 300_deg_s).delay.value() > 1e-3 * ms);
+        CHECK(longest_delay(method, 1000_Hz, {*from, 300_deg_s}).delay.value() <= 1e-3 * ms);
+        CHECK(longest_delay(method, 1000_Hz, {0.97 * *from, 300_deg_s}).delay.value() > 1e-3 * ms);
     }
     CHECK(within_from(contender("none"), 1000_Hz, Seconds(1e-6))->value() == 0.0);
     CHECK_FALSE(within_from(contender("lowpass,cutoff=1Hz"), 1000_Hz, Seconds(1e-3)));

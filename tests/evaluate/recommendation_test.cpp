@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "evaluate/contenders.hpp"
 #include "ripplenotch/evaluate/recommendation.hpp"
 #include "support/catch.hpp"
 
@@ -71,6 +72,17 @@ TEST_CASE("what is off is the ripple left and the way of the torque within the d
     // A low-pass of 3 Hz is 53 ms late, which is more than a Nm of this ramp.
     CHECK(found.taken()->figures.method.substr(0, 10) == "oscillator");
     CHECK(found.methods.back().figures.method == "lowpass,cutoff=3Hz,order=1");
+}
+
+TEST_CASE("the longest delay of a table is that of the slowest band that the log comes into") {
+    Trace trace = log_of(1.0, 5.0);
+    for (std::size_t k = 0; k < 2000; ++k) trace.velocity_deg_s[k] = 60.0;
+    const auto table = testing::paper_table();
+    const std::vector<Contender> switching = {testing::contender("switching,table=paper.json", table)};
+    const Recommendation found = recommend(switching, {trace.view()}, gear, {});
+    REQUIRE(found.methods.size() == 1);
+    CHECK(found.methods[0].delay == table->bands()[2].dc_delay);
+    CHECK(found.methods[0].delay_at == DegPerSec(63.0));
 }
 
 TEST_CASE("looser limits give the same or a better answer, and every answer is within its limits") {

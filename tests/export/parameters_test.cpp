@@ -40,7 +40,7 @@ FilterSet table(double q, double depth_db, std::vector<double> orders = {1.0, 2.
     spec.gear_ratio = GearRatio(100.0);
     for (const double order : orders) spec.orders.emplace_back(order);
     spec.sample_rate = 1000_Hz;
-    spec.bands = bands_by_spacing(180_deg_s, 360_deg_s, 60_deg_s);
+    spec.bands = bands_by_spacing({180_deg_s, 360_deg_s}, 60_deg_s);
     spec.q = q;
     spec.depth_db = depth_db;
     spec.below = below;

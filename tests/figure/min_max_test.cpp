@@ -116,8 +116,8 @@ TEST_CASE("a map on fewer cells keeps its highest cell, and empty cells stay emp
     map.cells[row * 1000 + column] = 7.0;
     for (std::size_t r = 0; r < 700; ++r)
         for (std::size_t c = 400; c < 500; ++c) map.cells[r * 1000 + c] = nothing;
-    const HeatMap raster =
-        rasterised(map, {0.0, 1000.0}, PlotScale::linear, {0.0, 700.0}, PlotScale::linear, 50, 30);
+    const HeatMap raster = rasterised(map, {0.0, 1000.0}, PlotScale::linear, {0.0, 700.0}, PlotScale::linear,
+                                      {.columns = 50, .rows = 30});
     REQUIRE(raster.cells.size() == 1500);
     CHECK(raster.cells[row * 30 / 700 * 50 + column * 50 / 1000] == 7.0);
     CHECK(std::isnan(raster.cells[15 * 50 + 22]));

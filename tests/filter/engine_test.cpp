@@ -100,15 +100,15 @@ TEST_CASE("a round rate is reached exactly, whatever rounding the times carry") 
 }
 
 TEST_CASE("a table's rate may be half a per cent off in silence, five with a warning, and no more") {
-    CHECK_FALSE(table_rate_warning(Hertz(1000.0), Hertz(1004.9), "a.csv"));
-    const auto warning = table_rate_warning(Hertz(1000.0), Hertz(978.28), "a.csv");
+    CHECK_FALSE(table_rate_warning({.table = Hertz(1000.0), .log = Hertz(1004.9)}, "a.csv"));
+    const auto warning = table_rate_warning({.table = Hertz(1000.0), .log = Hertz(978.28)}, "a.csv");
     REQUIRE(warning);
     CHECK_THAT(*warning,
                Catch::Contains("a.csv") && Catch::Contains("978.28 Hz") && Catch::Contains("1000 Hz"));
-    CHECK_NOTHROW(refuse_table_rate(Hertz(1000.0), Hertz(951.0), "a.csv"));
-    CHECK_THROWS_AS(refuse_table_rate(Hertz(1000.0), Hertz(949.0), "a.csv"), DataError);
+    CHECK_NOTHROW(refuse_table_rate({.table = Hertz(1000.0), .log = Hertz(951.0)}, "a.csv"));
+    CHECK_THROWS_AS(refuse_table_rate({.table = Hertz(1000.0), .log = Hertz(949.0)}, "a.csv"), DataError);
     CHECK_THROWS_WITH(
-        refuse_table_rate(Hertz(1000.0), Hertz(500.0), "a.csv"),
+        refuse_table_rate({.table = Hertz(1000.0), .log = Hertz(500.0)}, "a.csv"),
         Catch::Contains("500 Hz") && Catch::Contains("1000 Hz") && Catch::Contains("--sample-rate 500Hz"));
 }
 

@@ -24,7 +24,7 @@ CandidateTable some_table(std::size_t bands, std::size_t orders, std::mt19937& e
     spec.q = between(0.2, 3.0, engine);
     if (engine() % 2 == 0) spec.depth_db = 30.0;
     const double last = 12.0 * static_cast<double>(bands + 1);
-    spec.bands = bands_by_spacing(DegPerSec(12.0), DegPerSec(last), DegPerSec(12.0));
+    spec.bands = bands_by_spacing({DegPerSec(12.0), DegPerSec(last)}, DegPerSec(12.0));
     return CandidateTable::design(spec);
 }
 

@@ -20,7 +20,7 @@ inline CandidateTable paper_table(OutsideRule below = OutsideRule::pass,
         {.gear_ratio = GearRatio(100.0),
          .orders = {Order(1.0), Order(2.0)},
          .sample_rate = Hertz(1000.0),
-         .bands = bands_by_spacing(DegPerSec(18.0), DegPerSec(180.0), DegPerSec(18.0)),
+         .bands = bands_by_spacing({DegPerSec(18.0), DegPerSec(180.0)}, DegPerSec(18.0)),
          .below = below,
          .above = above});
 }

@@ -45,6 +45,8 @@ TEST_CASE("the rate is rows over time, not one over the median step", "[log]") {
     const Log log = read_trace(trace);
     CHECK_THAT(log.recording.clock.mean_rate.value(), WithinRel(800.0, 1e-4));
     CHECK_THAT(log.recording.clock.usual_step.value(), WithinRel(0.001, 1e-9));
+    CHECK_THAT(log.recording.clock.shortest_step.value(), WithinRel(0.001, 1e-9));
+    CHECK_THAT(log.recording.clock.longest_step.value(), WithinRel(0.002, 1e-9));
     // Steps 1, 1, 1, 2 ms: mean 1.25, deviations -0.25 three times and 0.75: rms sqrt((3 * 0.0625 + 0.5625) /
     // 4) = 0.433.
     CHECK_THAT(log.recording.clock.jitter.value(), WithinRel(0.000433, 1e-3));

@@ -12,7 +12,7 @@ namespace {
 
 std::vector<double> draw(std::uint64_t seed, NoiseChannel channel, std::size_t count) {
     std::vector<double> values(count, 0.0);
-    add_noise(values, 1.0, 0.0, seed, channel);
+    add_noise(values, {.rms = 1.0}, seed, channel);
     return values;
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("uniform numbers are 0 or above, stay below 1 and fill it") {
 
 TEST_CASE("noise of rms 0 changes nothing, not even a sign of zero") {
     std::vector<double> values{-0.0, 1.5};
-    add_noise(values, 0.0, 0.0, 1, NoiseChannel::torque);
+    add_noise(values, {.rms = 0.0}, 1, NoiseChannel::torque);
     CHECK(std::signbit(values[0]));
     CHECK(values[1] == 1.5);
 }

@@ -39,9 +39,8 @@ TEST_CASE("a log at rest is described, and is good for no gear ratio") {
 }
 
 TEST_CASE("a log that is not held is described as one that is") {
-    for (const char* name : {"paper_90deg_s", "paper_move_2s", "paper_rest", "dialects/semicolons"}) {
+    for (const char* name : {"paper_90deg_s", "paper_move_2s", "paper_rest", "dialects/comma"}) {
         const std::string path = source_folder() + "/data/" + name + ".csv";
-        if (!std::filesystem::exists(path)) continue;
         const LogInfo held = survey_log(path, {}), passing = survey_log(path, {}, 1000);
         CHECK(passing.rows == held.rows);
         CHECK(passing.warnings == held.warnings);

@@ -19,18 +19,25 @@ struct Fold {
     double gain = 0.0;  ///< what it explains of the samples, in nats, comparable with the seen order's own
 };
 
-/// Frequency at which one of `hz` is seen when sampled at `rate_hz`: 0 to half the rate.
-[[nodiscard]] double folded_hz(double hz, double rate_hz);
+/// A frequency and the rate at which it is sampled.
+struct SampledLine {
+    double hz = 0.0, rate_hz = 0.0;
+};
+/// Frequency at which a line is seen: 0 to half the rate.
+[[nodiscard]] double folded_hz(const SampledLine& line);
 
-/// Orders up to `highest` whose image at this speed is `seen` (both per output turn), lowest first.
-[[nodiscard]] std::vector<double> unfolded_orders(double seen, double rate_hz, double speed_deg_s,
-                                                  double highest);
+/// An order as it is seen, and the highest that it may be in truth; both per output turn.
+struct SeenOrder {
+    double seen = 0.0, highest = 0.0;
+};
+/// Orders up to the highest whose image at this speed is the one seen, lowest first.
+[[nodiscard]] std::vector<double> unfolded_orders(const SeenOrder& order, Hertz rate, DegPerSec speed);
 
 /// The same with what each explains, best first. Each is asked at its own maximum, within what the speeds of
 /// the heaviest sweep allow. Rests on the heaviest sweeps, 20,000 samples at most. Empty where no image lies
-/// below `highest`.
-[[nodiscard]] std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, double seen,
-                                         double highest);
+/// below the highest order.
+[[nodiscard]] std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle,
+                                         const SeenOrder& order);
 
 /// What is known of a line that may be folded.
 struct FoldQuestion {

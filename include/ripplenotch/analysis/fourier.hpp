@@ -54,8 +54,12 @@ struct FourierPoint {
 [[nodiscard]] FourierPoint fourier_point(std::span<const double> where, std::span<const double> value,
                                          double frequency);
 
-/// Nearest maximum of |sum| to a starting frequency, by Newton steps of at most `cell` in total.
+/// Where a maximum is looked for: about a frequency, at most so far from it.
+struct PeakGuess {
+    double frequency = 0.0, reach = 0.0;
+};
+/// Nearest maximum of |sum| to the guess, by Newton steps.
 [[nodiscard]] double refine_peak(std::span<const double> where, std::span<const double> value,
-                                 double frequency, double cell);
+                                 const PeakGuess& guess);
 
 }  // namespace ripplenotch

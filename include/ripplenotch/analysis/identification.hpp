@@ -142,7 +142,7 @@ struct IdentifyOptions {
     std::vector<Doubt> doubts;         ///< what is known against these logs before they are looked at
 };
 
-inline constexpr std::size_t fewest_identify_samples = 64;
+inline constexpr std::size_t fewest_identify_samples = 64;  ///< by hand: as for a spectrum
 
 /// Lines and gear ratio of one joint from one or many of its logs. Throws DataError only for logs that are
 /// unusable as such (fewer than 64 samples).

@@ -52,8 +52,12 @@ struct SignificantPeak {
 [[nodiscard]] std::vector<SignificantPeak> significant_peaks_of_few_cells(const PowerSpectrum& spectrum,
                                                                           double false_alarm);
 
-/// Chance that noise exceeds `ratio` times a floor that was itself estimated from `cells` independent cells.
-[[nodiscard]] double exceedance(double ratio, double averages, double cells);
+/// Power over a floor, of so many averages; the floor was itself estimated from `cells` independent cells.
+struct PowerOverFloor {
+    double ratio = 0.0, averages = 1.0, cells = 0.0;
+};
+/// Chance that noise exceeds that ratio.
+[[nodiscard]] double exceedance(const PowerOverFloor& seen);
 
 /// Ratio of median to mean of a chi-square variable with 2 * averages degrees of freedom. Source: Choi 1994,
 /// median of the gamma distribution.

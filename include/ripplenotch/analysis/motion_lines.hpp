@@ -35,7 +35,7 @@ struct MotionLinesOptions {
     double false_alarm = 0.01;     ///< chance that noise gives any line at all, orders and tones together
     double least_share = 1e-4;     ///< of the torque's range: smaller lines are not reported
     double lowest_tone_hz = 10.0;  ///< slower tones are those of the motion itself
-    std::size_t most_lines = 12;
+    std::size_t most_lines = 12;   ///< by hand: each costs a further look at all sweeps
     std::vector<double> known_hz =
         {};  ///< tones that are known already: taken out before lines are looked for
 };

@@ -52,10 +52,9 @@ struct Spectrum {
     Hertz resolution;  ///< bin_width times 1.5, the noise bandwidth of a Hann window
     std::size_t pieces = 0;
     Seconds piece_duration;
-    double trend_removed_to_hz = 0.0;  ///< below, amplitudes are those of what the straight line left
 };
 
-inline constexpr std::size_t fewest_spectrum_samples = 64;
+inline constexpr std::size_t fewest_spectrum_samples = 64;  ///< by hand
 /// Samples that a piece has, of so many.
 [[nodiscard]] std::size_t piece_length(std::size_t samples, Hertz rate, const SpectrumOptions& options);
 /// Throws DataError for fewer.

@@ -34,15 +34,19 @@ struct Stack {
     [[nodiscard]] PowerSpectrum tested() const;
     /// significant_peaks of `ratio`, the chance corrected for grids finer than the resolution.
     [[nodiscard]] std::vector<SignificantPeak> peaks(double false_alarm) const;
-    /// significant_humps from `lowest` on, likewise; most energy first. None where there are few cells.
-    [[nodiscard]] std::vector<SpectralHump> humps(double false_alarm, double lowest) const;
+    struct HumpRule {
+        double false_alarm = 0.0;
+        double lowest = 0.0;  ///< from where on humps are told, in orders or hertz
+    };
+    /// significant_humps, likewise; most energy first. None where there are few cells.
+    [[nodiscard]] std::vector<SpectralHump> humps(const HumpRule& rule) const;
     bool few_cells = false;     ///< StackRule::few_cells
     double tries_factor = 1.0;  ///< longest over mean length
 };
 
 struct StackRule {
-    double lowest_order = 20.0, highest_order = 2400.0;
-    double lowest_hz = 0.5;
+    double lowest_order = 20.0, highest_order = 2400.0;  ///< by hand, per output turn
+    double lowest_hz = 0.5;                              ///< by hand
     bool few_cells = false;      ///< sweeps so short that their spectra have some ten cells
     double fewest_cycles = 4.0;  ///< per sweep: what turns less often in it is not told from the trend
 };

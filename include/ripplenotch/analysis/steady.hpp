@@ -16,7 +16,7 @@ struct SteadyRule {
     double band_percent = 5.0;  ///< speed stays within this share of its middle value to both sides ...
     double band_deg_s = 0.0;    ///< ... or within this, whichever is wider
     double rest_percent = 1.0;  ///< of the log's highest speed: slower is standstill, whatever the band
-    Seconds at_least{1.0};
+    Seconds at_least{1.0};      ///< by hand
     Seconds smoothing{
         0.1};  ///< velocity is averaged over this time before it is judged, against sensor noise
 };
@@ -53,13 +53,13 @@ struct Stretch {
 class StretchMeter {
   public:
     /// So many rows will come, with these mean values; the position's is 0 where there is none.
-    StretchMeter(std::size_t count, double mean_s, double mean_position_deg)
-        : count_(count), mean_s_(mean_s), mean_position_deg_(mean_position_deg) {}
+    StretchMeter(std::size_t count, Seconds mean_time, Degrees mean_position)
+        : count_(count), mean_s_(mean_time.value()), mean_position_deg_(mean_position.value()) {}
     void add(const TraceView& rows);
     [[nodiscard]] Stretch stretch(Hertz rate, const SteadyRule& rule = {}) const;
 
   private:
-    static constexpr std::size_t blocks = 10;
+    static constexpr std::size_t blocks = 10;  ///< by hand: means, of which the spread is told
     /// Sums for a line through weighed places in seconds and degrees.
     class Slope {
       public:

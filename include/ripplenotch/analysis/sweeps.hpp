@@ -11,16 +11,16 @@
 namespace ripplenotch {
 
 struct SweepRule {
-    double longest_turns = 2.0;  ///< longer sweeps are cut into half-overlapping pieces of this length
-    double longest_s = 20.0;     ///< ... and of at most this duration
-    double shortest_turns = 0.02;
-    std::size_t fewest_samples = 64;
-    double slowest_share = 0.02;  ///< of the log's highest speed; slower motion belongs to no sweep
+    double longest_turns = 2.0;       ///< longer sweeps are cut into half-overlapping pieces of this length
+    double longest_s = 20.0;          ///< ... and of at most this duration
+    double shortest_turns = 0.02;     ///< by hand
+    std::size_t fewest_samples = 64;  ///< by hand
+    double slowest_share = 0.02;      ///< of the log's highest speed; slower motion belongs to no sweep
     double trend_terms_per_turn =
         12.0;  ///< smooth part of the torque taken out: this many terms per output turn
     std::size_t most_samples =
-        300000;  ///< with more, evenly chosen pieces are used, so that the cost is bounded
-    std::size_t most_pieces = 100;
+        300000;                     ///< with more, evenly chosen pieces are used, so that the cost is bounded
+    std::size_t most_pieces = 100;  ///< the same
 };
 
 /// One piece of motion. The vectors have the same length.

@@ -3,6 +3,7 @@
 // Order tracks against speed instead of time.
 
 #include "ripplenotch/analysis/order_track.hpp"
+#include "ripplenotch/core/speed_span.hpp"
 
 namespace ripplenotch {
 
@@ -27,6 +28,6 @@ struct SpeedTrack {
 
 /// Width of speed ranges that cuts the speeds into about 24, 1, 2 or 5 times a power of ten, at least 1 % of
 /// the highest speed; 1 when nothing moves.
-[[nodiscard]] double speed_step(double slowest_deg_s, double fastest_deg_s);
+[[nodiscard]] double speed_step(const SpeedSpan& speeds);
 
 }  // namespace ripplenotch

@@ -28,7 +28,7 @@ struct ArmLog {
 /// for its unit: constant; side of the motion s = tanh(v / 1.5 deg/s); v in rad/s; s exp(-(v / 8.6
 /// deg/s)^2); |s|; |v|.
 enum class BesideArm { offset, coulomb, viscous, stribeck, coulomb_by_side, viscous_by_side };
-inline constexpr std::size_t values_beside_arm = 6;
+inline constexpr std::size_t values_beside_arm = 6;  ///< of BesideArm
 
 struct ArmFitOptions {
     std::vector<bool> use;             ///< rows that count, one entry each; empty: all

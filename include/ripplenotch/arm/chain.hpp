@@ -45,7 +45,7 @@ struct Chain {
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
 };
 
-inline constexpr std::size_t most_chain_joints = 20;
+inline constexpr std::size_t most_chain_joints = 20;  ///< by hand
 /// Lengths beyond are no arm's: a file in millimetres is read as metres.
 inline constexpr double longest_link_m = 100.0;
 

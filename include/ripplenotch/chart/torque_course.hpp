@@ -14,11 +14,16 @@
 
 namespace ripplenotch {
 
+/// One sample, before and after a filter.
+struct CourseSample {
+    double time_s = 0.0, speed_deg_s = 0.0, before_nm = 0.0, after_nm = 0.0;
+};
+
 /// The stretch of half a second in which a filter takes off most of what goes fast: there ripple can be seen,
 /// which a picture of a whole log blurs.
 class CloseUp {
   public:
-    void add(double time_s, double before_nm, double after_nm);
+    void add(const CourseSample& sample);
     /// Empty while the log is not some times as long as the stretch.
     [[nodiscard]] std::optional<Panel> panel() const;
 
@@ -35,8 +40,8 @@ class CloseUp {
 
 class TorqueCourse {
   public:
-    /// One sample; time in the order of the log.
-    void add(double time_s, double speed_deg_s, double before_nm, double after_nm);
+    /// In the order of the log.
+    void add(const CourseSample& sample);
 
     /// Panels: a close-up where the log is long enough, torque before and after, joint speed, and for a
     /// filter that switches the band in force and the jump of the output at each switch.

@@ -41,9 +41,12 @@ void append_fixed(std::string& out, double value, int decimals);
 inline constexpr int fitted_digits = 9;
 /// The nearest number with so many digits; not finite ones stay.
 [[nodiscard]] double to_digits(double value, int digits = fitted_digits);
-/// The same in steps that suit `largest`, for a value of a row in which that is the largest: what a transform
-/// leaves where nothing is comes out as 0.
-[[nodiscard]] double to_digits_of(double largest, double value, int digits = fitted_digits);
+/// A value of a row, and the largest of the row.
+struct ValueInRow {
+    double value = 0.0, largest = 0.0;
+};
+/// The same in steps that suit the largest: what a transform leaves where nothing is comes out as 0.
+[[nodiscard]] double to_digits_in_row(const ValueInRow& cell, int digits = fitted_digits);
 
 /// A figure for people: `decimals` digits after the mark, and no sign where all of them are zero.
 [[nodiscard]] std::string rounded(double value, int decimals);

@@ -13,9 +13,12 @@ struct BandPassTuning {
     double a1 = 1.0, a2 = 0.0, a3 = 0.0, damping = 1.0;
     bool operator==(const BandPassTuning&) const = default;
 
-    /// `warped` is tan(pi * centre / sample rate), above 0; `q` above 0.
-    static BandPassTuning at(double warped, double q) noexcept {
-        const double damping = 1.0 / q;
+    struct Shape {
+        double warped = 0.0;  ///< tan(pi * centre / sample rate), above 0
+        double q = 0.0;       ///< above 0
+    };
+    static BandPassTuning at(const Shape& shape) noexcept {
+        const double warped = shape.warped, damping = 1.0 / shape.q;
         const double a1 = 1.0 / (1.0 + warped * (warped + damping));
         return {a1, warped * a1, warped * warped * a1, damping};
     }

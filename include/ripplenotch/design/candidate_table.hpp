@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ripplenotch/core/biquad.hpp"
+#include "ripplenotch/core/speed_span.hpp"
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/design/notch.hpp"
 
@@ -48,18 +49,18 @@ struct TableSpec {
     std::vector<Order> orders;
     Hertz sample_rate;
     std::vector<std::pair<DegPerSec, DegPerSec>> bands;  ///< from, to; sorted, not overlapping
-    double q = 0.25;
+    double q = 0.25;                                     ///< the paper's twin-T
     double depth_db = infinite_depth_db;
     WidthRule width = WidthRule::analog;
     double ratio_error = 0.0;            ///< share by which the true gear ratio may be off, 0 <= it < 0.5
     std::vector<double> amplitude_nm{};  ///< of the ripple, zero to peak, one per order; empty when unknown
-    double settle_band_percent = 0.5;
+    double settle_band_percent = 0.5;    ///< the one that fits the paper's figures (docs/theory.md)
     OutsideRule below = OutsideRule::pass;
     OutsideRule above = OutsideRule::hold;
 };
 
 /// Bands of equal width, e.g. 18:180:18. Throws UsageError on an empty, backward, non-finite or uneven range.
-[[nodiscard]] std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(DegPerSec from, DegPerSec to,
+[[nodiscard]] std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(const SpeedSpan& speeds,
                                                                             DegPerSec spacing);
 
 /// Throws UsageError unless everything in `spec` but its bands and notches makes sense.

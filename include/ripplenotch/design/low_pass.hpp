@@ -8,7 +8,7 @@ namespace ripplenotch {
 /// Butterworth low-pass of any order (order 1: one real pole), bilinear, prewarped at the cut-off (-3 dB).
 struct LowPassSpec {
     Hertz cutoff;
-    int order = 1;
+    int order = 1;  ///< as the paper's
 };
 
 /// Sections in series, a first-order section first when the order is odd. Throws UsageError unless

@@ -9,7 +9,7 @@
 
 namespace ripplenotch {
 
-inline constexpr double infinite_depth_db = 1e300;
+inline constexpr double infinite_depth_db = 1e300;  ///< stands for a gain of 0
 
 /// What Q means once the filter is sampled.
 enum class WidthRule {

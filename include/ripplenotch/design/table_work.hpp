@@ -9,8 +9,8 @@
 
 namespace ripplenotch {
 
-constexpr std::size_t most_bands = 10000;
-constexpr std::size_t most_orders = 64;
+constexpr std::size_t most_bands = 10000;  ///< by hand: docs/security.md
+constexpr std::size_t most_orders = 64;    ///< by hand: docs/security.md
 
 /// Adds up what measure_band() will have to do. A table that can be designed can be read again: both ask
 /// here.

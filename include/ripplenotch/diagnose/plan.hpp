@@ -20,9 +20,9 @@ struct MotionLimits {
 void check(const MotionLimits& limits);
 
 struct PlanOptions {
-    Seconds longest{30.0};
+    Seconds longest{30.0};  ///< by hand
     std::uint64_t seed = 1;
-    Hertz sample_rate{1000.0};
+    Hertz sample_rate{1000.0};  ///< by hand
     Seconds smoothing = default_smoothing;
     DiagnosisRules rules = {};
 };

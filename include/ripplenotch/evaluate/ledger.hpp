@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/core/speed_span.hpp"
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
 #include "ripplenotch/evaluate/contender.hpp"
@@ -42,15 +43,15 @@ struct CrossoverFigures {
 [[nodiscard]] std::vector<LedgerEntry> delay_ledger(const Contender& contender, Hertz sample_rate,
                                                     const LedgerRequest& request);
 
-/// The longest DC delay of a method, and at which speed, for |v| from `slowest` to `fastest`; a joint slower
-/// than a hundredth of `fastest` counts as standing.
+/// The longest DC delay of a method, and at which speed, for |v| in `speeds`; a joint slower than a hundredth
+/// of the fastest counts as standing.
 struct LongestDelay {
     Seconds delay;
     DegPerSec speed;
     std::string filter;
 };
-[[nodiscard]] LongestDelay longest_delay(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
-                                         DegPerSec fastest);
+[[nodiscard]] LongestDelay longest_delay(const Contender& contender, Hertz sample_rate,
+                                         const SpeedSpan& speeds);
 
 /// The lowest speed above which a method's DC delay stays within `limit`, to 1 %; 0 when it always is, empty
 /// when it is not at any speed up to where its lowest order reaches half the sample rate.

@@ -41,7 +41,7 @@ class SwitchLedger {
     [[nodiscard]] const std::vector<SwitchEntry>& entries() const { return entries_; }
 
   private:
-    void follow(double time_s, double error_nm);
+    void follow(Seconds time, double error_nm);
     std::span<const double> truth_nm_;
     std::array<double, 4> bands_nm_{};
     std::vector<SwitchEntry> entries_;

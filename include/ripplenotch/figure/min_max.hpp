@@ -49,10 +49,13 @@ class MinMaxCourse {
 /// A curve's points through a MinMaxCourse; a curve that is short enough stays as it is.
 [[nodiscard]] Curve thinned(const Curve& curve, std::size_t buckets = shown_buckets);
 
-/// A map on at most `columns` by `rows` cells of equal size along each axis as it is drawn; a cell takes the
+/// How many cells a raster has along each axis.
+struct RasterSize {
+    std::size_t columns = 1, rows = 1;
+};
+/// A map on so many cells, at most, of equal size along each axis as it is drawn; a cell takes the
 /// highest of the cells that reach into it, so that no line is lost.
 [[nodiscard]] HeatMap rasterised(const HeatMap& map, const PlotRange& x, PlotScale x_scale,
-                                 const PlotRange& y, PlotScale y_scale, std::size_t columns,
-                                 std::size_t rows);
+                                 const PlotRange& y, PlotScale y_scale, const RasterSize& size);
 
 }  // namespace ripplenotch

@@ -17,15 +17,19 @@
 
 namespace ripplenotch {
 
+/// The rate that a table was designed for, and that of a log.
+struct TableAndLogRate {
+    Hertz table, log;
+};
 /// Throws DataError naming both rates and the remedy when a table's rate differs from the log's by more than
 /// rate_refused.
-void refuse_table_rate(Hertz table, Hertz log, const std::string& source);
+void refuse_table_rate(const TableAndLogRate& rates, const std::string& source);
 /// A warning when they differ by more than rate_worth_a_word.
-[[nodiscard]] std::optional<std::string> table_rate_warning(Hertz table, Hertz log,
+[[nodiscard]] std::optional<std::string> table_rate_warning(const TableAndLogRate& rates,
                                                             const std::string& source);
 
 /// Both in turn, for a log whose rate is known from the start.
-[[nodiscard]] std::optional<std::string> compare_table_rate(Hertz table, Hertz log,
+[[nodiscard]] std::optional<std::string> compare_table_rate(const TableAndLogRate& rates,
                                                             const std::string& source);
 
 struct TimedSwitch {

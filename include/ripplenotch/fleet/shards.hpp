@@ -34,7 +34,7 @@ struct Shard {
     std::size_t number = 1, of = 1;
     bool operator==(const Shard&) const = default;
 };
-inline constexpr std::size_t most_shards = 1'000'000;
+inline constexpr std::size_t most_shards = 1'000'000;  ///< by hand
 /// Of "3/16". Throws UsageError.
 [[nodiscard]] Shard shard_of(std::string_view text);
 /// The entries of a shard: neighbours in the list, as many in each shard but for one.

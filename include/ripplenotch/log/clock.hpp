@@ -82,7 +82,7 @@ class Clock {
     void require() const;
 
   private:
-    static constexpr std::size_t window_steps = 64;
+    static constexpr std::size_t window_steps = 64;  ///< by hand: steps that tell a rate
     struct Rate {
         double step_s = 0.0, rows_step_s = 0.0;  ///< median of advancing steps; time over rows
         Hertz rate;                              ///< as it is told

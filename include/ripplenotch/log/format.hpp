@@ -83,7 +83,7 @@ class LogReader {
 struct WriteOptions {
     enum class Decimals { shortest, fixed };
     Decimals decimals = Decimals::shortest;
-    int fixed_decimals = 6;
+    int fixed_decimals = 6;                       ///< by hand: a micronewton-metre
     bool append = false;                          ///< add a column instead of replacing the torque
     std::string append_name = "torque_filtered";  ///< its name; a unit is added as in the torque column
 };

@@ -45,7 +45,7 @@ struct FitOptions {
     /// Samples to leave out, 0 for those; torque_nm.size() entries or none. The p samples after each of them
     /// are left out as well.
     std::span<const unsigned char> use = {};
-    int most_iterations = 50;
+    int most_iterations = 50;  ///< by hand
     /// Improvement of the sum of squares at which the search ends, relative.
     double settled = 1e-9;
     /// Samples in a stretch of the log, for errors that look at how the residual pulls in each stretch: what

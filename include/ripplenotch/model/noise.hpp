@@ -26,10 +26,13 @@ class Noise {
     bool has_spare_ = false;
 };
 
-/// Adds noise of the given rms to each value. With `correlation` c in [0, 1) each number is c times the one
-/// before plus a fresh part (first-order autoregression): 0 is white, near 1 is slow.
-void add_noise(std::span<double> values, double rms, double correlation, std::uint64_t seed,
-               NoiseChannel channel);
+/// With `correlation` c in [0, 1) each number is c times the one before plus a fresh part (first-order
+/// autoregression): 0 is white, near 1 is slow.
+struct NoiseKind {
+    double rms = 0.0, correlation = 0.0;
+};
+/// Adds noise to each value.
+void add_noise(std::span<double> values, const NoiseKind& kind, std::uint64_t seed, NoiseChannel channel);
 
 /// The same without correlation.
 void add_white_noise(std::span<double> values, double rms, std::uint64_t seed, NoiseChannel channel);

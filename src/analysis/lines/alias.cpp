@@ -12,18 +12,18 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double decisive_nats = 5.0;
-constexpr double floor_doubt = 0.15;
-constexpr double comb_share = 0.006;  // as wide as the fit of the ratio takes its combs
-constexpr std::size_t most_samples = 20000;
-constexpr std::size_t most_folds = 40;
-constexpr double most_grid = 300.0;
+constexpr double decisive_nats = 5.0;        // by hand: odds of 150 to 1
+constexpr double floor_doubt = 0.15;         // by hand: of a gain, since the noise is not known better
+constexpr double comb_share = 0.006;         // as wide as the fit of the ratio takes its combs
+constexpr std::size_t most_samples = 20000;  // by hand: bounds the time
+constexpr std::size_t most_folds = 40;       // by hand: bounds the time
+constexpr double most_grid = 300.0;          // by hand: bounds the time
 constexpr int most_comb = 4;  // n beyond which a hinted comb is so dense that images lie on it by chance
 // How often the leading line of a drive stands at n = 1 to 4.
 constexpr std::array<double, most_comb> share_of_n{0.25, 0.55, 0.02, 0.06};
 
-double rate_in_orders(double rate_hz, double speed_deg_s) {
-    return 360.0 * rate_hz / std::max(std::abs(speed_deg_s), 1e-9);
+double rate_in_orders(Hertz rate, DegPerSec speed) {
+    return 360.0 * rate.value() / std::max(std::abs(speed.value()), 1e-9);
 }
 
 /// Sweeps that vouch for the seen order, with the noise there; images share it.
@@ -90,10 +90,13 @@ std::optional<int> on_comb(double order, double ratio, double tolerance) {
 
 }  // namespace
 
-double folded_hz(double hz, double rate_hz) { return std::abs(hz - rate_hz * std::round(hz / rate_hz)); }
+double folded_hz(const SampledLine& line) {
+    return std::abs(line.hz - line.rate_hz * std::round(line.hz / line.rate_hz));
+}
 
-std::vector<double> unfolded_orders(double seen, double rate_hz, double speed_deg_s, double highest) {
-    const double rate = rate_in_orders(rate_hz, speed_deg_s);
+std::vector<double> unfolded_orders(const SeenOrder& order, Hertz rate_of_log, DegPerSec speed) {
+    const auto [seen, highest] = order;
+    const double rate = rate_in_orders(rate_of_log, speed);
     std::vector<double> orders;
     for (double k = 1.0; k * rate - seen <= highest && orders.size() < most_folds; k += 1.0) {
         if (k * rate - seen > 0.0) orders.push_back(k * rate - seen);
@@ -103,13 +106,14 @@ std::vector<double> unfolded_orders(double seen, double rate_hz, double speed_de
     return orders;
 }
 
-std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, double seen, double highest) {
+std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, const SeenOrder& order) {
+    const auto [seen, highest] = order;
     const std::vector<Witness> witnesses = witnesses_of(sweeps, angle, seen);
     std::vector<Fold> folds;
     if (witnesses.empty()) return folds;
     const Sweep& heaviest = *witnesses.front().sweep;
-    const double slow = rate_in_orders(heaviest.rate_hz, heaviest.slow_deg_s);
-    const double quick = rate_in_orders(heaviest.rate_hz, heaviest.quick_deg_s);
+    const double slow = rate_in_orders(Hertz(heaviest.rate_hz), DegPerSec(heaviest.slow_deg_s));
+    const double quick = rate_in_orders(Hertz(heaviest.rate_hz), DegPerSec(heaviest.quick_deg_s));
     const double step = 0.5 / heaviest.length_turns, reach = 6.0 * step;
     for (double k = 1.0; k * quick - seen <= highest && folds.size() < most_folds; k += 1.0) {
         for (const double side : {-1.0, 1.0}) {

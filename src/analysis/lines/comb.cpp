@@ -13,10 +13,10 @@
 namespace ripplenotch {
 namespace {
 
-constexpr int most_alone = 8, most_besides = 16;
+constexpr int most_alone = 8, most_besides = 16;  // by hand: n of a line alone, and beside others
 constexpr double match_share = 0.006;  // a line lies on a comb within this share, or four standard errors
 constexpr double same_ratio_share = 0.008;  // candidates nearer than this are one
-constexpr double listed_share = 0.004;
+constexpr double listed_share = 0.004;      // by hand: half of same_ratio_share
 // Set by judgement, as are the shares of alone_nats(): there are no published statistics of what ripple lines
 // robots show. That all lines seen are even, or multiples of three and more, happens, and more rarely; a line
 // off the comb is a mistake of the finder or of the comb. scripts/prove-identify shows what they come to.

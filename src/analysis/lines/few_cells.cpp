@@ -9,9 +9,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double guard_cells = 2.0;    // a Hann line's main lobe
-constexpr double fewest_beside = 1.5;  // cells beyond the guard on each side
-constexpr double tries_per_cell = 1.6;
+constexpr double guard_cells = 2.0;        // a Hann line's main lobe
+constexpr double fewest_beside = 1.5;      // cells beyond the guard on each side
+constexpr double tries_per_cell = 1.6;     // as in line_test.cpp
 constexpr double median_knowledge = 0.48;  // of a mean's: exceedance() counts cells behind a median
 
 double mean(const std::vector<double>& values) {
@@ -43,8 +43,9 @@ std::vector<SignificantPeak> significant_peaks_of_few_cells(const PowerSpectrum&
         const double local = std::max(mean(below), mean(above));
         const double cells = static_cast<double>(around.size()) / spectrum.bins_per_cell / median_knowledge;
         if (!(local > 0.0)) continue;
-        const double chance =
-            std::min(1.0, tries * exceedance(power[k] / local, spectrum.averages_at(k), cells));
+        const double chance = std::min(1.0, tries * exceedance({.ratio = power[k] / local,
+                                                                .averages = spectrum.averages_at(k),
+                                                                .cells = cells}));
         if (chance <= false_alarm) peaks.push_back({k, local, chance});
     }
     return peaks;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double least_score = 0.7;           // for a ratio to be given
 constexpr double least_listed_score = 0.005;  // for a candidate to be listed
-constexpr std::size_t most_candidates = 8;
+constexpr std::size_t most_candidates = 8;    // by hand: a list that a person reads
 
 /// Two-sided 95 % quantile of Student's t.
 double student_95(double freedom) {
@@ -55,7 +55,7 @@ std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, cons
 
 void fit(std::span<const OrderLine> lines, const Comb& comb, GearRatioFit& result) {
     auto estimates = by_source(lines, comb);
-    constexpr double huber = 1.345;
+    constexpr double huber = 1.345;  // 95 % efficient where errors are normal (Huber 1964)
     double ratio = comb.ratio, scale = 1.0, bottom = 0.0;
     const auto freedom = static_cast<double>(estimates.size()) - 1.0;
     for (int round = 0; round < 30; ++round) {

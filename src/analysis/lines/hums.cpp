@@ -7,9 +7,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_hums = 3;
-constexpr double near_share = 0.05;  // of a line's frequency: a hump so near is the line, smeared
-constexpr int harmonics = 2;         // multiples of a line that are taken as its own, too
+constexpr std::size_t most_hums = 3;  // by hand: a list that a person reads
+constexpr double near_share = 0.05;   // of a line's frequency: a hump so near is the line, smeared
+constexpr int harmonics = 2;          // multiples of a line that are taken as its own, too
 
 /// Where a line runs while the joint goes at a speed.
 double hz_of(const Line& line, double speed_deg_s) {

@@ -7,14 +7,13 @@
 
 #include "analysis/lines/place_error.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
-#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double recurrence_chance = 0.01;
-constexpr double most_of_log = 0.6;
+constexpr double recurrence_chance = 0.01;  // by hand: as the false alarms allowed by default
+constexpr double most_of_log = 0.6;         // by hand: no second piece to ask
 
 double noise_at(const Stack& stack, std::size_t sweep, double place) {
     const auto bin = static_cast<std::size_t>(std::lround(std::max(0.0, place / stack.spacing)));
@@ -93,7 +92,9 @@ bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {
         squares += piece.weight * piece.weight;
     }
     if (!(weights > 0.0)) return false;
-    return exceedance(sum / weights, weights * weights / squares, floor_cells) < recurrence_chance;
+    return exceedance(
+               {.ratio = sum / weights, .averages = weights * weights / squares, .cells = floor_cells}) <
+           recurrence_chance;
 }
 
 double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double tau = 2.0 * std::numbers::pi;
 constexpr double reach_bins = 0.5;  // of the moments
-constexpr int most_rounds = 8;
-constexpr double settled = 1e-9;  // bins
+constexpr int most_rounds = 8;      // by hand
+constexpr double settled = 1e-9;    // bins
 
 /// S(x) = sum over d of (-i x)^d / d! M_d with its first two derivatives; x is 2 pi (f - start) half a piece.
 struct Point {
@@ -63,7 +63,7 @@ bool LineMeter::search_moments(const Piece& piece, Maximum& found) const {
 LineMeter::Maximum LineMeter::search(const Piece& piece) const {
     Maximum found;
     if (piece.even && half_s_ > 0.0 && search_moments(piece, found)) return found;
-    found.hz = refine_peak(piece.time_s, piece.value, start_hz_, bin_hz_);
+    found.hz = refine_peak(piece.time_s, piece.value, {.frequency = start_hz_, .reach = bin_hz_});
     found.sum = fourier_point(piece.time_s, piece.value, found.hz).value;
     return found;
 }

@@ -22,7 +22,7 @@ constexpr double clear_cycles = 10.0;
 /// polynomials) and cosine and sine of lines, at some of its samples; a row of `length` numbers each.
 class Rows {
   public:
-    static constexpr std::size_t length = 256;
+    static constexpr std::size_t length = 256;  // by hand
 
     Rows(const Sweep& sweep, std::span<const KnownLine> lines)
         : sweep_(sweep), lines_(lines), values_(count() * length) {

@@ -11,19 +11,19 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double guard_cells = 3.0;  // the main lobe of a Hann line and its first side lobe
-constexpr double near_cells = 12.0;
-constexpr double far_cells = 40.0;
+constexpr double guard_cells = 3.0;       // the main lobe of a Hann line and its first side lobe
+constexpr double near_cells = 12.0;       // by hand: from a line, for a floor that slopes
+constexpr double far_cells = 40.0;        // by hand: for a median that is known better
 constexpr double inner_from_cells = 2.0;  // noise through a lightly damped resonance is only a few cells wide
-constexpr double inner_to_cells = 5.0;
-constexpr double fewest_cells = 4.0;
+constexpr double inner_to_cells = 5.0;    // by hand
+constexpr double fewest_cells = 4.0;      // by hand
 // Maxima are looked for among correlated bins: about this many independent tries per cell. With it, white
 // noise raises a false alarm somewhat less often than allowed.
 constexpr double tries_per_cell = 1.6;
 
 /// Continued fraction of the incomplete beta function, by the modified method of Lentz.
 double beta_fraction(double x, double a, double b) {
-    constexpr double tiny = 1e-300;
+    constexpr double tiny = 1e-300;  // no division by 0, as Lentz has it
     double c = 1.0;
     double d = 1.0 - (a + b) * x / (a + 1.0);
     d = 1.0 / (std::abs(d) < tiny ? tiny : d);
@@ -123,7 +123,8 @@ class LeastRatio {
   private:
     [[nodiscard]] double found() const {
         const auto is_below = [this](double ratio) {
-            return exceedance(ratio * (1.0 + 1e-9), averages_, cells_) > chance_;
+            return exceedance({.ratio = ratio * (1.0 + 1e-9), .averages = averages_, .cells = cells_}) >
+                   chance_;
         };
         double high = 1.0;
         while (is_below(high) && high < 1e100) high *= 2.0;
@@ -148,7 +149,8 @@ double median_over_mean(double averages) {
            k;
 }
 
-double exceedance(double ratio, double averages, double cells) {
+double exceedance(const PowerOverFloor& seen) {
+    const auto [ratio, averages, cells] = seen;
     if (!(ratio > 0.0)) return 1.0;
     // A median of m exponentials knows their mean as well as 0.48 m of them averaged: (ln 2)^2.
     const double knowledge = std::max(0.5, 0.48 * cells * averages);
@@ -204,14 +206,16 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         // A cheap sieve with a wide margin: the floors below are seldom less than a quarter of the running
         // one.
         const double averages = spectrum.averages_at(k), rough = 4.0 * power[k] / floor[k];
-        if (rough < worth_a_look.at(averages, 1e6) || tries * exceedance(rough, averages, 1e6) > 1.0)
+        if (rough < worth_a_look.at(averages, 1e6) ||
+            tries * exceedance({.ratio = rough, .averages = averages, .cells = 1e6}) > 1.0)
             continue;
         if (cells_around(spectrum, k, near_cells) < fewest_cells) continue;
         const double cells = cells_around(spectrum, k, far_cells);
         const double most = power[k] / significant.at(averages, cells);  // infinite at 0
         const double local = floor_at(spectrum, k, most, scratch);
         if (!(local > 0.0) || local > most) continue;
-        const double chance = std::min(1.0, tries * exceedance(power[k] / local, averages, cells));
+        const double chance = std::min(
+            1.0, tries * exceedance({.ratio = power[k] / local, .averages = averages, .cells = cells}));
         if (chance <= false_alarm) peaks.push_back({k, local, chance});
     }
     return peaks;

@@ -14,9 +14,9 @@ namespace {
 
 // An axis must explain a line better than the other by this factor of likelihood (in nats) to own it.
 constexpr double decisive_nats = 5.0;
-constexpr double kept_share = 0.8;
-constexpr double floor_doubt = 0.15;
-constexpr double line_cells = 2.0;  // half width of a line's main lobe, in resolutions
+constexpr double kept_share = 0.8;    // by hand: of a gain, left once the other line is out
+constexpr double floor_doubt = 0.15;  // by hand: as in alias.cpp
+constexpr double line_cells = 2.0;    // half width of a line's main lobe, in resolutions
 
 struct Candidate {
     SignificantPeak peak;
@@ -82,7 +82,9 @@ double detectable(const Stack& stack, double false_alarm) {
     const double averages = stack.averages[(stack.first + stack.averages.size()) / 2];
     const double tries = static_cast<double>(floors.size()) * stack.spacing / stack.resolution;
     double ratio = 1.0;
-    while (ratio < 1e3 && exceedance(ratio, averages, floor_cells) * tries > false_alarm) ratio *= 1.05;
+    while (ratio < 1e3 &&
+           exceedance({.ratio = ratio, .averages = averages, .cells = floor_cells}) * tries > false_alarm)
+        ratio *= 1.05;
     return median_in(floors) * std::sqrt(ratio - 1.0);
 }
 
@@ -211,7 +213,8 @@ void complete(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Riva
         line.hz_stderr = stacks.time.resolution;
     }
     line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, stacks.angle, rivals.hz);
-    line.folds = folds_of(sweeps, stacks.angle, line.order_seen, options.stack.highest_order);
+    line.folds =
+        folds_of(sweeps, stacks.angle, {.seen = line.order_seen, .highest = options.stack.highest_order});
 }
 
 void state_resolution(const Stack& angle, double least_amplitude, double false_alarm, MotionLines& found) {
@@ -278,7 +281,7 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
         found.lines.push_back(std::move(line));
         if (found.lines.size() < options.most_lines) stacks = stacked(sweeps, options);
     }
-    found.humps = stacks.time.humps(options.false_alarm, options.lowest_tone_hz);
+    found.humps = stacks.time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
     return found;
 }
 

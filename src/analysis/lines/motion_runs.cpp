@@ -9,7 +9,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double smoothing_s = 0.05;
+constexpr double smoothing_s = 0.05;  // as models smooth speeds (measured_motion.hpp)
 
 std::vector<double> integrated_velocity(const TraceView& log) {
     std::vector<double> turns(log.size(), 0.0);

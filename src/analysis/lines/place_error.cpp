@@ -14,10 +14,10 @@ namespace ripplenotch {
 namespace {
 
 constexpr double tau = 2.0 * std::numbers::pi;
-constexpr double clear_ratio = 6.0;  // of power over noise; below, a peak's own place is not near normal
-constexpr std::size_t few_sweeps = 4;
-constexpr std::size_t parts_of_few = 3;
-constexpr std::size_t fewest_samples = 24;
+constexpr double clear_ratio = 6.0;      // of power over noise; below, a peak's own place is not near normal
+constexpr std::size_t few_sweeps = 4;    // by hand: fewer are cut in parts, for a scatter
+constexpr std::size_t parts_of_few = 3;  // the fewest with a scatter
+constexpr std::size_t fewest_samples = 24;  // by hand
 
 /// What one piece of motion says about a line near a place: slope and curvature of half its power over noise,
 /// and the variance that noise gives the slope.

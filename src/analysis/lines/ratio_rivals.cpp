@@ -10,8 +10,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double least_scale_error = 0.0005;
-constexpr double near_hint = 0.01;
+constexpr double least_scale_error = 0.0005;  // by hand
+constexpr double near_hint = 0.01;            // by hand
 // How much rarer each mistake is than a log that is what it says, in nats. A clock may be off by any factor,
 // so that one always fits.
 constexpr double unit_nats = -4.0, clock_nats = -12.0, scale_nats = -0.5;

@@ -41,7 +41,7 @@ std::optional<double> phase_in_angle(std::span<const TraceView> logs, const Stea
         together += sum;
         lengths += 0.5 * seen.amplitude_nm;
     }
-    constexpr double agreement = 0.7;
+    constexpr double agreement = 0.7;  // by hand
     if (!(lengths > 0.0) || std::abs(together) < agreement * lengths) return std::nullopt;
     return portable::arg(together) * degrees_per_radian;
 }
@@ -147,8 +147,9 @@ Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
     if (found.kind == LineKind::unknown && options.hint) {
         // One speed, so every image explains it alike.
         std::vector<Fold> folds;
-        for (const double fold : unfolded_orders(first.order_output(), first.rate_hz, first.speed_deg_s,
-                                                 highest_by_hint * options.hint->value()))
+        for (const double fold : unfolded_orders(
+                 {.seen = first.order_output(), .highest = highest_by_hint * options.hint->value()},
+                 Hertz(first.rate_hz), DegPerSec(first.speed_deg_s)))
             folds.push_back({fold, 0.0});
         unfold(reported, {first.order_output(), 4.0 * reported.order->error, 0.0, 0.0, folds}, options,
                first.rate_hz);

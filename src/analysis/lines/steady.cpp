@@ -120,7 +120,8 @@ double mean_of(std::span<const double> values) {
 
 Stretch measured(const TraceView& trace, std::size_t first, std::size_t count, const SteadyRule& rule) {
     const TraceView part = trace.part(first, count);
-    StretchMeter meter(count, mean_of(part.time_s), part.has_position() ? mean_of(part.position_deg) : 0.0);
+    StretchMeter meter(count, Seconds(mean_of(part.time_s)),
+                       Degrees(part.has_position() ? mean_of(part.position_deg) : 0.0));
     meter.add(part);
     Stretch stretch = meter.stretch(trace.sample_rate, rule);
     stretch.first = first;

@@ -15,12 +15,12 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_peaks = 16;  // per stretch, the clearest
-constexpr std::size_t fewest_samples = 64;
+constexpr std::size_t most_peaks = 16;      // per stretch, the clearest
+constexpr std::size_t fewest_samples = 64;  // as for a spectrum
 constexpr double same_fold_share = 0.0005;  // the same for orders beyond half the sample rate: many are tried
-constexpr double chance_of_fold = 0.01;
-constexpr double highest_folded_order = 1000.0;
-constexpr double other_speed_share = 0.02;  // speeds further apart are different ones
+constexpr double chance_of_fold = 0.01;     // by hand: as the false alarms allowed by default
+constexpr double highest_folded_order = 1000.0;  // by hand: per output turn
+constexpr double other_speed_share = 0.02;       // speeds further apart are different ones
 
 std::vector<StretchLines> measure_stretches(std::span<const TraceView> logs, const SteadyRule& rule,
                                             double false_alarm) {
@@ -138,7 +138,7 @@ FoldedMatch match_folded(double order, double order_error, const Sighting& seen)
     const double allowed =
         4.0 * portable::hypot(seen.hz_error, hz * seen.speed_share_error, hz * order_error / order) +
         same_fold_share * hz;
-    const double off = folded_hz(hz, seen.rate_hz) - seen.seen_hz;
+    const double off = folded_hz({.hz = hz, .rate_hz = seen.rate_hz}) - seen.seen_hz;
     return {hz, std::abs(off) / allowed, std::min(1.0, 4.0 * allowed / seen.rate_hz)};
 }
 
@@ -147,8 +147,8 @@ FoldedMatch match_folded(double order, double order_error, const Sighting& seen)
 Group grow_folded(std::size_t seed, const std::vector<Sighting>& all, const std::vector<bool>& used) {
     Group best;
     const Sighting& first = all[seed];
-    const auto orders =
-        unfolded_orders(first.order_output(), first.rate_hz, first.speed_deg_s, highest_folded_order);
+    const auto orders = unfolded_orders({.seen = first.order_output(), .highest = highest_folded_order},
+                                        Hertz(first.rate_hz), DegPerSec(first.speed_deg_s));
     for (const double order : orders) {
         const double hz = order * std::abs(first.speed_deg_s) / 360.0;
         const double error =

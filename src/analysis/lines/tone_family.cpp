@@ -11,15 +11,15 @@
 namespace ripplenotch {
 namespace {
 
-constexpr int highest_multiple = 12;
+constexpr int highest_multiple = 12;         // by hand
 constexpr std::size_t fewest_multiples = 3;  // two frequencies are multiples of something always
-constexpr double lowest_hz = 1.0;
+constexpr double lowest_hz = 1.0;            // by hand: below is motion
 // In nats: what a further multiple costs (one of some twelve), and a tone that should be seen and is not.
 const double multiple_nats = portable::log(static_cast<double>(highest_multiple));
-constexpr double missing_nats = 3.0;
-constexpr double least_nats = 5.0;
-constexpr double seen_over_floor = 4.5;  // amplitude over the floor of a line at the 1 % level
-constexpr double clearly = 1.5;
+constexpr double missing_nats = 3.0;          // by hand: odds of 20 to 1
+constexpr double least_nats = 5.0;            // by hand: odds of 150 to 1
+constexpr double seen_over_floor = 4.5;       // amplitude over the floor of a line at the 1 % level
+constexpr double clearly = 1.5;               // by hand: times what is just seen
 constexpr double same_order_share = 0.005;    // scatter of speeds that stretches of one order may show
 constexpr double same_family_share = 0.0025;  // by which tones of one source may miss their multiples
 constexpr double chance_of_accident = 0.02;   // of an order seen at two speeds

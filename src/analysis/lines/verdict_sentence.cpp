@@ -230,7 +230,7 @@ std::string doubted(const Identification& found) {
     std::vector<std::string> because, seen;
     for (const Doubt& doubt : found.doubts) because.push_back(doubt.because);
     std::string text = fmt::format("Cannot tell: {}.", fmt::join(because, "; "));
-    constexpr std::size_t most = 6;
+    constexpr std::size_t most = 6;  // by hand: a sentence that a person reads
     for (const Line& line : found.lines) {
         if (seen.size() < most)
             seen.push_back(fmt::format("{} ({:.2g} Nm)", frequencies(line), line.amplitude_nm));

@@ -188,9 +188,9 @@ FourierPoint fourier_point(std::span<const double> where, std::span<const double
     return Places(where).point(value, frequency);
 }
 
-double refine_peak(std::span<const double> where, std::span<const double> value, double frequency,
-                   double cell) {
-    const double start = frequency;
+double refine_peak(std::span<const double> where, std::span<const double> value, const PeakGuess& guess) {
+    const auto [start, reach] = guess;
+    double frequency = start;
     const Places places(where);
     for (int round = 0; round < 8; ++round) {
         const FourierPoint at = places.point(value, frequency);
@@ -199,8 +199,8 @@ double refine_peak(std::span<const double> where, std::span<const double> value,
         const double curve = std::norm(at.first) + std::real(std::conj(at.value) * at.second);
         if (!(curve < 0.0)) return frequency;
         const double step = -slope / curve;
-        const double next = std::clamp(frequency + step, start - cell, start + cell);
-        const bool settled = std::abs(next - frequency) < 1e-9 * cell;
+        const double next = std::clamp(frequency + step, start - reach, start + reach);
+        const bool settled = std::abs(next - frequency) < 1e-9 * reach;
         frequency = next;
         if (settled) break;
     }

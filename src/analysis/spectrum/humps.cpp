@@ -21,9 +21,9 @@ constexpr std::size_t window_blocks = 4, guard_blocks = 2, side_blocks = 24, few
                       around_blocks = 64;
 // Windows overlap, and those of neighbouring widths are alike: about this many independent tries per block.
 constexpr double tries_per_window = 0.5;
-constexpr double narrow_cells = 20.0, sieve_ratio = 2.0;
-constexpr std::size_t most_lags = 64;
-constexpr double clipped_ratio = 4.0;  // so that humps themselves do not make cells alike
+constexpr double narrow_cells = 20.0, sieve_ratio = 2.0;  // by hand: only what is looked at more closely
+constexpr std::size_t most_lags = 64;                     // by hand: bounds the time
+constexpr double clipped_ratio = 4.0;                     // so that humps themselves do not make cells alike
 
 /// How far the cells are as independent, and as well averaged, as they are said to be: cells so many apart
 /// may be alike, and one loud piece of many makes their mean no better than itself.
@@ -158,7 +158,8 @@ class Level {
         const double averages = averages_of(window_cells_, at);
         const double side =
             static_cast<double>(std::min(at - before(side_blocks), after(side_blocks) - end) - guard_blocks);
-        const double chance = std::min(1.0, tries * exceedance(ratio, averages, side / window_blocks));
+        const double chance = std::min(
+            1.0, tries * exceedance({.ratio = ratio, .averages = averages, .cells = side / window_blocks}));
         if (chance > false_alarm) return;
         into.push_back({grown(at, floor, chance), averages * (ratio - 1.0 - portable::log(ratio))});
     }

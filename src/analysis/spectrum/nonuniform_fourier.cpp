@@ -53,7 +53,7 @@ class KernelTransform {
     }
 
   private:
-    static constexpr std::size_t nodes = 40;
+    static constexpr std::size_t nodes = 40;  // by hand
     using Row = std::array<double, nodes>;
     double step_;
     std::size_t count_ = 0;
@@ -98,7 +98,7 @@ std::vector<std::complex<double>> nonuniform_fourier(std::span<const double> whe
                                                      std::span<const double> value, double spacing,
                                                      std::size_t count) {
     if (count == 0) return {};
-    constexpr std::size_t longest_kept = std::size_t{1} << 18, most_kept = 8;
+    constexpr std::size_t longest_kept = std::size_t{1} << 18, most_kept = 8;  // by hand: bounds the memory
     const std::size_t least = std::max<std::size_t>(4 * count, 4 * SpreadingKernel::width);
     if (least > longest_kept) return Grid(fast_length(least)).sums(where, value, spacing, count);
     thread_local std::map<std::size_t, Grid> kept;

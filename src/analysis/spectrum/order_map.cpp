@@ -16,9 +16,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double hann_cell = 1.5;  ///< noise bandwidth of a Hann window in 1 / length
-constexpr double bins_per_resolution = 3.0;
-constexpr std::size_t fewest_samples = 32;
+constexpr double hann_cell = 1.5;            ///< noise bandwidth of a Hann window in 1 / length
+constexpr double bins_per_resolution = 3.0;  // by hand
+constexpr std::size_t fewest_samples = 32;   // by hand
 constexpr double window_share = 1.0 / 16.0;  ///< of the longest run
 constexpr Eigen::Index trend_terms = 4;
 
@@ -162,8 +162,8 @@ SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
     const double highest = options.highest.value_or(angle ? half_rate / fastest_rate : half_rate);
     const auto bins = static_cast<std::size_t>(highest / map.spacing) + 1;
     const auto [low, high] = std::minmax_element(speeds.begin(), speeds.end());
-    map.speed_step_deg_s =
-        options.speed_step.value() > 0.0 ? options.speed_step.value() : speed_step(*low, *high);
+    map.speed_step_deg_s = options.speed_step.value() > 0.0 ? options.speed_step.value()
+                                                            : speed_step({DegPerSec(*low), DegPerSec(*high)});
 
     std::map<long long, Gathered> rows;
     for (std::size_t i = 0; i < windows.size(); ++i) {

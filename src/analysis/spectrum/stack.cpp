@@ -14,7 +14,7 @@ constexpr double hann_cell = 1.5;  // bins of one over the length
 constexpr double overlap_correlation =
     1.06;  // half-overlapping Hann pieces count a little less than independent ones
 
-constexpr double smeared_cells = 20.0;
+constexpr double smeared_cells = 20.0;  // by hand
 
 struct Reach {
     std::size_t first = 0, end = 0;  // bins
@@ -61,11 +61,11 @@ std::vector<SignificantPeak> Stack::peaks(double false_alarm) const {
     return found;
 }
 
-std::vector<SpectralHump> Stack::humps(double false_alarm, double lowest) const {
+std::vector<SpectralHump> Stack::humps(const HumpRule& rule) const {
     std::vector<SpectralHump> humps;
     if (few_cells || ratio.size() <= first) return humps;
-    for (const SignificantHump& found : significant_humps(tested(), false_alarm / tries_factor)) {
-        if (static_cast<double>(found.first) * spacing < lowest) continue;
+    for (const SignificantHump& found : significant_humps(tested(), rule.false_alarm / tries_factor)) {
+        if (static_cast<double>(found.first) * spacing < rule.lowest) continue;
         SpectralHump hump;
         double square = 0.0, beside = 0.0;
         std::size_t highest = found.first;

@@ -190,7 +190,6 @@ Spectrum Welch::spectrum() const {
         spectrum.psd_nm2_hz.push_back(power_[k] * (gain_ / rate_) * single);
         spectrum.floor_nm.push_back(k < first ? 0.0 : std::sqrt(floor_[k]));
     }
-    spectrum.trend_removed_to_hz = static_cast<double>(first) * bin_hz();
     spectrum.humps = humps();
     for (std::size_t line = 0; line < found_.size(); ++line) spectrum.peaks.push_back(peak(line));
     std::stable_sort(

@@ -159,7 +159,7 @@ void add_row(const TrackedSignal& signal, const SampleRun& window, const WindowF
 }  // namespace
 
 double separating_window_turns(std::span<const double> orders) {
-    constexpr double periods = 8.0, beats = 2.0;
+    constexpr double periods = 8.0, beats = 2.0;  // by hand: of the lowest line, and of the slowest beat
     std::vector<double> sorted(orders.begin(), orders.end());
     std::sort(sorted.begin(), sorted.end());
     if (sorted.empty() || !(sorted.front() > 0.0)) raise<UsageError>("orders must be above 0");

@@ -16,10 +16,10 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double turns_wanted = 8.0;
-constexpr double turns_needed = 4.0;
-constexpr double longest_window_s = 2.0;  ///< the torque itself is no quadratic for longer
-constexpr double fewest_samples_a_period = 3.0;
+constexpr double turns_wanted = 8.0;             // by hand: of the motor, in a window
+constexpr double turns_needed = 4.0;             // by hand: half of what is wanted
+constexpr double longest_window_s = 2.0;         ///< the torque itself is no quadratic for longer
+constexpr double fewest_samples_a_period = 3.0;  // by hand: the sampling theorem asks for two
 constexpr double reversal_turns = 0.25;  ///< back from the furthest angle by more: the joint has turned round
 constexpr Eigen::Index trend_terms =
     4;  ///< a cubic: a quadratic leaks into order 2 where a joint turns round

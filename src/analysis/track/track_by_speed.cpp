@@ -12,7 +12,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double ranges_wanted = 24.0;
+constexpr double ranges_wanted = 24.0;  // by hand: rows that a person reads
 constexpr double finest_share =
     0.01;  ///< of the highest speed: a steady log is not cut up by its speed noise
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -42,7 +42,8 @@ void gather_line(const LineTrack& track, const std::vector<std::size_t>& rows, S
 
 }  // namespace
 
-double speed_step(double slowest_deg_s, double fastest_deg_s) {
+double speed_step(const SpeedSpan& speeds) {
+    const double slowest_deg_s = speeds.from.value(), fastest_deg_s = speeds.to.value();
     const double fastest = std::max(std::abs(slowest_deg_s), std::abs(fastest_deg_s));
     const double least = std::max((fastest_deg_s - slowest_deg_s) / ranges_wanted, finest_share * fastest);
     if (!(least > 0.0)) return 1.0;
@@ -58,7 +59,7 @@ SpeedTrack gather_by_speed(const OrderTracks& tracks, DegPerSec step) {
     result.lines.resize(tracks.lines.size());
     if (tracks.speed_deg_s.empty()) return result;
     const auto [low, high] = std::minmax_element(tracks.speed_deg_s.begin(), tracks.speed_deg_s.end());
-    result.step_deg_s = step.value() > 0.0 ? step.value() : speed_step(*low, *high);
+    result.step_deg_s = step.value() > 0.0 ? step.value() : speed_step({DegPerSec(*low), DegPerSec(*high)});
     std::map<long long, std::vector<std::size_t>> ranges;
     for (std::size_t row = 0; row < tracks.speed_deg_s.size(); ++row) {
         ranges[std::llround(tracks.speed_deg_s[row] / result.step_deg_s)].push_back(row);

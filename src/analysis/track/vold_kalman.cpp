@@ -20,11 +20,11 @@ namespace ripplenotch {
 namespace {
 
 constexpr double points_per_width = 40.0;  ///< points of the envelope in 1/bandwidth
-constexpr double rows_per_width = 8.0;
-constexpr double shortest_run = 1.5;   ///< in 1/bandwidth
-constexpr double widest_share = 0.25;  ///< of the sample rate
-constexpr double worst_condition = 1e13;
-constexpr double trend_widths = 4.0;   ///< the trend's bandwidth over a line's
+constexpr double rows_per_width = 8.0;     // by hand
+constexpr double shortest_run = 1.5;       ///< in 1/bandwidth
+constexpr double widest_share = 0.25;      ///< of the sample rate
+constexpr double worst_condition = 1e13;   // rounding shows in the third digit (docs/theory.md)
+constexpr double trend_widths = 4.0;       ///< the trend's bandwidth over a line's
 constexpr double fewest_cycles = 1.0;  ///< of a line within 1/bandwidth, or it is one with its mirror image
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 

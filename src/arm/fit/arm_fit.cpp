@@ -9,7 +9,6 @@
 #include "arm/fit/smooth_along.hpp"
 #include "core/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 
 namespace ripplenotch {
@@ -22,8 +21,8 @@ using Eigen::VectorXd;
 constexpr std::array pulls = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4};
 // A stronger pull, or a longer window, has to be better by this part.
 constexpr double clearly = 0.002;
-constexpr double first_noise = 0.03;  // of a torque, before anything has been fitted
-constexpr double full_size_nm = 100.0;
+constexpr double first_noise = 0.03;    // of a torque, before anything has been fitted
+constexpr double full_size_nm = 100.0;  // by hand
 // Of the eigenvalues of what the log says about the links, each scaled alone.
 constexpr double told_of_largest = 1e-6;
 

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double most_rotor_kgm2 = 1.0;
+constexpr double most_rotor_kgm2 = 1.0;  // by hand: more than a rotor has, seen through its gear
 
 // Columns and knowledge of values that do not belong together.
 void part(const ArmJointFit& own, std::vector<std::vector<double>>& columns, GivenTerm& term) {

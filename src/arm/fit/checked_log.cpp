@@ -10,8 +10,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t fewest_rows = 100;
-constexpr double rest_s = 1.0;
+constexpr std::size_t fewest_rows = 100;  // by hand
+constexpr double rest_s = 1.0;            // by hand: of a rest, what is used
 
 void check_sizes(const Chain& chain, const ArmLog& log, const ArmFitOptions& options) {
     if (log.joints.size() != chain.size() || log.has_torque.size() != chain.size())

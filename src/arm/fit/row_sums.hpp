@@ -24,7 +24,7 @@ struct FoldSums {
     [[nodiscard]] double left(const Eigen::VectorXd& values) const;
 };
 
-inline constexpr std::size_t arm_folds = 5;
+inline constexpr std::size_t arm_folds = 5;  // by hand: parts that are left out in turn
 
 struct JointSums {
     std::size_t joint = 0;

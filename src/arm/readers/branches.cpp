@@ -16,7 +16,7 @@ using Way = std::vector<std::size_t>;
 
 // Walks to the base once per link, and stops at links whose way is known: linear in the size of the tree.
 std::vector<std::size_t> depths(const std::string& source, const LinkTree& tree) {
-    constexpr std::size_t unknown = 0, walking = static_cast<std::size_t>(-1);
+    constexpr std::size_t unknown = 0, walking = static_cast<std::size_t>(-1);  // no depth
     std::vector<std::size_t> depth(tree.names.size(), unknown);
     for (std::size_t start = 0; start < depth.size(); ++start) {
         Way walked;

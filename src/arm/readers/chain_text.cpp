@@ -15,9 +15,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{16} << 20;
+constexpr std::size_t most_bytes = std::size_t{16} << 20;  // by hand
 constexpr std::array<std::string_view, 5> known = {"a_m", "alpha_deg", "d_m", "theta_deg", "joint"};
-constexpr std::size_t numeric = 4;
+constexpr std::size_t numeric = 4;  // d, a, alpha, theta
 
 struct DhRow {
     double a_m, alpha_deg, d_m, theta_deg;

@@ -85,7 +85,8 @@ void check_table_rates(const Field& field, Hertz sample_rate, const std::string&
                        const CommonOptions& common) {
     for (const Contender& contender : field.contenders) {
         if (!contender.table) continue;
-        const auto warning = compare_table_rate(contender.table->spec().sample_rate, sample_rate, source);
+        const auto warning =
+            compare_table_rate({.table = contender.table->spec().sample_rate, .log = sample_rate}, source);
         if (warning) say_warnings(common, {&*warning, 1});
     }
 }

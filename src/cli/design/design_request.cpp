@@ -65,7 +65,7 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_seen(const DesignRequest& req
                 joint.source, to, limit_deg_s, shortest(spec.orders.back().value()), from + count * width)});
     }
     to = from + count * width;
-    return bands_by_spacing(DegPerSec(from), DegPerSec(to), DegPerSec(width));
+    return bands_by_spacing({DegPerSec(from), DegPerSec(to)}, DegPerSec(width));
 }
 
 std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& request, const TableSpec& spec,
@@ -94,7 +94,7 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& reque
             "table has to hold with --min-attenuation or --max-delay",
             *request.speed);
     }
-    return bands_by_spacing(range.from, range.to,
+    return bands_by_spacing({range.from, range.to},
                             range.width ? *range.width : width_of_spacing(*request.spacing, spec));
 }
 

@@ -11,7 +11,6 @@
 #include "cli/readings/side_column.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
-#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/fleet/features.hpp"
 

@@ -80,7 +80,8 @@ std::vector<std::string> filter_warnings(const FilterMetrics& metrics) {
     for (const LogWarning& warning : metrics.stream.recording.warnings)
         warnings.push_back(fmt::format("{}: {}", metrics.source, warning.text));
     if (metrics.table_rate) {
-        const auto warning = table_rate_warning(*metrics.table_rate, metrics.sample_rate, metrics.source);
+        const auto warning =
+            table_rate_warning({.table = *metrics.table_rate, .log = metrics.sample_rate}, metrics.source);
         if (warning) warnings.push_back(*warning);
     }
     if (metrics.levels && metrics.levels->windows == 0) {

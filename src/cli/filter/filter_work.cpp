@@ -59,7 +59,7 @@ JointWork start_work(const FilterRequest& request, const FilterJob& job, const L
     metrics.source = stream.reader().layout().source;
     if (method.table != nullptr) {
         metrics.table_rate = method.table->spec().sample_rate;
-        refuse_table_rate(*metrics.table_rate, stream.design_rate(), metrics.source);
+        refuse_table_rate({.table = *metrics.table_rate, .log = stream.design_rate()}, metrics.source);
     }
     refuse_other_joint(method, joint);
     metrics.joint = joint;

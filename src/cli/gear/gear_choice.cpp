@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double largest_ratio = 1e5;
+constexpr double largest_ratio = 1e5;  // by hand
 
 /// What one source states; empty is not stated.
 struct Statement {

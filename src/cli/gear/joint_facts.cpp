@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double whole_order_share = 0.005;
+constexpr double whole_order_share = 0.005;  // by hand
 
 // Order per motor turn of a line that turns with the joint; empty for others. Under another ratio than the
 // file's a line keeps its frequency, so its order follows from what was measured per output turn.

@@ -7,7 +7,6 @@
 #include "cli/given/stated_along.hpp"
 #include "core/rms.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 #include "ripplenotch/model/sensors.hpp"

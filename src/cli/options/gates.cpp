@@ -39,7 +39,7 @@ std::vector<std::string> delay_violations(const Gates& gates, const Contender& c
         }
         return sentences;
     }
-    const LongestDelay longest = longest_delay(contender, sample_rate, slowest, fastest);
+    const LongestDelay longest = longest_delay(contender, sample_rate, {slowest, fastest});
     const double delay_ms = 1e3 * longest.delay.value();
     if (delay_ms <= 1e3 * gates.max_delay->value()) return sentences;
     std::string sentence = fmt::format("{}: it {}", contender.text, excess(gates, delay_ms));

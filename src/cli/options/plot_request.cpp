@@ -119,7 +119,10 @@ std::string_view WatchedWriter::prepare(RowBlock& block, Torques torque_nm, std:
 void WatchedWriter::put(const RowBlock& block, Torques torque_nm, std::string_view bytes) {
     const JointRows& joint = block.joints.front();
     for (std::size_t k = 0; k < block.size(); ++k)
-        course_.add(block.time_s[k], joint.velocity_deg_s[k], joint.torque_nm[k], torque_nm.front()[k]);
+        course_.add({.time_s = block.time_s[k],
+                     .speed_deg_s = joint.velocity_deg_s[k],
+                     .before_nm = joint.torque_nm[k],
+                     .after_nm = torque_nm.front()[k]});
     if (writer_) writer_->put(block, torque_nm, bytes);
 }
 

@@ -14,7 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double same_ratio = 0.02;
+constexpr double same_ratio = 0.02;  // by hand
 constexpr double least_ratio = 3.0;  // less is no gear: what was logged turns with the motor
 
 std::string lower_first(std::string text) {

@@ -172,7 +172,7 @@ class Maker {
         spec.sample_rate = request_.train.recording.clock.nominal_rate;
         spec.q = q;
         const double to = from + std::round(bands) * width;
-        spec.bands = bands_by_spacing(DegPerSec(from), DegPerSec(to), DegPerSec(width));
+        spec.bands = bands_by_spacing({DegPerSec(from), DegPerSec(to)}, DegPerSec(width));
         Contender contender =
             make_contender(parse_spec("switching,table=" + file),
                            std::make_shared<const CandidateTable>(CandidateTable::design(spec)));

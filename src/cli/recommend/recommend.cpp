@@ -17,7 +17,6 @@
 #include "cli/recommend/pasted.hpp"
 #include "cli/recommend/recommend_text.hpp"
 #include "cli/talk.hpp"
-#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/log/log.hpp"

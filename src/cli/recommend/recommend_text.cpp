@@ -8,7 +8,6 @@
 
 #include "cli/text_table.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/visible_text.hpp"
 
 namespace ripplenotch {

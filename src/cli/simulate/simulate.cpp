@@ -103,7 +103,8 @@ Chance chance_of(const SimulateOptions& options) {
 std::vector<NumberColumn> make_columns(const SimulateOptions& options, const Model& model, Course course) {
     const auto seed = static_cast<std::uint64_t>(options.seed);
     std::vector<double> noise_nm(course.motion.size(), 0.0);
-    add_noise(noise_nm, options.noise.value(), options.noise_correlation, seed, NoiseChannel::torque);
+    add_noise(noise_nm, {.rms = options.noise.value(), .correlation = options.noise_correlation}, seed,
+              NoiseChannel::torque);
     std::vector<double> torque_nm = measure_nm(model, course.motion, noise_nm, chance_of(options));
     add_given(course, torque_nm);
     add_white_noise(course.velocity_deg_s, options.velocity_noise.value(), seed, NoiseChannel::velocity);

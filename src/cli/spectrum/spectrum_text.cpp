@@ -60,7 +60,7 @@ void append_cells(std::string& text, std::initializer_list<double> cells) {
 /// largest.
 double power_cell(double largest, double value) {
     constexpr int power_digits = 15;
-    return to_digits(to_digits_of(largest, value, power_digits));
+    return to_digits(to_digits_in_row({.value = value, .largest = largest}, power_digits));
 }
 
 double largest_of(std::span<const double> values) {
@@ -82,8 +82,9 @@ std::string frequency_csv(const std::vector<StretchSpectrum>& spectra) {
                 append_shortest(text, one.stretch.speed.value());
                 text += ",";
             }
-            append_cells(text, {s.hz[k], to_digits_of(amplitude_nm, s.amplitude_nm[k]),
-                                power_cell(psd, s.psd_nm2_hz[k]), to_digits_of(amplitude_nm, s.floor_nm[k])});
+            append_cells(text,
+                         {s.hz[k], to_digits_in_row({s.amplitude_nm[k], amplitude_nm}),
+                          power_cell(psd, s.psd_nm2_hz[k]), to_digits_in_row({s.floor_nm[k], amplitude_nm})});
         }
     }
     return text;
@@ -93,9 +94,9 @@ std::string order_csv(const Stack& stack) {
     std::string text = "order_output,amplitude_nm,floor_nm,averages\n";
     const double amplitude_nm = largest_of(stack.amplitude_nm);
     for (std::size_t k = stack.first; k < stack.ratio.size(); ++k) {
-        append_cells(
-            text, {static_cast<double>(k) * stack.spacing, to_digits_of(amplitude_nm, stack.amplitude_nm[k]),
-                   to_digits_of(amplitude_nm, stack.floor_nm[k]), stack.averages[k]});
+        append_cells(text, {static_cast<double>(k) * stack.spacing,
+                            to_digits_in_row({stack.amplitude_nm[k], amplitude_nm}),
+                            to_digits_in_row({stack.floor_nm[k], amplitude_nm}), stack.averages[k]});
     }
     return text;
 }

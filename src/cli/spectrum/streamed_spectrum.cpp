@@ -56,7 +56,7 @@ StretchSpectrum streamed_spectrum(LogPasses& log, const SpectrumOptions& options
     const bool added = stream.has_value(), lines = added && stream->find_lines(options.false_alarm);
     if (enough && !added) stream.emplace(length, facts.sample_rate);
 
-    StretchMeter speed(facts.rows, facts.mean_s, facts.mean_position_deg);
+    StretchMeter speed(facts.rows, Seconds(facts.mean_s), Degrees(facts.mean_position_deg));
     log.second([&](const TraceView& rows) {
         speed.add(rows);
         if (enough && !added) stream->add(rows.time_s, rows.torque_nm);

@@ -91,8 +91,9 @@ void gather_by_angle(const Case& c, const std::vector<double>& residual_nm, doub
     const auto first = static_cast<std::size_t>(rules.fewest_cycles_per_turn / 360.0 / spectrum.spacing) + 1;
     for (const Peak& peak : peaks_of(spectrum, first, least, rules)) {
         const double cell = static_cast<double>(peak.cell) * spectrum.spacing;
-        lines.push_back({true, refine_peak(samples.where, samples.value, cell, spectrum.spacing),
-                         std::sqrt(spectrum.power[peak.cell]), peak.prominence});
+        lines.push_back(
+            {true, refine_peak(samples.where, samples.value, {.frequency = cell, .reach = spectrum.spacing}),
+             std::sqrt(spectrum.power[peak.cell]), peak.prominence});
         if (lines.size() > rules.most_peaks) break;
     }
 }

@@ -58,11 +58,13 @@ Tones::Tones(LineSamples samples, double rate_hz, const LineRules& rules)
 
 double Tones::refined_hz(std::size_t cell) const {
     const double about_hz = static_cast<double>(cell) * spectrum_.spacing;
-    if (pieces_.empty()) return refine_peak(all_.where, all_.value, about_hz, spectrum_.spacing);
+    if (pieces_.empty())
+        return refine_peak(all_.where, all_.value, {.frequency = about_hz, .reach = spectrum_.spacing});
     std::vector<double> own_hz, weight;
     double weights = 0.0, sum = 0.0, squares = 0.0;
     for (const LineSamples& piece : pieces_) {
-        own_hz.push_back(refine_peak(piece.where, piece.value, about_hz, spectrum_.spacing));
+        own_hz.push_back(
+            refine_peak(piece.where, piece.value, {.frequency = about_hz, .reach = spectrum_.spacing}));
         weight.push_back(std::norm(fourier_point(piece.where, piece.value, own_hz.back()).value) + 1e-300);
         weights += weight.back();
         sum += weight.back() * own_hz.back();
@@ -71,7 +73,8 @@ double Tones::refined_hz(std::size_t cell) const {
     for (std::size_t p = 0; p < pieces_.size(); ++p)
         squares += weight[p] * (own_hz[p] - mean_hz) * (own_hz[p] - mean_hz);
     const double error_hz = std::sqrt(squares / weights / static_cast<double>(pieces_.size()));
-    return refine_peak(all_.where, all_.value, agreed_hz(mean_hz, error_hz), 0.5 / range_of(all_));
+    return refine_peak(all_.where, all_.value,
+                       {.frequency = agreed_hz(mean_hz, error_hz), .reach = 0.5 / range_of(all_)});
 }
 
 // Near a frequency, where the sums of the pieces are in step.

@@ -15,7 +15,6 @@
 #include "diagnose/judging/wandering.hpp"
 #include "diagnose/search/bent_shape.hpp"
 #include "diagnose/search/hearing.hpp"
-#include "diagnose/search/search.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

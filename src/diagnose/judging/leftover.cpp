@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "diagnose/case/lines.hpp"
-#include "diagnose/search/search.hpp"
 #include "ripplenotch/core/phasor.hpp"
 
 namespace ripplenotch {
@@ -18,7 +17,7 @@ using LeftoverRules = DiagnosisRules::LeftoverRules;
 
 struct Window {
     std::size_t first = 0, end = 0;  ///< places in rows
-    double score = 0.0, rms_sigma = 0.0;
+    double score = 0.0;
 };
 
 class Residual {
@@ -222,8 +221,7 @@ class Residual {
             const bool power_out = by_power > rules_.significant && powers[w] > matters_power_ * typical;
             if (!mean_out && !power_out) continue;
             windows.push_back({firsts[w], firsts[w] + length,
-                               std::max(mean_out ? by_mean : 0.0, power_out ? by_power : 0.0),
-                               std::sqrt(powers[w])});
+                               std::max(mean_out ? by_mean : 0.0, power_out ? by_power : 0.0)});
         }
     }
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "diagnose/search/search.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "document/fields/beside_fields.hpp"
 
-#include "document/fields/model_fields.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "document/fields/written_fields.hpp"
 
-#include "document/fields/diagnosis_fields.hpp"
-
 namespace ripplenotch {
 namespace {
 

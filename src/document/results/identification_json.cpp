@@ -60,7 +60,7 @@ Json ratio_to_json(const GearRatioFit& fit) {
             .push_back({{"speed_deg_s", r.speed_deg_s},
                         {"hz", r.hz},
                         {"order", r.order},
-                        {"residual_hz", to_digits_of(r.hz, r.residual_hz)},
+                        {"residual_hz", to_digits_in_row({.value = r.residual_hz, .largest = r.hz})},
                         {"weight", r.weight}});
     }
     return json;

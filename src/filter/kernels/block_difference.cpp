@@ -13,9 +13,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double largest_radius = 0.999;
-constexpr double time_constants = 40.0;  // until nothing is left of what was before
-constexpr int steps = 24, turns = 4, noises = 4;
+constexpr double largest_radius = 0.999;          // by hand
+constexpr double time_constants = 40.0;           // until nothing is left of what was before
+constexpr int steps = 24, turns = 4, noises = 4;  // by hand: what is tried
 
 // Not std::uniform_real_distribution, which may differ between libraries: a filter must be chosen alike
 // everywhere.

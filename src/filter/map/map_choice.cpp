@@ -19,8 +19,8 @@ constexpr double worth_it = 1.05, not_worth_it = 0.01;            // of what is 
 constexpr double spreads_beyond = 3.0, spreads_beyond_too = 2.0;  // of logs without: one order, others
 constexpr double least_gain = 12.0;                               ///< in squares over the noise
 constexpr double least_warming_degc = 1.0;  ///< less tells nothing of what a degree does
-constexpr int surrogates = 40;
-constexpr std::size_t most_harmonics = 3;
+constexpr int surrogates = 40;              // by hand: a mean to 16 % of its scatter
+constexpr std::size_t most_harmonics = 3;   // by hand
 
 std::vector<double> spread_speeds(const MapRange& range, std::size_t count) {
     if (count == 1 || !(range.to > range.from)) return {range.middle()};

@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_blocks = 16;
+constexpr std::size_t most_blocks = 16;     // by hand: parts that are left out in turn
 constexpr std::size_t least_block = 5;      ///< windows
 constexpr double least_noise_share = 1e-8;  ///< of the energy: a simulation without noise has rounding
 

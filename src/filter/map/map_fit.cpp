@@ -16,7 +16,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double errors_apart = 3.0;
+constexpr double errors_apart = 3.0;       // by hand: three standard errors
 constexpr double ripple_over_noise = 2.0;  ///< squares of an order that is there
 constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
 

@@ -78,6 +78,7 @@ constexpr std::array keys = {
                 "when not given"},
 };
 
+// Measured: the table of docs/methods/tracking.md.
 constexpr double usual_q = 1.7, usual_max_delay_s = 0.0045;
 
 struct Plan {
@@ -230,7 +231,8 @@ class TrackingFilter final : public CausalFilter {
         lines_[line].center_hz = center_hz;
         for (std::size_t j = 0; j < plan_.spread.size(); ++j) {
             const double at = std::numbers::pi * center_hz * plan_.spread[j] / plan_.sample_rate_hz;
-            lines_[line].notches[j].tuning = BandPassTuning::at(portable::tan(at), plan_.q_at(center_hz));
+            lines_[line].notches[j].tuning =
+                BandPassTuning::at({.warped = portable::tan(at), .q = plan_.q_at(center_hz)});
         }
     }
 

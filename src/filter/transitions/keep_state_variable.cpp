@@ -29,7 +29,8 @@ Section section_of(const Biquad& f) {
     const double damping = 2.0 * (1.0 - f.a2) / (at_half * warped);
     const double high = (f.b0 - f.b1 + f.b2) / at_half, low = (f.b0 + f.b1 + f.b2) / at_zero;
     const double band = 2.0 * (f.b0 - f.b2) / (at_half * warped);
-    return {BandPassTuning::at(warped, 1.0 / damping), high, band - high * damping, low - high};
+    return {BandPassTuning::at({.warped = warped, .q = 1.0 / damping}), high, band - high * damping,
+            low - high};
 }
 
 double advance(const Section& f, BandPassState& s, double x) noexcept {

@@ -14,8 +14,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_samples = std::size_t{1} << 14U;
-constexpr std::size_t most_orders = 6;
+constexpr std::size_t most_samples = std::size_t{1} << 14U;  // by hand: bounds the time of a log
+constexpr std::size_t most_orders = 6;                       // by hand: bounds the time of a log
 
 Descriptor untold(std::string stem, std::string unit, std::string reason) {
     return {std::move(stem), std::move(unit), {}, {}, std::move(reason)};

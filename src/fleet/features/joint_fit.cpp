@@ -15,20 +15,20 @@ namespace {
 
 constexpr double least_travel_deg = 20.0;  // less, and the weight of a link is hardly told from a zero error
 constexpr double width_deg_s = 0.5;        // of the step of friction where the joint reverses
-constexpr double samples_a_period = 3.0;
-constexpr std::size_t fewest_samples = 200;
-constexpr std::size_t stretches = 40;      // of the log, for errors that are not white
-constexpr double widest_of_value = 0.5;    // an interval's half, of the value ...
-constexpr double widest_of_torque = 0.02;  // ... or, in torque, of all torque of the log
-constexpr double widest_phase_deg = 90.0;  // of its interval, from end to end
-constexpr double least_load = 0.1;         // of inertia and weight, of all torque
-constexpr std::size_t fewest_reversals = 2;
-constexpr double way_of_start_deg = 1.0;
-constexpr double seen_angles = 1.5;         // after a reversal, of the lost motion ...
-constexpr std::size_t fewest_in_angle = 8;  // ... in which there are so many samples
-constexpr double far_deviations = 10.0;     // of a residual that is no noise
-constexpr double deviations_of_median = 1.4826;
-constexpr int linear_iterations = 3, iterations = 15;
+constexpr double samples_a_period = 3.0;   // as in ripple_meter.cpp
+constexpr std::size_t fewest_samples = 200;            // as recording.fewest_samples of a diagnosis
+constexpr std::size_t stretches = 40;                  // of the log, for errors that are not white
+constexpr double widest_of_value = 0.5;                // an interval's half, of the value ...
+constexpr double widest_of_torque = 0.02;              // ... or, in torque, of all torque of the log
+constexpr double widest_phase_deg = 90.0;              // of its interval, from end to end
+constexpr double least_load = 0.1;                     // of inertia and weight, of all torque
+constexpr std::size_t fewest_reversals = 2;            // a way there and back
+constexpr double way_of_start_deg = 1.0;               // by hand
+constexpr double seen_angles = 1.5;                    // after a reversal, of the lost motion ...
+constexpr std::size_t fewest_in_angle = 8;             // ... in which there are so many samples
+constexpr double far_deviations = 10.0;                // of a residual that is no noise
+constexpr double deviations_of_median = 1.4826;        // standard deviations in a median of sizes, if normal
+constexpr int linear_iterations = 3, iterations = 15;  // by hand
 
 FitOptions fit_options(std::size_t samples, int most_iterations) {
     FitOptions options;

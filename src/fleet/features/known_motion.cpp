@@ -11,10 +11,10 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double jump_deviations = 8.0, jump_part = 0.02;
-constexpr double usual_per_median = 1.4826;
-constexpr double least_over_noise = 5.0;  // of accelerations, rms
-constexpr double least_change = 1e-3;     // of the speed within a window, or it is rounding
+constexpr double jump_deviations = 8.0, jump_part = 0.02;  // by hand
+constexpr double usual_per_median = 1.4826;  // standard deviations in a median of sizes, if normal
+constexpr double least_over_noise = 5.0;     // of accelerations, rms
+constexpr double least_change = 1e-3;        // of the speed within a window, or it is rounding
 
 double squares_of(const std::vector<double>& values) {
     double sum = 0.0;

@@ -9,8 +9,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr double moving_most_deg_s = 0.5, moving_part = 0.01;  // as a diagnosis counts
-constexpr std::size_t fewest_moving = 100;
-constexpr double least_share = 0.05;  // of a direction, so that its friction is seen
+constexpr std::size_t fewest_moving = 100;                     // by hand
+constexpr double least_share = 0.05;                           // of a direction, so that its friction is seen
 constexpr double least_speeds = 1.5;  // between slow and fast, so that viscous friction is seen
 
 double at_share(const std::vector<double>& sorted, double share) {

@@ -18,9 +18,9 @@ namespace ripplenotch {
 namespace {
 
 constexpr double seconds_a_day = 86400.0;
-constexpr double comparable = 2.5;    // speeds that differ by more are another job of the joint
-constexpr double fewest_share = 0.6;  // of the lines have to tell a descriptor
-constexpr std::size_t lines_for_bend = 20;
+constexpr double comparable = 2.5;          // speeds that differ by more are another job of the joint
+constexpr double fewest_share = 0.6;        // of the lines have to tell a descriptor
+constexpr std::size_t lines_for_bend = 20;  // by hand
 
 double median_of(std::vector<double> values) { return median_in(values); }
 

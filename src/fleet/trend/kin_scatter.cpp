@@ -10,8 +10,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double fewest_others = 4.0;
-constexpr double most_worth = 100.0;  // lines, however alike the joints are
+constexpr double fewest_others = 4.0;  // by hand
+constexpr double most_worth = 100.0;   // lines, however alike the joints are
 
 /// One joint's scatter as a number that is about normal among joints: its logarithm, without the bias that
 /// few lines have.

@@ -10,9 +10,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t fewest_before = 5, fewest_after = 3;
-constexpr double least_left_of_step = 0.05;  // of a step, beside conditions and other changes
-constexpr std::size_t fewest_torques = 3;
+constexpr std::size_t fewest_before = 5, fewest_after = 3;  // by hand
+constexpr double least_left_of_step = 0.05;                 // of a step, beside conditions and other changes
+constexpr std::size_t fewest_torques = 3;                   // by hand
 constexpr double hardly_chance = 16.0;  // t squared that chance has in one series of fifty
 
 double squares_of(const std::vector<double>& values) {

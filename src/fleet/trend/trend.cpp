@@ -14,8 +14,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_changes = 4;
-constexpr double spent_at_once = 0.8;
+constexpr std::size_t most_changes = 4;  // by hand
+constexpr double spent_at_once = 0.8;    // by hand: of the false alarms that are left
 constexpr double least_t_squared = 9.0;  // of a descriptor that is listed with a change
 
 // The same for a joint whatever else is in the fleet (Fowler, Noll and Vo).

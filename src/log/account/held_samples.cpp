@@ -9,10 +9,10 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double moving_deg_s = 0.2;
+constexpr double moving_deg_s = 0.2;           // by hand: slower is a rest
 constexpr std::size_t judged_changes = 16384;  ///< enough to know how coarse a torque is
-constexpr std::size_t fewest_changes = 8;
-constexpr double coarse_steps = 10.0;  ///< a usual change of fewer smallest ones
+constexpr std::size_t fewest_changes = 8;      // by hand
+constexpr double coarse_steps = 10.0;          ///< a usual change of fewer smallest ones
 
 }  // namespace
 

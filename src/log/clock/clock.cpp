@@ -14,12 +14,12 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t scouted_rows = 512;  ///< that tell how the opening begins
-constexpr double alike_steps = 1.25;
+constexpr double alike_steps = 1.25;       // by hand: as a factor
 // Times of more rows than these in one say too little of when each was taken: with five, ripple of 11 to 33
 // Hz in 1 kHz rows was told with eleven false lines beside it, with four its amplitudes were up to 8 % low.
 constexpr double most_rows_a_time = 4.5;
 
-// Times of arrival: so often a long step stands alone among short ones.
+// By hand: of times of arrival a long step stands alone among short ones so often.
 constexpr double most_lone_gaps = 1.0 / 40.0;
 
 bool within(double a, double b, double factor) { return a <= factor * b && b <= factor * a; }

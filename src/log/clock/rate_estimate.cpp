@@ -11,13 +11,13 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double nominal_tolerance = 0.001;
+constexpr double nominal_tolerance = 0.001;  // by hand
 // Steps cluster at their median when so many are this near, and their mean stays nearer still: rounded stamps
 // of another rate (4.4 ms as 4 or 5 ms) are near it too, but to one side.
 constexpr double cluster_width = 0.25, cluster_share = 0.75, cluster_lean = 0.03;
 // Stamps that keep within so many steps of even ones were never late: then rows over time is the rate.
 constexpr double even_steps = 1.5;
-constexpr double few_repeats = 0.01;
+constexpr double few_repeats = 0.01;  // by hand
 
 double two_digits(double value) {
     const double scale = portable::pow(10.0, std::floor(portable::log10(value)) - 1.0);

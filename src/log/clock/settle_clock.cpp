@@ -18,7 +18,7 @@ namespace ripplenotch::layout_detail {
 namespace {
 
 constexpr double lowest_rate_hz = 10.0, highest_rate_hz = 1e5;  // of logs, where a rate decides the unit
-constexpr double least_assumed_hz = 1.0;
+constexpr double least_assumed_hz = 1.0;                        // by hand
 constexpr double long_ago = 1e9;  // counts from here on are taken relative to the first
 
 struct ClockUnit {

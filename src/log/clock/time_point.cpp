@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t day_s = 86400;
 
 std::optional<std::int64_t> whole_number(std::string_view text) {
-    constexpr std::size_t most_digits = 9;
+    constexpr std::size_t most_digits = 9;  // of nanoseconds, and what an int holds
     if (text.empty() || text.size() > most_digits) return std::nullopt;
     std::int64_t value = 0;
     for (const char c : text) {

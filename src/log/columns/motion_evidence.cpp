@@ -36,7 +36,7 @@ struct Moves {
     std::vector<double> position, velocity;
 };
 Moves moves_of(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& q) {
-    constexpr std::size_t most_pieces = 64, shortest_piece = 4;
+    constexpr std::size_t most_pieces = 64, shortest_piece = 4;  // by hand
     std::vector<double> steps;
     for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
     const double gap = 10.0 * std::max(median_of(steps), 0.0);
@@ -64,8 +64,8 @@ Moves moves_of(const std::vector<double>& t, const std::vector<double>& v, const
 
 // The median of the pieces' ratios, where most of them say the same: neither spikes nor jumps move it.
 std::optional<double> scale_of(const Moves& moves) {
-    constexpr std::size_t fewest = 6;
-    constexpr double alike = 0.1, most = 0.7;
+    constexpr std::size_t fewest = 6;          // by hand
+    constexpr double alike = 0.1, most = 0.7;  // by hand: of the ratio, and of the pieces
     if (moves.velocity.size() < fewest) return std::nullopt;
     const double usual = nearly_largest(moves.velocity);
     std::vector<double> ratios;

@@ -11,14 +11,15 @@
 namespace ripplenotch::layout_detail {
 namespace {
 
-constexpr double within_family = 0.5;
+constexpr double within_family = 0.5;                         // by hand
 constexpr double agreement = 0.03;                            // scales within 3 % are one
 constexpr double lowest_ratio = 20.0, highest_ratio = 400.0;  // of gears that a position may tell
 constexpr double fastest_joint_deg_s = 1200.0;                // 200 rpm behind the gear
 // What speaks against a reading; below open_margin alone, it settles nothing.
 constexpr double unusual_size = 0.25, motor_side_unnamed = 1.5, joint_side_of_motor_name = 1.0;
+// By hand: what each costs, in nats.
 constexpr double against_convention = 2.0, against_wrap = 3.0, too_fast = 3.0, header_wrong = 1.5;
-constexpr double families_mixed = 1.0;
+constexpr double families_mixed = 1.0;  // by hand
 // Speeds and angles of joints in radians stay below these; in degrees such a joint would hardly move.
 constexpr double usual_rad_s = 7.0, usual_rad = 6.6;
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "diagnose/beside/naming/evidence.hpp"
-
 namespace ripplenotch {
 
 std::optional<OffsetBeside> offset_beside(const Lens& lens, const Candidate& model,
