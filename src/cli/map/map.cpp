@@ -16,7 +16,6 @@
 #include "cli/readings/side_column.hpp"
 #include "cli/talk.hpp"
 #include "ripplenotch/chart/map_figure.hpp"
-#include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/filter/warm_map_fit.hpp"
