@@ -92,7 +92,9 @@ void conclude(const Looked& looked, const IdentifyOptions& options, Identificati
     }
     if (looked.motion && !looked.motion->absolute_angle && looked.motion->sweeps > 0) {
         result.notes.push_back(
-            "no position that agrees with the velocity: angle is integrated velocity, phases are not known");
+            "no position that agrees with the velocity: angle is integrated velocity, phases are not known, "
+            "and "
+            "what an offset, a filter or a delay of the velocity does to the ratio is not in its interval");
     }
     result.grounds = grounds_of(looked, options, result.evidence);
     settle(result);
