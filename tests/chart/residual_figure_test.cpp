@@ -95,7 +95,8 @@ TEST_CASE("an order has one colour in every figure, and a tone and a line that n
     // Order 2 alone, first of the list, has the colour that it has beside order 1.
     const std::vector<TrackName> names{
         {"order 2", 2.0}, {"60 Hz", {}, true}, {"output order 3", {}, false}, {"order 8", 8.0}};
-    const auto& curves = track_figure("log.csv", tracks, names, {}).panels.front().curves;
+    const Figure figure = track_figure("log.csv", tracks, names, {});
+    const auto& curves = figure.panels.front().curves;
     CHECK(curves[0].ink == order_ink(2.0));
     CHECK(curves[1].ink == Ink::black);
     CHECK(curves[2].ink == Ink::grey);
