@@ -24,7 +24,8 @@ class Faults(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             shop = Workshop(PRELOADABLE or TOOL, SOURCE, folder, faults.ROWS)
             rows = faults.short_round(faults.Saboteur(shop, LIBRARY), 4, time.monotonic() + 60.0)
-        self.assertGreater(sum(row.runs for row in rows), 30)
+        # Under sanitizers nothing is preloaded: full streams and full disks are left.
+        self.assertGreater(sum(row.runs for row in rows), 30 if PRELOADABLE else 10)
         self.assertEqual([finding for row in rows for finding in row.findings], [])
 
     @unittest.skipUnless(PRELOADABLE, "no preloaded library under sanitizers")
