@@ -107,8 +107,9 @@ class Decision {
         }
         if (group == nullptr && groups_.size() > 1 && options_.needs_torque) {
             raise<DataError>(
-                "{}: read {} joints ({}), expected one; say which with --joint {} (info, identify and filter "
-                "also take --joint all)",
+                "{}: read {} joints ({}), expected one; say which with --joint {} (info, identify, map, "
+                "diagnose "
+                "and filter also take --joint all)",
                 source_, groups_.size(), fmt::join(layout_.joints, ", "), layout_.joints.front());
         }
         if (group != nullptr) layout_.chosen = columns_of(*group);
