@@ -39,6 +39,7 @@ Identification example() {
     found.gear_ratio.ci95_low = 99.98;
     found.gear_ratio.ci95_high = 100.04;
     found.gear_ratio.candidates = {{100.01, 0.9, "orders 1 and 2"}, {50.0, 0.1, "orders 2 and 4"}};
+    found.velocity_error = {DegPerSec(0.4), DegPerSec(0.03), Seconds(0.0105), Seconds(0.0007)};
     found.gear_ratio.residuals = {{60.0, 33.3, 2.0, -0.001, 0.7}};
     return found;
 }
@@ -64,6 +65,12 @@ TEST_CASE("joint.json reads back as it was written, byte for byte") {
     CHECK_FALSE(back.lines[1].phase_known);
     CHECK_FALSE(back.lines[1].order.has_value());
     CHECK(back.gear_ratio.value == 100.01);
+    REQUIRE(back.velocity_error);
+    CHECK(back.velocity_error->offset == DegPerSec(0.4));
+    CHECK(back.velocity_error->offset_error == DegPerSec(0.03));
+    CHECK(back.velocity_error->delay == Seconds(0.0105));
+    CHECK(back.velocity_error->delay_error == Seconds(0.0007));
+    CHECK_FALSE(identification_from_json(identification_text(nothing, {}), "joint.json").velocity_error);
 }
 
 TEST_CASE("a joint.json that says something else is refused with the field's name") {

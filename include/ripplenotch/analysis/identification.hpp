@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/analysis/velocity_error.hpp"
 #include "ripplenotch/analysis/verdict.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 #include "ripplenotch/core/trace.hpp"
@@ -104,6 +105,8 @@ struct Identification {
     LineEvidence evidence = LineEvidence::none;
     std::vector<Line> lines;  ///< strongest first
     GearRatioFit gear_ratio;
+    /// Of a log without position, where ripple in changing motion tells it; the orders are without it.
+    std::optional<VelocityError> velocity_error;
     std::vector<ToneFamily> families;
     std::vector<Hum> hums;  ///< most torque first
     std::vector<Disagreement> disagreements;

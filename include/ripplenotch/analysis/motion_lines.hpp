@@ -50,6 +50,10 @@ struct MotionLines {
     double lowest_order = 0.0, highest_order = 0.0;   ///< searched
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
     bool absolute_angle = false;
+    /// Of logs without position whose lines tell it; their angle and their lines are without it.
+    std::optional<VelocityError> velocity_error;
+    /// Relative error that all orders have in common, because the angle is a sum of velocities.
+    double order_share_error = 0.0;
 };
 
 /// For logs too short for the ordinary search: sweeps of 24 samples or more, judged by a test for spectra of
@@ -58,7 +62,9 @@ struct MotionLines {
 
 /// Takes the clearest line of both axes that does not rest on a single sweep, gives it to the axis that
 /// explains more of it, subtracts it sweep by sweep, and looks again, until noise could have made what is
-/// left. So a tone does not leave orders behind where the speed lingers, nor an order tones.
+/// left. So a tone does not leave orders behind where the speed lingers, nor an order tones. Where the angle
+/// is a sum of velocities, orders found tell what offset and what delay the velocity has, and are looked for
+/// again without them.
 [[nodiscard]] MotionLines find_motion_lines(std::span<const TraceView> logs,
                                             const MotionLinesOptions& options);
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "ripplenotch/analysis/velocity_error.hpp"
 #include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
@@ -57,7 +58,9 @@ struct Sweeps {
 
 /// Angle from position (unwrapped at 360 deg) where there is one, else from integrated velocity, whose drift
 /// does not matter within one sweep. The trend, a line and
-/// cosines, is fitted in angle under the same weights. Cost O(n terms^2).
-[[nodiscard]] Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule);
+/// cosines, is fitted in angle under the same weights. Where there is no position, `error` is taken off the
+/// velocity. Cost O(n terms^2).
+[[nodiscard]] Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule,
+                                const VelocityError& error = {});
 
 }  // namespace ripplenotch

@@ -82,6 +82,19 @@ bool settled(const Identification& result) {
            });
 }
 
+std::string of_velocity(const std::optional<VelocityError>& error) {
+    if (!error)
+        return "what an offset, a filter or a delay of the velocity does to the ratio is not in its interval";
+    const double late_ms = 1e3 * error->delay.value();
+    return fmt::format(
+        "the ripple tells what the velocity is off by: {:.2g} +/- {:.1g} deg/s too {}, {:.2g} +/- {:.1g} ms "
+        "too {}; that is "
+        "taken off, and its error is in the ratio's interval",
+        std::abs(error->offset.value()), error->offset_error.value(),
+        error->offset.value() < 0.0 ? "low" : "high", std::abs(late_ms), 1e3 * error->delay_error.value(),
+        late_ms < 0.0 ? "early" : "late");
+}
+
 }  // namespace
 
 void conclude(const Looked& looked, const IdentifyOptions& options, Identification& result) {
@@ -92,9 +105,9 @@ void conclude(const Looked& looked, const IdentifyOptions& options, Identificati
     }
     if (looked.motion && !looked.motion->absolute_angle && looked.motion->sweeps > 0) {
         result.notes.push_back(
-            "no position that agrees with the velocity: angle is integrated velocity, phases are not known, "
-            "and "
-            "what an offset, a filter or a delay of the velocity does to the ratio is not in its interval");
+            "no position that agrees with the velocity: angle is integrated velocity, phases are not "
+            "known, and " +
+            of_velocity(result.velocity_error));
     }
     result.grounds = grounds_of(looked, options, result.evidence);
     settle(result);

@@ -136,6 +136,7 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
         looked.motion = motion_lines_of(logs, options, false_alarm, nothing_steady_moves, std::move(tones));
         if (motion_tells_more(*looked.motion, reported)) {
             add_motion_lines(*looked.motion, options, result.sample_rate, reported);
+            result.velocity_error = looked.motion->velocity_error;
             result.evidence = nothing_steady_moves ? LineEvidence::sweeps : LineEvidence::both;
         }
     }

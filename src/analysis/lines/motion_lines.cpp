@@ -6,6 +6,7 @@
 
 #include "analysis/lines/line_evidence.hpp"
 #include "analysis/lines/line_removal.hpp"
+#include "analysis/lines/velocity_error.hpp"
 #include "core/two_cores.hpp"
 #include "ripplenotch/core/median.hpp"
 
@@ -224,24 +225,19 @@ void state_resolution(const Stack& angle, double least_amplitude, double false_a
     found.highest_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
 }
 
-}  // namespace
-
-MotionLinesOptions short_log_options() {
-    MotionLinesOptions options;
-    options.sweeps.fewest_samples = 24;
-    options.stack.few_cells = true;
-    options.lowest_tone_hz = 3.0;
-    return options;
-}
-
-MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLinesOptions& options) {
+struct Search {
     MotionLines found;
-    Sweeps cut = cut_sweeps(logs, options.sweeps);
+    Stack angle;  ///< of what the lines left
+};
+
+Search lines_in(Sweeps cut, std::span<const TraceView> logs, const MotionLinesOptions& options) {
+    Search search;
+    MotionLines& found = search.found;
     std::vector<Sweep>& sweeps = cut.pieces;
     found.sweeps = sweeps.size();
     found.sweeps_left_out = cut.pieces_left_out;
     found.absolute_angle = cut.absolute_angle;
-    if (sweeps.empty()) return found;
+    if (sweeps.empty()) return search;
     const SpeedRange range = speed_range(sweeps);
     found.slowest_deg_s = range.slow;
     found.fastest_deg_s = range.fast;
@@ -282,7 +278,42 @@ MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLines
         if (found.lines.size() < options.most_lines) stacks = stacked(sweeps, options);
     }
     found.humps = stacks.time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
-    return found;
+    search.angle = std::move(stacks.angle);
+    return search;
+}
+
+/// Places of the orders, the one that explains most first.
+std::vector<double> orders_among(std::vector<MotionLine> lines) {
+    std::erase_if(lines, [](const MotionLine& line) { return line.kind != LineKind::order; });
+    std::stable_sort(lines.begin(), lines.end(),
+                     [](const MotionLine& a, const MotionLine& b) { return a.gain_angle > b.gain_angle; });
+    std::vector<double> orders;
+    for (const MotionLine& line : lines) orders.push_back(line.order_output);
+    return orders;
+}
+
+}  // namespace
+
+MotionLinesOptions short_log_options() {
+    MotionLinesOptions options;
+    options.sweeps.fewest_samples = 24;
+    options.stack.few_cells = true;
+    options.lowest_tone_hz = 3.0;
+    return options;
+}
+
+MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLinesOptions& options) {
+    Search search = lines_in(cut_sweeps(logs, options.sweeps), logs, options);
+    if (search.found.absolute_angle) return std::move(search.found);
+    const std::vector<double> orders = orders_among(search.found.lines);
+    if (orders.empty()) return std::move(search.found);
+    const auto fit = fit_velocity_error(logs, cut_sweeps(logs, options.sweeps).pieces, search.angle, orders);
+    if (!fit) return std::move(search.found);
+    MotionLines again = lines_in(cut_sweeps(logs, options.sweeps, fit->error), logs, options).found;
+    if (orders_among(again.lines).empty()) return std::move(search.found);
+    again.velocity_error = fit->error;
+    again.order_share_error = fit->order_share_error;
+    return again;
 }
 
 }  // namespace ripplenotch

@@ -175,7 +175,9 @@ Reported from_motion(const MotionLines& motion, std::size_t source, const Identi
     }
     const bool tone = found.kind == LineKind::tone;
     const double order = tone ? found.order_seen : found.order_output;
-    const double error = tone ? 0.1 * motion.resolution_orders : found.order_stderr;
+    const double own = tone ? 0.1 * motion.resolution_orders : found.order_stderr;
+    const double share = motion.order_share_error;
+    const double error = portable::hypot(own, order * share);
     if (!tone) {
         line.order_output = order;
         line.order_output_stderr = error;
@@ -187,7 +189,8 @@ Reported from_motion(const MotionLines& motion, std::size_t source, const Identi
     if (found.kind == LineKind::unknown)
         line.note = "the speed varies too little to tell an order from a tone";
     const double speed = 0.5 * (line.speed_from_deg_s + line.speed_to_deg_s);
-    const OrderObservation seen{order, error, speed, 0.0, order * speed / 360.0, source};
+    // Lines whose angle is off alike are no witnesses of each other: they are one source of the ratio.
+    const OrderObservation seen{order, own, speed, share, order * speed / 360.0, share > 0.0 ? 0 : source};
     reported.order =
         OrderLine{order, error, found.snr, found.amplitude_nm, found.kind == LineKind::order, {seen}};
     unfold(reported, {order, 0.5 * motion.resolution_orders, found.gain_angle, found.gain_time, found.folds},

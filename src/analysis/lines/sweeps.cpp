@@ -140,6 +140,16 @@ Sweep make_sweep(const TraceView& log, const SampleRun& span, std::span<const do
     return sweep;
 }
 
+/// Takes an offset and a delay off what was summed from a velocity.
+void put_right(const TraceView& log, const VelocityError& error, std::vector<double>& turns,
+               std::vector<double>& speed) {
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+        const double since_start = log.time_s[k] - log.time_s.front();
+        turns[k] += (error.delay.value() * speed[k] - error.offset.value() * since_start) / 360.0;
+        speed[k] -= error.offset.value();
+    }
+}
+
 struct Planned {
     std::size_t log = 0;
     SampleRun span;
@@ -184,7 +194,7 @@ Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count) {
     return part;
 }
 
-Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule) {
+Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule, const VelocityError& error) {
     std::vector<OutputAngle> angles;
     std::vector<std::vector<double>> speeds;
     std::vector<Planned> planned;
@@ -193,6 +203,7 @@ Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule) {
         const TraceView& log = logs[i];
         angles.push_back(output_angle(log));
         speeds.push_back(smoothed_speed(log));
+        if (!angles.back().absolute) put_right(log, error, angles.back().turns, speeds.back());
         for (const SampleRun& run : directed_runs(speeds.back(), log.run_starts, {rule.slowest_share})) {
             for (const SampleRun& piece : pieces_of(run, log, angles.back().turns, rule)) {
                 if (piece.end - piece.first >= rule.fewest_samples) planned.push_back({i, piece});

@@ -98,6 +98,13 @@ int multiple_of(const Fields& fields, double number) {
 
 // Older files have none of it.
 void besides_from_json(Fields& fields, Identification& found) {
+    if (fields.has("velocity_error")) {
+        Fields error = fields.object("velocity_error");
+        found.velocity_error = {DegPerSec(error.number("offset_deg_s")),
+                                DegPerSec(error.number("offset_stderr_deg_s")),
+                                Seconds(error.number("delay_s")), Seconds(error.number("delay_stderr_s"))};
+        error.finish();
+    }
     if (fields.has("families")) {
         fields.each("families", [&](Fields& entry) {
             ToneFamily family{entry.number("hz"), entry.number("hz_stderr"), {}};

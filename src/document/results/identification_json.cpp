@@ -66,7 +66,18 @@ Json ratio_to_json(const GearRatioFit& fit) {
     return json;
 }
 
+Json velocity_error_to_json(const std::optional<VelocityError>& error) {
+    if (!error) return nullptr;
+    return {{"offset_deg_s", to_digits_in_row({.value = error->offset.value(),
+                                               .largest = 10.0 * error->offset_error.value()})},
+            {"offset_stderr_deg_s", error->offset_error.value()},
+            {"delay_s",
+             to_digits_in_row({.value = error->delay.value(), .largest = 10.0 * error->delay_error.value()})},
+            {"delay_stderr_s", error->delay_error.value()}};
+}
+
 void add_besides(Json& json, const Identification& identification) {
+    json["velocity_error"] = velocity_error_to_json(identification.velocity_error);
     json["families"] = Json::array();
     for (const ToneFamily& family : identification.families) {
         list_in(json, "families")

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a logged velocity is off by.
+
+#include "ripplenotch/core/units.hpp"
+
+namespace ripplenotch {
+
+/// The logged velocity is so much too high, and so late (a filter's lag is a delay, too). With standard
+/// errors.
+struct VelocityError {
+    DegPerSec offset, offset_error;
+    Seconds delay, delay_error;
+};
+
+}  // namespace ripplenotch

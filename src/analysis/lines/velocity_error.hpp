@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to the analysis room: what the velocity of a log without position does to its angle, told by the
+// ripple itself.
+
+#include <optional>
+#include <span>
+
+#include "ripplenotch/analysis/motion_lines.hpp"
+#include "ripplenotch/analysis/stack.hpp"
+#include "ripplenotch/analysis/sweeps.hpp"
+
+namespace ripplenotch {
+
+struct VelocityFit {
+    VelocityError error;
+    /// Relative error that all orders have in common: from the offset and the delay, which are only known
+    /// within their errors, and from the velocity's noise, which its sum adds up.
+    double order_share_error = 0.0;
+};
+
+/// One offset and one delay of the velocity of all logs that have no position. An angle that is a sum of
+/// velocities is off by -offset * t + delay * velocity, and ripple of order n is out of phase by 2 pi n times
+/// that: the offset, the delay and the place of each line that make the summed power of the lines over their
+/// noise largest, which are the likeliest where each sweep has an amplitude and a phase of its own. What they
+/// may be beforehand: normal, 1 % of the fastest speed and 20 ms. The errors (sandwich) hold noise of torque,
+/// the velocity's noise, and what is not known of the other unknowns. Needs at most four lines, the clearest.
+///
+/// `sweeps` as cut, no line taken out; `angle` is the stack of the same sweeps whose floors are the noise;
+/// `orders` are cycles per output turn. Empty where the power has no clear maximum. Cost O(samples * orders).
+[[nodiscard]] std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs,
+                                                            std::span<const Sweep> sweeps, const Stack& angle,
+                                                            std::span<const double> orders);
+
+}  // namespace ripplenotch
