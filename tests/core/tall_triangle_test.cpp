@@ -50,7 +50,7 @@ Column solved(const TallTriangle& found) {
 // Rows about one block, several, and no whole number of them.
 TEST_CASE("a tall triangle has the products of its columns with each other and with the right side") {
     constexpr std::size_t count = 4;
-    for (const std::size_t rows : {4, 5, 255, 256, 257, 1000}) {
+    for (const std::size_t rows : std::initializer_list<std::size_t>{4, 5, 255, 256, 257, 1000}) {
         const auto columns = drawn(rows, count, static_cast<unsigned>(rows));
         const Column right = drawn(rows, 1, 7)[0];
         const TallTriangle found = of(columns, right);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Beside an arm: ripple of which a part has passed the elastic joint.
+// Beside an arm: ripple of which a part has passed the elastic joint, and a friction that bends another's
+// curve.
 
 #include <algorithm>
 
+#include "diagnose/beside/weighing/shapes.hpp"
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "support/catch.hpp"
@@ -141,6 +143,33 @@ TEST_CASE("without resonance in the list ripple is named as far as one line goes
     INFO(values_told(found));
     CHECK(findings_of(found, "resonance").empty());
     CHECK(std::count(found.named.begin(), found.named.end(), "ripple") == 1);
+}
+
+TEST_CASE("what passes the joint no faster than the errors of its masses rings in nothing") {
+    const ScaleBounds bounds{130.0, 20.0, 100.0, DiagnosisRules{}.beside};
+    REQUIRE(bounds.rules.least_ringing_hz == 4.0);
+    const auto is_bent = [&](const char* ringing) {
+        return bounds.is_ringing_bent({parse_term(passing), parse_term(ringing)});
+    };
+    // Half of the power passes at 1.51, 1.02 and 0.60 of the frequency: 7.6, 5.1 and 3.0 Hz.
+    CHECK_FALSE(is_bent("resonance,frequency_hz=5,damping=0.2,order=2"));
+    CHECK_FALSE(is_bent("resonance,frequency_hz=5,damping=0.69,order=2"));
+    CHECK(is_bent("resonance,frequency_hz=5,damping=1.06,order=2"));
+    CHECK_FALSE(is_bent("resonance,frequency_hz=12,damping=1.06,order=2"));
+    CHECK(is_bent("resonance,frequency_hz=4.5,damping=0.2,order=2"));
+}
+
+TEST_CASE("quadratic friction that drives the joint bends the viscous friction, and is no name") {
+    const Diagnosis found = diagnosed({"viscous-friction,coefficient_nm_per_deg_s=0.02",
+                                       "quadratic-viscous-friction,coefficient_nm_per_deg2_s2=-6e-5"},
+                                      37);
+    INFO(values_told(found));
+    CHECK(found.named == std::vector<std::string>{"viscous-friction"});
+    const auto bending = findings_of(found, "quadratic-viscous-friction");
+    REQUIRE(bending.size() == 1);
+    CHECK(bending[0]->status == FindingStatus::shape_correction);
+    CHECK(value_of(*bending[0], "coefficient_nm_per_deg2_s2") == Approx(-6e-5).epsilon(0.05));
+    CHECK(found.gap.after_nm < 1.05 * found.gap.noise_floor_nm);
 }
 
 }  // namespace ripplenotch

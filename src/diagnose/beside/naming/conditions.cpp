@@ -131,6 +131,22 @@ void look_at_sizes(const Sums& sums, std::vector<BesideFinding>& findings) {
     }
 }
 
+// A friction that drives the joint bends the curve of another that grows with the speed. Alone it is what a
+// simulation has too much of.
+void look_at_driving(const Sums& sums, const Names& names, std::vector<BesideFinding>& findings) {
+    const auto resists = [&](std::size_t place) {
+        return kind_of(*findings[place].shape.term.effect) == Kind::speed && !drives(sums, names, place);
+    };
+    bool is_other = false;
+    for (std::size_t place = 0; place < names.size(); ++place) is_other = is_other || resists(place);
+    for (std::size_t place = 0; place < names.size(); ++place) {
+        BesideFinding& finding = findings[place];
+        if (!is_other || finding.status != FindingStatus::confirmed || !drives(sums, names, place)) continue;
+        finding.status = FindingStatus::shape_correction;
+        finding.reason = "its size is below 0: it mends the form of another friction";
+    }
+}
+
 // Squares of the whitened log that names explain in the whole fit.
 double explained(const Sums& sums, const Names& names) {
     if (names.empty()) return 0.0;
@@ -216,6 +232,7 @@ std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Jud
     look_at_sizes(sums, findings);
     for (std::size_t place = 0; place < now.names.size(); ++place)
         look_at_rivals(sums, now.names, place, left, findings[place]);
+    look_at_driving(sums, now.names, findings);
     return findings;
 }
 

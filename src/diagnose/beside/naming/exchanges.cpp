@@ -34,6 +34,21 @@ bool move_once(Sums& sums, Named& now, std::size_t name, const Scale& scale, dou
     return false;
 }
 
+// Every scale once, by ever smaller factors.
+Named swept(Sums& sums, Named now) {
+    constexpr int most_moves = 6;
+    for (std::size_t name = 0; name < now.names.size(); ++name) {
+        for (const Scale& scale : scales_of(sums.shapes()[now.names[name]])) {
+            for (const double factor : factors) {
+                for (int move = 0; move < most_moves; ++move) {
+                    if (!move_once(sums, now, name, scale, factor)) break;
+                }
+            }
+        }
+    }
+    return now;
+}
+
 Names without(const Names& names, std::size_t a, std::size_t b) {
     Names rest;
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -82,15 +97,14 @@ bool is_barred(const Barred& barred, const Shape& shape) {
 }
 
 Named refined(Sums& sums, Named now) {
-    constexpr int most_moves = 6;
-    for (std::size_t name = 0; name < now.names.size(); ++name) {
-        for (const Scale& scale : scales_of(sums.shapes()[now.names[name]])) {
-            for (const double factor : factors) {
-                for (int move = 0; move < most_moves; ++move) {
-                    if (!move_once(sums, now, name, scale, factor)) break;
-                }
-            }
-        }
+    // The scales of one name shift with those of another: once more, as long as the last time was worth a
+    // value. Less is a step along a valley, at whose end a size is no longer told.
+    constexpr int most_sweeps = 4;
+    constexpr double gain_of_a_value = 2.0;
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+        const double before = now.left;
+        now = swept(sums, std::move(now));
+        if (before - now.left < gain_of_a_value * squared(sums)) break;
     }
     return now;
 }

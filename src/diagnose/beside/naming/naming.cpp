@@ -28,13 +28,20 @@ std::vector<Named> finalists(const Sums& sums, const Named& now, const Barred& b
     return trials;
 }
 
+// Whether the last name is worth its price beside those before it.
+bool is_worth_adding(const Sums& sums, const Named& now, const Named& next, std::size_t effects) {
+    const OutsideGain gain = gain_between(sums, now.names, next.names);
+    return is_worth(gain, price_of(sums, next.names.back(), effects), sums.lens().rules().beside) &&
+           is_worth_ringing(sums, next.names, next.names.size() - 1, effects);
+}
+
 std::optional<Named> one_more(Sums& sums, const Named& now, const Barred& barred, std::size_t effects) {
     for (const Named& trial : finalists(sums, now, barred)) {
-        const Named next = refined(sums, trial);
-        const OutsideGain gain = gain_between(sums, now.names, next.names);
-        if (is_worth(gain, price_of(sums, next.names.back(), effects), sums.lens().rules().beside) &&
-            is_worth_ringing(sums, next.names, next.names.size() - 1, effects))
-            return next;
+        Named next = refined(sums, trial);
+        if (is_worth_adding(sums, now, next, effects)) return next;
+        if (!sums.shapes()[trial.names.back()].ringing) continue;
+        next = refined_from_others(sums, trial, trial.names.size() - 1);
+        if (is_worth_adding(sums, now, next, effects)) return next;
     }
     return std::nullopt;
 }

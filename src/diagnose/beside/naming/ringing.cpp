@@ -41,6 +41,21 @@ bool is_worth_ringing(const Sums& sums, const Names& names, std::size_t place, s
                     sums.lens().rules().beside);
 }
 
+Named refined_from_others(Sums& sums, const Named& now, std::size_t place) {
+    const Shape begun = sums.shapes()[now.names[place]];
+    Named best = now;
+    for (std::size_t shape = 0; shape < sums.listed(); ++shape) {
+        const Shape& start = sums.shapes()[shape];
+        if (!start.ringing || !same_name(start, begun) || start == begun) continue;
+        Named other = now;
+        other.names[place] = shape;
+        other.left = sums.left_outside(other.names);
+        other = refined(sums, std::move(other));
+        if (other.left < best.left) best = std::move(other);
+    }
+    return best;
+}
+
 Named with_ringing(Sums& sums, Named now, std::size_t effects) {
     for (std::size_t place = 0; place < now.names.size(); ++place) {
         const Shape plain = sums.shapes()[now.names[place]];
@@ -54,8 +69,10 @@ Named with_ringing(Sums& sums, Named now, std::size_t effects) {
             if (trial.left < best.left) best = std::move(trial);
         }
         if (best.names == now.names) continue;
-        best = refined(sums, std::move(best));
-        if (is_worth_ringing(sums, best.names, place, effects)) now = std::move(best);
+        Named next = refined(sums, best);
+        if (!is_worth_ringing(sums, next.names, place, effects))
+            next = refined_from_others(sums, best, place);
+        if (is_worth_ringing(sums, next.names, place, effects)) now = std::move(next);
     }
     return now;
 }

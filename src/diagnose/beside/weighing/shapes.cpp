@@ -71,6 +71,18 @@ std::vector<double> places_of(const Parameter& parameter, bool scale, const Scal
     return places;
 }
 
+// Up to this frequency a mass on a spring passes half of the power that drives it, or more.
+double passed_hz(const Term& ringing) {
+    double hz = 0.0, damping = 0.0;
+    for (std::size_t p = 0; p < ringing.values.size(); ++p) {
+        const Parameter& parameter = ringing.effect->parameters[p];
+        if (parameter.left_out != LeftOut::fitted) continue;
+        (parameter.unit == "Hz" ? hz : damping) = *ringing.values[p];
+    }
+    const double bend = 1.0 - 2.0 * damping * damping;
+    return hz * std::sqrt(bend + std::sqrt(bend * bend + 1.0));
+}
+
 }  // namespace
 
 double order_of(const Shape& shape) { return *shape.term.values[*shape.term.effect->ripple_order]; }
@@ -183,6 +195,7 @@ bool ScaleBounds::is_bent(const Shape& shape) const {
 
 bool ScaleBounds::is_ringing_bent(const Shape& shape) const {
     const std::vector<Scale> scales = scales_of(shape);
+    if (passed_hz(*shape.ringing) < rules.near_low * rules.least_ringing_hz) return true;
     return std::any_of(scales.begin(), scales.end(), [&](const Scale& scale) {
         if (!scale.of_ringing) return false;
         const double value = value_of(shape, scale);
