@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/analysis/motion_lines.hpp"
+#include "analysis/lines/motion_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/lines/line_evidence.hpp"
 #include "analysis/lines/line_removal.hpp"
-#include "analysis/lines/velocity_error.hpp"
 #include "core/two_cores.hpp"
 #include "ripplenotch/core/median.hpp"
 
@@ -225,13 +224,10 @@ void state_resolution(const Stack& angle, double least_amplitude, double false_a
     found.highest_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
 }
 
-struct Search {
-    MotionLines found;
-    Stack angle;  ///< of what the lines left
-};
+}  // namespace
 
-Search lines_in(Sweeps cut, std::span<const TraceView> logs, const MotionLinesOptions& options) {
-    Search search;
+MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const MotionLinesOptions& options) {
+    MotionSearch search;
     MotionLines& found = search.found;
     std::vector<Sweep>& sweeps = cut.pieces;
     found.sweeps = sweeps.size();
@@ -250,6 +246,10 @@ Search lines_in(Sweeps cut, std::span<const TraceView> logs, const MotionLinesOp
         take_out_last(sweeps, out);
     };
     for (const double hz : options.known_hz) take_out(Axis::time, hz);
+    std::vector<std::vector<double>> values;  // as they were before lines were taken out
+    for (const Sweep& sweep : sweeps) {
+        if (!cut.absolute_angle) values.push_back(sweep.value);
+    }
     const double least_amplitude = least_amplitude_of(logs, options.least_share);
     Stacks stacks = stacked(sweeps, options);
     if (options.most_lines > 0) state_resolution(stacks.angle, least_amplitude, options.false_alarm, found);
@@ -279,41 +279,9 @@ Search lines_in(Sweeps cut, std::span<const TraceView> logs, const MotionLinesOp
     }
     found.humps = stacks.time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
     search.angle = std::move(stacks.angle);
+    for (std::size_t i = 0; i < values.size(); ++i) sweeps[i].value = std::move(values[i]);
+    if (!cut.absolute_angle) search.sweeps = std::move(sweeps);
     return search;
-}
-
-/// Places of the orders, the one that explains most first.
-std::vector<double> orders_among(std::vector<MotionLine> lines) {
-    std::erase_if(lines, [](const MotionLine& line) { return line.kind != LineKind::order; });
-    std::stable_sort(lines.begin(), lines.end(),
-                     [](const MotionLine& a, const MotionLine& b) { return a.gain_angle > b.gain_angle; });
-    std::vector<double> orders;
-    for (const MotionLine& line : lines) orders.push_back(line.order_output);
-    return orders;
-}
-
-}  // namespace
-
-MotionLinesOptions short_log_options() {
-    MotionLinesOptions options;
-    options.sweeps.fewest_samples = 24;
-    options.stack.few_cells = true;
-    options.lowest_tone_hz = 3.0;
-    return options;
-}
-
-MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLinesOptions& options) {
-    Search search = lines_in(cut_sweeps(logs, options.sweeps), logs, options);
-    if (search.found.absolute_angle) return std::move(search.found);
-    const std::vector<double> orders = orders_among(search.found.lines);
-    if (orders.empty()) return std::move(search.found);
-    const auto fit = fit_velocity_error(logs, cut_sweeps(logs, options.sweeps).pieces, search.angle, orders);
-    if (!fit) return std::move(search.found);
-    MotionLines again = lines_in(cut_sweeps(logs, options.sweeps, fit->error), logs, options).found;
-    if (orders_among(again.lines).empty()) return std::move(search.found);
-    again.velocity_error = fit->error;
-    again.order_share_error = fit->order_share_error;
-    return again;
 }
 
 }  // namespace ripplenotch

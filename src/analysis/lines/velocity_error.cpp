@@ -45,17 +45,15 @@ VectorXd climbed(const RipplePower& power, VectorXd unknown) {
 VectorXd best_of_starts(const RipplePower& power, const VelocityError& beforehand) {
     VectorXd best = climbed(power, VectorXd::Zero(power.unknowns()));
     double most = power.at(best).value;
-    for (const double offset : {-1.0, 0.0, 1.0}) {
-        for (const double delay : {-1.0, 0.0, 1.0}) {
-            VectorXd start = VectorXd::Zero(power.unknowns());
-            start[power.offset()] = offset * beforehand.offset_error.value();
-            start[power.delay()] = delay * beforehand.delay_error.value();
-            const VectorXd end = climbed(power, std::move(start));
-            const double value = power.at(end).value;
-            if (value > most + 1e-6) {
-                most = value;
-                best = end;
-            }
+    for (const auto& [offset, delay] : {std::pair{-1.0, 0.0}, {1.0, 0.0}, {0.0, -1.0}, {0.0, 1.0}}) {
+        VectorXd start = VectorXd::Zero(power.unknowns());
+        start[power.offset()] = offset * beforehand.offset_error.value();
+        start[power.delay()] = delay * beforehand.delay_error.value();
+        const VectorXd end = climbed(power, std::move(start));
+        const double value = power.at(end).value;
+        if (value > most + 1e-6) {
+            most = value;
+            best = end;
         }
     }
     return best;
@@ -102,6 +100,8 @@ std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs, s
     VelocityFit fit;
     fit.error = {DegPerSec(best[power.offset()]), DegPerSec(deviation(covariance, power.offset())),
                  Seconds(best[power.delay()]), Seconds(deviation(covariance, power.delay()))};
+    fit.order_shares.assign(best.begin(), best.begin() + static_cast<Eigen::Index>(orders.size()));
+    fit.most_cycles = power.most_cycles(best);
     // Of the clearest order, what noise of the torque would not leave if the other unknowns were known.
     const double alone = slopes.own(0, 0) / (stiffness(0, 0) * stiffness(0, 0));
     fit.order_share_error = std::sqrt(common(0, 0) + std::max(0.0, own(0, 0) - alone));

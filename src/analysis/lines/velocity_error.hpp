@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ripplenotch/analysis/motion_lines.hpp"
 #include "ripplenotch/analysis/stack.hpp"
@@ -17,6 +18,8 @@ struct VelocityFit {
     /// Relative error that all orders have in common: from the offset and the delay, which are only known
     /// within their errors, and from the velocity's noise, which its sum adds up.
     double order_share_error = 0.0;
+    std::vector<double> order_shares;  ///< by how much of itself each order of the fit lies higher
+    double most_cycles = 0.0;  ///< of the highest order, that offset and delay move a sample within its sweep
 };
 
 /// One offset and one delay of the velocity of all logs that have no position. An angle that is a sum of

@@ -14,9 +14,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Complex = std::complex<double>;
 
-constexpr double full_turn = 2.0 * std::numbers::pi;
-// So many of a sweep turn less than a tenth of a cycle each where the whole is wrong by some ten cycles.
-constexpr std::size_t cells_per_sweep = 128;
+constexpr double full_turn = 2.0 * std::numbers::pi;  // in radians
+// So many of a sweep turn less than a tenth of a cycle each where the whole is wrong by five cycles.
+constexpr std::size_t cells_per_sweep = 48;
 
 void centre(DemodulatedSweep& cells) {
     for (std::vector<double>& column : cells.column) {
@@ -115,6 +115,17 @@ void RipplePower::add(const DemodulatedSweep& cells, const VectorXd& unknown, At
             sum.expected(place[b], place[a]) += expected;
         }
     }
+}
+
+double RipplePower::most_cycles(const VectorXd& unknown) const {
+    double most = 0.0;
+    for (const DemodulatedSweep& cells : all_) {
+        for (std::size_t i = 0; i < cells.value.size(); ++i) {
+            const double off = unknown[offset()] * cells.column[1][i] + unknown[delay()] * cells.column[2][i];
+            most = std::max(most, cells.cycles * std::abs(off));
+        }
+    }
+    return most;
 }
 
 RipplePower::SlopeVariance RipplePower::slope_variance(const VectorXd& unknown) const {

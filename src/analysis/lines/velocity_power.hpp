@@ -68,6 +68,9 @@ class RipplePower {
     };
     [[nodiscard]] SlopeVariance slope_variance(const Eigen::VectorXd& unknown) const;
 
+    /// How far offset and delay move a cell within its sweep, at most, in cycles of its order.
+    [[nodiscard]] double most_cycles(const Eigen::VectorXd& unknown) const;
+
   private:
     [[nodiscard]] std::array<Eigen::Index, 3> places_of(const DemodulatedSweep& cells) const {
         return {static_cast<Eigen::Index>(cells.order), offset(), delay()};
