@@ -54,7 +54,7 @@ std::optional<double> shortest_delay_samples(const Term& term, const Case& looke
     std::optional<double> shortest;
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         const Parameter& parameter = term.effect->parameters[p];
-        if (term.effect->side != Side::sensor || parameter.unit != "s" || !term.values[p]) continue;
+        if (side_of(term) != Side::sensor || parameter.unit != "s" || !term.values[p]) continue;
         const double samples = std::abs(*term.values[p]) * looked_at.motion.sample_rate.value();
         shortest = std::min(shortest.value_or(samples), samples);
     }
