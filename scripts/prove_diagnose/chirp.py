@@ -168,3 +168,34 @@ def trial(program, case, keep=None):
         shutil.copytree(folder, keep / case.name)
     shutil.rmtree(folder)
     return row
+
+
+ASKED = {"resonance": "`resonance`, and not `delay`", "delay": "`delay`, and not `resonance`", "nothing": "no name"}
+
+
+def told_right(row):
+    """The right one of the two that are mistaken for each other."""
+    named = set(row["named"])
+    return not named if row["label"] == "nothing" else row["right"] and not named & (set(KINDS) - {row["label"]})
+
+
+def line(kind, rows):
+    joints = [row["joint"] for row in rows]
+    span = {"resonance": ("mode_hz", "Hz", 1), "delay": ("delay_s", "ms", 1e3)}.get(kind)
+    drawn_from = f"{span[2] * min(j[span[0]] for j in joints):.1f} to {span[2] * max(j[span[0]] for j in joints):.1f} {span[1]}" if span else "-"
+    return [kind, drawn_from, str(len(rows)), *(table.share(rows, test) for test in (
+        told_right, lambda r: r["exact"], lambda r: r["false"], lambda r: r.get("verdict") == "explained")),
+        table.median([row.get("seconds") for row in rows], "{:.1f} s")]
+
+
+def blocks(about, rows):
+    groups = {kind: of for kind in KINDS if (of := [row for row in rows if row["label"] == kind])}
+    asked = table.markdown(bars.HEAD, [bars.line(f"{kind} in the joint: {ASKED[kind]}", "98 of 100", [told_right(row) for row in of], 0.98)
+                                       for kind, of in groups.items()])
+    head = ["in the joint", "drawn", "logs", "the right one of the two", "exactly right", "any false name", "explained", "time"]
+    wrong = "\n".join(
+        f"* {row['case']} ({row['joint']['mode_hz']:.1f} Hz, damping {row['joint']['damping']:.2f}, {1e3 * row['joint']['delay_s']:.1f} ms): "
+        f"named {', '.join(row['named']) or 'nothing'}{', offered ' + ', '.join(row['offered']) if row.get('offered') else ''}; "
+        f"{row.get('verdict', row.get('error'))}" for row in rows if not row["exact"])
+    return {"chirp": f"{about}\n\n{asked}\n\n{table.markdown(head, [line(kind, of) for kind, of in groups.items()])}\n\n"
+                     f"Not exactly right:\n\n{wrong or 'None.'}"}

@@ -157,16 +157,18 @@ TEST_CASE(
         for (const double hertz : {0.25, 4.0, 8.0, 30.0, 80.0}) {
             CAPTURE(spring.frequency_hz, spring.damping, hertz);
             // From its first value, held before: what still rings of that has died away in the second half.
-            const double settled_s = 40.0 / (2.0 * pi * spring.frequency_hz * std::min(spring.damping, 0.25));
+            const double settled_s =
+                40.0 / (2.0 * std::numbers::pi * spring.frequency_hz * std::min(spring.damping, 0.25));
             std::vector<double> values;
             for (double k = 0.0; k < rate_hz * (settled_s + 4.0); ++k)
-                values.push_back(std::cos(2.0 * pi * hertz * k / rate_hz));
+                values.push_back(std::cos(2.0 * std::numbers::pi * hertz * k / rate_hz));
             pass_spring(spring, Hertz(rate_hz), values);
             const double u = hertz / spring.frequency_hz;
             const Complex response = 1.0 / Complex(1.0 - u * u, 2.0 * spring.damping * u);
             double off = 0.0;
             for (std::size_t k = values.size() - 3000; k + 10 < values.size(); ++k) {
-                const Complex drive = std::polar(1.0, 2.0 * pi * hertz * static_cast<double>(k) / rate_hz);
+                const Complex drive =
+                    std::polar(1.0, 2.0 * std::numbers::pi * hertz * static_cast<double>(k) / rate_hz);
                 off = std::max(off, std::abs(values[k] - (response * drive).real()));
             }
             CHECK(off < 2e-4 * std::abs(response));
