@@ -111,6 +111,7 @@ KickMoments kick_moments(double damping, double radians) {
     // Gauss and Legendre, eight places in each radian.
     constexpr double places[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                  0.9602898564975363};
+    // And their weights.
     constexpr double weights[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                   0.1012285362903763};
     KickMoments moments;
