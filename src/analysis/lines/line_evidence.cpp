@@ -33,6 +33,22 @@ Piece piece_at(const Sweep& part, const Sweep& whole, Axis axis, double noise, d
     return {power / (noise * scale), part.effective_samples()};
 }
 
+/// `value_of` a sweep stands for its torque under the weights.
+template <class ValueOf>
+double gain_in(std::span<const Sweep> sweeps, const Stack& stack, double place, const ValueOf& value_of) {
+    double most = 0.0, gain = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        const double noise = noise_at(stack, i, place);
+        if (!(noise > 0.0)) continue;
+        const auto value = value_of(sweeps[i]);
+        const double power = std::norm(fourier_point(places(sweeps[i], stack.axis), value, place).value);
+        const double weight = sweeps[i].effective_samples();
+        most = std::max(most, weight);
+        gain += weight * (power / noise - 1.0);
+    }
+    return most > 0.0 ? gain / most : 0.0;
+}
+
 }  // namespace
 
 double gain_at(const Stack& stack, std::size_t bin) {
@@ -46,15 +62,11 @@ double gain_at(const Stack& stack, std::size_t bin) {
 }
 
 double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place) {
-    double most = 0.0, gain = 0.0;
-    for (std::size_t i = 0; i < sweeps.size(); ++i) {
-        const double noise = noise_at(stack, i, place);
-        if (!(noise > 0.0)) continue;
-        const Piece piece = piece_at(sweeps[i], sweeps[i], stack.axis, noise, place);
-        most = std::max(most, piece.weight);
-        gain += piece.weight * (piece.ratio - 1.0);
-    }
-    return most > 0.0 ? gain / most : 0.0;
+    return gain_in(sweeps, stack, place, [](const Sweep& sweep) { return std::span(sweep.value); });
+}
+
+double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place) {
+    return gain_in(sweeps, stack, place, [&](const Sweep& sweep) { return value_without(sweep, line); });
 }
 
 bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "analysis/lines/line_removal.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 
 namespace ripplenotch {
@@ -20,6 +21,9 @@ double gain_at(const Stack& stack, std::size_t bin);
 /// What a line explains beyond noise, in nats: weighted sum over sweeps of power over noise, less one each.
 /// Sweeps weigh by what they know, the best of them 1.
 double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place);
+
+/// The same after another line is taken out of each sweep with the amplitude and phase that it has there.
+double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place);
 
 /// True when a line is seen even without the sweep that shows it best: a burst, or another joint's ripple
 /// that passes by, fills one sweep. Where one sweep is most of the log, its halves count as two.

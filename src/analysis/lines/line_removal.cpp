@@ -86,11 +86,17 @@ class Rows {
     std::vector<double> place_, cosine_;  ///< from 0 to 1 along the piece, and cosine of pi times that
 };
 
-void subtract_from(Sweep& sweep, const KnownLine& line) {
+/// Of one sweep what a line is there, sample by sample: nothing where the sweep is too short to tell.
+std::vector<double> there(const Sweep& sweep, const KnownLine& line) {
     const auto at = places(sweep, line.axis);
-    std::vector<double> angle(at.size()), cosine(at.size()), sine(at.size());
-    for (std::size_t k = 0; k < at.size(); ++k) angle[k] = tau * line.place * at[k];
-    portable::phasors(angle, cosine, sine);
+    std::vector<double> cosine(at.size()), sine(at.size());
+    std::array<double, Rows::length> angle{};
+    for (std::size_t first = 0; first < at.size(); first += angle.size()) {
+        const std::size_t here = std::min(angle.size(), at.size() - first);
+        for (std::size_t i = 0; i < here; ++i) angle[i] = tau * line.place * at[first + i];
+        portable::phasors(std::span(angle).first(here), std::span(cosine).subspan(first),
+                          std::span(sine).subspan(first));
+    }
     double cc = 0.0, cs = 0.0, ss = 0.0, xc = 0.0, xs = 0.0;
     for (std::size_t k = 0; k < at.size(); ++k) {
         cc += sweep.weight[k] * cosine[k] * cosine[k];
@@ -100,12 +106,17 @@ void subtract_from(Sweep& sweep, const KnownLine& line) {
         xs += sweep.value[k] * sine[k];
     }
     const double determinant = cc * ss - cs * cs;
-    if (!(determinant > 1e-6 * cc * ss)) return;
+    if (!(determinant > 1e-6 * cc * ss)) return {};
     const double a = (xc * ss - xs * cs) / determinant, b = (xs * cc - xc * cs) / determinant;
-    for (std::size_t k = 0; k < at.size(); ++k) {
-        const double there = a * cosine[k] + b * sine[k];
-        sweep.torque_nm[k] -= there;
-        sweep.value[k] -= sweep.weight[k] * there;
+    for (std::size_t k = 0; k < at.size(); ++k) cosine[k] = a * cosine[k] + b * sine[k];
+    return cosine;
+}
+
+void subtract_from(Sweep& sweep, const KnownLine& line) {
+    const std::vector<double> torque = there(sweep, line);
+    for (std::size_t k = 0; k < torque.size(); ++k) {
+        sweep.torque_nm[k] -= torque[k];
+        sweep.value[k] -= sweep.weight[k] * torque[k];
     }
 }
 
@@ -154,8 +165,11 @@ void fit_out(Sweep& sweep, std::span<const KnownLine> lines) {
         sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
 }
 
-void subtract(std::vector<Sweep>& sweeps, const KnownLine& line) {
-    for (Sweep& sweep : sweeps) subtract_from(sweep, line);
+std::vector<double> value_without(const Sweep& sweep, const KnownLine& line) {
+    std::vector<double> torque = there(sweep, line);
+    if (torque.empty()) return sweep.value;
+    for (std::size_t k = 0; k < torque.size(); ++k) torque[k] = sweep.value[k] - sweep.weight[k] * torque[k];
+    return torque;
 }
 
 void take_out_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines) {

@@ -20,8 +20,9 @@ struct KnownLine {
 /// torque: all of them fitted at once, by least squares under the weights. Cost O(n (terms + 2 lines)^2).
 void fit_out(Sweep& sweep, std::span<const KnownLine> lines);
 
-/// Takes a line out of each sweep with the amplitude and phase that it has there, nothing else fitted anew.
-void subtract(std::vector<Sweep>& sweeps, const KnownLine& line);
+/// The sweep's value once a line is out with the amplitude and phase that it has there, nothing else fitted
+/// anew.
+[[nodiscard]] std::vector<double> value_without(const Sweep& sweep, const KnownLine& line);
 
 /// Takes the last of the lines out, those before it being out. A sweep of few cycles cannot tell a line from
 /// its smooth part, nor from a line near by, when one is fitted after the other: there all are fitted at

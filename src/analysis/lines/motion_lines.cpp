@@ -30,9 +30,10 @@ bool near_any(std::span<const double> lines, double place, double within) {
 
 /// The significant, recurring peak that explains most, apart from lines already found.
 std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& stack,
-                                  std::span<const double> taken, double lowest, double false_alarm) {
+                                  std::span<const SignificantPeak> peaks, std::span<const double> taken,
+                                  double lowest) {
     std::vector<Candidate> candidates;
-    for (const SignificantPeak& peak : stack.peaks(false_alarm)) {
+    for (const SignificantPeak& peak : peaks) {
         const double place = static_cast<double>(peak.bin) * stack.spacing;
         if (place >= lowest && !near_any(taken, place, line_cells * stack.resolution))
             candidates.push_back({peak, gain_at(stack, peak.bin)});
@@ -116,15 +117,32 @@ struct Rivals {
 };
 
 /// True when a place is a significant peak itself, not merely the best that noise offers.
-bool stands_out(const Stack& stack, double place, double false_alarm) {
-    const auto peaks = stack.peaks(false_alarm);
+bool stands_out(const Stack& stack, std::span<const SignificantPeak> peaks, double place) {
     return std::any_of(peaks.begin(), peaks.end(), [&](const SignificantPeak& peak) {
         return std::abs(static_cast<double>(peak.bin) * stack.spacing - place) < stack.resolution;
     });
 }
 
-LineKind judged(const std::vector<Sweep>& sweeps, const Stack& angle, const Stack& time, const Rivals& rivals,
-                bool by_angle, double false_alarm) {
+// The sweeps in both domains, after what has been found so far was taken out of them.
+struct Stacks {
+    Stack angle, time;
+    std::vector<SignificantPeak> angle_peaks, time_peaks;
+};
+
+Stacks stacked(const std::vector<Sweep>& sweeps, const MotionLinesOptions& options) {
+    Stacks stacks;
+    on_two_cores(2, [&](std::size_t i) {
+        const Axis axis = i == 0 ? Axis::angle : Axis::time;
+        Stack& stack = i == 0 ? stacks.angle : stacks.time;
+        stack = stack_sweeps(sweeps, axis, options.stack);
+        // Two domains are asked.
+        (i == 0 ? stacks.angle_peaks : stacks.time_peaks) = stack.peaks(0.5 * options.false_alarm);
+    });
+    return stacks;
+}
+
+LineKind judged(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Rivals& rivals, bool by_angle) {
+    const auto& [angle, time, angle_peaks, time_peaks] = stacks;
     const double apart = rivals.gain_angle - rivals.gain_time;
     // The two noise floors are estimates of their own, a few per cent apart.
     const double decisive =
@@ -132,31 +150,14 @@ LineKind judged(const std::vector<Sweep>& sweeps, const Stack& angle, const Stac
     if (std::abs(apart) > decisive) return apart > 0.0 ? LineKind::order : LineKind::tone;
     const bool two_lines =
         rivals.has_order && rivals.has_hz &&
-        (by_angle ? stands_out(time, rivals.hz, false_alarm) : stands_out(angle, rivals.order, false_alarm));
+        (by_angle ? stands_out(time, time_peaks, rivals.hz) : stands_out(angle, angle_peaks, rivals.order));
     if (!two_lines) return LineKind::unknown;
     // Two lines, not one seen twice, when each keeps what it explains after the other is taken out.
-    std::vector<Sweep> without_order = sweeps, without_tone = sweeps;
-    subtract(without_order, {Axis::angle, rivals.order});
-    subtract(without_tone, {Axis::time, rivals.hz});
-    const double order_left = gain_of(without_tone, angle, rivals.order);
-    const double tone_left = gain_of(without_order, time, rivals.hz);
+    const double order_left = gain_without(sweeps, {Axis::time, rivals.hz}, angle, rivals.order);
+    const double tone_left = gain_without(sweeps, {Axis::angle, rivals.order}, time, rivals.hz);
     if (order_left < kept_share * rivals.gain_angle || tone_left < kept_share * rivals.gain_time)
         return LineKind::unknown;
     return by_angle ? LineKind::order : LineKind::tone;
-}
-
-// The sweeps in both domains, after what has been found so far was taken out of them.
-struct Stacks {
-    Stack angle, time;
-};
-
-Stacks stacked(const std::vector<Sweep>& sweeps, const MotionLinesOptions& options) {
-    Stacks stacks;
-    on_two_cores(2, [&](std::size_t i) {
-        const Axis axis = i == 0 ? Axis::angle : Axis::time;
-        (i == 0 ? stacks.angle : stacks.time) = stack_sweeps(sweeps, axis, options.stack);
-    });
-    return stacks;
 }
 
 // One line looked for: where it stands in both domains, as far as it stands there.
@@ -170,10 +171,9 @@ struct Sought {
 std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stacks, const SpeedRange& range,
                            const std::vector<double>& taken_orders, const std::vector<double>& taken_hz,
                            const MotionLinesOptions& options) {
-    const auto& [angle, time] = stacks;
-    const double false_alarm = 0.5 * options.false_alarm;  // two domains are asked
-    const auto order = clearest(sweeps, angle, taken_orders, 0.0, false_alarm);
-    const auto tone = clearest(sweeps, time, taken_hz, options.lowest_tone_hz, false_alarm);
+    const auto& [angle, time, angle_peaks, time_peaks] = stacks;
+    const auto order = clearest(sweeps, angle, angle_peaks, taken_orders, 0.0);
+    const auto tone = clearest(sweeps, time, time_peaks, taken_hz, options.lowest_tone_hz);
     if (!order && !tone) return std::nullopt;
     Sought sought;
     sought.by_angle = order && (!tone || order->gain >= tone->gain);
@@ -201,7 +201,7 @@ std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stack
     rivals.gain_time = rivals.has_hz ? gain_of(sweeps, time, rivals.hz) : 0.0;
     sought.line.gain_angle = rivals.gain_angle;
     sought.line.gain_time = rivals.gain_time;
-    sought.line.kind = judged(sweeps, angle, time, rivals, sought.by_angle, false_alarm);
+    sought.line.kind = judged(sweeps, stacks, rivals, sought.by_angle);
     return sought;
 }
 

@@ -64,7 +64,8 @@ class SpeedShares {
         auto from = inside.begin(), to = inside.end();
         while (to - from > 1) {
             const auto middle = from + (to - from) / 2;
-            std::nth_element(from, middle, to);
+            std::nth_element(from, middle, to,
+                             [](const auto& a, const auto& b) { return a.first < b.first; });
             double slower = 0.0;
             for (auto one = from; one != middle; ++one) slower += one->second;
             const bool beyond = below + slower < share;

@@ -134,24 +134,42 @@ class Level {
         const double said = spectrum_.averages_at(blocks_.first + at * blocks_.bins);
         return std::max(1.0, cells * counted_) * std::max(1.0, averages_share_ * said);
     }
-    /// Mean noise power from the median over blocks [from, to), those next to the window left out.
-    double floor_of(std::size_t from, std::size_t to, std::size_t at) {
-        scratch_.clear();
-        for (std::size_t i = from; i < to; ++i) {
-            if (i + guard_blocks < at || i >= at + window_blocks + guard_blocks)
-                scratch_.push_back(blocks_.mean[i]);
+    /// Of blocks [from, to) that are not next to the window at `at`.
+    struct Beside {
+        std::size_t from = 0, to = 0, at = 0;
+        [[nodiscard]] bool has(std::size_t i) const {
+            return i + guard_blocks < at || i >= at + window_blocks + guard_blocks;
         }
-        return median_in(scratch_) / median_over_mean(averages_of(blocks_.cells, at));
+    };
+    /// Their median.
+    double median_of(const Beside& beside) {
+        scratch_.clear();
+        for (std::size_t i = beside.from; i < beside.to; ++i) {
+            if (beside.has(i)) scratch_.push_back(blocks_.mean[i]);
+        }
+        return median_in(scratch_);
+    }
+    /// That their median is above `most`, by a count: what most windows come to costs no median.
+    [[nodiscard]] bool median_above(double most, const Beside& beside) const {
+        std::size_t count = 0, above = 0;
+        for (std::size_t i = beside.from; i < beside.to; ++i) {
+            const auto counts = static_cast<std::size_t>(beside.has(i));
+            count += counts;
+            above += counts & static_cast<std::size_t>(blocks_.mean[i] > most);
+        }
+        return above > 0 && above >= count - count / 2;
     }
     void judge(std::size_t at, double power, double tries, double false_alarm, std::vector<Candidate>& into) {
         const std::size_t end = at + window_blocks, count = blocks_.mean.size();
         const auto before = [at](std::size_t blocks) { return at - std::min(at, blocks + guard_blocks); };
         const auto after = [=](std::size_t blocks) { return std::min(count, end + blocks + guard_blocks); };
-        const double below = floor_of(before(side_blocks), at, at);
-        if (power < least_ratio * below) return;
-        const double above = floor_of(end, after(side_blocks), at);
-        if (power < least_ratio * above) return;
-        const double around = floor_of(before(around_blocks), after(around_blocks), at);
+        const Beside left{before(side_blocks), at, at}, right{end, after(side_blocks), at};
+        const double to_mean = median_over_mean(averages_of(blocks_.cells, at));
+        const double most = power / least_ratio * to_mean * (1.0 + 1e-9);  // beyond what rounding makes equal
+        if (median_above(most, left) || median_above(most, right)) return;
+        const double below = median_of(left) / to_mean, above = median_of(right) / to_mean;
+        if (power < least_ratio * below || power < least_ratio * above) return;
+        const double around = median_of({before(around_blocks), after(around_blocks), at}) / to_mean;
         const double floor = std::max({below, above, around});
         const double ratio = power / floor;
         if (!(floor > 0.0) || ratio < least_ratio) return;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace ripplenotch {
 namespace {
@@ -16,68 +17,65 @@ std::size_t ranks_beside(std::size_t count) {
 
 void RunningMedian::start(std::size_t first, std::size_t end) {
     const auto window = signal_.subspan(first, end - first);
-    window_.assign(window.begin(), window.end());
+    scratch_.assign(window.begin(), window.end());
     const std::size_t middle = window.size() / 2, beside = ranks_beside(window.size());
-    const auto lowest = window_.begin() + static_cast<std::ptrdiff_t>(middle - std::min(middle, beside));
+    const auto lowest = scratch_.begin() + static_cast<std::ptrdiff_t>(middle - std::min(middle, beside));
     const auto highest =
-        window_.begin() + static_cast<std::ptrdiff_t>(std::min(window.size() - 1, middle + beside));
-    std::nth_element(window_.begin(), lowest, window_.end());
+        scratch_.begin() + static_cast<std::ptrdiff_t>(std::min(window.size() - 1, middle + beside));
+    std::nth_element(scratch_.begin(), lowest, scratch_.end());
     low_ = *lowest;
-    std::nth_element(lowest, highest, window_.end());
-    high_ = *highest;
-    below_ = std::count_if(window_.begin(), lowest, [this](double value) { return value < low_; });
-    const double apart = high_ - low_;
-    buckets_a_unit_ = apart > 1e-300 ? static_cast<double>(bucket_count) / apart : 0.0;
-    for (std::vector<double>& bucket : buckets_) bucket.clear();
-    near_ = 0;
-    for (const double value : window_) {
-        if (!(value >= low_ && value <= high_)) continue;
-        bucket_of(value).push_back(value);
-        ++near_;
+    std::nth_element(lowest, highest, scratch_.end());
+    const double apart = *highest - low_;
+    buckets_a_unit_ = apart > 1e-300 ? static_cast<double>(bucket_count - 3) / apart : 0.0;
+    counts_.fill(0);
+    middle_ = below_ = 0;
+    come(first, end);
+}
+
+// Buckets rise with the values, whatever is rounded.
+std::uint8_t RunningMedian::bucket_of(double value) const {
+    const double place = (value - low_) * buckets_a_unit_ + 1.0;
+    const double last = static_cast<double>(bucket_count - 1);
+    return static_cast<std::uint8_t>(std::max(0.0, std::min(last, place)));
+}
+
+// Where values come in no order, a branch on one is guessed wrong every other time: there are none.
+void RunningMedian::come(std::size_t first, std::size_t end) {
+    for (std::size_t k = first; k < end; ++k) {
+        const std::uint8_t bucket = bucket_of(signal_[k]);
+        bucket_[k] = bucket;
+        ++counts_[bucket];
+        below_ += static_cast<std::size_t>(bucket < middle_);
     }
 }
 
-// Values rise with their buckets, whatever is rounded.
-std::vector<double>& RunningMedian::bucket_of(double value) {
-    const double place = std::min((value - low_) * buckets_a_unit_, static_cast<double>(bucket_count - 1));
-    return buckets_[static_cast<std::size_t>(place)];
-}
-
-// Where values come in no order, a branch on one is guessed wrong every other time: there are none but one.
 void RunningMedian::move_on(std::size_t first, std::size_t end) {
-    for (const double value : take_near(signal_.subspan(first_, first - first_), -1)) {
-        std::vector<double>& bucket = bucket_of(value);
-        *std::find(bucket.begin(), bucket.end(), value) = bucket.back();
-        bucket.pop_back();
+    for (std::size_t k = first_; k < first; ++k) {
+        const std::uint8_t bucket = bucket_[k];
+        --counts_[bucket];
+        below_ -= static_cast<std::size_t>(bucket < middle_);
     }
-    for (const double value : take_near(signal_.subspan(end_, end - end_), 1))
-        bucket_of(value).push_back(value);
+    come(end_, end);
 }
 
-std::span<const double> RunningMedian::take_near(std::span<const double> values, std::ptrdiff_t each) {
-    window_.resize(std::max(window_.size(), values.size()));
-    std::size_t taken = 0;
-    std::ptrdiff_t below = 0;
-    for (const double value : values) {
-        window_[taken] = value;
-        below += static_cast<std::ptrdiff_t>(value < low_);
-        taken += static_cast<std::size_t>(value >= low_ && value <= high_);
-    }
-    below_ += each * below;
-    near_ += each * static_cast<std::ptrdiff_t>(taken);
-    return std::span(window_).first(taken);
+bool RunningMedian::settle(std::size_t rank) {
+    while (rank < below_) below_ -= counts_[--middle_];
+    while (rank >= below_ + counts_[middle_]) below_ += counts_[middle_++];
+    return middle_ > 0 && middle_ + 1 < bucket_count;
 }
 
-double RunningMedian::near(std::size_t rank) {
-    for (std::vector<double>& bucket : buckets_) {
-        if (rank < bucket.size()) {
-            const auto place = bucket.begin() + static_cast<std::ptrdiff_t>(rank);
-            std::nth_element(bucket.begin(), place, bucket.end());
-            return *place;
-        }
-        rank -= bucket.size();
-    }
-    return high_;  // never: the rank is below near_
+double RunningMedian::inside(std::size_t rank) {
+    scratch_.clear();
+    const std::uint8_t *const begin = bucket_.data(), *const end = begin + end_;
+    const auto next = [&](const std::uint8_t* from) {
+        return static_cast<const std::uint8_t*>(
+            std::memchr(from, static_cast<int>(middle_), static_cast<std::size_t>(end - from)));
+    };
+    for (auto* at = next(begin + first_); at != nullptr; at = next(at + 1))
+        scratch_.push_back(signal_[static_cast<std::size_t>(at - begin)]);
+    const auto place = scratch_.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(scratch_.begin(), place, scratch_.end());
+    return *place;
 }
 
 double RunningMedian::at(std::size_t first, std::size_t count) {
@@ -85,11 +83,13 @@ double RunningMedian::at(std::size_t first, std::size_t count) {
     const bool onward = first >= first_ && end >= end_;
     const bool little = onward && first - first_ + end - end_ < count / 2;
     if (little) move_on(first, end);
-    const auto rank = [&] { return static_cast<std::ptrdiff_t>(count / 2) - below_; };
-    if (!little || rank() < 0 || rank() >= near_) start(first, end);
+    if (!little || !settle(count / 2)) {
+        start(first, end);
+        settle(count / 2);
+    }
     first_ = first;
     end_ = end;
-    return near(static_cast<std::size_t>(rank()));
+    return inside(count / 2 - below_);
 }
 
 }  // namespace ripplenotch

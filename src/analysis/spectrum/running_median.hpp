@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace ripplenotch {
 
 class RunningMedian {
   public:
-    explicit RunningMedian(std::span<const double> signal) : signal_(signal) {}
+    explicit RunningMedian(std::span<const double> signal) : signal_(signal), bucket_(signal.size()) {}
 
     /// The element of rank count / 2 of signal[first .. first + count), count > 0. Where the window has moved
     /// on by less than half of itself, and its median not far, that takes a few steps for each sample that
@@ -21,21 +22,23 @@ class RunningMedian {
   private:
     void start(std::size_t first, std::size_t end);
     void move_on(std::size_t first, std::size_t end);
-    /// Those from low_ to high_; `each` that is below counts in below_. Valid until the next call.
-    std::span<const double> take_near(std::span<const double> values, std::ptrdiff_t each);
-    [[nodiscard]] std::vector<double>& bucket_of(double value);
-    /// Of those from low_ to high_, the one of this rank.
-    [[nodiscard]] double near(std::size_t rank);
+    void come(std::size_t first, std::size_t end);
+    /// Finds the bucket of this rank; false where it is one of those for what lies far from the median.
+    bool settle(std::size_t rank);
+    /// Of the bucket of the median, the one of this rank.
+    [[nodiscard]] double inside(std::size_t rank);
+    [[nodiscard]] std::uint8_t bucket_of(double value) const;
 
     std::span<const double> signal_;
     std::size_t first_ = 0, end_ = 0;
-    // What of the window lies from low_ to high_, about the median, and how many lie below. In each bucket is
-    // less than in the next, in no order: one comes and goes without moving others.
-    static constexpr std::size_t bucket_count = 64;
-    double low_ = 0.0, high_ = 0.0, buckets_a_unit_ = 0.0;
-    std::array<std::vector<double>, bucket_count> buckets_;
-    std::vector<double> window_;
-    std::ptrdiff_t below_ = 0, near_ = 0;
+    // The values about the median lie in narrow buckets, all others in the first and the last. In each bucket
+    // is less than in the next; of the window is known how many each has.
+    static constexpr std::size_t bucket_count = 256;
+    std::vector<std::uint8_t> bucket_;  ///< of each sample of the window
+    std::array<std::uint32_t, bucket_count> counts_{};
+    double low_ = 0.0, buckets_a_unit_ = 0.0;
+    std::size_t middle_ = 0, below_ = 0;  ///< a bucket, and how many lie in those before it
+    std::vector<double> scratch_;
 };
 
 }  // namespace ripplenotch
