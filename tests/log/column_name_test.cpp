@@ -22,6 +22,9 @@ struct Expectation {
 TEST_CASE("a column's name gives role, unit and joint", "[log]") {
     const std::vector<Expectation> expectations = {
         {"time_s", Role::time, "s", ""},
+        {"torque_percent", Role::torque, "percent", ""},
+        {"j2_torque_lbf_in", Role::torque, "lbf_in", "j2"},
+        {"battery_percent", Role::other, "percent", ""},
         {"Time (ms)", Role::time, "ms", ""},
         {"Time [s]", Role::time, "s", ""},
         {"Timestamp", Role::time, "", ""},
@@ -112,4 +115,13 @@ TEST_CASE("units are understood in their usual spellings", "[log]") {
     CHECK_FALSE(usual_unit("", Role::other));
     CHECK(role_factor(Role::torque, "mA", 2.0) == 2e-3);
     CHECK_FALSE(role_factor(Role::velocity, "Nm", 1.0));
+}
+
+TEST_CASE("a unit of torque that is not read is sure, and comes behind one that is", "[log]") {
+    for (const std::string name : {"torque_percent", "torque_lbf_in", "tau ft_lb", "torque [%]"}) {
+        INFO(name);
+        CHECK(read_column_name(name).unit_is_sure);
+        CHECK(read_column_name(name).rank > read_column_name("torque_nm").rank);
+    }
+    CHECK_FALSE(read_column_name("torque_nm").unit_is_sure);
 }

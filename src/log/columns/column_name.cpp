@@ -209,6 +209,9 @@ ColumnName read_column_name(std::string_view name) {
     if (foreign || (clock && !is_clock_name(left))) column.role = Role::other;
     if (column.motor_side && !column.current) column.rank += 2;
     if (filtered) column.rank += 4;
+    // A torque in Nm comes before one in per cent, which is read only to be refused.
+    if (parts.bracketed && column.role != Role::other && !usual_unit(parts.unit, column.role))
+        column.rank += 8;
     return column;
 }
 

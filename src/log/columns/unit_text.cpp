@@ -93,6 +93,12 @@ constexpr std::array spellings = {
     Spelling{"mamp", "mA"},
 };
 
+// Units of torque that this tool does not read, at the end of a name without brackets; a column of them is
+// not in Nm.
+constexpr std::array<std::string_view, 18> unread_units = {
+    "lbf_in", "in_lbf", "lb_in", "in_lb",   "lbf_ft", "ft_lbf",   "lb_ft",    "ft_lb", "ozf_in",
+    "in_ozf", "oz_in",  "in_oz", "percent", "pct",    "percents", "permille", "volts", "kgf_cm"};
+
 std::string lower_without_blanks(std::string_view text) {
     std::string lower;
     for (const char c : text) {
@@ -174,6 +180,13 @@ NameAndUnit split_unit(std::string_view column_name) {
         if (rest == "nm" || rest == "mnm" || usual_unit(rest, Role::other)) {
             return {std::string(trimmed(whole.substr(0, at))), std::string(rest), false};
         }
+    }
+    for (std::size_t at = 1; at < whole.size(); ++at) {
+        if (whole[at] != '_' && whole[at] != ' ') continue;
+        const std::string_view rest = whole.substr(at + 1);
+        const std::string lower = lower_without_blanks(rest);
+        if (std::find(unread_units.begin(), unread_units.end(), lower) != unread_units.end())
+            return {std::string(trimmed(whole.substr(0, at))), std::string(rest), true};
     }
     return {std::string(whole), "", false};
 }
