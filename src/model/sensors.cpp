@@ -7,8 +7,9 @@ namespace ripplenotch {
 namespace {
 
 bool is_stated_sensor(const Term& term) {
-    return side_of(term) == Side::sensor && std::all_of(term.values.begin(), term.values.end(),
-                                                        [](const auto& value) { return value.has_value(); });
+    return term.effect->side == Side::sensor &&
+           std::all_of(term.values.begin(), term.values.end(),
+                       [](const auto& value) { return value.has_value(); });
 }
 
 }  // namespace
