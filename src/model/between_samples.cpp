@@ -20,7 +20,7 @@ double at(std::span<const double> values, std::ptrdiff_t place) {
 }
 
 constexpr int shift_points = 16;  // by hand
-constexpr int lag_points = 6;     // by hand
+constexpr int lag_points = step_points;
 
 // Weights of the samples at -(count / 2 - 1), ..., count / 2 for the value at u in [0, 1).
 template <int count>
@@ -106,16 +106,27 @@ void shift_samples(std::span<double> values, double delay) {
     weigh_neighbours(before, weights, -static_cast<std::ptrdiff_t>(whole) - (shift_points / 2 - 1), values);
 }
 
+StepWeights step_weights(const std::array<double, step_points>& moments) {
+    StepWeights weights{};
+    for (int i = 0; i < step_points; ++i) {
+        const auto coefficients = lagrange_coefficients(i);
+        for (std::size_t m = 0; m < step_points; ++m)
+            weights[static_cast<std::size_t>(i)] += coefficients[m] * moments[m];
+    }
+    return weights;
+}
+
+std::vector<double> over_steps(std::span<const double> values, const StepWeights& weights) {
+    std::vector<double> found(values.size());
+    // From sample k - 1 (u = 0) to sample k (u = 1).
+    weigh_neighbours(values, weights, -1 - (step_points / 2 - 1), found);
+    return found;
+}
+
 void first_order_lag(std::span<double> values, double time_constant) {
     if (values.empty()) return;
     const double rate = 1.0 / time_constant;
-    const auto moment = moments(rate);
-    std::array<double, lag_points> weights{};
-    for (int i = 0; i < lag_points; ++i) {
-        const auto coefficients = lagrange_coefficients(i);
-        for (std::size_t m = 0; m < lag_points; ++m)
-            weights[static_cast<std::size_t>(i)] += coefficients[m] * moment[m];
-    }
+    const StepWeights weights = step_weights(moments(rate));
     const double kept = portable::exp(-std::min(rate, 700.0));
     const std::vector<double> before(values.begin(), values.end());
     // From sample k - 1 (u = 0) to sample k (u = 1).

@@ -2,10 +2,12 @@
 #include "model/mass_on_spring.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "model/between_samples.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -100,7 +102,55 @@ class Mass {
     State now_;
 };
 
+// Integrals over a step of u^m times what a kick at u is at the step's end: displacement, and speed.
+struct KickMoments {
+    std::array<double, step_points> at{}, moving{};
+};
+
+KickMoments kick_moments(double damping, double radians) {
+    // Gauss and Legendre, eight places in each radian.
+    constexpr double places[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                 0.9602898564975363};
+    // And their weights.
+    constexpr double weights[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                  0.1012285362903763};
+    KickMoments moments;
+    const double parts = std::max(1.0, std::ceil(radians));
+    const auto add = [&](double u, double weight) {
+        const FreeMove after(damping, radians * (1.0 - u));
+        double power = weight;
+        for (std::size_t m = 0; m < step_points; ++m) {
+            moments.at[m] += power * after.at_of_moving;
+            moments.moving[m] += power * after.moving_of_moving;
+            power *= u;
+        }
+    };
+    for (double part = 0.0; part < parts; ++part) {
+        for (std::size_t i = 0; i < std::size(places); ++i) {
+            for (const double sign : {-1.0, 1.0})
+                add((part + 0.5 + 0.5 * sign * places[i]) / parts, 0.5 * radians * weights[i] / parts);
+        }
+    }
+    return moments;
+}
+
 }  // namespace
+
+void pass_spring(const Spring& spring, Hertz sample_rate, std::span<double> values) {
+    if (values.empty()) return;
+    const double radians = 2.0 * std::numbers::pi * spring.frequency_hz / sample_rate.value();
+    const KickMoments moments = kick_moments(spring.damping, radians);
+    const FreeMove move(spring.damping, radians);
+    const std::vector<double> kicked = over_steps(values, step_weights(moments.at)),
+                              hurried = over_steps(values, step_weights(moments.moving));
+    double at = values[0], moving = 0.0;
+    for (std::size_t k = 1; k < values.size(); ++k) {
+        const double before = at;
+        at = move.at_of_at * before + move.at_of_moving * moving + kicked[k];
+        moving = move.moving_of_moving * moving - move.at_of_moving * before + hurried[k];
+        values[k] = at;
+    }
+}
 
 void response_of(const Spring& spring, const Motion& motion, double cycles_per_deg,
                  std::span<std::complex<double>> response) {

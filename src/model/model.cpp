@@ -42,6 +42,11 @@ Term parse_term(std::string_view text) {
     return term;
 }
 
+Side side_of(const Term& term) {
+    const auto& whole = term.effect->whole;
+    return whole && term.values[*whole].value_or(0.0) >= 0.5 ? Side::sensor : term.effect->side;
+}
+
 std::vector<double> values_of(const Term& term) {
     std::vector<double> values;
     for (std::size_t p = 0; p < term.values.size(); ++p) {

@@ -35,7 +35,7 @@ std::optional<std::vector<double>> Prediction::behind(const Term& sensor,
     const bool last = std::ranges::none_of(state_->model.terms, [](const Term& term) {
         return term.effect->side == Side::converter && !term.effect->chance;
     });
-    if (effect.side != Side::sensor || !effect.linear_in_torque || effect.uses_load || !last)
+    if (side_of(sensor) != Side::sensor || !effect.linear_in_torque || effect.uses_load || !last)
         return std::nullopt;
     effect.apply(state_->situation(state_->load), values_of(sensor), torque_nm);
     return torque_nm;

@@ -55,7 +55,7 @@ struct Prediction::State {
         load_is_used = !load.empty();
         for (const Term& term : model.terms) {
             if (!term.effect->chance && !term.effect->linear_in_torque) sum_is_linear = false;
-            if (term.effect->side == Side::ripple) ++changes;
+            if (side_of(term) == Side::ripple) ++changes;
         }
         applied = model.terms.size();
         joint_nm.assign(motion.size(), 0.0);
@@ -77,7 +77,7 @@ struct Prediction::State {
           is_ripple_anew(true) {
         for (const Term& term : model.terms) {
             if (!term.effect->chance && !term.effect->linear_in_torque) sum_is_linear = false;
-            if (term.effect->side == Side::ripple) ++changes;
+            if (side_of(term) == Side::ripple) ++changes;
         }
         joint_nm = before.plain();
         for (const Term& term : model.terms) {
@@ -104,7 +104,7 @@ struct Prediction::State {
     [[nodiscard]] std::optional<GearRatio> ratio_of_ripple(const Term& term) const {
         const Effect& effect = *term.effect;
         if (load_is_used || effect.uses_load || !effect.linear_in_torque) return std::nullopt;
-        if (effect.side == Side::ripple) return ratio;
+        if (side_of(term) == Side::ripple) return ratio;
         if (effect.side != Side::motion) return std::nullopt;
         Motion other = seen();
         GearRatio other_ratio = ratio;
@@ -183,7 +183,7 @@ struct Prediction::State {
         if (!is_new) return entry->second;
         for (std::size_t i = 0; i < model.terms.size(); ++i) {
             const Effect& effect = *model.terms[i].effect;
-            if (effect.side != Side::ripple || i == place) continue;
+            if (side_of(model.terms[i]) != Side::ripple || i == place) continue;
             effect.change_ripple(situation(load), Order(order), values_of(model.terms[i]), entry->second);
             applied += cost_of_change;
         }
@@ -223,13 +223,14 @@ struct Prediction::State {
     // `other` differs from this model in term `place` alone, or has it besides.
     [[nodiscard]] std::vector<double> difference_to(const Model& other, std::size_t place) {
         const Effect& effect = *other.terms[place].effect;
-        if (effect.side == Side::sensor) return difference_behind_joint(other);
-        if (!sum_is_linear || (effect.side != Side::joint && effect.side != Side::ripple))
+        const Side side = side_of(other.terms[place]);
+        if (side == Side::sensor) return difference_behind_joint(other);
+        if (!sum_is_linear || (side != Side::joint && side != Side::ripple))
             return difference_as_a_whole(other);
         const bool loads = (effect.bears_load && load_is_used) || (effect.uses_load && !load_is_used);
         const std::vector<double> other_load = loads ? load_nm(other, situation({})) : std::vector<double>();
         const std::vector<double>& with_load = loads ? other_load : load;
-        if (effect.side == Side::ripple) return difference_of_ripple(other, place, with_load);
+        if (side == Side::ripple) return difference_of_ripple(other, place, with_load);
         const bool ripple = loads && effect.bears_load;
         std::vector<double> sum(joint_nm.size(), 0.0);
         for (std::size_t i = 0; i < other.terms.size(); ++i) {

@@ -7,9 +7,8 @@ namespace ripplenotch {
 namespace {
 
 bool is_stated_sensor(const Term& term) {
-    return term.effect->side == Side::sensor &&
-           std::all_of(term.values.begin(), term.values.end(),
-                       [](const auto& value) { return value.has_value(); });
+    return side_of(term) == Side::sensor && std::all_of(term.values.begin(), term.values.end(),
+                                                        [](const auto& value) { return value.has_value(); });
 }
 
 }  // namespace

@@ -3,16 +3,15 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
-bool has(const Model& model, bool (*property)(const Effect&)) {
-    for (const Term& term : model.terms) {
-        if (property(*term.effect)) return true;
-    }
-    return false;
+bool has_side(const Model& model, Side side) {
+    return std::ranges::any_of(model.terms, [&](const Term& term) { return side_of(term) == side; });
 }
 
 }  // namespace
@@ -26,7 +25,8 @@ void refuse_missing_values(const Model& model) {
 
 std::vector<double> load_nm(const Model& model, const Situation& situation) {
     std::vector<double> load;
-    if (!has(model, [](const Effect& effect) { return effect.uses_load; })) return load;
+    if (std::ranges::none_of(model.terms, [](const Term& term) { return term.effect->uses_load; }))
+        return load;
     load = situation.motion.carried_nm;
     load.resize(situation.motion.size());
     each(model, Side::joint, [&](const Effect& effect, const std::vector<double>& values) {
@@ -36,7 +36,7 @@ std::vector<double> load_nm(const Model& model, const Situation& situation) {
 }
 
 Gain gain_of(const Model& model, const Situation& situation, double order) {
-    if (!has(model, [](const Effect& effect) { return effect.side == Side::ripple; })) return {};
+    if (!has_side(model, Side::ripple)) return {};
     Gain gain(situation.motion.size(), 1.0);
     each(model, Side::ripple, [&](const Effect& change, const std::vector<double>& numbers) {
         change.change_ripple(situation, Order(order), numbers, gain);

@@ -16,7 +16,7 @@ using Gain = std::vector<std::complex<double>>;
 template <class Action>
 void each(const Model& model, Side side, const Action& action) {
     for (const Term& term : model.terms) {
-        if (term.effect->side == side) action(*term.effect, values_of(term));
+        if (side_of(term) == side) action(*term.effect, values_of(term));
     }
 }
 

@@ -148,3 +148,36 @@ TEST_CASE("few samples of a ramp show nearly what many show") {
     const auto expected = integrated(spring, ride, few, order_2_of_100);
     CHECK(largest(response(spring, motion_of(ride, few, 100.0), order_2_of_100), expected) < 0.05);
 }
+
+TEST_CASE(
+    "a signal that drives a mass comes out as the equation of motion says, from a quarter of a hertz to 80") {
+    constexpr double rate_hz = 1000.0;
+    for (const Spring spring : {Spring{12.0, 0.05}, Spring{36.0, 0.03}, Spring{25.0, 1.0}, Spring{400.0, 0.2},
+                                Spring{9000.0, 0.7}, Spring{30.0, 2.0}}) {
+        for (const double hertz : {0.25, 4.0, 8.0, 30.0, 80.0}) {
+            CAPTURE(spring.frequency_hz, spring.damping, hertz);
+            // From its first value, held before: what still rings of that has died away in the second half.
+            const double settled_s =
+                40.0 / (2.0 * std::numbers::pi * spring.frequency_hz * std::min(spring.damping, 0.25));
+            std::vector<double> values;
+            for (double k = 0.0; k < rate_hz * (settled_s + 4.0); ++k)
+                values.push_back(std::cos(2.0 * std::numbers::pi * hertz * k / rate_hz));
+            pass_spring(spring, Hertz(rate_hz), values);
+            const double u = hertz / spring.frequency_hz;
+            const Complex response = 1.0 / Complex(1.0 - u * u, 2.0 * spring.damping * u);
+            double off = 0.0;
+            for (std::size_t k = values.size() - 3000; k + 10 < values.size(); ++k) {
+                const Complex drive =
+                    std::polar(1.0, 2.0 * std::numbers::pi * hertz * static_cast<double>(k) / rate_hz);
+                off = std::max(off, std::abs(values[k] - (response * drive).real()));
+            }
+            CHECK(off < 2e-4 * std::abs(response));
+        }
+    }
+}
+
+TEST_CASE("a mass that is held and let go where it rests stays there") {
+    std::vector<double> values(500, 0.7);
+    pass_spring({20.0, 0.05}, Hertz(1000.0), values);
+    for (const double value : values) CHECK(std::abs(value - 0.7) < 1e-12);
+}

@@ -123,6 +123,9 @@ struct Effect {
 
     /// ripple: this parameter is the speed at which the ripple has the amplitude of its term
     std::optional<std::size_t> stated_from = std::nullopt;
+    /// ripple: from 0.5 on this parameter lets it act on the whole torque, as a sensor's effect does and by
+    /// `apply`; see side_of(term)
+    std::optional<std::size_t> whole = std::nullopt;
     /// converter: this parameter is the end of the range in Nm, so that torques near it are cut on one side
     std::optional<std::size_t> range_limit = std::nullopt;
     /// converter: detectors of a lower turn have marked what they spoiled before this one looks
@@ -131,7 +134,8 @@ struct Effect {
     // One of the following, by side. `values` has one entry per parameter, in their order and units, each
     // allowed. All are pure functions.
 
-    /// joint: adds to `torque_nm`; sensor, converter: transforms it. It has motion.size() entries.
+    /// joint: adds to `torque_nm`; sensor, converter, and what may act on the whole torque: transforms it. It
+    /// has motion.size() entries.
     void (*apply)(const Situation& situation, std::span<const double> values,
                   std::span<double> torque_nm) = nullptr;
     /// motion

@@ -26,6 +26,9 @@ struct Term {
 /// std::bad_optional_access where neither is there.
 [[nodiscard]] std::vector<double> values_of(const Term& term);
 
+/// The side on which this term acts: its effect's, or the sensor's where Effect::whole says so.
+[[nodiscard]] Side side_of(const Term& term);
+
 /// Effects in the order of the document. They act side by side (see Side), not in the order of this list;
 /// within one side they do.
 struct Model {

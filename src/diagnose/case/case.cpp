@@ -170,6 +170,12 @@ Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules) {
     return some;
 }
 
+Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules) {
+    rules.block_samples = rules.ringing_samples;
+    rules.block_begin = rules.ringing_begin;
+    return blocks(whole, count, rules);
+}
+
 std::vector<Nuisance> acceleration_errors(const Case& looked_at) {
     return {{looked_at.rough_deg_s2, 0.0}, {looked_at.blunted_deg_s2, 0.0}};
 }

@@ -43,6 +43,8 @@ struct Case {
 [[nodiscard]] Case sketch(const Case& whole, std::size_t count);
 /// The same number in short stretches at the full rate, for what looks at neighbouring samples.
 [[nodiscard]] Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules);
+/// The same in longer stretches, for what rings on.
+[[nodiscard]] Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules);
 
 /// Shapes that errors of the measured acceleration leave in the torque, whatever the model: what smoothing
 /// made of it.

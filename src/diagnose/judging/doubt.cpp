@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -49,12 +50,26 @@ bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
 
 bool of_one_kind(Domain a, Domain b) { return is_fast(a) == is_fast(b); }
 
+// By how much a spring that does not swell anything delays what is slow, in s; empty where it swells.
+std::optional<double> delay_of_spring(const Term& term) {
+    const auto value = [&](std::string_view name) {
+        const auto place = find_parameter(*term.effect, name);
+        return place ? term.values[*place].value_or(0.0) : 0.0;
+    };
+    constexpr double no_resonance = 0.5;  // docs/effects/resonance.md: from here a low-pass of second order
+    const double damping = value("damping"), hertz = value("frequency_hz");
+    if (damping < no_resonance || hertz <= 0.0) return std::nullopt;
+    return damping / (std::numbers::pi * hertz);
+}
+
 // The shortest time of an effect of the sensor, in samples; empty when it has none.
 std::optional<double> shortest_delay_samples(const Term& term, const Case& looked_at) {
     std::optional<double> shortest;
+    if (const auto delay_s = delay_of_spring(term))
+        shortest = *delay_s * looked_at.motion.sample_rate.value();
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         const Parameter& parameter = term.effect->parameters[p];
-        if (term.effect->side != Side::sensor || parameter.unit != "s" || !term.values[p]) continue;
+        if (side_of(term) != Side::sensor || parameter.unit != "s" || !term.values[p]) continue;
         const double samples = std::abs(*term.values[p]) * looked_at.motion.sample_rate.value();
         shortest = std::min(shortest.value_or(samples), samples);
     }

@@ -24,12 +24,14 @@ struct Torques {
     double telling_nm2 =
         0.0;               ///< sum of squares from which a torque tells its size: rules.telling_deviations
     bool changes = false;  ///< in the log, be it in rows that do not count
+    bool by_its_torque = false;  ///< a place has the say of the finding's torque there
 };
 
 Torques torques_of(const ModelBench& bench, const Model& stated, std::size_t term) {
     const auto added = bench.torque_of(stated, term);
     Torques torques;
     torques.left_nm = bench.cleared_residual(stated);
+    torques.by_its_torque = stated.terms[term].effect->side != side_of(stated.terms[term]);
     for (const std::size_t k : bench.rows()) torques.finding_nm.push_back(added[k]);
     const auto [low, high] = std::minmax_element(added.begin(), added.end());
     torques.changes = *high - *low > 1e-6 * std::max(std::abs(*low), std::abs(*high));
@@ -55,20 +57,23 @@ std::vector<PlaceSums> sums_of(const Torques& torques, const std::vector<std::si
     return sums;
 }
 
-// Each place that tells a size has the same say.
+// Each place that tells a size has the same say; of a spring that all torque passes, the say of its torque:
+// that goes with the motion's frequency, and where it is hardly driven, what else rings in it counts as much.
 double between(const Torques& torques, double least_sigma, const std::vector<std::size_t>& place,
                std::size_t count) {
-    double off = 0.0, places = 0.0;
+    double off = 0.0, places = 0.0, told = 0.0;
     for (const PlaceSums& sum : sums_of(torques, place, count)) {
         const double variance = torques.variance_nm2;
         if (sum.square < torques.telling_nm2 ||
             sum.square < least_sigma * least_sigma * variance * sum.samples)
             continue;
         const double part = sum.both / sum.square;
-        off += std::max(part * part - variance / sum.square, 0.0);
+        const double say = torques.by_its_torque ? sum.square : 1.0;
+        off += say * std::max(part * part - variance / sum.square, 0.0);
+        told += say;
         places += 1.0;
     }
-    return places > 1.0 ? std::sqrt(off / places) : 0.0;
+    return places > 1.0 ? std::sqrt(off / told) : 0.0;
 }
 
 // A torque that changes only where rows do not count is a constant in those that do, which may be anything.

@@ -95,6 +95,11 @@ double lost_within(const ModelBench& bench, const Candidate& model, const Fitted
 
 Bend bend_of(const ModelBench& bench, const Candidate& model, std::size_t term) {
     const Effect& effect = *model.stated.terms[term].effect;
+    const Term& stated = model.stated.terms[term];
+    if (const auto damping = find_parameter(effect, "damping"); damping && side_of(stated) != effect.side) {
+        if (const double value = *stated.values[*damping]; value >= bench.rules().shape.most_damping)
+            return {effect.parameters[*damping].name, "shape.most_damping", value};
+    }
     const Shapes shapes(bench, model.stated, term);
     for (const FittedValue& value : model.values) {
         const Parameter& parameter = effect.parameters[value.parameter];

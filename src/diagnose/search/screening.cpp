@@ -29,26 +29,6 @@ std::vector<double> starts(const Coordinates& coordinates) {
     return point;
 }
 
-// A joint has one delay, one lag, one gear ratio, and ripple grows with the speed in one way: what a second
-// one would mend is another effect's.
-bool is_there_already(const Term& tried, const Candidate& model) {
-    const Effect& effect = *tried.effect;
-    if (effect.side == Side::joint) return false;
-    return std::any_of(model.open.terms.begin(), model.open.terms.end(), [&](const Term& term) {
-        if (term.effect != &effect) return false;
-        bool fitted = false;
-        for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
-            if (!term.values[p]) {
-                fitted = true;
-            } else if (effect.stated_from != p && effect.parameters[p].left_out != LeftOut::fitted &&
-                       term.values[p] != tried.values[p]) {
-                return false;
-            }
-        }
-        return fitted;
-    });
-}
-
 // Of the samples that a screening looks at, of what the model leaves along the whole log: what it remembers
 // (hysteresis, lag) lies in samples that were left out.
 Column residual_of(const ModelBench& bench, const Case& some, const std::vector<double>& left_nm) {
@@ -79,12 +59,14 @@ class Screening {
                 (bench.noise().rms_nm * bench.noise().rms_nm);
     }
 
-    [[nodiscard]] std::optional<Trial> best(const Effect& effect, std::size_t effects) const {
+    /// Among the starts that act as a sensor does, or among the others.
+    [[nodiscard]] std::optional<Trial> best(const Effect& effect, std::size_t effects, bool sensors) const {
         double cells = 1.0;
         const auto starts = starts_of(effect, hints_, samples_, cells);
         std::optional<Trial> best;
         for (const Term& start : starts) {
-            if (is_there_already(start, model_)) continue;
+            if (sensors != (side_of(start) == Side::sensor)) continue;
+            if (is_there_already(start, model_.open)) continue;
             Trial trial = opened(start);
             const double values = static_cast<double>(free_values(trial.open));
             trial.price = values * portable::log(samples_) + 2.0 * portable::log(cells) +
@@ -286,13 +268,21 @@ std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
     // Delays and lags look at neighbouring samples, which a thinned log does not have.
     const Screening stretches(bench, model, left_nm,
                               blocks(bench.looked_at(), count, bench.rules().recording), hints);
+    std::optional<Screening> ringing;
+    if (std::ranges::any_of(effects, [](const Effect* effect) { return effect->whole.has_value(); }))
+        ringing.emplace(bench, model, left_nm,
+                        long_blocks(bench.looked_at(), 2 * count, bench.rules().recording), hints);
     std::vector<Trial> trials;
     // A thinned log has no delay of a few samples, and what lies behind one has the wrong phase there.
-    const bool delayed = std::ranges::any_of(
-        model.stated.terms, [](const Term& term) { return term.effect->side == Side::sensor; });
+    const bool delayed = std::ranges::any_of(model.stated.terms,
+                                             [](const Term& term) { return side_of(term) == Side::sensor; });
     for (const Effect* effect : effects) {
-        const Screening& screening = delayed || effect->side == Side::sensor ? stretches : thinned;
-        if (auto trial = screening.best(*effect, effects.size())) trials.push_back(*trial);
+        // One that may act on either side is tried on both: which closes more is known once it is fitted.
+        for (const bool sensors : {false, true}) {
+            const Screening& screening =
+                sensors && effect->whole ? *ringing : (delayed || sensors ? stretches : thinned);
+            if (auto trial = screening.best(*effect, effects.size(), sensors)) trials.push_back(*trial);
+        }
     }
     return sorted(kept.keep(seen, {std::move(trials), unit_nm2}).trials);
 }

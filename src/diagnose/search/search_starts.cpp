@@ -35,6 +35,24 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
 
 }  // namespace
 
+bool is_there_already(const Term& tried, const Model& open) {
+    const Effect& effect = *tried.effect;
+    if (effect.side == Side::joint) return false;
+    return std::any_of(open.terms.begin(), open.terms.end(), [&](const Term& term) {
+        if (term.effect != &effect) return false;
+        bool fitted = false;
+        for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+            if (!term.values[p]) {
+                fitted = true;
+            } else if (effect.stated_from != p && effect.parameters[p].left_out != LeftOut::fitted &&
+                       term.values[p] != tried.values[p]) {
+                return false;
+            }
+        }
+        return fitted;
+    });
+}
+
 double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio stated, double wanted) {
     // The ratio is affine in the parameter.
     std::vector<double> values;

@@ -73,7 +73,7 @@ void add_weight(JointMjcf& mjcf, double nm, double phase_deg) {
 std::vector<double> ringing_orders(const Model& model) {
     std::vector<double> orders;
     for (const Term& term : model.terms) {
-        if (term.effect->side != Side::ripple || term.effect->domain != Domain::frequency) continue;
+        if (side_of(term) != Side::ripple || term.effect->domain != Domain::frequency) continue;
         for (std::size_t p = 0; p < term.values.size(); ++p) {
             if (term.effect->parameters[p].name == "order" && *term.values[p] > 0.0)
                 orders.push_back(*term.values[p]);

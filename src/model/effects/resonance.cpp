@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "model/effects.hpp"
+#include "model/lost_rows.hpp"
 #include "model/mass_on_spring.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -12,6 +13,8 @@ namespace {
 constexpr double tried_frequencies[] = {8.0,  11.0, 15.0, 19.0, 23.0, 27.0, 31.0,  36.0,  41.0,
                                         47.0, 53.0, 60.0, 68.0, 77.0, 90.0, 110.0, 150.0, 220.0};
 constexpr double tried_dampings[] = {0.06, 0.2, 0.6};  // by hand: weak, middling, strong
+// What passes: a log does not say whether its angle is the motor's.
+constexpr double ripple_or_whole[] = {0.0, 1.0};
 
 constexpr Parameter parameters[] = {
     {.name = "frequency_hz",
@@ -50,6 +53,14 @@ constexpr Parameter parameters[] = {
      .help = "of the ripple that it changes, in cycles per motor revolution; 0 is every order",
      .upper = 1000.0,
      .left_out = LeftOut::assumed},
+    {.name = "whole",
+     .unit = "",
+     .help = "1 where the motor's angle is logged, so that inertia, friction and all other torque pass the "
+             "elastic "
+             "joint as well; 0: the ripple alone",
+     .upper = 1.0,
+     .left_out = LeftOut::assumed,
+     .tried = ripple_or_whole},
 };
 
 constexpr LookAlike look_alikes[] = {
@@ -61,7 +72,7 @@ constexpr LookAlike look_alikes[] = {
 
 void change_ripple(const Situation& situation, Order order, std::span<const double> values,
                    std::span<std::complex<double>> gain) {
-    if (values[0] >= parameters[0].upper || !concerns(order, values[4])) return;
+    if (values[0] >= parameters[0].upper || values[5] >= 0.5 || !concerns(order, values[4])) return;
     std::vector<std::complex<double>> passing(gain.size());
     response_of({values[0], values[1]}, situation.motion, order.value() * situation.ratio.value() / 360.0,
                 passing);
@@ -71,6 +82,14 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
         const double x = passing[k].real() + direct.real(), y = passing[k].imag() + direct.imag();
         gain[k] = {before.real() * x - before.imag() * y, before.real() * y + before.imag() * x};
     }
+}
+
+void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
+    if (values[0] >= parameters[0].upper || values[5] < 0.5) return;
+    on_whole_clock(situation.motion.time_s, situation.motion.sample_rate.value(), torque_nm,
+                   [&](std::span<double> whole, double rate_hz) {
+                       pass_spring({values[0], values[1]}, Hertz(rate_hz), whole);
+                   });
 }
 
 }  // namespace
@@ -89,6 +108,8 @@ const Effect effects::resonance{
     .side = Side::ripple,
     .domain = Domain::frequency,
     .parameters = parameters,
+    .whole = 5,
+    .apply = apply,
     .change_ripple = change_ripple,
 };
 
