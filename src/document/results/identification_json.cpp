@@ -73,7 +73,7 @@ Json velocity_error_to_json(const std::optional<VelocityError>& error) {
             {"offset_stderr_deg_s", error->offset_error.value()},
             {"delay_s",
              to_digits_in_row({.value = error->delay.value(), .largest = 10.0 * error->delay_error.value()})},
-            {"delay_stderr_s", error->delay_error.value()}};
+            {"delay_stderr_s", to_digits(error->delay_error.value())}};
 }
 
 void add_besides(Json& json, const Identification& identification) {
