@@ -15,6 +15,8 @@ import threading
 import time
 import unittest
 
+from sanitizers import sanitized
+
 TOOL = os.environ["RIPPLENOTCH"]
 DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
 LOWPASS = ("--method", "lowpass,cutoff=13rad/s,order=1")
@@ -264,7 +266,7 @@ class Places(InFolder):
 
 
 class Memory(InFolder):
-    @unittest.skipIf("san" in TOOL, "sanitizers need address space of their own")
+    @unittest.skipIf(sanitized(TOOL), "sanitizers need address space of their own")
     def test_out_of_memory_is_said_once_with_size_and_remedy(self):
         simulated = self.run_tool("simulate", *GEAR[:2], "--inertia", "0.4", "--motion",
                                   "constant,speed=90deg/s,duration=400s", "--sample-rate", "1kHz", "-o", "long.npy")

@@ -10,16 +10,12 @@ import subprocess
 import tempfile
 import unittest
 
+from sanitizers import sanitized
+
 TOOL = os.environ["RIPPLENOTCH"]
 DATA = pathlib.Path(os.environ["RIPPLENOTCH_SOURCE"]) / "data"
 ROWS = 2_000_000  # held in memory they would take 70 MiB
 MOST_MIB = 32.0   # measured: 14, whatever the number of rows
-
-
-def sanitized(program):
-    """In pieces: what this process holds counts as its children's, too."""
-    with open(program, "rb") as file:
-        return any(b"__asan_init" in piece for piece in iter(lambda: file.read(1 << 20), b""))
 
 
 def run(*words, log=None):
