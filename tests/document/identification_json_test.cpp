@@ -70,6 +70,13 @@ TEST_CASE("joint.json reads back as it was written, byte for byte") {
     CHECK(back.velocity_error->offset_error == DegPerSec(0.03));
     CHECK(back.velocity_error->delay == Seconds(0.0105));
     CHECK(back.velocity_error->delay_error == Seconds(0.0007));
+    Identification of_stretches = example();
+    of_stretches.velocity_error->delay_told = false;
+    const auto offset_alone =
+        identification_from_json(identification_text(of_stretches, {}), "joint.json").velocity_error;
+    REQUIRE(offset_alone);
+    CHECK(offset_alone->offset == DegPerSec(0.4));
+    CHECK_FALSE(offset_alone->delay_told);
     CHECK_FALSE(identification_from_json(identification_text(nothing, {}), "joint.json").velocity_error);
 }
 

@@ -43,6 +43,7 @@ struct RatioQuestion {
     std::optional<GearRatio> hint{};
     std::span<const int> hinted_orders{};  ///< n at which the strongest line is believed to stand
     bool clock_in_doubt = false;  ///< the angle is velocity times time: a wrong clock scales every order
+    double shared_error = 0.0;    ///< relative standard error that all orders have in common
 };
 
 /// n runs from 1 to 8 for a line on its own and to 16 for lines that a comb explains besides. Every candidate

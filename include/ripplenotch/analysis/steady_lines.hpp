@@ -4,6 +4,7 @@
 // what keeps its frequency a tone, what was seen at one speed only is unknown.
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct Sighting {
     double speed_deg_s = 0.0;  ///< signed; 0 at rest
     double speed_share_error = 0.0;
     double amplitude_nm = 0.0, snr = 0.0;
-    double rate_hz = 0.0;  ///< of the log
-    double seen_hz = 0.0;  ///< where the spectrum shows it: below hz in a line of kind alias
+    double rate_hz = 0.0;      ///< of the log
+    double seen_hz = 0.0;      ///< where the spectrum shows it: below hz in a line of kind alias
+    bool by_velocity = false;  ///< of a log without position, whose velocity may be off
     [[nodiscard]] double order_output() const;  ///< 360 f / |v|; only where the joint moves
     [[nodiscard]] double order_error() const;   ///< from the frequency alone
 };
@@ -41,11 +43,18 @@ struct SteadyLine {
     std::vector<Sighting> sightings;  ///< by stretch
 };
 
+/// The velocity of the logs without position is so much too high; the speeds of the sightings are without it.
+struct SteadyOffset {
+    DegPerSec offset, offset_error;  ///< standard error
+    double order_share_error = 0.0;  ///< relative error that all orders have in common for it
+};
+
 struct SteadyLines {
     std::vector<StretchLines> stretches;
     std::vector<SteadyLine> lines;  ///< most widely seen first
     std::size_t moving = 0, resting = 0;
-    std::size_t speeds = 0;  ///< different |speed| among the moving stretches
+    std::size_t speeds = 0;              ///< different |speed| among the moving stretches
+    std::optional<SteadyOffset> offset;  ///< where ripple at three speeds or more tells it
 };
 
 /// Where a family of fixed tones explains what orders would explain too, and better, they are tones.

@@ -7,10 +7,11 @@
 namespace ripplenotch {
 
 /// The logged velocity is so much too high, and so late (a filter's lag is a delay, too). With standard
-/// errors.
+/// errors. Steady stretches tell the offset alone.
 struct VelocityError {
     DegPerSec offset, offset_error;
     Seconds delay, delay_error;
+    bool delay_told = true;
 };
 
 }  // namespace ripplenotch

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+
+#include "core/normal_errors.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -82,17 +86,25 @@ bool settled(const Identification& result) {
            });
 }
 
+/// With as many decimals as the error has one digit; "0 within 0.02 deg/s" where the value is no larger.
+std::string told(double value, double error, std::string_view unit, std::string_view below,
+                 std::string_view above) {
+    const double reach = normal_95_errors * error;
+    const int decimals = std::max(0, -static_cast<int>(std::floor(portable::log10(error))));
+    if (std::abs(value) <= reach) return fmt::format("0 within {:.{}f} {}", reach, decimals, unit);
+    return fmt::format("{:.{}f} +/- {:.{}f} {} too {}", std::abs(value), decimals, error, decimals, unit,
+                       value < 0.0 ? below : above);
+}
+
 std::string of_velocity(const std::optional<VelocityError>& error) {
     if (!error)
         return "what an offset, a filter or a delay of the velocity does to the ratio is not in its interval";
-    const double late_ms = 1e3 * error->delay.value();
-    return fmt::format(
-        "the ripple tells what the velocity is off by: {:.2g} +/- {:.1g} deg/s too {}, {:.2g} +/- {:.1g} ms "
-        "too {}; that is "
-        "taken off, and its error is in the ratio's interval",
-        std::abs(error->offset.value()), error->offset_error.value(),
-        error->offset.value() < 0.0 ? "low" : "high", std::abs(late_ms), 1e3 * error->delay_error.value(),
-        late_ms < 0.0 ? "early" : "late");
+    std::string text = "the ripple tells what the velocity is off by: " +
+                       told(error->offset.value(), error->offset_error.value(), "deg/s", "low", "high");
+    if (error->delay_told)
+        text +=
+            ", " + told(1e3 * error->delay.value(), 1e3 * error->delay_error.value(), "ms", "early", "late");
+    return text + "; that is taken off, and its error is in the ratio's interval";
 }
 
 }  // namespace
@@ -109,6 +121,9 @@ void conclude(const Looked& looked, const IdentifyOptions& options, Identificati
             "known, and " +
             of_velocity(result.velocity_error));
     }
+    if (looked.steady && looked.steady->offset && result.evidence == LineEvidence::stretches)
+        result.notes.push_back("no position that agrees with the velocity, and " +
+                               of_velocity(result.velocity_error));
     result.grounds = grounds_of(looked, options, result.evidence);
     settle(result);
 }

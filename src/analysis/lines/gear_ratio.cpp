@@ -53,7 +53,7 @@ std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, cons
     return estimates;
 }
 
-void fit(std::span<const OrderLine> lines, const Comb& comb, GearRatioFit& result) {
+void fit(std::span<const OrderLine> lines, const Comb& comb, double shared_error, GearRatioFit& result) {
     auto estimates = by_source(lines, comb);
     constexpr double huber = 1.345;  // 95 % efficient where errors are normal (Huber 1964)
     double ratio = comb.ratio, scale = 1.0, bottom = 0.0;
@@ -73,8 +73,9 @@ void fit(std::span<const OrderLine> lines, const Comb& comb, GearRatioFit& resul
         scale = excess_scatter(misfit, freedom);
     }
     result.value = ratio;
-    result.standard_error = scale / std::sqrt(bottom);
-    const double reach = (scale > 1.0 ? student_95(freedom) : 1.960) * result.standard_error;
+    const double own = scale / std::sqrt(bottom), shared = shared_error * ratio;
+    result.standard_error = portable::hypot(own, shared);
+    const double reach = portable::hypot((scale > 1.0 ? student_95(freedom) : 1.960) * own, 1.960 * shared);
     result.ci95_low = ratio - reach;
     result.ci95_high = ratio + reach;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -146,7 +147,7 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
     if (likeliest.value == best.ratio && likeliest.score >= least_score &&
         (certain || best.hinted || best.listed)) {
         result.order_of_line = best.n;
-        fit(lines, best, result.fit);
+        fit(lines, best, question.shared_error, result.fit);
         if (hint && best.hinted && certain) add(scale_rival(best, result.fit, *hint));
         result.fit.candidates = scored(combs, rivals);
         // The robust fit moves the value a little from where the comparison of combs left it; one ratio, one

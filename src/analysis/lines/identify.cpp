@@ -16,9 +16,14 @@
 namespace ripplenotch {
 namespace {
 
+/// Relative error of all orders alike, where a velocity's offset is only known within its own.
+double shared_order_error(const Looked& looked, const Identification& result) {
+    const bool steady = looked.steady && result.evidence == LineEvidence::stretches;
+    return steady && looked.steady->offset ? looked.steady->offset->order_share_error : 0.0;
+}
+
 /// Fits the ratio to what may be orders and writes each line's order per motor turn.
-void add_ratio(std::vector<Reported>& reported, const IdentifyOptions& options, bool clock_in_doubt,
-               Identification& result) {
+void add_ratio(std::vector<Reported>& reported, const RatioQuestion& question, Identification& result) {
     std::vector<OrderLine> orders;
     std::vector<std::size_t> owner;
     const bool any_certain = std::any_of(reported.begin(), reported.end(),
@@ -30,7 +35,7 @@ void add_ratio(std::vector<Reported>& reported, const IdentifyOptions& options, 
         if (!reported[i].line.order_output_seen) orders.back().could_be = reported[i].line.could_be;
         owner.push_back(i);
     }
-    GearRatioResult ratio = fit_gear_ratio(orders, {options.hint, options.hinted_orders, clock_in_doubt});
+    GearRatioResult ratio = fit_gear_ratio(orders, question);
     result.gear_ratio = std::move(ratio.fit);
     for (std::string& note : ratio.notes) result.notes.push_back(std::move(note));
     for (std::size_t i = 0; i < owner.size(); ++i) {
@@ -126,6 +131,8 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
         for (const SteadyLine& line : looked.steady->lines)
             reported.push_back(from_steady(logs, *looked.steady, line, options));
         result.evidence = LineEvidence::stretches;
+        if (const auto& told = looked.steady->offset)
+            result.velocity_error = VelocityError{told->offset, told->offset_error, {}, {}, false};
     }
     if (options.way != Way::steady && !has_order(reported)) {
         const bool nothing_steady_moves = !looked.steady || looked.steady->moving == 0;
@@ -142,7 +149,9 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     }
     const bool clock_in_doubt =
         std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
-    add_ratio(reported, options, clock_in_doubt, result);
+    add_ratio(reported,
+              {options.hint, options.hinted_orders, clock_in_doubt, shared_order_error(looked, result)},
+              result);
     result.families = families_among(reported);
     for (Reported& r : reported) {
         name_mains(r.line);

@@ -122,7 +122,8 @@ Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
         return reported;
     }
     order.order_output = order_top / order_bottom;
-    order.error = 1.0 / std::sqrt(order_bottom);
+    const double shared = steady.offset ? steady.offset->order_share_error * order.order_output : 0.0;
+    order.error = portable::hypot(1.0 / std::sqrt(order_bottom), shared);
     order.snr = line.snr;
     order.amplitude_nm = amplitude;
     order.certain = found.kind == LineKind::order || found.kind == LineKind::alias;

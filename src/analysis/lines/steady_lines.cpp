@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 
+#include "analysis/lines/steady_offset.hpp"
 #include "analysis/lines/tone_family.hpp"
 #include "core/two_cores.hpp"
 #include "ripplenotch/analysis/alias.hpp"
@@ -50,11 +51,12 @@ std::vector<Sighting> sightings_of(std::span<const TraceView> logs,
     std::vector<Sighting> all;
     for (std::size_t i = 0; i < stretches.size(); ++i) {
         const Stretch& stretch = stretches[i].stretch;
+        const TraceView& log = logs[stretches[i].log];
         const double speed = stretch.rest ? 0.0 : stretch.speed.value();
         for (const SpectralPeak& peak : stretches[i].peaks) {
             const double share = stretch.rest ? 0.0 : stretch.speed_error_deg_s / std::abs(speed);
             all.push_back({i, peak.hz, peak.hz_stderr, speed, share, peak.amplitude_nm, peak.snr,
-                           logs[stretches[i].log].sample_rate.value(), peak.hz});
+                           log.sample_rate.value(), peak.hz, !log.has_position()});
         }
     }
     return all;
@@ -222,6 +224,17 @@ std::vector<SteadyLine> grouped(const std::vector<Sighting>& all, const std::vec
     }
 }
 
+void find_lines(const std::vector<Sighting>& all, SteadyLines& found) {
+    std::vector<bool> used(all.size(), false);
+    found.lines = grouped(all, found.stretches, used);
+    std::vector<SteadyLine> tones = tones_instead(all, found.stretches, found.lines, used);
+    if (!tones.empty()) {
+        found.lines = grouped(all, found.stretches, used);
+        std::move(tones.begin(), tones.end(), std::back_inserter(found.lines));
+    }
+    part_accidents(all, found.lines);
+}
+
 }  // namespace
 
 double Sighting::order_output() const { return 360.0 * hz / std::abs(speed_deg_s); }
@@ -236,15 +249,13 @@ SteadyLines find_steady_lines(std::span<const TraceView> logs, const SteadyRule&
         if (!one.stretch.rest) speeds.push_back(one.stretch.speed.value());
     }
     found.speeds = count_speeds(std::move(speeds));
-    const std::vector<Sighting> all = sightings_of(logs, found.stretches);
-    std::vector<bool> used(all.size(), false);
-    found.lines = grouped(all, found.stretches, used);
-    std::vector<SteadyLine> tones = tones_instead(all, found.stretches, found.lines, used);
-    if (!tones.empty()) {
-        found.lines = grouped(all, found.stretches, used);
-        std::move(tones.begin(), tones.end(), std::back_inserter(found.lines));
-    }
-    part_accidents(all, found.lines);
+    std::vector<Sighting> all = sightings_of(logs, found.stretches);
+    const DegPerSec likely = likely_offset(all);
+    take_off(likely, all);
+    find_lines(all, found);
+    found.offset = steady_offset(found.lines, likely);
+    for (SteadyLine& line : found.lines)
+        take_off(found.offset ? found.offset->offset - likely : DegPerSec(0.0), line.sightings);
     return found;
 }
 

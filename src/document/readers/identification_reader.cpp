@@ -100,9 +100,16 @@ int multiple_of(const Fields& fields, double number) {
 void besides_from_json(Fields& fields, Identification& found) {
     if (fields.has("velocity_error")) {
         Fields error = fields.object("velocity_error");
-        found.velocity_error = {DegPerSec(error.number("offset_deg_s")),
-                                DegPerSec(error.number("offset_stderr_deg_s")),
-                                Seconds(error.number("delay_s")), Seconds(error.number("delay_stderr_s"))};
+        VelocityError told{DegPerSec(error.number("offset_deg_s")),
+                           DegPerSec(error.number("offset_stderr_deg_s")), Seconds(), Seconds()};
+        const auto delay = error.number_if_any("delay_s"),
+                   delay_error = error.number_if_any("delay_stderr_s");
+        told.delay_told = delay && delay_error;
+        if (told.delay_told) {
+            told.delay = Seconds(*delay);
+            told.delay_error = Seconds(*delay_error);
+        }
+        found.velocity_error = told;
         error.finish();
     }
     if (fields.has("families")) {

@@ -68,12 +68,16 @@ Json ratio_to_json(const GearRatioFit& fit) {
 
 Json velocity_error_to_json(const std::optional<VelocityError>& error) {
     if (!error) return nullptr;
-    return {{"offset_deg_s", to_digits_in_row({.value = error->offset.value(),
-                                               .largest = 10.0 * error->offset_error.value()})},
-            {"offset_stderr_deg_s", error->offset_error.value()},
-            {"delay_s",
-             to_digits_in_row({.value = error->delay.value(), .largest = 10.0 * error->delay_error.value()})},
-            {"delay_stderr_s", to_digits(error->delay_error.value())}};
+    Json json = {{"offset_deg_s", to_digits_in_row({.value = error->offset.value(),
+                                                    .largest = 10.0 * error->offset_error.value()})},
+                 {"offset_stderr_deg_s", error->offset_error.value()},
+                 {"delay_s", nullptr},
+                 {"delay_stderr_s", nullptr}};
+    if (!error->delay_told) return json;
+    json["delay_s"] =
+        to_digits_in_row({.value = error->delay.value(), .largest = 10.0 * error->delay_error.value()});
+    json["delay_stderr_s"] = to_digits(error->delay_error.value());
+    return json;
 }
 
 void add_besides(Json& json, const Identification& identification) {
