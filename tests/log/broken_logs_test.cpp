@@ -17,6 +17,24 @@ const std::string head = "time_s,velocity_deg_s,torque_nm\n";
 
 }  // namespace
 
+TEST_CASE("a counter that begins anew is told as such, with what the log says and what to do") {
+    const std::string tail = ",10,2.5\n";
+    const auto after = [&](const std::string& unit, const std::string& before, const std::string& time) {
+        return complaint("time_" + unit + ",velocity_deg_s,torque_nm\n" + before + tail + time + tail);
+    };
+    CHECK_THAT(after("ms", "65535", "0"), Contains("read the time 0 after 65535") &&
+                                              Contains("a counter of 16 bits") && Contains("--to") &&
+                                              Contains("--sample-rate"));
+    CHECK_THAT(after("us", "4294967000", "704"),
+               Contains("a counter of 32 bits") && Contains("after 4294967000"));
+    CHECK_THAT(after("us", "2147483000", "-2147483296"), Contains("a counter of 32 bits"));
+    CHECK_THAT(after("ms", "86399999", "0"), Contains("a time of day"));
+    CHECK_THAT(after("ms", "65535", "30000"), !Contains("counter") && Contains("sort or split"));
+    CHECK_THAT(after("ms", "65000", "64000"), !Contains("counter"));
+    CHECK_THAT(after("ns", "1700000000000001000", "1700000000000000000"),
+               Contains("read the time 1700000000000000000 after 1700000000000001000"));
+}
+
 TEST_CASE("a broken row is named by line and column with the remedy", "[log]") {
     CHECK_THAT(complaint(head + "0,10,2.5\n0.01,abc,3\n0.02,12,4\n"),
                Contains("log.csv:3:6: read 'abc' in 'velocity_deg_s' (column 2), expected a number; mend or "

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "log/clock/time_backward.hpp"
 #include "log/read_on.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -214,11 +215,7 @@ double NpyReader::read_value(RowBlock& block, const char* record, const WantedCo
     const double value = value_at(record, wanted);
     const bool time = wanted.slot == time_slot;
     if (time && value < before_[time_slot]) {
-        complain(
-            wanted.column,
-            fmt::format("read the time {} after {}, expected time to run forward; sort or split the log, or "
-                        "say --sample-rate if the clock is of no use",
-                        shortest(value), shortest(before_[time_slot])));
+        complain(wanted.column, time_backward({before_[time_slot], value, layout_.time_origin}));
     }
     if (is_reading(value)) return value;
     if (std::isnan(value) && hold_bad_values_ && !time && rows_ > 0) {

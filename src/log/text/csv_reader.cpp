@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "log/clock/time_backward.hpp"
 #include "log/columns/decide_layout.hpp"
 #include "log/read_on.hpp"
 #include "log/text/text_sample.hpp"
@@ -249,11 +250,7 @@ bool CsvReader::accept_line(RowBlock& block, std::size_t begin, std::size_t end)
 void CsvReader::append_row(RowBlock& block, ParsedRow& row) {
     const double time = row.values[time_slot], before = before_.values[time_slot];
     if (layout_.chosen.time && time < before) {
-        complain(1,
-                 fmt::format(
-                     "read the time {} after {}, expected time to run forward; sort or split the log, or say "
-                     "--sample-rate if the clock is of no use",
-                     shortest(time), shortest(before)));
+        complain(1, time_backward({before, time, layout_.time_origin}));
     }
     if (layout_.chosen.time)
         block.time_s.push_back(time * factors_[time_slot]);
