@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/piece.hpp"
+#include "analysis/spectrum/piece.hpp"
 
 #include "analysis/kernels/piece_kernel.hpp"
 #include "analysis/kernels/power_kernel.hpp"
-#include "analysis/lines/line_meter.hpp"
+#include "analysis/spectrum/line_meter.hpp"
 #include "analysis/traces.hpp"
 #include "support/catch.hpp"
 

@@ -6,7 +6,7 @@
 #include "analysis/lines/disagreement.hpp"
 #include "analysis/lines/hums.hpp"
 #include "analysis/lines/reported_line.hpp"
-#include "analysis/lines/tone_family.hpp"
+#include "analysis/steady/tone_family.hpp"
 #include "ripplenotch/analysis/gear_ratio.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"

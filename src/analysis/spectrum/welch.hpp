@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "analysis/lines/line_meter.hpp"
-#include "analysis/lines/piece.hpp"
+#include "analysis/spectrum/line_meter.hpp"
+#include "analysis/spectrum/piece.hpp"
 #include "ripplenotch/analysis/humps.hpp"
 #include "ripplenotch/analysis/line_test.hpp"
 #include "ripplenotch/analysis/spectrum.hpp"

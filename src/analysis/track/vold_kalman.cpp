@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "analysis/kernels/envelope_kernel.hpp"
-#include "analysis/lines/line_separation.hpp"
 #include "analysis/track/envelope_solver.hpp"
+#include "analysis/track/line_separation.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/motion_search.hpp"
+#include "analysis/motion/motion_search.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/lines/line_evidence.hpp"
-#include "analysis/lines/line_removal.hpp"
+#include "analysis/motion/line_evidence.hpp"
+#include "analysis/motion/line_removal.hpp"
 #include "core/two_cores.hpp"
 #include "ripplenotch/core/median.hpp"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/line_evidence.hpp"
+#include "analysis/motion/line_evidence.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
-#include "analysis/lines/place_error.hpp"
+#include "analysis/motion/place_error.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "analysis/lines/motion_search.hpp"
-#include "analysis/lines/velocity_error.hpp"
+#include "analysis/motion/motion_search.hpp"
+#include "analysis/motion/velocity_error.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 
 namespace ripplenotch {

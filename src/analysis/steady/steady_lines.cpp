@@ -6,8 +6,8 @@
 #include <iterator>
 #include <optional>
 
-#include "analysis/lines/steady_offset.hpp"
-#include "analysis/lines/tone_family.hpp"
+#include "analysis/steady/steady_offset.hpp"
+#include "analysis/steady/tone_family.hpp"
 #include "core/two_cores.hpp"
 #include "ripplenotch/analysis/alias.hpp"
 #include "ripplenotch/core/median.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/lines/line_removal.hpp"
+#include "analysis/motion/line_removal.hpp"
 #include "core/many_numbers.hpp"
 #include "core/two_cores.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"

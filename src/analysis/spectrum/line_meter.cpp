@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/line_meter.hpp"
+#include "analysis/spectrum/line_meter.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/place_error.hpp"
+#include "analysis/motion/place_error.hpp"
 
 #include <algorithm>
 #include <cmath>

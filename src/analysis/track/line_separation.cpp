@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/line_separation.hpp"
+#include "analysis/track/line_separation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/lines/line_removal.hpp"
+#include "analysis/motion/line_removal.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
 
 namespace ripplenotch {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/steady_offset.hpp"
+#include "analysis/steady/steady_offset.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/lines/piece.hpp"
+#include "analysis/spectrum/piece.hpp"
 
 namespace ripplenotch {
 

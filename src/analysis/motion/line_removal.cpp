@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/line_removal.hpp"
+#include "analysis/motion/line_removal.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/tone_family.hpp"
+#include "analysis/steady/tone_family.hpp"
 
 #include <algorithm>
 #include <cmath>

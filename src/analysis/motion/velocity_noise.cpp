@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/velocity_noise.hpp"
+#include "analysis/motion/velocity_noise.hpp"
 
 #include <cmath>
 #include <vector>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/velocity_error.hpp"
+#include "analysis/motion/velocity_error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "analysis/lines/velocity_noise.hpp"
-#include "analysis/lines/velocity_power.hpp"
+#include "analysis/motion/velocity_noise.hpp"
+#include "analysis/motion/velocity_power.hpp"
 #include "core/factorisations.hpp"
 
 namespace ripplenotch {

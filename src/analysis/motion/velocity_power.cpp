@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/velocity_power.hpp"
+#include "analysis/motion/velocity_power.hpp"
 
 #include <algorithm>
 #include <cmath>

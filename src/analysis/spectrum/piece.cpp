@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/lines/piece.hpp"
+#include "analysis/spectrum/piece.hpp"
 
 #include <algorithm>
 #include <cmath>
