@@ -74,7 +74,7 @@ constexpr const char* passing = "ripple,order=2,amplitude_nm=0.4,phase_deg=70";
 
 TEST_CASE("an error of the gear's angle makes no ripple at standstill and H - 1 of it at speed") {
     const Effect& resonance = find_effect("resonance");
-    const std::vector<double> values{30.0, 0.25, 1.0, 180.0, 2.0};
+    const std::vector<double> values{30.0, 0.25, 1.0, 180.0, 2.0, 0.0};  // as many as parameters
     // Order 2 of a gear of 100 at 0, half and all of 30 Hz, forth and back: each for some samples, settled.
     std::vector<std::complex<double>> gain;
     Motion motion;
