@@ -36,6 +36,9 @@ TEST_CASE("what is read of a diagnosis is what was written") {
     CHECK(read.rounds[1].values[1].parameter == 1);
     CHECK(read.rounds[1].values[1].at_bound);
     CHECK_FALSE(read.rounds[1].values[1].ci95);
+    REQUIRE(read.rounds[1].values[0].ci95);
+    CHECK(read.rounds[1].values[0].ci95->low == diagnosis.rounds[1].values[0].ci95->low);
+    CHECK(read.rounds[1].values[0].ci95->high == diagnosis.rounds[1].values[0].ci95->high);
     CHECK(read.rounds[1].where.time_s == diagnosis.rounds[1].where.time_s);
     CHECK(read.unexplained[0].where.direction == Direction::positive);
     REQUIRE(read.rounds[0].decisions.size() == 1);

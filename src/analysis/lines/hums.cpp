@@ -10,6 +10,8 @@ namespace {
 constexpr std::size_t most_hums = 3;  // by hand: a list that a person reads
 constexpr double near_share = 0.05;   // of a line's frequency: a hump so near is the line, smeared
 constexpr int harmonics = 2;          // multiples of a line that are taken as its own, too
+constexpr double smeared_share =
+    0.2;  // by hand: of its frequency; a speed that is steady smears no line so far
 
 /// Where a line runs while the joint goes at a speed.
 double hz_of(const Line& line, double speed_deg_s) {
@@ -18,6 +20,7 @@ double hz_of(const Line& line, double speed_deg_s) {
 }
 
 bool of_a_line(const SpectralHump& hump, const std::vector<Line>& lines, double speed_deg_s) {
+    if (hump.to_hz - hump.from_hz > smeared_share * hump.peak_hz) return false;
     return std::any_of(lines.begin(), lines.end(), [&](const Line& line) {
         for (int n = 1; n <= harmonics; ++n) {
             const double hz = n * hz_of(line, speed_deg_s);

@@ -64,15 +64,18 @@ std::vector<SignificantPeak> Stack::peaks(double false_alarm) const {
 std::vector<SpectralHump> Stack::humps(const HumpRule& rule) const {
     std::vector<SpectralHump> humps;
     if (few_cells || ratio.size() <= first) return humps;
-    for (const SignificantHump& found : significant_humps(tested(), rule.false_alarm / tries_factor)) {
+    // Not over the running floor, which a hump as wide as its window would raise to its own height.
+    std::vector<double> power(ratio.size());
+    for (std::size_t k = 0; k < power.size(); ++k) power[k] = ratio[k] * floor_nm[k] * floor_nm[k];
+    PowerSpectrum spectrum = tested();
+    spectrum.power = power;
+    for (const SignificantHump& found : significant_humps(spectrum, rule.false_alarm / tries_factor)) {
         if (static_cast<double>(found.first) * spacing < rule.lowest) continue;
         SpectralHump hump;
-        double square = 0.0, beside = 0.0;
+        double square = 0.0;
         std::size_t highest = found.first;
         for (std::size_t k = found.first; k < found.end; ++k) {
-            const double noise = floor_nm[k] * floor_nm[k];
-            square += 0.5 * (ratio[k] - found.floor) * noise * spacing / resolution;
-            beside += found.floor * noise / static_cast<double>(found.end - found.first);
+            square += 0.5 * (power[k] - found.floor) * spacing / resolution;
             if (amplitude_nm[k] > amplitude_nm[highest]) highest = k;
         }
         hump.from_hz = static_cast<double>(found.first) * spacing;
@@ -80,7 +83,7 @@ std::vector<SpectralHump> Stack::humps(const HumpRule& rule) const {
         hump.peak_hz = static_cast<double>(highest) * spacing;
         hump.peak_nm = amplitude_nm[highest];
         hump.rms_nm = std::sqrt(std::max(square, 0.0));
-        hump.floor_nm = std::sqrt(beside);
+        hump.floor_nm = std::sqrt(found.floor);
         hump.false_alarm = std::min(1.0, found.false_alarm * tries_factor);
         humps.push_back(hump);
     }
