@@ -274,7 +274,7 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     if (is_excerpt) (void)set_aside(whole, aside, rules);
     if (is_excerpt) last = fitted_to_whole(whole, found, last, diagnosis, work, rules);
     const Case& all = is_excerpt ? whole : part;
-    last = told_values(all, found.noise, last, diagnosis.faults, work, rules);
+    last = told_values(all, found.noise, last, {diagnosis.faults, diagnosis.rounds, own}, work, rules);
     tell_model(diagnosis, last, own);
     name_findings(diagnosis, rules);
     diagnosis.samples_used = all.used();

@@ -47,13 +47,17 @@ Motion smooth_strokes() {
     return motion;
 }
 
-Candidate told(const Trace& log, const Model& open, const Model& near,
-               const std::vector<Fault>& faults = {}) {
-    const Case looked_at = whole_case(log.view(), default_smoothing, standard.recording);
+Candidate told_of(const Case& looked_at, const Model& open, const Model& near,
+                  const std::vector<Fault>& faults) {
     Work work(1e9);
+    std::vector<Finding> none;
     return told_values(looked_at, {noise_nm, noise_nm, {}},
-                       {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults, work,
-                       standard);
+                       {open, near, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true},
+                       {faults, none, open.terms.size()}, work, standard);
+}
+
+Candidate told(const Trace& log, const Model& open, const Model& near) {
+    return told_of(whole_case(log.view(), default_smoothing, standard.recording), open, near, {});
 }
 
 struct Errors {
@@ -114,11 +118,7 @@ TEST_CASE("a torque that the converter cuts on one side does not pull the values
         Case looked_at = whole_case(log.view(), default_smoothing, standard.recording);
         const auto faults = find_faults(looked_at, standard.faults);
         REQUIRE(faults.size() == 1);
-        Work work(1e9);
-        const Candidate found =
-            told_values(looked_at, {noise_nm, noise_nm, {}},
-                        {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true}, faults,
-                        work, standard);
+        const Candidate found = told_of(looked_at, open, truth, faults);
         offset.look_at(found, truth, 3, 0);
         ripple.look_at(found, truth, 1, 1);
     }
@@ -126,4 +126,33 @@ TEST_CASE("a torque that the converter cuts on one side does not pull the values
     CHECK(std::abs(offset.mean()) < 0.4);
     CHECK(std::abs(ripple.mean()) < 0.4);
     CHECK(offset.held + ripple.held >= 28);
+}
+
+TEST_CASE("a name whose size the values told in the end do not tell is taken back, and its term with it") {
+    // Viscous friction that is there, and an offset that was believed beside other values and is not.
+    const double offset_nm = GENERATE(0.0, 0.3);
+    Model truth = joint();
+    truth.terms.push_back(parse_term("viscous-friction,coefficient_nm_per_deg_s=0.005"));
+    truth.terms.push_back(parse_term("offset,torque_nm=0.3"));
+    Model hidden = truth;
+    hidden.terms[4].values[0] = offset_nm;
+    const Trace log = with_encoder(logged(hidden, tour(), 7));
+    std::vector<Finding> findings(2);
+    for (std::size_t i = 0; i < 2; ++i) findings[i].term = truth.terms[3 + i];
+    const std::vector<Fault> no_fault;
+    Model open = opened(truth);
+    Work work(1e9);
+    const Candidate found =
+        told_values(whole_case(log.view(), default_smoothing, standard.recording), {noise_nm, noise_nm, {}},
+                    {open, truth, {}, std::vector<double>(open.terms.size(), 0.0), 0.0, true},
+                    {no_fault, findings, 3}, work, standard);
+    CHECK(findings[0].status == FindingStatus::confirmed);
+    if (offset_nm == 0.0) {
+        CHECK(findings[1].status == FindingStatus::unidentifiable);
+        CHECK(findings[1].reason == "this log does not tell its torque_nm");
+        CHECK(found.stated.terms.size() == 4);
+    } else {
+        CHECK(findings[1].status == FindingStatus::confirmed);
+        CHECK(found.stated.terms.size() == 5);
+    }
 }

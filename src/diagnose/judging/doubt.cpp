@@ -103,6 +103,14 @@ struct Doubt {
     std::string reason;
 };
 
+// A size that its own error covers, unless another number tells that the effect is there.
+Doubt doubt_of_error(const Candidate& model, std::size_t term, const DoubtRules& rules, Hearing& hearing) {
+    const auto size = size_of(model.stated.terms[term], model.values, term, rules.most_error);
+    if (size && hearing.asked("doubt.most_error", size->error, !(size->error < rules.most_error)))
+        return {FindingStatus::unidentifiable, fmt::format("this log does not tell its {}", size->name)};
+    return {};
+}
+
 // Too small to matter, or too small to be told.
 Doubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t term,
                     const Evidence& evidence, Hearing& hearing) {
@@ -122,11 +130,7 @@ Doubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t
                       evidence.own_nm > rules.most_inflation * share_nm))
         return {FindingStatus::unidentifiable,
                 "most of its torque is held in balance by another effect's: this log cannot tell them"};
-    // A size that its own error covers, unless another number tells that the effect is there.
-    const auto size = size_of(stated, model.values, term, rules.most_error);
-    if (size && hearing.asked("doubt.most_error", size->error, !(size->error < rules.most_error)))
-        return {FindingStatus::unidentifiable, fmt::format("this log does not tell its {}", size->name)};
-    return {};
+    return doubt_of_error(model, term, rules, hearing);
 }
 
 Doubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::size_t term,
@@ -163,6 +167,15 @@ void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& mod
         doubt = doubt_of_kind(bench, model, term, finding.evidence, hearing);
     finding.status = doubt.status;
     finding.reason = std::move(doubt.reason);
+}
+
+bool doubt_told(Finding& finding, const Candidate& told, std::size_t term, const DiagnosisRules& rules) {
+    Hearing hearing(rules, finding.decisions);
+    const Doubt doubt = doubt_of_error(told, term, rules.doubt, hearing);
+    if (doubt.status == FindingStatus::confirmed) return false;
+    finding.status = doubt.status;
+    finding.reason = doubt.reason;
+    return true;
 }
 
 double excess_of(const ModelBench& bench, const Model& stated) {

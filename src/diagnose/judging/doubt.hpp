@@ -14,6 +14,11 @@ namespace ripplenotch {
 /// speaks against it. `term`: its place in the model.
 void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& model, std::size_t term);
 
+/// The same for its size alone, beside the values that are told in the end: true, and unidentifiable, where
+/// the error covers it.
+[[nodiscard]] bool doubt_told(Finding& finding, const Candidate& told, std::size_t term,
+                              const DiagnosisRules& rules);
+
 /// Where more is left over than a finding explains, it may have fed on that. `excess_nm`: of excess_of().
 void doubt_for_leftovers(Finding& finding, double excess_nm, const ModelBench& bench,
                          const std::vector<Leftover>& unexplained);

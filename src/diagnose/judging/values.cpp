@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "diagnose/judging/doubt.hpp"
+#include "diagnose/search/search.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -28,14 +32,29 @@ void leave_out_limited(Case& looked_at, const Model& stated, const std::vector<F
     }
 }
 
+// The first of the findings whose size the settled values do not tell after all: it was judged beside terms
+// that have come to other values since, or are gone.
+std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of, const DiagnosisRules& rules) {
+    std::size_t term = of.own_terms;
+    for (Finding& finding : of.findings) {
+        if (is_doubtful(finding)) continue;
+        if (is_trusted(finding) && !finding.out_of_fold && doubt_told(finding, told, term, rules))
+            return term;
+        ++term;
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
-Candidate told_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen,
-                      const std::vector<Fault>& faults, Work& work, const DiagnosisRules& rules) {
-    leave_out_limited(looked_at, chosen.stated, faults, noise.rms_nm, rules.values);
+Candidate told_values(Case looked_at, const NoiseFloor& noise, const Candidate& chosen, const ToldOf& of,
+                      Work& work, const DiagnosisRules& rules) {
+    leave_out_limited(looked_at, chosen.stated, of.faults, noise.rms_nm, rules.values);
     ModelBench bench(looked_at, noise, work, rules);
     bench.settle_on(chosen.stated);
-    return bench.settled(chosen);
+    Candidate told = bench.settled(chosen);
+    while (const auto term = untold(told, of, rules)) told = bench.settled(without_term(bench, told, *term));
+    return told;
 }
 
 }  // namespace ripplenotch
