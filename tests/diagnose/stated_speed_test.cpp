@@ -133,6 +133,7 @@ TEST_CASE("ripple that is nothing at rest has a name and a gain that the log tel
     DiagnosisRules from_rest_alone;
     from_rest_alone.search.least_at_rest = 0.0;
     const Finding untold = finding(from_rest_alone);
+    CHECK(untold.status == FindingStatus::unidentifiable);
     REQUIRE(!untold.values.empty());
     REQUIRE(untold.values[0].standard_error);
     CHECK(*untold.values[0].standard_error > std::abs(untold.values[0].value));

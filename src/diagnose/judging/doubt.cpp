@@ -170,11 +170,17 @@ void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& mod
 }
 
 bool doubt_told(Finding& finding, const Candidate& told, std::size_t term, const DiagnosisRules& rules) {
-    Hearing hearing(rules, finding.decisions);
+    std::vector<Decision> decisions;
+    Hearing hearing(rules, decisions);
     const Doubt doubt = doubt_of_error(told, term, rules.doubt, hearing);
     if (doubt.status == FindingStatus::confirmed) return false;
     finding.status = doubt.status;
     finding.reason = doubt.reason;
+    finding.decisions.insert(finding.decisions.end(), decisions.begin(), decisions.end());
+    finding.values.clear();
+    for (const FittedValue& value : told.values) {
+        if (value.term == term) finding.values.push_back(value);
+    }
     return true;
 }
 
