@@ -75,3 +75,18 @@ TEST_CASE("where a position tells the angle nothing is said of the velocity") {
     REQUIRE(found.gear_ratio.value);
     CHECK_FALSE(found.velocity_error);
 }
+
+TEST_CASE("a velocity in coarse steps makes the ratio's interval as wide as its sum is off") {
+    std::size_t ratios = 0;
+    for (std::uint32_t number = 0; number < 40; ++number) {
+        Drawn one = to_and_fro(number, false);
+        for (double& velocity : one.trace.velocity_deg_s) velocity = 2.0 * std::round(0.5 * velocity);
+        const Identification found = tests::identify_all({one.trace});
+        INFO("log " << number);
+        REQUIRE(found.gear_ratio.value);
+        ratios += found.gear_ratio.ci95_low <= one.ratio && one.ratio <= found.gear_ratio.ci95_high;
+        CHECK(std::abs(*found.gear_ratio.value / one.ratio - 1.0) < 0.005);
+        CHECK(found.gear_ratio.standard_error < 0.004 * one.ratio);
+    }
+    CHECK(ratios >= 33);
+}
