@@ -25,8 +25,12 @@ std::string lower_first(std::string text) {
     return text;
 }
 
-// What tells one reading's verdict from another's: up to the ratio's error. The notes have it whole.
+// What tells one reading's verdict from another's: up to the ratio's error. The notes have it whole. That one
+// of them cannot tell is said in other words than that nobody can.
 std::string briefly(const std::string& verdict) {
+    constexpr std::string_view doubtful = "Cannot tell the gear ratio: ";
+    if (verdict.starts_with(doubtful))
+        return "the gear ratio is open: " + briefly(verdict.substr(doubtful.size()));
     return lower_first(verdict.substr(0, std::min(verdict.find(';'), verdict.find(" (95 %)"))));
 }
 
