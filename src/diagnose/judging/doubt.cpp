@@ -51,21 +51,21 @@ bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
 bool of_one_kind(Domain a, Domain b) { return is_fast(a) == is_fast(b); }
 
 // By how much a spring that does not swell anything delays what is slow, in s; empty where it swells.
-std::optional<double> delay_of_spring(const Term& term) {
+std::optional<double> delay_of_spring(const Term& term, double most_damping) {
     const auto value = [&](std::string_view name) {
         const auto place = find_parameter(*term.effect, name);
         return place ? term.values[*place].value_or(0.0) : 0.0;
     };
-    constexpr double no_resonance = 0.5;  // docs/effects/resonance.md: from here a low-pass of second order
     const double damping = value("damping"), hertz = value("frequency_hz");
-    if (damping < no_resonance || hertz <= 0.0) return std::nullopt;
+    if (damping < most_damping || hertz <= 0.0) return std::nullopt;
     return damping / (std::numbers::pi * hertz);
 }
 
 // The shortest time of an effect of the sensor, in samples; empty when it has none.
-std::optional<double> shortest_delay_samples(const Term& term, const Case& looked_at) {
+std::optional<double> shortest_delay_samples(const Term& term, const ModelBench& bench) {
+    const Case& looked_at = bench.looked_at();
     std::optional<double> shortest;
-    if (const auto delay_s = delay_of_spring(term))
+    if (const auto delay_s = delay_of_spring(term, bench.rules().shape.most_damping))
         shortest = *delay_s * looked_at.motion.sample_rate.value();
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         const Parameter& parameter = term.effect->parameters[p];
@@ -119,7 +119,7 @@ Doubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t
     bool slight = hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
                                 evidence.share_sigma < bench.material_sigma());
     // A delay of part of a sample is a matter of when a sample is said to be taken.
-    if (const auto samples = shortest_delay_samples(stated, bench.looked_at()); samples && !slight)
+    if (const auto samples = shortest_delay_samples(stated, bench); samples && !slight)
         slight = hearing.asked("doubt.least_delay_samples", *samples, *samples < rules.least_delay_samples);
     if (slight)
         return {FindingStatus::immaterial,
