@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Standard error may be full, closed or gone: no exit code changes, no result is lost. Nothing said acts on a terminal."""
 
+import math
 import os
 import pathlib
 import subprocess
@@ -121,6 +122,15 @@ class Visible(unittest.TestCase):
         for words in (("info", "x.csv", "--columns", "a\x1b[31m"), ("filtre\x1b[2J",), ("info", "--\x1b[2J"), ("info", "x", "--format", "\x1b[2J"),
                       ("filter", "x.csv", "--method", "\x1b[2J,a=b"), ("design", "--gear-ratio", "\u009b5")):
             self.assertEqual(self.shown(*words).stderr.count(b"\n"), 1)
+
+    def test_tables_keep_their_lines(self):
+        rows = "".join(f"{k / 1000},60,{math.cos(2 * math.pi * 16.7 * k / 1000)}\n" for k in range(2000))
+        self.write("log.csv", "time_s,velocity_deg_s,torque_nm\n" + rows)
+        for words in (("spectrum", "log.csv", "-v"), ("spectrum", "log.csv", "-v", "--segment", "1s"),
+                      ("track", "log.csv", "--gear-ratio", "100", "--orders", "1", "-v")):
+            done = self.shown(*words)
+            self.assertGreater(done.stderr.count(b"\n"), 1)
+            self.assertNotIn(b"\\n", done.stderr)
 
     def test_names_of_columns(self):
         rows = "".join(f"{k / 1000},60,{(k % 7) / 7},1\n" for k in range(2000))

@@ -133,8 +133,8 @@ void say_segment(const Request& request, const StretchSpectrum& one) {
 Result frequency_result(const Request& request, std::vector<StretchSpectrum> spectra,
                         const std::string& joint, const Provenance& provenance) {
     for (const StretchSpectrum& one : spectra) say_segment(request, one);
-    if (!request.common.json && !request.peaks && request.common.verbose)
-        say(request.common, frequency_peaks(spectra));
+    if (!request.common.json && !request.peaks && request.common.verbose && !request.common.quiet)
+        talk_lines(frequency_peaks(spectra));
     std::string text = request.common.json ? spectra_text(joint, spectra, request.false_alarm, provenance)
                        : request.peaks     ? frequency_peaks(spectra)
                                            : frequency_csv(spectra);
