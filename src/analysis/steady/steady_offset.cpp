@@ -17,8 +17,9 @@ constexpr double likely_offset_share = 0.01;  // by hand: of the fastest speed, 
 constexpr int offsets_a_side = 60;            // to either side, each a twentieth of the likely share
 constexpr double per_step = 0.05;             // as many offsets_a_side reach three times the likely share
 constexpr std::size_t fewest_speeds = 3;      // two agree on an order at some offset, whatever they are
-constexpr double apart_share = 0.1;      // by hand: as far apart an order and a tone stay two at any offset
-constexpr std::size_t clearest_few = 3;  // by hand: lines of a stretch that are compared
+constexpr double apart_share = 0.1;  // by hand: as far apart an order and a tone stay two at any offset
+constexpr std::size_t most_stretches = 40;  // by hand: for a start, whose cost grows with their square
+constexpr std::size_t clearest_few = 3;     // by hand: lines of a stretch that are compared
 
 /// Speeds that differ, by their sign, too.
 std::size_t speeds_of(std::vector<double> signed_speeds) {
@@ -39,7 +40,10 @@ std::vector<Sighting> clearest_of_each(std::span<const Sighting> sightings) {
         if (seen.by_velocity && seen.speed_deg_s != 0.0) by_stretch[seen.stretch].push_back(seen);
     }
     std::vector<Sighting> kept;
+    const std::size_t every = (by_stretch.size() + most_stretches - 1) / most_stretches;
+    std::size_t place = 0;
     for (auto& [stretch, lines] : by_stretch) {
+        if (place++ % every != 0) continue;
         std::stable_sort(lines.begin(), lines.end(),
                          [](const Sighting& a, const Sighting& b) { return a.snr > b.snr; });
         lines.resize(std::min(lines.size(), clearest_few));
