@@ -2,6 +2,12 @@
 // A finding that another log contradicts is withdrawn; one that it bears out stays.
 #include "diagnose/judging/reproduction.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
 #include "bench_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -56,4 +62,30 @@ TEST_CASE("a rule that allows a worse prediction lets it stay") {
     DiagnosisRules rules;
     rules.reproduction.most_left = 10.0;
     CHECK(held_against(joint_with({viscous}), rules).kept.stated.terms.size() == 5);
+}
+
+TEST_CASE("a form that was mended goes before the name that it makes look wrong on the other log") {
+    // Near the crest of a gravity of 4 Nm an offset of -3.6 Nm leaves 0.4 Nm. The other log goes everywhere,
+    // and there 0.4 Nm is all: with both, nearly all of 4 Nm is wrong; with the gravity alone, 0.4 Nm.
+    const Case second = case_of(plain_log(joint_with({"offset,torque_nm=0.4"}), 77));
+    std::vector<double> places = second.motion.position_deg;
+    std::sort(places.begin(), places.end());
+    const double middle_deg = places[places.size() / 2];
+    const std::string gravity = fmt::format("gravity,amplitude_nm=4,phase_deg={}", -middle_deg);
+    const Model both = joint_with({"offset,torque_nm=-3.6", gravity.c_str()});
+    Case near = case_of(plain_log(both, 76));
+    for (std::size_t k = 0; k < near.size(); ++k)
+        near.use[k] = std::abs(near.motion.position_deg[k] - middle_deg) < 15.0 ? near.use[k] : 0;
+    const TestBench on(near);
+    const Candidate all = on.fitted(both);
+    std::vector<Finding> findings(2);
+    for (std::size_t i = 0; i < 2; ++i) findings[i].term = all.stated.terms[3 + i];
+    findings[1].status = FindingStatus::shape_correction;
+    const Candidate kept = reproduced(on.bench, all, all, joint(), second, 3, findings);
+    CHECK(findings[0].status == FindingStatus::confirmed);
+    CHECK(findings[1].status == FindingStatus::not_reproduced);
+    CHECK(last_against(findings[1].decisions).rule == "reproduction.most_left");
+    REQUIRE(kept.stated.terms.size() == 4);
+    CHECK(kept.stated.terms[3].effect->name == "offset");
+    CHECK(*kept.stated.terms[3].values[0] == Approx(0.4).margin(0.1));
 }

@@ -104,16 +104,32 @@ void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& give
     }
 }
 
+// The finding that makes the other log worst, of the names or of what only mends a form.
+struct Worst {
+    Finding* finding = nullptr;
+    Candidate without;
+    double most = 0.0;  ///< what it leaves, of what is left without it
+};
+
+void withdraw(Finding& finding, double left_part, const DiagnosisRules& rules) {
+    finding.status = FindingStatus::not_reproduced;
+    Hearing(rules, finding.decisions).asked("reproduction.most_left", left_part, true);
+    finding.reason =
+        fmt::format("it leaves {:.3g} Nm of the validation log, where {:.3g} Nm are left without it",
+                    *finding.validation_after_nm, *finding.validation_before_nm);
+}
+
 }  // namespace
 
+// What has no name goes before a name does: extrapolated to the other log, a form that was mended in this one
+// may leave more there than any name explains.
 Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candidate& model,
                      const Model& given, const Case& other, std::size_t own_terms,
                      std::vector<Finding>& findings) {
     Candidate kept = model;
     while (true) {
-        Finding* worst = nullptr;
-        Candidate without_worst;
-        double most = bench.rules().reproduction.most_left;
+        Worst named, nameless;
+        named.most = nameless.most = bench.rules().reproduction.most_left;
         std::size_t term = own_terms;
         for (Finding& finding : findings) {
             if (is_doubtful(finding)) continue;
@@ -122,18 +138,13 @@ Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candid
             const Check check = checked(bench, other, kept, fewer, place);
             note(finding, check);
             const double worse = check.after_nm / check.before_nm;
-            if (!check.acts || !is_trusted(finding) || worse <= most) continue;
-            most = worse;
-            worst = &finding;
-            without_worst = std::move(fewer);
+            Worst& worst = is_trusted(finding) ? named : nameless;
+            if (check.acts && worse > worst.most) worst = {&finding, std::move(fewer), worse};
         }
-        if (worst == nullptr) break;
-        worst->status = FindingStatus::not_reproduced;
-        Hearing(bench.rules(), worst->decisions).asked("reproduction.most_left", most, true);
-        worst->reason =
-            fmt::format("it leaves {:.3g} Nm of the validation log, where {:.3g} Nm are left without it",
-                        *worst->validation_after_nm, *worst->validation_before_nm);
-        kept = std::move(without_worst);
+        if (named.finding == nullptr) break;
+        Worst& worst = nameless.finding != nullptr ? nameless : named;
+        withdraw(*worst.finding, worst.most, bench.rules());
+        kept = std::move(worst.without);
     }
     withdraw_newest(bench, kept, given, other, own_terms, findings);
     note_doubtful(bench, all, kept, other, own_terms, findings);
