@@ -96,6 +96,12 @@ std::vector<double> sum_of(const std::vector<BesideValues>& believed, const Mode
     return sum;
 }
 
+NamedBeside named_in(Sums& sums, const GivenCase& log, const Candidate& model,
+                     std::span<const Effect* const> effects) {
+    LongerLook longer(sums.lens(), model, log.given, effects);
+    return named_beside(sums, {catalogue().size(), log.given.empty(), &longer});
+}
+
 // Sharp, told, and among the frequencies that the line has.
 bool is_resonance(const Lens& lens, const Shape& shape, const BesideValues& values) {
     const BesideRules& rules = lens.rules().beside;
@@ -185,7 +191,7 @@ Look::Look(const GivenCase& log, const GivenCase* validation, const Candidate& m
            std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work)
     : lens(log.looked_at, model, log.given, effects, rules, work),
       sums(lens),
-      named(named_beside(sums, {catalogue().size(), log.given.empty()})),
+      named(named_in(sums, log, model, effects)),
       other(named.findings.size()) {
     if (validation != nullptr) other = withdraw_on_other(sums, model, *validation, named.findings);
     withdraw_what_may_be_nothing(sums, validation == nullptr, named.findings);

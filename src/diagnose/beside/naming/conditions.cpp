@@ -16,35 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// The best other name in its place, refined; one that is bent stands in for something else.
-std::optional<Named> best_rival(Sums& sums, const Names& rest, std::size_t own, double price) {
-    std::vector<Named> rivals;
-    const Shape shape = sums.shapes()[own];
-    // What a given term leaves is a function of the posture, which any wave over the position takes up.
-    const bool of_posture = kind_of(*shape.term.effect) == Kind::position;
-    for (std::size_t i = 0; i < sums.listed(); ++i) {
-        const Shape& other = sums.shapes()[i];
-        if (same_name(other, shape) || is_among(sums, rest, other) || !sums.is_told(i)) continue;
-        if (of_posture && kind_of(*other.term.effect) != Kind::position) continue;
-        Named rival{rest};
-        rival.names.push_back(i);
-        rival.left = sums.left_outside(rival.names);
-        rivals.push_back(std::move(rival));
-    }
-    std::stable_sort(rivals.begin(), rivals.end(),
-                     [](const Named& a, const Named& b) { return a.left < b.left; });
-    keep_first_of_each(sums, rivals);
-    std::optional<Named> best;
-    for (std::size_t i = 0; i < std::min(rivals.size(), sums.lens().rules().beside.most_rivals); ++i) {
-        Named rival = refined(sums, rivals[i]);
-        if (sums.lens().bounds().is_bent(sums.shapes()[rival.names.back()])) continue;
-        if (drives(sums, rival.names, rival.names.size() - 1)) continue;
-        if (!of_posture && stands_beside(sums, rival.names, own, price)) continue;
-        if (!best || rival.left < best->left) best = std::move(rival);
-    }
-    return best;
-}
-
 void doubt(BesideFinding& finding, std::string reason) {
     finding.status = FindingStatus::tentative;
     finding.reason = std::move(reason);
@@ -88,21 +59,18 @@ void look_at_form(const Sums& sums, const Names& names, std::size_t place, std::
         doubt(finding, "a friction that drives the joint mends its form: it stands in for something else");
 }
 
-void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const std::vector<double>& left,
+void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const Judgement& by,
                     BesideFinding& finding) {
-    Names rest = names;
-    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(place));
-    const auto rival = best_rival(sums, rest, names[place], finding.price);
-    if (!rival) return;
+    const auto rivalry = rivalry_of(sums, names, place, finding.price, by.longer);
+    if (!rivalry) return;
+    finding.rival = rivalry->rival;
+    finding.rival_margin = rivalry->ahead.gain;
+    finding.rival_t = rivalry->ahead.t;
     const BesideRules& rules = sums.lens().rules().beside;
-    const OutsideGain ahead = outside_gain(sums.residual_outside(rival->names), left,
-                                           sums.lens().ground().blocks(), sums.lens().sigma());
-    finding.rival = sums.shapes()[rival->names.back()];
-    finding.rival_margin = ahead.gain;
-    finding.rival_t = ahead.t;
     Hearing hearing(sums.lens().rules(), finding.decisions);
-    const bool tie = hearing.asked("beside.tie_margin", ahead.gain, ahead.gain < rules.tie_margin) ||
-                     hearing.asked("beside.tie_t", ahead.t, ahead.t < rules.tie_t);
+    const bool tie =
+        hearing.asked("beside.tie_margin", finding.rival_margin, finding.rival_margin < rules.tie_margin) ||
+        hearing.asked("beside.tie_t", finding.rival_t, finding.rival_t < rules.tie_t);
     if (!tie || finding.status != FindingStatus::confirmed) return;
     finding.status = FindingStatus::ambiguous;
     if (drives(sums, names, place))
@@ -231,7 +199,7 @@ std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Jud
     }
     look_at_sizes(sums, findings);
     for (std::size_t place = 0; place < now.names.size(); ++place)
-        look_at_rivals(sums, now.names, place, left, findings[place]);
+        look_at_rivals(sums, now.names, place, by, findings[place]);
     look_at_driving(sums, now.names, findings);
     return findings;
 }

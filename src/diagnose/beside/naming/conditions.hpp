@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnose/beside/naming/naming.hpp"
+#include "diagnose/beside/naming/rivals.hpp"
 #include "diagnose/beside/weighing/sameness.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
@@ -33,6 +34,7 @@ struct Judgement {
     /// what an effect of the catalogue leaves that was not tried; beside a given term the leftover is
     /// another's.
     bool even_by_speed = false;
+    LongerLook* longer = nullptr;  ///< where ties are looked at again; without one they stay
 };
 
 [[nodiscard]] std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Judgement& by);

@@ -59,6 +59,10 @@ Lens::Lens(const Lens& like, const Candidate& model, std::span<const GivenTerm> 
     whiten();
 }
 
+Lens::Lens(const Lens& like, const Candidate& model, std::span<const GivenTerm> given,
+           std::span<const Effect* const> effects, const DiagnosisRules& rules)
+    : Lens(like.case_, model, given, effects, rules, like.work_) {}
+
 Lens::Lens(OffsetIsOpen, const Lens& like, const Candidate& model, std::span<const Effect* const> effects)
     : Lens(like.case_, like.rules_, like.work_, model) {
     begin(model, like.columns_, effects);

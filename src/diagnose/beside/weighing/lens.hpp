@@ -26,6 +26,9 @@ class Lens {
     /// The same log made white as `like` does, so that what two models leave of it can be compared.
     Lens(const Lens& like, const Candidate& model, std::span<const GivenTerm> given,
          std::span<const Effect* const> effects);
+    /// The log of `like` from the start, by other rules.
+    Lens(const Lens& like, const Candidate& model, std::span<const GivenTerm> given,
+         std::span<const Effect* const> effects, const DiagnosisRules& rules);
     struct OffsetIsOpen {};
     /// `like` with the model that it has, whose columns it shares, but that the offset is not always on.
     Lens(OffsetIsOpen, const Lens& like, const Candidate& model, std::span<const Effect* const> effects);
