@@ -2,9 +2,13 @@
 #pragma once
 // A bench on a log with something hidden in it, for judges that are asked alone.
 
+#include <random>
+
+#include "core/vectors/dot.hpp"
 #include "diagnose/judging/doubt.hpp"
 #include "diagnose/search/model_bench.hpp"
 #include "diagnose_fixture.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 
 namespace ripplenotch::fixture {
@@ -43,6 +47,21 @@ struct TestBench {
     Case c;
     ModelBench bench;
 };
+
+/// Slow waves that go with nothing of the joint's own: what an arm's other joints do to this one.
+inline std::vector<double> slow_leftover(const Motion& motion, std::uint64_t seed, double rms_nm) {
+    std::mt19937_64 draw(seed);
+    const auto part = [&] { return static_cast<double>(draw() >> 11U) / 9007199254740992.0; };
+    std::vector<double> left(motion.size(), 0.0);
+    for (int wave = 0; wave < 12; ++wave) {
+        const double hz = 0.05 + 0.9 * part(), phase = part();
+        for (std::size_t k = 0; k < left.size(); ++k)
+            left[k] += portable::cos_degrees(360.0 * (hz * motion.time_s[k] + phase));
+    }
+    const double now = rms(left);
+    for (double& value : left) value *= rms_nm / now;
+    return left;
+}
 
 inline const Decision& last_against(const std::vector<Decision>& decisions) {
     static const Decision none;

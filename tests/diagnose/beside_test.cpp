@@ -5,35 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "bench_fixture.hpp"
 #include "diagnose/beside/weighing/color.hpp"
 #include "diagnose/beside/weighing/ground.hpp"
 #include "diagnose/beside/weighing/outside_gain.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 #include "support/catch.hpp"
 
 namespace ripplenotch {
 namespace {
 
+using fixture::slow_leftover;
 using fixture::standard;
 using fixture::strokes;
-
-// Slow waves that go with nothing of the joint's own: what an arm's other joints do to this one.
-std::vector<double> slow_leftover(const Motion& motion, std::uint64_t seed, double rms_nm) {
-    std::mt19937_64 draw(seed);
-    const auto part = [&] { return static_cast<double>(draw() >> 11U) / 9007199254740992.0; };
-    std::vector<double> left(motion.size(), 0.0);
-    for (int wave = 0; wave < 12; ++wave) {
-        const double hz = 0.05 + 0.9 * part(), phase = part();
-        for (std::size_t k = 0; k < left.size(); ++k)
-            left[k] += portable::cos_degrees(360.0 * (hz * motion.time_s[k] + phase));
-    }
-    const double now = rms(left);
-    for (double& value : left) value *= rms_nm / now;
-    return left;
-}
 
 Trace log_beside(const Model& truth, std::uint64_t seed, double leftover_nm) {
     Trace log = fixture::logged(truth, strokes(), seed);

@@ -2,11 +2,11 @@
 // Beside a leftover: shapes are refined until that is worth nothing, and what rings in a ripple is sought
 // from each of its beginnings.
 #include <algorithm>
-#include <array>
 
 #include "bench_fixture.hpp"
 #include "diagnose/beside/naming/exchanges.hpp"
 #include "diagnose/beside/naming/ringing.hpp"
+#include "diagnose/beside/naming/rivals.hpp"
 #include "support/catch.hpp"
 
 namespace ripplenotch {
@@ -140,6 +140,36 @@ TEST_CASE("a beginning that is ahead and ends at a bound does not hide what ring
     REQUIRE(on.sums.shapes()[rings.names.front()].ringing);
     CHECK(frequency_hz(on, rings) == Approx(70.0).epsilon(0.05));
     CHECK(on.worth(plain, rings) > 1000.0);
+}
+
+TEST_CASE("a longer colour decides which of two curves it is, beside a leftover that is slow") {
+    std::size_t decided = 0, decided_further = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        Trace log = logged(model_of({"viscous-friction,coefficient_nm_per_deg_s=0.008"}), strokes(), seed);
+        const auto left = fixture::slow_leftover(strokes(), seed, 1.0);
+        for (std::size_t k = 0; k < left.size(); ++k) log.torque_nm[k] += left[k];
+        Weighed on(log);
+        const Candidate model{on.none, on.none, {}, {}, 0.0, true};
+        LongerLook longer(on.lens, model, {}, on.effects);
+        const Names names = on.listed("viscous-friction");
+        REQUIRE(names.size() == 1);
+        const double price = price_of(on.sums, names[0], catalogue().size());
+        const auto is_decided = [&](LongerLook* further) {
+            const auto rivalry = rivalry_of(on.sums, names, 0, price, further);
+            // No other name is clearly ahead of what is there.
+            const bool behind = rivalry && rivalry->ahead.gain < -standard.beside.tie_margin;
+            CHECK_FALSE(behind);
+            return !rivalry || (rivalry->ahead.gain >= standard.beside.tie_margin &&
+                                rivalry->ahead.t >= standard.beside.tie_t);
+        };
+        const bool here = is_decided(nullptr), there = is_decided(&longer);
+        CHECK((there || !here));  // what is decided stays so
+        decided += here ? 1 : 0;
+        decided_further += there ? 1 : 0;
+    }
+    // 3 and 7 of 12.
+    CHECK(decided_further >= decided + 3);
+    CHECK(decided < 6);
 }
 
 }  // namespace ripplenotch
