@@ -128,4 +128,17 @@ bool load_column(const char* records, std::size_t record_size, const NpyField& f
     return finite;
 }
 
+void store_column(char* records, std::size_t record_size, const NpyField& field, const StoredColumn& column) {
+    const auto [values, as_written, factor] = column;
+    // What most logs are, without a question for each value.
+    const bool plain = field.size == 8 && is_native(field) && factor == 1.0;
+    for (std::size_t i = 0; i < values.size(); ++i, records += record_size) {
+        if (!as_written.empty() && values[i] == as_written[i]) continue;
+        if (plain)
+            std::memcpy(records + field.offset, &values[i], sizeof(double));
+        else
+            store_float(records, field, values[i] / factor);
+    }
+}
+
 }  // namespace ripplenotch

@@ -31,4 +31,12 @@ void store_float(char* record, const NpyField& field, double value);
 /// load_field of `rows` records that follow each other. False when a number is not finite.
 bool load_column(const char* records, std::size_t record_size, const NpyField& field, std::span<double> into);
 
+/// store_float of `values`, each divided by `factor`, into records that follow each other; records whose
+/// value is that of `as_written` are left as they are. `as_written` is empty, or as long as `values`.
+struct StoredColumn {
+    std::span<const double> values, as_written;
+    double factor = 1.0;
+};
+void store_column(char* records, std::size_t record_size, const NpyField& field, const StoredColumn& column);
+
 }  // namespace ripplenotch

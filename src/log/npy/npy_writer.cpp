@@ -85,11 +85,10 @@ std::string_view NpyWriter::prepare(RowBlock& block, Torques torque_nm, std::str
     // A value that nobody changed keeps its bits, whatever the unit.
     const bool as_written = !append_ && block.held_bad_values == 0;
     for (std::size_t j = 0; j < fields_.size(); ++j) {
-        const std::vector<double>& raw = block.joints[j].torque_nm;
-        for (std::size_t i = 0; i < block.size(); ++i) {
-            if (as_written && torque_nm[j][i] == raw[i]) continue;
-            store_float(records + i * record_out_, fields_[j], torque_nm[j][i] / factors_[j]);
-        }
+        const std::span<const double> raw =
+            as_written ? std::span(block.joints[j].torque_nm) : std::span<double>();
+        store_column(records, record_out_, fields_[j],
+                     {std::span(torque_nm[j]).first(block.size()), raw, factors_[j]});
     }
     return {records, size};
 }
