@@ -53,14 +53,13 @@ DrawnSpeeds at_speeds(std::uint32_t number) {
 
 TEST_CASE("the ripple of steady stretches tells what a velocity is off by, and the ratio does not mind") {
     constexpr std::uint32_t logs = 40;
-    std::size_t given = 0, ratios = 0, offsets = 0;
+    std::size_t ratios = 0, offsets = 0;
     for (std::uint32_t number = 0; number < logs; ++number) {
         const DrawnSpeeds one = at_speeds<5>(number);
         const Identification found = tests::identify_all({one.trace});
         INFO("log " << number);
-        if (!found.gear_ratio.value) continue;
+        REQUIRE(found.gear_ratio.value);
         REQUIRE(found.velocity_error);
-        ++given;
         const VelocityError& told = *found.velocity_error;
         CHECK_FALSE(told.delay_told);
         ratios += found.gear_ratio.ci95_low <= one.ratio && one.ratio <= found.gear_ratio.ci95_high;
@@ -70,8 +69,7 @@ TEST_CASE("the ripple of steady stretches tells what a velocity is off by, and t
         CHECK(told.offset_error.value() < 0.1);
     }
     // Of 40 intervals that hold in 95 of a hundred, 33 and more hold in all but one of 1000 draws.
-    INFO(ratios << " ratios, " << offsets << " offsets of " << given);
-    CHECK(given == logs);
+    INFO(ratios << " ratios, " << offsets << " offsets");
     CHECK(ratios >= 33);
     CHECK(offsets >= 33);
 }

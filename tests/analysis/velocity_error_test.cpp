@@ -44,14 +44,13 @@ Drawn to_and_fro(std::uint32_t number, bool position) {
 
 TEST_CASE("the ripple tells how late a velocity is and what it is off by, and the ratio does not mind") {
     constexpr std::uint32_t logs = 40;
-    std::size_t given = 0, ratios = 0, offsets = 0, delays = 0;
+    std::size_t ratios = 0, offsets = 0, delays = 0;
     for (std::uint32_t number = 0; number < logs; ++number) {
         const Drawn one = to_and_fro(number, false);
         const Identification found = tests::identify_all({one.trace});
         INFO("log " << number);
-        if (!found.gear_ratio.value) continue;
+        REQUIRE(found.gear_ratio.value);
         REQUIRE(found.velocity_error);
-        ++given;
         const VelocityError& told = *found.velocity_error;
         ratios += found.gear_ratio.ci95_low <= one.ratio && one.ratio <= found.gear_ratio.ci95_high;
         offsets += std::abs(told.offset.value() - one.offset_deg_s) < 1.96 * told.offset_error.value();
@@ -63,8 +62,7 @@ TEST_CASE("the ripple tells how late a velocity is and what it is off by, and th
         CHECK(std::abs(told.delay.value() - one.delay_s) < 5.0 * told.delay_error.value());
     }
     // Of 40 intervals that hold in 95 of a hundred, 33 and more hold in all but one of 1000 draws.
-    INFO(ratios << " ratios, " << offsets << " offsets, " << delays << " delays of " << given);
-    CHECK(given == logs);
+    INFO(ratios << " ratios, " << offsets << " offsets, " << delays << " delays");
     CHECK(ratios >= 33);
     CHECK(offsets >= 33);
     CHECK(delays >= 33);
