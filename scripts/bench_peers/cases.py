@@ -118,7 +118,7 @@ class Bench:
         return found
 
     def analyse(self, found, words, motion, rows):
-        out = self.out("analysis", words[1])
+        out = self.folder / "out_analysis.json"
         name = " ".join([words[0], *words[2:]])
         runs, failed = measure.in_turn(self.run_once, [Side(name, [self.tool, *words, "-q", "--no-sync", "-o", out], out)], self.rounds, self.say)
         found[f"{name}, {motion}, {rows} rows"] = {"rows": rows, "failed": failed, "runs": [asdict(one) for one in runs.get(name, [])]}

@@ -106,10 +106,9 @@ def kernels(record):
 def analysis(record):
     lines = []
     for name, case in record["analysis"].items():
-        if case["runs"]:
-            one = median([Run(**r) for r in case["runs"]])
-            lines.append([f"`{name.split(', ')[0]}`, {name.split(', ')[1]}", f"{case['rows']:,}", figure(one.wall_s), figure(one.cpu_s),
-                          figure(one.peak_mib)])
+        one = median([Run(**r) for r in case["runs"]]) if case["runs"] else None
+        figures = [figure(one.wall_s), figure(one.cpu_s), figure(one.peak_mib)] if one else [", ".join(case["failed"].values()), "-", "-"]
+        lines.append([f"`{name.split(', ')[0]}`, {name.split(', ')[1]}", f"{case['rows']:,}", *figures])
     return table(["command", "rows", "wall, s", "CPU, s", "peak, MiB"], lines)
 
 

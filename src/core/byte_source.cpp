@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "core/hash_beside.hpp"
 #include "core/inputs_read.hpp"
 #include "core/open_file.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -26,7 +27,8 @@ std::string shown_name(const std::string& path) {
 ByteSource::ByteSource(const std::string& path) : ByteSource(std::make_shared<const OpenFile>(path)) {}
 
 ByteSource::ByteSource(std::shared_ptr<const OpenFile> file) : ByteSource(file, shown_name(file->path())) {
-    if (should_hash(*file_, name_)) hash_ = std::make_unique<Sha256>();
+    const Hashing how = how_to_hash(*file_, name_);
+    if (how != Hashing::none) hash_ = std::make_unique<HashBeside>(how == Hashing::beside);
 }
 
 ByteSource::ByteSource(std::shared_ptr<const OpenFile> file, std::string name)

@@ -18,7 +18,8 @@ struct Read {
     bool by_place = false;  ///< read here and there: hashed when somebody asks
 };
 
-std::atomic<bool> watched = false, hashed = false;
+std::atomic<bool> watched = false;
+std::atomic<Hashing> hashed = Hashing::none;
 std::mutex mutex;
 std::map<std::string, Read>& inputs() {
     static std::map<std::string, Read> all;
@@ -35,16 +36,16 @@ std::string known_hash(const std::string& path) {
 
 void watch_inputs(bool wanted) {
     watched = wanted;
-    hashed = hashed && wanted;
+    if (!wanted) hashed = Hashing::none;
     const std::lock_guard lock(mutex);
     if (!wanted) inputs().clear();
 }
 
-void hash_inputs(bool wanted) { hashed = wanted && watched; }
+void hash_inputs(Hashing how) { hashed = watched ? how : Hashing::none; }
 
-bool should_hash(const OpenFile& file, std::string_view name) {
+Hashing how_to_hash(const OpenFile& file, std::string_view name) {
     // What comes through standard input is gone when the run ends: no artifact tells its hash.
-    if (!watched || file.path() == "-") return false;
+    if (!watched || file.path() == "-") return Hashing::none;
     const std::lock_guard lock(mutex);
     const Read& known = inputs().try_emplace(file.path(), Read{file.state(), {}}).first->second;
     if (file.state().regular && !known.state.same_bytes(file.state()))
@@ -52,7 +53,7 @@ bool should_hash(const OpenFile& file, std::string_view name) {
             "{}: the file is another than when it was read a moment ago; wait until nothing writes to it, or "
             "read a copy",
             name);
-    return hashed && known.sha256.empty() && !known.by_place;
+    return known.sha256.empty() && !known.by_place ? hashed.load() : Hashing::none;
 }
 
 void note_hash(const OpenFile& file, const std::string& sha256) {
@@ -63,7 +64,7 @@ void note_hash(const OpenFile& file, const std::string& sha256) {
 }
 
 std::string sha256_as_read(const std::string& path) {
-    if (watched && !hashed) return "";
+    if (watched && hashed == Hashing::none) return "";
     const std::string known = known_hash(path);
     return known.empty() ? sha256_of_file(path) : known;
 }

@@ -14,7 +14,7 @@
 namespace ripplenotch {
 
 class OpenFile;
-class Sha256;
+class HashBeside;
 class TemporaryFile;
 
 /// A source of bytes: a file, or standard input when the path is "-".
@@ -66,7 +66,7 @@ class ByteSource {
     std::string name_;
     std::shared_ptr<const OpenFile> file_;
     std::shared_ptr<const std::string> bytes_;
-    std::unique_ptr<Sha256> hash_;
+    std::unique_ptr<HashBeside> hash_;
     std::size_t piece_size_ = 0;
     std::uint64_t size_ = 0, at_ = 0;
     bool ended_ = false;

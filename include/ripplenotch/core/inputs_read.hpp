@@ -12,10 +12,13 @@ namespace ripplenotch {
 /// all.
 void watch_inputs(bool wanted);
 
+/// Whether what is read is hashed: not at all, by the thread that reads, or of long files by one beside it.
+enum class Hashing { none, here, beside };
+
 /// Of the files watched: from now on every ByteSource hashes what it reads, or none does any longer. It takes
 /// about a second for a gigabyte on a processor with instructions for it, five without: only for runs that
 /// tell.
-void hash_inputs(bool wanted);
+void hash_inputs(Hashing how);
 
 /// Of the bytes of `path` as they were first read to their end. Where nobody has read it, it is read now.
 /// Empty where inputs are watched and not hashed, for then nothing tells it. Throws FileError.

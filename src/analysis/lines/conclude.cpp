@@ -107,6 +107,15 @@ std::string of_velocity(const std::optional<VelocityError>& error) {
     return text + "; that is taken off, and its error is in the ratio's interval";
 }
 
+/// Ripple at one or two speeds alone cannot tell what the velocity is off by.
+std::string at_its_word(double slowest_deg_s) {
+    constexpr double supposed_deg_s = 0.1;  // a usual offset of a velocity; by hand
+    return fmt::format(
+        "no position that agrees with the velocity, which is taken at its word: ripple at three speeds would "
+        "tell what it is off by; {} deg/s would move the ratio by {:.1g} %, which is not in its interval",
+        supposed_deg_s, 100.0 * supposed_deg_s / slowest_deg_s);
+}
+
 }  // namespace
 
 void conclude(const Looked& looked, const IdentifyOptions& options, Identification& result) {
@@ -121,10 +130,14 @@ void conclude(const Looked& looked, const IdentifyOptions& options, Identificati
             "known, and " +
             of_velocity(result.velocity_error));
     }
-    if (looked.steady && looked.steady->offset && result.evidence == LineEvidence::stretches)
-        result.notes.push_back("no position that agrees with the velocity, and " +
-                               of_velocity(result.velocity_error));
     result.grounds = grounds_of(looked, options, result.evidence);
+    if (looked.steady && result.evidence == LineEvidence::stretches && result.gear_ratio.value) {
+        if (looked.steady->offset)
+            result.notes.push_back("no position that agrees with the velocity, and " +
+                                   of_velocity(result.velocity_error));
+        else if (looked.without_position)
+            result.notes.push_back(at_its_word(result.grounds.slowest_deg_s));
+    }
     settle(result);
 }
 

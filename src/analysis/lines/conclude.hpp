@@ -13,6 +13,7 @@ namespace ripplenotch {
 struct Looked {
     std::optional<SteadyLines> steady;
     std::optional<MotionLines> motion;
+    bool without_position = false;  ///< a log at least
 };
 
 /// Writes finding, grounds, notes, conclusive and verdict from the lines and the ratio already in `result`.

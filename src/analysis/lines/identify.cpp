@@ -147,11 +147,12 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
             result.evidence = nothing_steady_moves ? LineEvidence::sweeps : LineEvidence::both;
         }
     }
-    const bool clock_in_doubt =
+    looked.without_position =
         std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
-    add_ratio(reported,
-              {options.hint, options.hinted_orders, clock_in_doubt, shared_order_error(looked, result)},
-              result);
+    add_ratio(
+        reported,
+        {options.hint, options.hinted_orders, looked.without_position, shared_order_error(looked, result)},
+        result);
     result.families = families_among(reported);
     for (Reported& r : reported) {
         name_mains(r.line);

@@ -206,7 +206,8 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
 
 ExitCode run(const FilterRequest& request, const std::string& command_line) {
     check(request);
-    hash_inputs(request.metrics || request.common.json || request.plot.wanted());
+    const bool told = request.metrics || request.common.json || request.plot.wanted();
+    hash_inputs(told ? Hashing::here : Hashing::none);  // threads are the pipeline's, which --threads counts
     JointMethods methods(method_request(request));
     bool within = true;
     for (const FilterJob& job : jobs_of(request)) {

@@ -84,7 +84,8 @@ void check_plot(const PlotRequest& request, const CommonOptions& common) {
 }
 
 void hash_where_told(const CommonOptions& common, const PlotRequest& plot) {
-    hash_inputs(common.json || ends_with_json(common.output) || plot.wanted());
+    const bool told = common.json || ends_with_json(common.output) || plot.wanted();
+    hash_inputs(told ? Hashing::beside : Hashing::none);
 }
 
 void draw_plot(const PlotRequest& request, const CommonOptions& common, const Provenance& provenance,
