@@ -10,7 +10,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t short_file = std::size_t{4} << 20;  // 2 ms of hashing: a thread would gain nothing
-constexpr std::size_t piece = std::size_t{1} << 18;
+constexpr std::size_t handed_over_at = std::size_t{1} << 18;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void HashBeside::update(std::string_view bytes) {
         return;
     }
     filling_ += bytes;
-    if (filling_.size() >= piece) hand_over();
+    if (filling_.size() >= handed_over_at) hand_over();
 }
 
 std::string HashBeside::hex() {

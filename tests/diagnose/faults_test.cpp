@@ -2,6 +2,9 @@
 // Faults of the converter, each with what can be taken for it.
 #include "diagnose/case/faults.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -13,7 +16,7 @@ using namespace ripplenotch::fixture;
 
 namespace {
 
-Case case_with(std::initializer_list<std::string_view> hidden, std::uint64_t seed = 1) {
+Case case_with(std::initializer_list<std::string> hidden, std::uint64_t seed = 1) {
     Model truth = joint();
     for (const auto term : hidden) truth.terms.push_back(parse_term(term));
     const Trace log = logged(truth, tour(), seed);
@@ -74,6 +77,27 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
         CHECK(*faults[0].term.values[1] == Approx(0.1).epsilon(0.3));
         CHECK(faults[0].time_s.size() >= 6);
     }
+}
+
+TEST_CASE("whole steps that were rounded once more are steps still, and nothing else") {
+    for (const double step_nm : {0.482, 0.317, 0.75}) {
+        Case c = case_with({fmt::format("quantization,step_nm={}", step_nm)});
+        for (double& torque_nm : c.torque_nm) torque_nm = std::round(torque_nm / 0.1) * 0.1;
+        const std::size_t before = c.used();
+        const auto faults = find_faults(c, standard.faults);
+        CHECK(names(faults) == Names{"quantization"});
+        CHECK(*faults[0].term.values[0] == Approx(step_nm).margin(0.1 / 5));  // of five levels and more
+        CHECK(c.used() == before);
+    }
+}
+
+TEST_CASE("levels without order are no steps") {
+    Case c = case_with({});
+    for (double& torque_nm : c.torque_nm) {
+        const double place = std::round(torque_nm / 0.4);
+        torque_nm = 0.4 * place + 0.13 * std::sin(5.0 * place);
+    }
+    CHECK_FALSE(std::ranges::count(names(find_faults(c, standard.faults)), "quantization"));
 }
 
 TEST_CASE("steps finer than the noise are no fault: a log of four decimals is as good as continuous") {

@@ -10,6 +10,30 @@
 namespace ripplenotch {
 namespace {
 
+// Step of a log of whole steps that was rounded once more, by its distances of neighbouring values: these are
+// longer or shorter by what it was rounded to, and no value is further than that from its place. 0 when not
+// so.
+double rounded_step(const std::vector<double>& distances, double usual) {
+    double shortest = usual, longest = usual, range = 0.0, steps = 0.0;
+    for (const double distance : distances) {
+        if (distance < 1.5 * usual) {
+            shortest = std::min(shortest, distance);
+            longest = std::max(longest, distance);
+        }
+        range += distance;
+        steps += std::round(distance / usual);
+    }
+    const double rounded_to = longest - shortest, step = range / steps;
+    double value = 0.0, place = 0.0;
+    bool in_place = rounded_to < 0.5 * usual;
+    for (const double distance : distances) {
+        value += distance;
+        place += std::round(distance / step) * step;
+        in_place = in_place && std::abs(value - place) <= rounded_to + 1e-9 * range;
+    }
+    return in_place ? step : 0.0;
+}
+
 // Step of a log that holds few distinct values at equal distances; 0 when it is as good as continuous.
 double step_of(const std::vector<double>& torque_nm, const FaultRules& rules) {
     std::vector<double> values = torque_nm;
@@ -31,7 +55,8 @@ double step_of(const std::vector<double>& torque_nm, const FaultRules& rules) {
         if (std::abs(steps - std::round(steps)) < rules.off_step_part * std::max(steps, 1.0) && steps > 0.5)
             ++fitting;
     }
-    return fitting >= distances.size() * rules.fitting_percent / 100 ? step : 0.0;
+    if (fitting >= distances.size() * rules.fitting_percent / 100) return step;
+    return rounded_step(distances, step);
 }
 
 double noise_of(const std::vector<double>& torque_nm) {
