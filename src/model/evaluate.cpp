@@ -39,6 +39,14 @@ std::vector<double> predict_nm(const Model& model, const Motion& motion) {
     return evaluate(model, motion, {}, Chance::left_out);
 }
 
+std::vector<double> sensed_nm(const Model& model, const Motion& motion, std::vector<double> torque_nm) {
+    each(model, Side::sensor, [&](const Effect& effect, const std::vector<double>& values) {
+        if (effect.linear_in_torque && !effect.uses_load)
+            effect.apply({.motion = motion, .ratio = model.gear_ratio}, values, torque_nm);
+    });
+    return torque_nm;
+}
+
 std::vector<double> measure_nm(const Model& model, const Motion& motion, std::span<const double> noise_nm,
                                Chance chance) {
     return evaluate(model, motion, noise_nm, chance);

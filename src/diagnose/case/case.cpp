@@ -176,8 +176,9 @@ Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules) {
     return blocks(whole, count, rules);
 }
 
-std::vector<Nuisance> acceleration_errors(const Case& looked_at) {
-    return {{looked_at.rough_deg_s2, 0.0}, {looked_at.blunted_deg_s2, 0.0}};
+std::vector<Nuisance> acceleration_errors(const Case& looked_at, const Model& model) {
+    return {{sensed_nm(model, looked_at.motion, looked_at.rough_deg_s2), 0.0},
+            {sensed_nm(model, looked_at.motion, looked_at.blunted_deg_s2), 0.0}};
 }
 
 std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
@@ -207,7 +208,7 @@ std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, con
 }
 
 std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
-    std::vector<Nuisance> errors = acceleration_errors(looked_at);
+    std::vector<Nuisance> errors = acceleration_errors(looked_at, model);
     for (Nuisance& walk : walk_errors(looked_at, model, rules)) errors.push_back(std::move(walk));
     return errors;
 }

@@ -81,7 +81,7 @@ class Screening {
     // Slopes of the model's coordinates, and the errors of the motion.
     void look_at_slopes() {
         std::vector<Column> all;
-        for (const Nuisance& error : acceleration_errors(case_)) all.push_back(counted(error.torque_nm));
+        for (const Nuisance& error : acceleration_errors(case_, prediction_.model())) all.push_back(counted(error.torque_nm));
         std::vector<Column> untouched = all;
         errors_basis_ = orthonormal(untouched);
         walk_ = walk_errors(case_, prediction_.model(), rules_.recording);
