@@ -118,7 +118,10 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
     std::optional<Candidate> found;
     double least = one_ahead(bench, best, effects).criterion();
     for (const Candidate& other : tried) {
-        if (other.criterion() == best.criterion() || adds_torque(other) || bench.work().is_over()) continue;
+        // What is not worth its price alone would not be added.
+        if (other.criterion() == best.criterion() || other.criterion() >= now.criterion() ||
+            adds_torque(other) || bench.work().is_over())
+            continue;
         const Candidate ahead = one_ahead(bench, other, effects);
         if (ahead.criterion() >= least || same_place(ahead.stated.terms.back(), best.stated.terms.back()))
             continue;
