@@ -14,11 +14,7 @@ std::vector<double> evaluate(const Model& model, const Motion& logged, std::span
                              Chance chance) {
     refuse_missing_values(model);
     GearRatio ratio = model.gear_ratio;
-    std::optional<Motion> changed;
-    each(model, Side::motion, [&](const Effect& effect, const std::vector<double>& values) {
-        if (!changed) changed = logged;
-        effect.change_motion(values, *changed, ratio);
-    });
+    const std::optional<Motion> changed = motion_behind(model, logged, ratio);
     const Motion& motion = changed ? *changed : logged;
     const auto load = load_nm(model, {.motion = motion, .ratio = ratio});
     const Situation situation{.motion = motion, .ratio = ratio, .load_nm = load};
