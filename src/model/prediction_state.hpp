@@ -221,7 +221,8 @@ struct Prediction::State {
     [[nodiscard]] std::vector<double> difference_to(const Model& other, std::size_t place) {
         const Effect& effect = *other.terms[place].effect;
         const Side side = side_of(other.terms[place]);
-        if (side == Side::sensor && !changes_motion(other.terms[place])) return difference_behind_joint(other);
+        if (side == Side::sensor && !changes_motion(other.terms[place]))
+            return difference_behind_joint(other);
         if (!sum_is_linear || (side != Side::joint && side != Side::ripple))
             return difference_as_a_whole(other);
         const bool loads = (effect.bears_load && load_is_used) || (effect.uses_load && !load_is_used);
