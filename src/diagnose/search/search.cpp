@@ -123,7 +123,8 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
             adds_torque(other) || bench.work().is_over())
             continue;
         const Candidate ahead = one_ahead(bench, other, effects);
-        if (ahead.criterion() >= least || same_place(ahead.stated.terms.back(), best.stated.terms.back()))
+        const Term &beside = ahead.stated.terms.back(), &alone = best.stated.terms.back();
+        if (ahead.criterion() >= least || (same_place(beside, alone) && side_of(beside) == side_of(alone)))
             continue;
         least = ahead.criterion();
         found = other;
