@@ -214,7 +214,8 @@ class Screening {
             columns.push_back(counted(*prediction_.behind(sensor, slopes_nm_[c])));
         }
         for (const Nuisance& error : errors_)
-            columns.push_back(counted(*prediction_.behind(sensor, error.torque_nm)));
+            columns.push_back(counted(carries_errors(sensor) ? *prediction_.behind(sensor, error.torque_nm)
+                                                             : error.torque_nm));
         for (const Nuisance& error : walk_)
             columns.push_back(counted(*prediction_.behind(sensor, error.torque_nm)));
         work_.add(columns.size() + 1, case_.size());
