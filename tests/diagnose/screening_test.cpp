@@ -85,6 +85,21 @@ TEST_CASE(
     CHECK(found.gain_left == Approx(with.gain_left).epsilon(0.01));
 }
 
+TEST_CASE("errors of the acceleration stay where they are where the torque comes before its motion") {
+    const Case c = case_of(plain_log(joint(), 78));
+    const auto plain = acceleration_errors(c, joint());
+    CHECK(plain[0].torque_nm == c.rough_deg_s2);
+    CHECK(plain[1].torque_nm == c.blunted_deg_s2);
+    const auto with = [&](std::string_view term) { return acceleration_errors(c, joint_with({term})); };
+    CHECK(with("delay,delay_s=-0.01")[1].torque_nm == plain[1].torque_nm);
+    CHECK(with("resonance,frequency_hz=20,damping=0.1")[1].torque_nm == plain[1].torque_nm);
+    // Five samples.
+    const auto late = with("delay,delay_s=0.01");
+    for (std::size_t k = 100; k < 200; ++k)
+        REQUIRE(late[1].torque_nm[k] == Approx(c.blunted_deg_s2[k - 5]).margin(1e-9));
+    CHECK(with("resonance,frequency_hz=20,damping=0.1,whole=1")[1].torque_nm != plain[1].torque_nm);
+}
+
 TEST_CASE("a screening is made once beside models whose torques differ by less than the noise can tell") {
     TestBench on(case_of(plain_log(joint(), 75)));
     const Effects effects = four_effects();
