@@ -103,7 +103,7 @@ Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::v
     constexpr double roughly = 1e-3;
     bool is_rough = own.other.has_value();
     Candidate found = from(first_guess, most_iterations, is_rough ? std::max(settled, roughly) : settled);
-    for (const int iterations : {most_iterations, std::min(most_iterations, 4), 0}) {
+    for (const int iterations : {std::min(most_iterations, 6), 2, 0}) {
         if (!is_rough && is_as_good(sensors_of(found.stated), own.beside)) break;
         is_rough = false;
         own = weighing_of(found.stated);
