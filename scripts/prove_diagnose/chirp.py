@@ -24,7 +24,7 @@ RATIO = 20.0
 SECONDS, LOWEST_HZ, HIGHEST_HZ = 40.0, 0.1, 8.0
 ORDERS = (1, 2)
 KINDS = ("resonance", "delay", "nothing")
-OPTIONS = ("--smoothing", "20ms")  # 8 Hz asks for a shorter window than the usual 50 ms (docs/commands/simulate.md)
+OPTIONS = ("--smoothing", "10ms")  # keeps components up to 40 Hz, where the highest mode drawn is (docs/commands/simulate.md)
 
 
 class Chirp:

@@ -14,11 +14,7 @@ std::vector<double> evaluate(const Model& model, const Motion& logged, std::span
                              Chance chance) {
     refuse_missing_values(model);
     GearRatio ratio = model.gear_ratio;
-    std::optional<Motion> changed;
-    each(model, Side::motion, [&](const Effect& effect, const std::vector<double>& values) {
-        if (!changed) changed = logged;
-        effect.change_motion(values, *changed, ratio);
-    });
+    const std::optional<Motion> changed = motion_behind(model, logged, ratio);
     const Motion& motion = changed ? *changed : logged;
     const auto load = load_nm(model, {.motion = motion, .ratio = ratio});
     const Situation situation{.motion = motion, .ratio = ratio, .load_nm = load};
@@ -37,6 +33,14 @@ std::vector<double> evaluate(const Model& model, const Motion& logged, std::span
 
 std::vector<double> predict_nm(const Model& model, const Motion& motion) {
     return evaluate(model, motion, {}, Chance::left_out);
+}
+
+std::vector<double> sensed_nm(const Model& model, const Motion& motion, std::vector<double> torque_nm) {
+    each(model, Side::sensor, [&](const Effect& effect, const std::vector<double>& values) {
+        if (effect.linear_in_torque && !effect.uses_load)
+            effect.apply({.motion = motion, .ratio = model.gear_ratio}, values, torque_nm);
+    });
+    return torque_nm;
 }
 
 std::vector<double> measure_nm(const Model& model, const Motion& motion, std::span<const double> noise_nm,

@@ -45,10 +45,7 @@ struct Prediction::State {
     State(Model given, const Motion& motion, Carriers* kept)
         : model(std::move(given)), logged(motion), ratio(model.gear_ratio), carriers(kept) {
         refuse_missing_values(model);
-        each(model, Side::motion, [&](const Effect& effect, const std::vector<double>& values) {
-            if (!changed) changed = logged;
-            effect.change_motion(values, *changed, ratio);
-        });
+        changed = motion_behind(model, logged, ratio);
         // Carriers are of the motion as it was logged, whatever the gear ratio.
         if (changed && changed->position_deg != logged.position_deg) carriers = nullptr;
         load = load_nm(model, situation({}));
@@ -224,7 +221,8 @@ struct Prediction::State {
     [[nodiscard]] std::vector<double> difference_to(const Model& other, std::size_t place) {
         const Effect& effect = *other.terms[place].effect;
         const Side side = side_of(other.terms[place]);
-        if (side == Side::sensor) return difference_behind_joint(other);
+        if (side == Side::sensor && !changes_motion(other.terms[place]))
+            return difference_behind_joint(other);
         if (!sum_is_linear || (side != Side::joint && side != Side::ripple))
             return difference_as_a_whole(other);
         const bool loads = (effect.bears_load && load_is_used) || (effect.uses_load && !load_is_used);

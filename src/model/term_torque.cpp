@@ -16,6 +16,16 @@ bool has_side(const Model& model, Side side) {
 
 }  // namespace
 
+std::optional<Motion> motion_behind(const Model& model, const Motion& logged, GearRatio& ratio) {
+    std::optional<Motion> changed;
+    for (const Term& term : model.terms) {
+        if (!changes_motion(term)) continue;
+        if (!changed) changed = logged;
+        term.effect->change_motion(values_of(term), *changed, ratio);
+    }
+    return changed;
+}
+
 void refuse_missing_values(const Model& model) {
     if (const auto missing = missing_values(model); !missing.empty()) {
         raise<UsageError>("the model does not state {}; give the value, or fit it to a log first",

@@ -4,6 +4,7 @@
 // Prediction, which asks for parts of one.
 
 #include <complex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,14 @@ void each(const Model& model, Side side, const Action& action) {
         if (side_of(term) == side) action(*term.effect, values_of(term));
     }
 }
+
+/// Whether the torques behind this term see another motion than the log's.
+[[nodiscard]] inline bool changes_motion(const Term& term) {
+    return term.effect->change_motion != nullptr && side_of(term) != Side::ripple;
+}
+
+/// The motion that the joint's torques see, and the gear ratio; empty where it is the log's.
+[[nodiscard]] std::optional<Motion> motion_behind(const Model& model, const Motion& logged, GearRatio& ratio);
 
 /// Throws UsageError that lists the values which the model does not state.
 void refuse_missing_values(const Model& model);

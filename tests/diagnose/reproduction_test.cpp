@@ -89,3 +89,21 @@ TEST_CASE("a form that was mended goes before the name that it makes look wrong 
     CHECK(kept.stated.terms[3].effect->name == "offset");
     CHECK(*kept.stated.terms[3].values[0] == Approx(0.4).margin(0.1));
 }
+
+TEST_CASE("a form that was mended goes where it alone spoils the other log, and the names stay") {
+    const TestBench on(case_of(plain_log(joint_with({viscous, "gravity,amplitude_nm=2,phase_deg=0"}), 76)));
+    const Candidate all = on.fitted(joint_with({viscous, "gravity,amplitude_nm=2,phase_deg=0"}));
+    std::vector<Finding> findings(2);
+    for (std::size_t i = 0; i < 2; ++i) findings[i].term = all.stated.terms[3 + i];
+    findings[1].status = FindingStatus::shape_correction;
+    const Case second = case_of(plain_log(joint_with({viscous}), 77));
+    const Candidate kept = reproduced(on.bench, all, all, joint(), second, 3, findings);
+    CHECK(findings[0].status == FindingStatus::confirmed);
+    CHECK(findings[1].status == FindingStatus::not_reproduced);
+    REQUIRE(kept.stated.terms.size() == 4);
+    CHECK(kept.stated.terms[3].effect->name == "viscous-friction");
+    // Where it does no harm, it stays.
+    const Case third = case_of(plain_log(joint_with({viscous, "gravity,amplitude_nm=2,phase_deg=0"}), 78));
+    findings[1].status = FindingStatus::shape_correction;
+    CHECK(reproduced(on.bench, all, all, joint(), third, 3, findings).stated.terms.size() == 5);
+}

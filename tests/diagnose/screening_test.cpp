@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bench_fixture.hpp"
+#include "diagnose/search/search.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;
@@ -59,6 +60,44 @@ TEST_CASE("ripple behind a delay and a hysteresis that the model has is ranked f
     REQUIRE(!trials.empty());
     CHECK(trials[0].start.effect->name == "ripple");
     CHECK(*trials[0].start.values[0] == 4.0);
+}
+
+TEST_CASE(
+    "an error of the acceleration comes late where the joint's torque does, whichever model was settled on") {
+    const Model truth = joint_with({"delay,delay_s=0.021"});
+    Case late = case_of(plain_log(truth, 77));
+    std::vector<double> error = late.blunted_deg_s2;
+    for (double& value : error) value *= 10.0 * noise_nm / rms(late.blunted_deg_s2);
+    const std::vector<double> passed = sensed_nm(truth, late.motion, error);
+    for (std::size_t k = 0; k < late.size(); ++k) late.torque_nm[k] += passed[k];
+    TestBench on(std::move(late));
+    on.bench.settle_on(joint());
+    const Candidate with = on.fitted(truth), without = on.fitted(joint());
+    // The error is ten times the noise: where it is not taken off, it is what is left.
+    CHECK(with.gain_left == Approx(on.bench.samples()).epsilon(0.05));
+    CHECK(rms(on.bench.residual(with.stated)) == Approx(1.0).epsilon(0.025));
+    CHECK(rms(on.bench.cleared_residual(with.stated)) == Approx(noise_nm).epsilon(0.025));
+    const auto trials = screen(on.bench, without, four_effects());
+    REQUIRE(!trials.empty());
+    CHECK(trials[0].start.effect->name == "delay");
+    const Candidate found = with_trial(on.bench, without, trials[0]);
+    CHECK(*found.stated.terms.back().values[0] == Approx(0.021).epsilon(0.01));
+    CHECK(found.gain_left == Approx(with.gain_left).epsilon(0.01));
+}
+
+TEST_CASE("errors of the acceleration stay where they are where the torque comes before its motion") {
+    const Case c = case_of(plain_log(joint(), 78));
+    const auto plain = acceleration_errors(c, joint());
+    CHECK(plain[0].torque_nm == c.rough_deg_s2);
+    CHECK(plain[1].torque_nm == c.blunted_deg_s2);
+    const auto with = [&](std::string_view term) { return acceleration_errors(c, joint_with({term})); };
+    CHECK(with("delay,delay_s=-0.01")[1].torque_nm == plain[1].torque_nm);
+    CHECK(with("resonance,frequency_hz=20,damping=0.1")[1].torque_nm == plain[1].torque_nm);
+    // Five samples.
+    const auto late = with("delay,delay_s=0.01");
+    for (std::size_t k = 100; k < 200; ++k)
+        REQUIRE(late[1].torque_nm[k] == Approx(c.blunted_deg_s2[k - 5]).margin(1e-9));
+    CHECK(with("resonance,frequency_hz=20,damping=0.1,whole=1")[1].torque_nm != plain[1].torque_nm);
 }
 
 TEST_CASE("a screening is made once beside models whose torques differ by less than the noise can tell") {

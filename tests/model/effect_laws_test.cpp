@@ -61,7 +61,7 @@ TEST_CASE("effects have unique names in kebab-case, are found by them, and descr
         }
         CHECK(!effect->parameters.empty());
         const bool is_motion = effect->side == Side::motion, is_ripple = effect->side == Side::ripple;
-        CHECK((effect->change_motion != nullptr) == is_motion);
+        CHECK((effect->change_motion != nullptr) == (is_motion || effect->whole));
         CHECK((effect->change_ripple != nullptr) == is_ripple);
         CHECK((effect->apply != nullptr) == (effect->whole || !(is_motion || is_ripple)));
         CHECK((!effect->whole || is_ripple));

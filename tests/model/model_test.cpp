@@ -47,6 +47,26 @@ TEST_CASE("the paper's move needs 4.5 Nm with the inertia of data/paper_model.js
     CHECK(*low == Approx(-4.5).margin(0.005));
 }
 
+TEST_CASE("what the sensors make of a joint's torque is what the model expects") {
+    const Motion m = make_motion("sine,amplitude=20deg,frequency=3Hz,duration=1s,phase=0deg", 500_Hz);
+    // Torques that go by nothing that a spring changes.
+    const std::initializer_list<std::string_view> joint = {"inertia,inertia_kgm2=0.4",
+                                                           "offset,torque_nm=0.5"};
+    Model model = model_of(joint);
+    const std::vector<double> torque_nm = predict_nm(model, m);
+    CHECK(sensed_nm(model, m, torque_nm) == torque_nm);
+    for (const auto term : {"delay,delay_s=0.011", "lag,time_constant_s=0.004",
+                            "resonance,frequency_hz=20,damping=0.1,whole=1"})
+        model.terms.push_back(parse_term(term));
+    CHECK(sensed_nm(model, m, torque_nm) == predict_nm(model, m));
+    CHECK(sensed_nm(model, m, torque_nm) != torque_nm);
+    // Neither what a resonance does to ripple alone nor what a converter does is a sensor's.
+    model = model_of(joint);
+    for (const auto term : {"resonance,frequency_hz=20,damping=0.1", "saturation,limit_nm=0.1"})
+        model.terms.push_back(parse_term(term));
+    CHECK(sensed_nm(model, m, torque_nm) == torque_nm);
+}
+
 TEST_CASE("ripple of order n at speed v oscillates at n Kg v / 360") {
     // 36 deg/s, ratio 100, order 1: 10 Hz; sampled at 1 kHz, 100 samples a cycle. Order 2: 50 samples.
     const Motion m = make_motion("constant,speed=36deg/s,duration=1s", 1000_Hz);

@@ -138,7 +138,7 @@ struct Effect {
     /// has motion.size() entries.
     void (*apply)(const Situation& situation, std::span<const double> values,
                   std::span<double> torque_nm) = nullptr;
-    /// motion
+    /// motion, and what may act on the whole torque: which motion the joint's torques see
     void (*change_motion)(std::span<const double> values, Motion& motion, GearRatio& ratio) = nullptr;
     /// ripple: multiplies the complex gain of a ripple term of the order given; its torque is
     /// amplitude * Re(gain * exp(i * angle)).

@@ -39,7 +39,8 @@ class Prediction {
     /// Made by with(), and every joint term that is no ripple has the very torque that it had before.
     [[nodiscard]] bool has_only_ripple_anew() const;
     /// What a further sensor makes of a torque as this model's sensors have left it: of torque_nm(), or of a
-    /// slope of it. Empty where the effect is no such sensor, or a converter comes after it.
+    /// slope of it. The motion that the torques see stays as it is, though the sensor may change it. Empty
+    /// where the effect is no such sensor, or a converter comes after it.
     [[nodiscard]] std::optional<std::vector<double>> behind(const Term& sensor,
                                                             std::vector<double> torque_nm) const;
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
@@ -176,8 +177,18 @@ Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules) {
     return blocks(whole, count, rules);
 }
 
-std::vector<Nuisance> acceleration_errors(const Case& looked_at) {
-    return {{looked_at.rough_deg_s2, 0.0}, {looked_at.blunted_deg_s2, 0.0}};
+bool carries_errors(const Term& term) {
+    for (std::size_t p = 0; p < term.values.size(); ++p) {
+        if (term.effect->parameters[p].unit == "s" && term.values[p].value_or(0.0) < 0.0) return false;
+    }
+    return side_of(term) == Side::sensor;
+}
+
+std::vector<Nuisance> acceleration_errors(const Case& looked_at, const Model& model) {
+    Model sensors{model.gear_ratio, {}};
+    std::ranges::copy_if(model.terms, std::back_inserter(sensors.terms), carries_errors);
+    return {{sensed_nm(sensors, looked_at.motion, looked_at.rough_deg_s2), 0.0},
+            {sensed_nm(sensors, looked_at.motion, looked_at.blunted_deg_s2), 0.0}};
 }
 
 std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
@@ -207,7 +218,7 @@ std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, con
 }
 
 std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
-    std::vector<Nuisance> errors = acceleration_errors(looked_at);
+    std::vector<Nuisance> errors = acceleration_errors(looked_at, model);
     for (Nuisance& walk : walk_errors(looked_at, model, rules)) errors.push_back(std::move(walk));
     return errors;
 }

@@ -46,9 +46,14 @@ struct Case {
 /// The same in longer stretches, for what rings on.
 [[nodiscard]] Case long_blocks(const Case& whole, std::size_t count, RecordingRules rules);
 
-/// Shapes that errors of the measured acceleration leave in the torque, whatever the model: what smoothing
-/// made of it.
-[[nodiscard]] std::vector<Nuisance> acceleration_errors(const Case& looked_at);
+/// Whether errors of the measured acceleration pass this term with the torque: a sensor, but for one by which
+/// the torque comes before its motion. Of a real arm whose friction looked early such errors hid the
+/// friction.
+[[nodiscard]] bool carries_errors(const Term& term);
+
+/// Shapes that errors of the measured acceleration leave in the torque: what smoothing made of it, as the
+/// sensors of the model show it. Of the model nothing else counts.
+[[nodiscard]] std::vector<Nuisance> acceleration_errors(const Case& looked_at, const Model& model);
 /// Shapes that the walk of an integrated position leaves in the torque of a model; none where the log has a
 /// position.
 [[nodiscard]] std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model,

@@ -122,14 +122,16 @@ void withdraw(Finding& finding, double left_part, const DiagnosisRules& rules) {
 }  // namespace
 
 // What has no name goes before a name does: extrapolated to the other log, a form that was mended in this one
-// may leave more there than any name explains.
+// may leave more there than any name explains. It goes, too, where the whole does worse than the model as
+// given though every name does well.
 Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candidate& model,
                      const Model& given, const Case& other, std::size_t own_terms,
                      std::vector<Finding>& findings) {
     Candidate kept = model;
+    const double most = bench.rules().reproduction.most_left, most_nm = most * rms_left(other, given);
     while (true) {
         Worst named, nameless;
-        named.most = nameless.most = bench.rules().reproduction.most_left;
+        named.most = nameless.most = most;
         std::size_t term = own_terms;
         for (Finding& finding : findings) {
             if (is_doubtful(finding)) continue;
@@ -141,7 +143,8 @@ Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candid
             Worst& worst = is_trusted(finding) ? named : nameless;
             if (check.acts && worse > worst.most) worst = {&finding, std::move(fewer), worse};
         }
-        if (named.finding == nullptr) break;
+        const bool spoilt = nameless.finding != nullptr && rms_left(other, kept.stated) > most_nm;
+        if (named.finding == nullptr && !spoilt) break;
         Worst& worst = nameless.finding != nullptr ? nameless : named;
         withdraw(*worst.finding, worst.most, bench.rules());
         kept = std::move(worst.without);

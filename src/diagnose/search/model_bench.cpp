@@ -22,6 +22,28 @@ std::string_view material_rule(const Case& looked_at) {
     return looked_at.step_nm > 0.0 ? "judge.material_sigma_of_steps" : "judge.material_sigma";
 }
 
+namespace {
+
+std::vector<Term> sensors_of(const Model& model) {
+    std::vector<Term> sensors;
+    for (const Term& term : model.terms) {
+        if (side_of(term) == Side::sensor) sensors.push_back(term);
+    }
+    return sensors;
+}
+
+// Errors of the motion that pass them are as good as the same.
+bool is_as_good(const std::vector<Term>& sensors, const std::vector<Term>& others) {
+    constexpr double part = 0.01;
+    return std::ranges::equal(sensors, others, [](const Term& one, const Term& other) {
+        return one.effect == other.effect && std::ranges::equal(one.values, other.values, [](auto a, auto b) {
+                   return a == b || (a && b && std::abs(*a - *b) <= part * std::abs(*b));
+               });
+    });
+}
+
+}  // namespace
+
 ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& work,
                        const DiagnosisRules& rules, std::shared_ptr<KeptScreenings> kept)
     : case_(looked_at),
@@ -40,18 +62,54 @@ void ModelBench::settle_on(const Model& model) {
     // that nobody expects would stand in for what the model lacks, and blow up the ripple to do so.
     const std::vector<double> white = weighing_.whitened(raw_residual(model));
     const double left_nm = rms(std::span(white).first(weighing_.rows().size()));
-    weighing_.set_nuisance(motion_errors(case_, model, rules_.recording), std::max(noise_.white_nm, left_nm));
+    walks_ = walk_errors(case_, model, rules_.recording);
+    walks_beside_nm_ = std::max(noise_.white_nm, left_nm);
+    sensors_ = sensors_of(model);
+    is_settled_ = true;
+    weighing_.set_nuisance(errors_of(model), walks_beside_nm_);
+}
+
+std::vector<Nuisance> ModelBench::errors_of(const Model& model) const {
+    std::vector<Nuisance> errors = acceleration_errors(case_, model);
+    errors.insert(errors.end(), walks_.begin(), walks_.end());
+    return errors;
+}
+
+// Errors of the motion lie where the sensors of a model put them: a resonance that rings with what smoothing
+// took of the acceleration must not be judged by errors that do not ring.
+ModelBench::OwnWeighing ModelBench::weighing_of(const Model& model) const {
+    OwnWeighing own;
+    own.beside = sensors_of(model);
+    if (!is_settled_ || is_as_good(own.beside, sensors_)) return own;
+    own.other.emplace(weighing_);
+    own.other->set_nuisance(errors_of(model), walks_beside_nm_);
+    return own;
 }
 
 Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::vector<double> prices,
                              int most_iterations, double settled) const {
-    Candidate found = fitted(open, std::move(prices),
-                             {.first_guess = &first_guess,
-                              .most_iterations = most_iterations,
-                              .settled = settled,
-                              .errors = false,
-                              .weighing = &weighing_,
-                              .carriers = &carriers_});
+    OwnWeighing own = weighing_of(first_guess);
+    const auto from = [&](const Model& guess, int iterations, double until) {
+        return fitted(open, prices,
+                      {.first_guess = &guess,
+                       .most_iterations = iterations,
+                       .settled = until,
+                       .errors = false,
+                       .weighing = own.other ? &*own.other : &weighing_,
+                       .carriers = &carriers_});
+    };
+    // Errors that pass a sensor as it is no longer can stand in for the torque itself: the last look takes
+    // them where they are. Before, it is known only roughly where that is.
+    constexpr double roughly = 1e-3;
+    bool is_rough = own.other.has_value();
+    Candidate found = from(first_guess, most_iterations, is_rough ? std::max(settled, roughly) : settled);
+    for (const int iterations : {std::min(most_iterations, 6), 2, 0}) {
+        if (!is_rough && is_as_good(sensors_of(found.stated), own.beside)) break;
+        is_rough = false;
+        own = weighing_of(found.stated);
+        const Model guess = found.stated;
+        found = from(guess, iterations, settled);
+    }
     state_where_told(found, case_, rules_);
     return found;
 }
@@ -134,7 +192,8 @@ std::vector<double> ModelBench::raw_residual(const Model& stated) const {
 }
 
 std::vector<double> ModelBench::residual(const Model& stated) const {
-    std::vector<double> left = weighing_(raw_residual(stated));
+    const OwnWeighing own = weighing_of(stated);
+    std::vector<double> left = (own.other ? *own.other : weighing_)(raw_residual(stated));
     left.resize(weighing_.rows().size());
     for (double& value : left) value /= noise_.white_nm;
     return left;

@@ -3,6 +3,7 @@
 // A case with its noise, on which models are fitted and compared.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -79,12 +80,24 @@ class ModelBench {
   private:
     [[nodiscard]] Candidate fitted(const Model& open, std::vector<double> prices,
                                    const FitOptions& options) const;
+    /// The weighing of a model whose sensors are not those that were settled on.
+    struct OwnWeighing {
+        std::vector<Term> beside;  ///< the sensors
+        std::optional<Weighing> other;
+    };
+    [[nodiscard]] OwnWeighing weighing_of(const Model& model) const;
+    [[nodiscard]] std::vector<Nuisance> errors_of(const Model& model) const;
+
     mutable Carriers carriers_;
     const Case& case_;
     NoiseFloor noise_;
     Work& work_;
     const DiagnosisRules& rules_;
     Weighing weighing_;
+    bool is_settled_ = false;
+    std::vector<Term> sensors_;    ///< of the model settled on
+    std::vector<Nuisance> walks_;  ///< and what its angle's walk would leave
+    double walks_beside_nm_ = 1.0;
     std::shared_ptr<KeptScreenings> kept_;
 };
 

@@ -81,7 +81,8 @@ class Screening {
     // Slopes of the model's coordinates, and the errors of the motion.
     void look_at_slopes() {
         std::vector<Column> all;
-        for (const Nuisance& error : acceleration_errors(case_)) all.push_back(counted(error.torque_nm));
+        errors_ = acceleration_errors(case_, prediction_.model());
+        for (const Nuisance& error : errors_) all.push_back(counted(error.torque_nm));
         std::vector<Column> untouched = all;
         errors_basis_ = orthonormal(untouched);
         walk_ = walk_errors(case_, prediction_.model(), rules_.recording);
@@ -212,10 +213,13 @@ class Screening {
             if (!is_solved(coordinates.list()[c])) continue;
             columns.push_back(counted(*prediction_.behind(sensor, slopes_nm_[c])));
         }
+        for (const Nuisance& error : errors_)
+            columns.push_back(counted(carries_errors(sensor) ? *prediction_.behind(sensor, error.torque_nm)
+                                                             : error.torque_nm));
         for (const Nuisance& error : walk_)
             columns.push_back(counted(*prediction_.behind(sensor, error.torque_nm)));
         work_.add(columns.size() + 1, case_.size());
-        return fall(errors_basis_, columns, torque_nm);
+        return fall({}, columns, torque_nm);
     }
 
     // Fall of the square where the model's torque becomes another one.
@@ -237,7 +241,7 @@ class Screening {
     Work& work_;
     Column residual_, left_;
     std::vector<std::vector<double>> slopes_nm_;  ///< one for each of the model's coordinates
-    std::vector<Nuisance> walk_;
+    std::vector<Nuisance> errors_, walk_;
     std::vector<Column> basis_, plain_basis_,
         errors_basis_;  ///< of all, of what no ripple is part of, of errors
     const Hints& hints_;

@@ -88,19 +88,21 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     return !hearing.asked("search.fair_part", part, part < rules.fair_part);
 }
 
-// What is left of a candidate with the best that the screening beside it finds.
-double criterion_ahead(const ModelBench& bench, const Candidate& candidate,
-                       std::span<const Effect* const> effects) {
-    double best = candidate.criterion();
+// A candidate with the best that the screening beside it finds, or as it is.
+Candidate one_ahead(const ModelBench& bench, const Candidate& candidate,
+                    std::span<const Effect* const> effects) {
+    Candidate best = candidate;
     const std::vector<Trial> trials = screen(bench, candidate, effects);
-    for (std::size_t i = 0; i < std::min(bench.rules().search.looked_ahead, trials.size()); ++i)
-        best = std::min(best, with_trial(bench, candidate, trials[i]).criterion());
+    for (std::size_t i = 0; i < std::min(bench.rules().search.looked_ahead, trials.size()); ++i) {
+        Candidate next = with_trial(bench, candidate, trials[i]);
+        if (next.criterion() < best.criterion()) best = std::move(next);
+    }
     return best;
 }
 
 // Two effects that act on the same ripple may each do little alone, and a third, which does a part of both,
 // more than either. Where the best addition leaves much of the gap, the finalists are compared by what they
-// come to with one more.
+// come to with one more. One that comes to the best itself is the same two in another order.
 std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candidate& now,
                                             const Candidate& best, const std::vector<Candidate>& tried,
                                             std::span<const Effect* const> effects) {
@@ -113,14 +115,18 @@ std::optional<Candidate> best_with_one_more(const ModelBench& bench, const Candi
     if (gap < rules.open_gap * bench.samples() ||
         best.gain_left - bench.samples() < rules.look_ahead_gap * gap)
         return std::nullopt;
-    const double ahead = criterion_ahead(bench, best, effects);
     std::optional<Candidate> found;
-    double least = ahead;
+    double least = one_ahead(bench, best, effects).criterion();
     for (const Candidate& other : tried) {
-        if (other.criterion() == best.criterion() || adds_torque(other) || bench.work().is_over()) continue;
-        const double criterion = criterion_ahead(bench, other, effects);
-        if (criterion >= least) continue;
-        least = criterion;
+        // What is not worth its price alone would not be added.
+        if (other.criterion() == best.criterion() || other.criterion() >= now.criterion() ||
+            adds_torque(other) || bench.work().is_over())
+            continue;
+        const Candidate ahead = one_ahead(bench, other, effects);
+        const Term &beside = ahead.stated.terms.back(), &alone = best.stated.terms.back();
+        if (ahead.criterion() >= least || (same_place(beside, alone) && side_of(beside) == side_of(alone)))
+            continue;
+        least = ahead.criterion();
         found = other;
     }
     return found;

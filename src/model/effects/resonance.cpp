@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "model/effects.hpp"
@@ -84,6 +86,26 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
     }
 }
 
+// What the joint's torques go by is the link, which is ahead of the motor's angle by what its inertia twists
+// the spring. The acceleration stays the motor's: inertia passes the spring with all else.
+void change_motion(std::span<const double> values, Motion& motion, GearRatio&) {
+    if (values[0] >= parameters[0].upper || values[5] < 0.5 || motion.size() < 2) return;
+    const double radians_per_s = 2.0 * std::numbers::pi * values[0];
+    std::vector<double> ahead_deg = motion.acceleration_deg_s2;
+    for (double& ahead : ahead_deg) ahead /= -radians_per_s * radians_per_s;
+    on_whole_clock(motion.time_s, motion.sample_rate.value(), ahead_deg,
+                   [&](std::span<double> whole, double rate_hz) {
+                       pass_spring({values[0], values[1]}, Hertz(rate_hz), whole);
+                   });
+    const std::size_t last = motion.size() - 1;
+    for (std::size_t k = 0; k <= last; ++k) {
+        const std::size_t before = k - std::min<std::size_t>(k, 1), after = std::min(k + 1, last);
+        motion.position_deg[k] += ahead_deg[k];
+        motion.velocity_deg_s[k] +=
+            (ahead_deg[after] - ahead_deg[before]) / (motion.time_s[after] - motion.time_s[before]);
+    }
+}
+
 void apply(const Situation& situation, std::span<const double> values, std::span<double> torque_nm) {
     if (values[0] >= parameters[0].upper || values[5] < 0.5) return;
     on_whole_clock(situation.motion.time_s, situation.motion.sample_rate.value(), torque_nm,
@@ -110,6 +132,7 @@ const Effect effects::resonance{
     .parameters = parameters,
     .whole = 5,
     .apply = apply,
+    .change_motion = change_motion,
     .change_ripple = change_ripple,
 };
 
