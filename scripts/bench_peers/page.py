@@ -151,6 +151,11 @@ def machine(record):
     return "\n".join(facts)
 
 
+def analysis_alone(record):
+    """The table of the commands that look for lines, with its own date and machine."""
+    return {"analysis": f"{record['date']}, commit {record['commit']}, {record['machine']}\n\n{analysis(record)}"}
+
+
 def tables(record):
     return {"machine": machine(record), "promises": table(["what", "must be", "measured", "met"], promises(record)),
             "processes": processes(record), "kernels": kernels(record), "analysis": analysis(record), "growth": growth(record), "raw": raw(record)}

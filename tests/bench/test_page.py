@@ -63,7 +63,13 @@ class Page(unittest.TestCase):
         told = page.tables(record())["analysis"]
         self.assertIn("| `identify`, moves | 5 | 1 | 1 | 1 |", told)
         self.assertIn("| `spectrum --segment 4.096s`, one speed | 50 | 1 | 1 | 13 |", told)
-        self.assertNotIn("`spectrum`, moves", told)
+        self.assertIn("| `spectrum`, moves | 5 | no room | - | - |", told)
+
+    def test_one_table_may_be_measured_alone(self):
+        alone = page.analysis_alone(record())
+        self.assertEqual(list(alone), ["analysis"])
+        self.assertTrue(alone["analysis"].startswith("2000-01-01, commit 0, A machine."))
+        self.assertIn(page.tables(record())["analysis"], alone["analysis"])
 
     def test_all_runs_are_kept(self):
         self.assertIn("ripplenotch: 1.000/2.000/30.0, 9.000/9.000/31.0, 1.500/3.000/29.0", page.tables(record())["raw"])
