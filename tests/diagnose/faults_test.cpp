@@ -18,7 +18,7 @@ namespace {
 
 Case case_with(std::initializer_list<std::string> hidden, std::uint64_t seed = 1) {
     Model truth = joint();
-    for (const auto term : hidden) truth.terms.push_back(parse_term(term));
+    for (const std::string& term : hidden) truth.terms.push_back(parse_term(term));
     const Trace log = logged(truth, tour(), seed);
     return whole_case(log.view(), default_smoothing, standard.recording);
 }
