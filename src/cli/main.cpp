@@ -232,8 +232,8 @@ int main(int argc, char** argv) {
 #ifdef __GLIBC__
     // What one thread has freed another may take: with a heap each `identify` goes beyond its 64 MiB.
     ::mallopt(M_ARENA_MAX, 1);
-    // What is freed is wanted again at once: to give pages back and to have them zeroed anew took an eighth of
-    // the time of `identify`. 32 MiB is the most that glibc takes.
+    // What is freed is wanted again at once: to give pages back and to have them zeroed anew took an eighth
+    // of the time of `identify`. 32 MiB is the most that glibc takes.
     ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
     ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
 #endif

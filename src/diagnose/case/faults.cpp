@@ -35,7 +35,7 @@ double rounded_step(const std::vector<double>& distances, double usual) {
 }
 
 // Step of a log that holds few distinct values at equal distances; 0 when it is as good as continuous.
-double step_of(const std::vector<double>& torque_nm, const FaultRules& rules) {
+double step_of(const std::vector<double>& torque_nm, double noise_nm, const FaultRules& rules) {
     std::vector<double> values = torque_nm;
     std::sort(values.begin(), values.end());
     std::vector<double> distances;
@@ -56,7 +56,9 @@ double step_of(const std::vector<double>& torque_nm, const FaultRules& rules) {
             ++fitting;
     }
     if (fitting >= distances.size() * rules.fitting_percent / 100) return step;
-    return rounded_step(distances, step);
+    // Finer than the noise nothing tells such steps from values that happen to lie so.
+    const double rounded = rounded_step(distances, step);
+    return rounded >= rules.step_of_noise * noise_nm ? rounded : 0.0;
 }
 
 double noise_of(const std::vector<double>& torque_nm) {
@@ -99,12 +101,13 @@ Fault fault_of(const Effect& effect, const DetectedFault& found, const Motion& m
 }  // namespace
 
 std::vector<Fault> find_faults(Case& looked_at, const FaultRules& rules) {
+    const double noise_nm = noise_of(looked_at.torque_nm);
     const LoggedTorque log{looked_at.motion,
                            looked_at.torque_nm,
                            looked_at.use,
                            looked_at.moving_deg_s,
-                           step_of(looked_at.torque_nm, rules),
-                           noise_of(looked_at.torque_nm)};
+                           step_of(looked_at.torque_nm, noise_nm, rules),
+                           noise_nm};
     std::vector<Fault> faults;
     for (const Effect* effect : detectable()) {
         const auto found = effect->detect(log, rules);
