@@ -131,11 +131,11 @@ void conclude(const Looked& looked, const IdentifyOptions& options, Identificati
             of_velocity(result.velocity_error));
     }
     result.grounds = grounds_of(looked, options, result.evidence);
-    if (looked.steady && result.evidence == LineEvidence::stretches && result.gear_ratio.value) {
+    if (looked.steady && result.evidence == LineEvidence::stretches) {
         if (looked.steady->offset)
             result.notes.push_back("no position that agrees with the velocity, and " +
                                    of_velocity(result.velocity_error));
-        else if (looked.without_position)
+        else if (looked.without_position && result.gear_ratio.value)
             result.notes.push_back(at_its_word(result.grounds.slowest_deg_s));
     }
     settle(result);

@@ -16,7 +16,7 @@ namespace {
 double rounded_step(const std::vector<double>& distances, double usual) {
     double shortest = usual, longest = usual, range = 0.0, steps = 0.0;
     for (const double distance : distances) {
-        if (distance < 1.5 * usual) {
+        if (distance < 1.5 * usual) {  // one step, not two
             shortest = std::min(shortest, distance);
             longest = std::max(longest, distance);
         }
@@ -25,7 +25,7 @@ double rounded_step(const std::vector<double>& distances, double usual) {
     }
     const double rounded_to = longest - shortest, step = range / steps;
     double value = 0.0, place = 0.0;
-    bool in_place = rounded_to < 0.5 * usual;
+    bool in_place = rounded_to < 0.5 * usual;  // coarser, it would leave no steps to be seen; by hand
     for (const double distance : distances) {
         value += distance;
         place += std::round(distance / step) * step;

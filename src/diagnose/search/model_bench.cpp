@@ -34,7 +34,7 @@ std::vector<Term> sensors_of(const Model& model) {
 
 // Errors of the motion that pass them are as good as the same.
 bool is_as_good(const std::vector<Term>& sensors, const std::vector<Term>& others) {
-    constexpr double part = 0.01;
+    constexpr double part = 0.01;  // by hand
     return std::ranges::equal(sensors, others, [](const Term& one, const Term& other) {
         return one.effect == other.effect && std::ranges::equal(one.values, other.values, [](auto a, auto b) {
                    return a == b || (a && b && std::abs(*a - *b) <= part * std::abs(*b));
@@ -100,7 +100,7 @@ Candidate ModelBench::fitted(const Model& open, const Model& first_guess, std::v
     };
     // Errors that pass a sensor as it is no longer can stand in for the torque itself: the last look takes
     // them where they are. Before, it is known only roughly where that is.
-    constexpr double roughly = 1e-3;
+    constexpr double roughly = 1e-3;  // by hand, as the steps of each look
     bool is_rough = own.other.has_value();
     Candidate found = from(first_guess, most_iterations, is_rough ? std::max(settled, roughly) : settled);
     for (const int iterations : {std::min(most_iterations, 6), 2, 0}) {
