@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/between_samples.hpp"
+#include "model/free_move.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -18,47 +19,9 @@ constexpr double same_step = 1e-6;
 // Square of ringing that is no more than rounding.
 constexpr double died_away = 1e-36;
 
-// Displacement, and speed in displacements a radian of the undamped spring; both relative to the drive.
-struct State {
-    std::complex<double> at, moving;
-};
-
 std::complex<double> product(std::complex<double> a, std::complex<double> b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
-
-// What becomes of a free mass within so many radians of the undamped spring.
-struct FreeMove {
-    double at_of_at, at_of_moving, moving_of_moving;  // and -at_of_moving from at to moving
-
-    FreeMove(double damping, double radians) {
-        const double square = damping * damping - 1.0;
-        double even = 0.0, odd = 0.0;
-        if (const double root = std::sqrt(std::abs(square)); root * radians < 1e-4) {
-            // Near critical damping, or hardly any time: differences of exponentials are lost in rounding.
-            const double left = portable::exp(-std::min(damping * radians, 700.0));
-            even = left * (1.0 + square * radians * radians / 2.0);
-            odd = left * radians * (1.0 + square * radians * radians / 6.0);
-        } else if (square < 0.0) {
-            const double left = portable::exp(-std::min(damping * radians, 700.0));
-            even = left * portable::cos(root * radians);
-            odd = left * portable::sin(root * radians) / root;
-        } else {
-            const double slow = portable::exp(-std::min((damping - root) * radians, 700.0)),
-                         fast = portable::exp(-std::min((damping + root) * radians, 700.0));
-            even = 0.5 * (slow + fast);
-            odd = 0.5 * (slow - fast) / root;
-        }
-        at_of_at = even + damping * odd;
-        at_of_moving = odd;
-        moving_of_moving = even - damping * odd;
-    }
-
-    [[nodiscard]] State of(const State& state) const {
-        return {at_of_at * state.at + at_of_moving * state.moving,
-                moving_of_moving * state.moving - at_of_moving * state.at};
-    }
-};
 
 class Mass {
   public:
@@ -66,31 +29,29 @@ class Mass {
         : damping_(spring.damping),
           radians_per_s_(2.0 * std::numbers::pi * spring.frequency_hz),
           step_s_(step_s),
-          move_(spring.damping, radians_per_s_ * step_s),
+          usual_(free_move(spring.damping, radians_per_s_ * step_s)),
+          moves_(spring.damping),
           now_(steady(u)) {}
 
     // To the next sample, at a constant frequency of the drive: exact where it is constant, and else the
     // drive is off by an eighth of its change in the step times the step. `turned` is the drive's turn,
     // reversed.
     void go(double step_s, double u, std::complex<double> turned) {
-        if (step_s > 0.0 && std::abs(step_s - step_s_) > same_step * step_s_) {
-            step_s_ = step_s;
-            move_ = FreeMove(damping_, radians_per_s_ * step_s);
-        }
-        const State rest = steady(u);
-        const State ringing{now_.at - rest.at, now_.moving - rest.moving};
+        const FreeState rest = steady(u);
+        const FreeState ringing{now_.at - rest.at, now_.moving - rest.moving};
         if (std::norm(ringing.at) + std::norm(ringing.moving) < died_away) {
             now_ = rest;
             return;
         }
-        const State left = move_.of(ringing);
+        const bool usual = !(step_s > 0.0) || std::abs(step_s - step_s_) <= same_step * step_s_;
+        const FreeState left = (usual ? usual_ : moves_.within(radians_per_s_ * step_s)).of(ringing);
         now_ = {rest.at + product(turned, left.at), rest.moving + product(turned, left.moving)};
     }
 
     [[nodiscard]] std::complex<double> response() const { return now_.at; }
 
   private:
-    [[nodiscard]] State steady(double u) const {
+    [[nodiscard]] FreeState steady(double u) const {
         const double real = 1.0 - u * u, imaginary = 2.0 * damping_ * u;
         const double square = real * real + imaginary * imaginary;
         const std::complex<double> at(real / square, -imaginary / square);
@@ -98,8 +59,9 @@ class Mass {
     }
 
     double damping_, radians_per_s_, step_s_;
-    FreeMove move_;
-    State now_;
+    FreeMove usual_;
+    FreeMoves moves_;
+    FreeState now_;
 };
 
 // Integrals over a step of u^m times what a kick at u is at the step's end: displacement, and speed.
@@ -117,7 +79,7 @@ KickMoments kick_moments(double damping, double radians) {
     KickMoments moments;
     const double parts = std::max(1.0, std::ceil(radians));
     const auto add = [&](double u, double weight) {
-        const FreeMove after(damping, radians * (1.0 - u));
+        const FreeMove after = free_move(damping, radians * (1.0 - u));
         double power = weight;
         for (std::size_t m = 0; m < step_points; ++m) {
             moments.at[m] += power * after.at_of_moving;
@@ -140,7 +102,7 @@ void pass_spring(const Spring& spring, Hertz sample_rate, std::span<double> valu
     if (values.empty()) return;
     const double radians = 2.0 * std::numbers::pi * spring.frequency_hz / sample_rate.value();
     const KickMoments moments = kick_moments(spring.damping, radians);
-    const FreeMove move(spring.damping, radians);
+    const FreeMove move = free_move(spring.damping, radians);
     const std::vector<double> kicked = over_steps(values, step_weights(moments.at)),
                               hurried = over_steps(values, step_weights(moments.moving));
     double at = values[0], moving = 0.0;

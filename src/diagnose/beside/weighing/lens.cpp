@@ -13,17 +13,6 @@
 namespace ripplenotch {
 namespace {
 
-// A pair of columns, a cosine and what is a quarter of a cycle ahead of it, as the gain changes both.
-void ring(const std::vector<std::complex<double>>& gain, std::vector<std::vector<double>>& columns) {
-    std::vector<double> cosine = columns[0], ahead = columns[1];
-    for (std::size_t k = 0; k < gain.size(); ++k) {
-        cosine[k] = gain[k].real() * columns[0][k] + gain[k].imag() * columns[1][k];
-        ahead[k] = gain[k].real() * columns[1][k] - gain[k].imag() * columns[0][k];
-    }
-    columns.push_back(std::move(cosine));
-    columns.push_back(std::move(ahead));
-}
-
 // What the speed and the direction make of a column.
 std::vector<double> swelled(const std::vector<double>& column, const Motion& motion, double fastest_deg_s,
                             bool by_direction, bool by_speed) {
@@ -193,8 +182,22 @@ std::vector<std::vector<double>> Lens::torque_nm(const Shape& shape) const {
         columns.push_back(prediction_->added(across));
     }
     work_.add(prediction_->applied() - before, case_.size());
-    if (shape.ringing) ring(ringing_gain(shape, case_.motion, prediction_->model().gear_ratio), columns);
+    if (shape.ringing) {
+        for (auto& column : ringing_nm(shape, Columns(columns))) columns.push_back(std::move(column));
+    }
     return columns;
+}
+
+// Of a pair, a cosine and what is a quarter of a cycle ahead of it: as the gain changes both.
+Lens::Columns Lens::ringing_nm(const Shape& shape, const Columns& plain_nm) const {
+    const auto gain = ringing_gain(shape, case_.motion, prediction_->model().gear_ratio);
+    Columns ringing = plain_nm;
+    for (std::size_t k = 0; k < gain.size(); ++k) {
+        const double cosine = plain_nm[0][k], ahead = plain_nm[1][k];
+        ringing[0][k] = gain[k].real() * cosine + gain[k].imag() * ahead;
+        ringing[1][k] = gain[k].real() * ahead - gain[k].imag() * cosine;
+    }
+    return ringing;
 }
 
 std::vector<double> Lens::target_earlier(std::ptrdiff_t samples) const {
@@ -218,10 +221,8 @@ std::vector<double> Lens::weighed(std::span<const double> torque_nm) const {
 
 Lens::Weighed Lens::weighed(const Shape& shape) const { return weighed(torque_nm(shape)); }
 
-Lens::Weighed Lens::weighed_ringing(const Shape& shape) const {
-    Columns columns = torque_nm(shape);
-    columns.erase(columns.begin(), columns.begin() + 2);
-    return weighed(columns);
+Lens::Weighed Lens::weighed_ringing(const Shape& shape, const Columns& plain_nm) const {
+    return weighed(ringing_nm(shape, plain_nm));
 }
 
 Lens::Weighed Lens::weighed(const Columns& torque_nm) const {

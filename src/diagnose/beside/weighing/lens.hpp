@@ -49,8 +49,9 @@ class Lens {
             0.0;  ///< of the whitened columns that the always-on ones leave, of the one of which most is left
     };
     [[nodiscard]] Weighed weighed(const Shape& shape) const;
-    /// The same of the ripple that rings, without the plain one: its last columns.
-    [[nodiscard]] Weighed weighed_ringing(const Shape& shape) const;
+    /// The same of what rings of a ripple: without the plain one, whose torque is `plain_nm`.
+    [[nodiscard]] Weighed weighed_ringing(const Shape& shape,
+                                          const std::vector<std::vector<double>>& plain_nm) const;
     [[nodiscard]] std::vector<double> weighed(std::span<const double> torque_nm) const;
     /// The measured torque less the model's own and the given terms' means, weighed.
     [[nodiscard]] const std::vector<double>& target() const { return target_; }
@@ -89,6 +90,8 @@ class Lens {
     /// What everything at once leaves of the bridged torque.
     [[nodiscard]] std::vector<double> left_by_all() const;
     [[nodiscard]] Columns bridged(const Columns& columns) const;
+    /// What rings of a ripple whose torque is this.
+    [[nodiscard]] Columns ringing_nm(const Shape& shape, const Columns& plain_nm) const;
     [[nodiscard]] Weighed weighed(const Columns& torque_nm) const;
 
     Case case_;  ///< with what the given terms carry

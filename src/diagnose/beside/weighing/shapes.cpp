@@ -71,6 +71,16 @@ std::vector<double> places_of(const Parameter& parameter, bool scale, const Scal
     return places;
 }
 
+bool is_alike(const Term& a, const Term& b) {
+    constexpr double by_rounding = 1e-12;  // a few moves up and down; the least move is 1e-2
+    return a.effect == b.effect &&
+           std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
+                      [](const std::optional<double>& x, const std::optional<double>& y) {
+                          return x.has_value() == y.has_value() &&
+                                 (!x || std::abs(*x - *y) <= by_rounding * std::abs(*x));
+                      });
+}
+
 // Up to this frequency a mass on a spring passes half of the power that drives it, or more.
 double passed_hz(const Term& ringing) {
     double hz = 0.0, damping = 0.0;
@@ -97,6 +107,11 @@ Kind kind_of(const Effect& effect) {
 bool is_against_motion(const Effect& effect) {
     const Parameter* size = linear_of(effect);
     return !effect.polar && size != nullptr && size->lower >= 0.0;
+}
+
+bool alike(const Shape& a, const Shape& b) {
+    return is_alike(a.term, b.term) && a.ringing.has_value() == b.ringing.has_value() &&
+           (!a.ringing || is_alike(*a.ringing, *b.ringing));
 }
 
 bool same_name(const Shape& a, const Shape& b) {

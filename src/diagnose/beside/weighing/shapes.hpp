@@ -33,6 +33,8 @@ struct Scale {
 [[nodiscard]] Kind kind_of(const Effect& effect);
 /// True when the effect's torque acts against the motion, so that a size below 0 is another's.
 [[nodiscard]] bool is_against_motion(const Effect& effect);
+/// Whether the two differ by no more than rounding, as a scale does that went up and down again.
+[[nodiscard]] bool alike(const Shape& a, const Shape& b);
 /// Whether the two are one name: the same effect, at the same order where it has one.
 [[nodiscard]] bool same_name(const Shape& a, const Shape& b);
 /// "ripple 2": the name with its order.

@@ -37,7 +37,8 @@ void Sums::add(const Shape& shape) {
         const auto place = static_cast<std::size_t>(plain - shapes_.begin());
         columns = columns_[place];
         part = own_part_[place];
-        take(lens_.weighed_ringing(shape));
+        if (plain_.term != shape.term) plain_ = {shape.term, lens_.torque_nm(*plain)};
+        take(lens_.weighed_ringing(shape, plain_.torque_nm));
     } else {
         take(lens_.weighed(shape));
     }
@@ -56,7 +57,8 @@ void Sums::add(const Shape& shape) {
 }
 
 std::size_t Sums::place_of(const Shape& shape) {
-    const auto known = std::find(shapes_.begin(), shapes_.end(), shape);
+    const auto known =
+        std::find_if(shapes_.begin(), shapes_.end(), [&](const Shape& one) { return alike(one, shape); });
     if (known != shapes_.end()) return static_cast<std::size_t>(known - shapes_.begin());
     add(shape);
     return shapes_.size() - 1;

@@ -62,6 +62,11 @@ class Sums {
     std::vector<double> own_part_;  ///< of the whitened columns that is outside the always-on ones
     std::vector<std::vector<Eigen::VectorXd>> targets_;  ///< by shape and fold
     std::vector<double> target_squares_;                 ///< by fold
+    /// The plain ripple whose ringing was weighed last: a search asks for many in a row.
+    struct {
+        Term term;
+        std::vector<std::vector<double>> torque_nm;
+    } plain_;
     mutable std::map<std::pair<std::size_t, std::size_t>, ByFold> pairs_;
 };
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// How a mass on a damped spring moves when nothing drives it.
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace ripplenotch {
+
+/// Displacement, and speed in displacements a radian of the undamped spring.
+struct FreeState {
+    std::complex<double> at, moving;
+};
+
+/// What becomes of a free mass within a step.
+struct FreeMove {
+    double at_of_at, at_of_moving, moving_of_moving;  ///< and -at_of_moving from at to moving
+
+    [[nodiscard]] FreeState of(const FreeState& state) const {
+        return {at_of_at * state.at + at_of_moving * state.moving,
+                moving_of_moving * state.moving - at_of_moving * state.at};
+    }
+};
+
+/// Within so many radians of the undamped spring.
+[[nodiscard]] FreeMove free_move(double damping, double radians);
+
+/// Free moves over steps of many lengths, as an uneven clock has them: each from one that is near and known
+/// already, and the first terms of its series for what is left.
+class FreeMoves {
+  public:
+    explicit FreeMoves(double damping);
+
+    /// As free_move, to rounding.
+    [[nodiscard]] FreeMove within(double radians);
+
+  private:
+    static constexpr std::size_t terms = 8;
+    using Series = std::array<double, terms>;  ///< by power of the radians
+    [[nodiscard]] FreeMove shortly(double radians) const;
+
+    double damping_;
+    Series at_of_at_, at_of_moving_;
+    std::vector<std::optional<FreeMove>> known_;  ///< by place
+};
+
+}  // namespace ripplenotch
