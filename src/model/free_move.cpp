@@ -10,9 +10,9 @@ namespace ripplenotch {
 namespace {
 
 // Between two known moves, radians. At damping 2, the most that a spring may have, the first term that is
-// left out is then 1e-16 of the move.
-constexpr double spacing = 0.02;
-constexpr double longest_known = 80.0;  // by hand: bounds the memory
+// left out is then 1e-15 of the move.
+constexpr double spacing = 0.005;
+constexpr double longest_known = 20.0;  // by hand: bounds the memory
 
 }  // namespace
 

@@ -63,6 +63,11 @@ double first_lateness(std::span<const double> time_s, double step_s) {
     return portable::arg(sum) / (2.0 * std::numbers::pi);
 }
 
+// As std::round, which is a call on most builds; of so few steps there is always a long.
+double nearest(double steps) {
+    return static_cast<double>(static_cast<long>(steps < 0.0 ? steps - 0.5 : steps + 0.5));
+}
+
 std::vector<std::size_t> places_on(std::span<const double> time_s, double step_s) {
     // Of each stamp how late it is, and how late stamps are here in the mean, in steps.
     constexpr double followed = 0.02;
@@ -73,7 +78,7 @@ std::vector<std::size_t> places_on(std::span<const double> time_s, double step_s
         double whole = 1.0;
         if (steps < is_gap) {
             late += steps;
-            whole = std::round(late - mean_late);
+            whole = nearest(late - mean_late);
             if (whole < 1.0 && k > 1 && places[k - 1] - places[k - 2] > 1) {
                 // The stamp before was later than a stamp may be: nothing is missing before it.
                 --places[k - 1];
@@ -102,10 +107,7 @@ double step_over(std::span<const double> time_s, std::span<const std::size_t> pl
     return passed_s / passed;
 }
 
-}  // namespace
-
-std::vector<std::size_t> places_of_rows(std::span<const double> time_s, double& step_s) {
-    if (time_s.size() < 8) return {};
+std::vector<std::size_t> places_found(std::span<const double> time_s, double& step_s) {
     step_s = single_step_s(time_s, middle_step_s(time_s));
     if (step_s == 0.0) return {};
     // Of jittered stamps the longest single steps look like lost rows, so the mean of the others is too
@@ -113,6 +115,25 @@ std::vector<std::size_t> places_of_rows(std::span<const double> time_s, double& 
     constexpr int passes = 2;
     for (int pass = 0; pass < passes; ++pass) step_s = step_over(time_s, places_on(time_s, step_s), step_s);
     return places_on(time_s, step_s);
+}
+
+}  // namespace
+
+std::vector<std::size_t> places_of_rows(std::span<const double> time_s, double& step_s) {
+    if (time_s.size() < 8) return {};
+    // A diagnosis asks for the places of one clock a thousand times.
+    struct Asked {
+        std::vector<double> time_s;
+        std::vector<std::size_t> places;
+        double step_s = 0.0;
+    };
+    thread_local Asked last;
+    if (!std::ranges::equal(last.time_s, time_s)) {
+        last.time_s.assign(time_s.begin(), time_s.end());
+        last.places = places_found(time_s, last.step_s);
+    }
+    step_s = last.step_s;
+    return last.places;
 }
 
 std::vector<double> with_lost_rows(std::span<const double> values, std::span<const std::size_t> places) {

@@ -48,15 +48,24 @@ void Ground::find_bridges(const std::vector<unsigned char>& use) {
     }
 }
 
-std::vector<double> Ground::bridged(std::span<const double> column) const {
+std::vector<double> Ground::thinned(std::span<const double> column) const {
     std::vector<double> thin;
     thin.reserve(sample_.size());
     for (const std::size_t sample : sample_) thin.push_back(column[sample]);
+    return thin;
+}
+
+void Ground::bridge(std::vector<double>& thin) const {
     for (const Bridge& bridge : bridges_) {
         thin[bridge.at] = bridge.part < 0.0
                               ? 0.0
                               : thin[bridge.left] + bridge.part * (thin[bridge.right] - thin[bridge.left]);
     }
+}
+
+std::vector<double> Ground::bridged(std::span<const double> column) const {
+    std::vector<double> thin = thinned(column);
+    bridge(thin);
     return thin;
 }
 

@@ -24,14 +24,17 @@ class Ground {
     Ground(const Case& looked_at, const BesideRules& rules);
 
     [[nodiscard]] double rate_hz() const { return rate_hz_; }
-    [[nodiscard]] std::size_t thinned() const { return sample_.size(); }
+    [[nodiscard]] std::size_t samples() const { return sample_.size(); }
     /// Lags of the leftover's colour: rules.memory_s, less on a log that is too short for so many.
     [[nodiscard]] std::size_t memory() const { return memory_; }
 
-    /// A column of the case, thinned() values: where a sample does not count, the straight line between its
+    /// A column of the case, samples() values: where a sample does not count, the straight line between its
     /// neighbours that do. All columns and the torque are bridged alike, so that what holds between them
     /// still does.
     [[nodiscard]] std::vector<double> bridged(std::span<const double> column) const;
+    /// Its two steps.
+    [[nodiscard]] std::vector<double> thinned(std::span<const double> column) const;
+    void bridge(std::vector<double>& thinned_column) const;
 
     /// Takes the colour up; rows() are those that count, with enough rows of their stretch before them.
     void color(std::vector<double> coefficients);

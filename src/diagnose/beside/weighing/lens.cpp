@@ -66,6 +66,9 @@ Lens::Lens(const Case& looked_at, const DiagnosisRules& rules, Work& work, const
       rules_(rules),
       work_(work),
       ground_(looked_at, rules.beside),
+      thin_{Hertz(ground_.rate_hz()), ground_.thinned(looked_at.motion.time_s),
+            ground_.thinned(looked_at.motion.position_deg), ground_.thinned(looked_at.motion.velocity_deg_s),
+            ground_.thinned(looked_at.motion.acceleration_deg_s2)},
       bounds_(scale_bounds(looked_at, model.stated.gear_ratio.value(), rules.beside)) {}
 
 std::shared_ptr<Lens::HeldColumns> Lens::columns_of(const Candidate& model,
@@ -150,7 +153,7 @@ std::vector<double> Lens::left_by_all() const {
     }
     deviation.resize(all.size(), any_size);
     // The values need fewer rows than their residual.
-    const std::size_t step = std::max<std::size_t>(1, ground_.thinned() / rules_.screening.sketch_samples);
+    const std::size_t step = std::max<std::size_t>(1, ground_.samples() / rules_.screening.sketch_samples);
     Columns some;
     const auto thinned = [step](const std::vector<double>& column) {
         std::vector<double> thin;
@@ -183,14 +186,15 @@ std::vector<std::vector<double>> Lens::torque_nm(const Shape& shape) const {
     }
     work_.add(prediction_->applied() - before, case_.size());
     if (shape.ringing) {
-        for (auto& column : ringing_nm(shape, Columns(columns))) columns.push_back(std::move(column));
+        for (auto& column : ringing_nm(shape, case_.motion, Columns(columns)))
+            columns.push_back(std::move(column));
     }
     return columns;
 }
 
 // Of a pair, a cosine and what is a quarter of a cycle ahead of it: as the gain changes both.
-Lens::Columns Lens::ringing_nm(const Shape& shape, const Columns& plain_nm) const {
-    const auto gain = ringing_gain(shape, case_.motion, prediction_->model().gear_ratio);
+Lens::Columns Lens::ringing_nm(const Shape& shape, const Motion& motion, const Columns& plain_nm) const {
+    const auto gain = ringing_gain(shape, motion, prediction_->model().gear_ratio);
     Columns ringing = plain_nm;
     for (std::size_t k = 0; k < gain.size(); ++k) {
         const double cosine = plain_nm[0][k], ahead = plain_nm[1][k];
@@ -219,19 +223,23 @@ std::vector<double> Lens::weighed(std::span<const double> torque_nm) const {
     return white_->left(ground_.whitened(ground_.bridged(torque_nm)));
 }
 
-Lens::Weighed Lens::weighed(const Shape& shape) const { return weighed(torque_nm(shape)); }
+Lens::Weighed Lens::weighed(const Shape& shape) const { return weighed(bridged(torque_nm(shape))); }
 
 Lens::Weighed Lens::weighed_ringing(const Shape& shape, const Columns& plain_nm) const {
-    return weighed(ringing_nm(shape, plain_nm));
+    Columns thin;
+    for (const auto& column : plain_nm) thin.push_back(ground_.thinned(column));
+    Columns ringing = ringing_nm(shape, thin_, thin);
+    for (auto& column : ringing) ground_.bridge(column);
+    return weighed(ringing);
 }
 
-Lens::Weighed Lens::weighed(const Columns& torque_nm) const {
-    Weighed weighed;
-    for (const auto& column : torque_nm) {
-        const std::vector<double> white = ground_.whitened(ground_.bridged(column));
-        weighed.columns.push_back(white_->left(white));
-        const double all = rms(white);
-        if (all > 0.0) weighed.part = std::max(weighed.part, rms(weighed.columns.back()) / all);
+Lens::Weighed Lens::weighed(const Columns& bridged_nm) const {
+    Columns white;
+    for (const auto& column : bridged_nm) white.push_back(ground_.whitened(column));
+    Weighed weighed{white_->left(white)};
+    for (std::size_t c = 0; c < white.size(); ++c) {
+        const double all = rms(white[c]);
+        if (all > 0.0) weighed.part = std::max(weighed.part, rms(weighed.columns[c]) / all);
     }
     return weighed;
 }

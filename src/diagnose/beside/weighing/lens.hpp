@@ -90,14 +90,15 @@ class Lens {
     /// What everything at once leaves of the bridged torque.
     [[nodiscard]] std::vector<double> left_by_all() const;
     [[nodiscard]] Columns bridged(const Columns& columns) const;
-    /// What rings of a ripple whose torque is this.
-    [[nodiscard]] Columns ringing_nm(const Shape& shape, const Columns& plain_nm) const;
-    [[nodiscard]] Weighed weighed(const Columns& torque_nm) const;
+    /// What rings of a ripple whose torque along the motion is this.
+    [[nodiscard]] Columns ringing_nm(const Shape& shape, const Motion& motion, const Columns& plain_nm) const;
+    [[nodiscard]] Weighed weighed(const Columns& bridged_nm) const;
 
     Case case_;  ///< with what the given terms carry
     const DiagnosisRules& rules_;
     Work& work_;
     Ground ground_;
+    Motion thin_;  ///< at the ground's samples
     ScaleBounds bounds_;
     std::optional<Prediction> prediction_;
     std::vector<Shape> shapes_;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose/beside/weighing/ridge.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/vectors/dot.hpp"
 
@@ -31,13 +33,17 @@ Ridge::Ridge(const std::vector<std::vector<double>>& columns, std::span<const do
     factored_ = DefiniteFactors(products);
 }
 
+std::vector<double> Ridge::values_of(Eigen::VectorXd products) const {
+    products = products.cwiseQuotient(scale_).eval();
+    products = factored_.solve(products).cwiseQuotient(scale_);
+    return {products.begin(), products.end()};
+}
+
 std::vector<double> Ridge::solve(std::span<const double> target) const {
-    Eigen::VectorXd values(scale_.size());
-    for (Index r = 0; r < values.size(); ++r)
-        values[r] =
-            dot(columns_[static_cast<std::size_t>(r)].data(), target.data(), target.size()) / scale_[r];
-    values = factored_.solve(values).cwiseQuotient(scale_);
-    return {values.begin(), values.end()};
+    Eigen::VectorXd products(scale_.size());
+    for (Index r = 0; r < products.size(); ++r)
+        products[r] = dot(columns_[static_cast<std::size_t>(r)].data(), target.data(), target.size());
+    return values_of(std::move(products));
 }
 
 std::vector<double> Ridge::left(std::span<const double> target, const std::vector<double>& values) const {
@@ -48,5 +54,43 @@ std::vector<double> Ridge::left(std::span<const double> target, const std::vecto
 }
 
 std::vector<double> Ridge::left(std::span<const double> target) const { return left(target, solve(target)); }
+
+std::vector<std::vector<double>> Ridge::left(std::vector<std::vector<double>> targets) const {
+    std::size_t t = 0;
+    for (; t + 1 < targets.size(); t += 2) leave(targets[t], targets[t + 1]);
+    if (t < targets.size()) targets[t] = left(targets[t]);
+    return targets;
+}
+
+// The columns are more than a cache holds, and are read for both at once.
+void Ridge::leave(std::vector<double>& one, std::vector<double>& other) const {
+    constexpr std::size_t rows_at_once = 1024;  // by hand: two targets stay in the nearest cache
+    const std::size_t rows = one.size(), columns = columns_.size(), even = columns - columns % 2;
+    Eigen::VectorXd products(scale_.size()), others(scale_.size());
+    for (std::size_t r = 0; r < even; r += 2) {
+        const auto place = static_cast<Index>(r);
+        double sums[4] = {};
+        add_dots({columns_[r].data(), columns_[r + 1].data()}, {one.data(), other.data()}, rows, sums);
+        products[place] = sums[0];
+        others[place] = sums[1];
+        products[place + 1] = sums[2];
+        others[place + 1] = sums[3];
+    }
+    if (even < columns) {
+        products[scale_.size() - 1] = dot(columns_.back().data(), one.data(), rows);
+        others[scale_.size() - 1] = dot(columns_.back().data(), other.data(), rows);
+    }
+    const std::vector<double> own = values_of(std::move(products)), its = values_of(std::move(others));
+    for (std::size_t first = 0; first < rows; first += rows_at_once) {
+        const std::size_t count = std::min(rows_at_once, rows - first);
+        double *to = one.data() + first, *its_to = other.data() + first;
+        for (std::size_t r = 0; r < even; r += 2)
+            add_scaled_pair({-own[r], -its[r], -own[r + 1], -its[r + 1]},
+                            {columns_[r].data() + first, columns_[r + 1].data() + first}, {to, its_to}, count);
+        if (even == columns) continue;
+        add_scaled(-own.back(), columns_.back().data() + first, to, count);
+        add_scaled(-its.back(), columns_.back().data() + first, its_to, count);
+    }
+}
 
 }  // namespace ripplenotch

@@ -24,8 +24,14 @@ class Ridge {
     [[nodiscard]] std::vector<double> left(std::span<const double> target,
                                            const std::vector<double>& values) const;
     [[nodiscard]] std::vector<double> left(std::span<const double> target) const;
+    /// The same of several targets.
+    [[nodiscard]] std::vector<std::vector<double>> left(std::vector<std::vector<double>> targets) const;
 
   private:
+    /// Of two targets what is left of them.
+    void leave(std::vector<double>& one, std::vector<double>& other) const;
+    [[nodiscard]] std::vector<double> values_of(Eigen::VectorXd products) const;
+
     const std::vector<std::vector<double>>& columns_;
     Eigen::VectorXd scale_;
     DefiniteFactors factored_;

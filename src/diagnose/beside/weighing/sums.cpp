@@ -97,10 +97,22 @@ const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
     if (!is_new) return entry->second;
     for (const RowRange& fold : lens_.ground().folds()) {
         MatrixXd sums(static_cast<Index>(columns_[a].size()), static_cast<Index>(columns_[b].size()));
-        for (Index r = 0; r < sums.rows(); ++r) {
-            for (Index c = 0; c < sums.cols(); ++c)
-                sums(r, c) = dot(columns_[a][static_cast<std::size_t>(r)]->data() + fold.first,
-                                 columns_[b][static_cast<std::size_t>(c)]->data() + fold.first, fold.count);
+        const auto of = [&](std::size_t shape, Index column) {
+            return columns_[shape][static_cast<std::size_t>(column)]->data() + fold.first;
+        };
+        // Two by two where both have two columns or four.
+        if (sums.rows() % 2 == 0 && sums.cols() % 2 == 0) {
+            for (Index r = 0; r < sums.rows(); r += 2) {
+                for (Index c = 0; c < sums.cols(); c += 2) {
+                    double four[4] = {};
+                    add_dots({of(a, r), of(a, r + 1)}, {of(b, c), of(b, c + 1)}, fold.count, four);
+                    sums.block<2, 2>(r, c) << four[0], four[1], four[2], four[3];
+                }
+            }
+        } else {
+            for (Index r = 0; r < sums.rows(); ++r) {
+                for (Index c = 0; c < sums.cols(); ++c) sums(r, c) = dot(of(a, r), of(b, c), fold.count);
+            }
         }
         entry->second.push_back(std::move(sums));
     }
