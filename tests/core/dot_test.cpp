@@ -37,6 +37,10 @@ Numbers made_of(const Numbers& a, const Numbers& b, const Numbers& c, const Numb
     Numbers scaled = c;
     add_scaled(0.37, a.data(), scaled.data(), n);
     made.insert(made.end(), scaled.begin(), scaled.end());
+    Numbers one = c, other = d;
+    add_scaled_pair({0.37, -1.2, 0.11, 2.3}, {a.data(), b.data()}, {one.data(), other.data()}, n);
+    made.insert(made.end(), one.begin(), one.end());
+    made.insert(made.end(), other.begin(), other.end());
     return made;
 }
 
@@ -62,6 +66,8 @@ TEST_CASE("sums of products give the same bits on every width of vectors, and wh
             plain[4] += b[k] * d[k];
             plain.push_back(c[k] + 0.37 * a[k]);
         }
+        for (std::size_t k = 0; k < n; ++k) plain.push_back(c[k] + 0.37 * a[k] + 0.11 * b[k]);
+        for (std::size_t k = 0; k < n; ++k) plain.push_back(d[k] - 1.2 * a[k] + 2.3 * b[k]);
         // Products of up to 9, summed in another order.
         for (std::size_t i = 0; i < plain.size(); ++i)
             CHECK(made.front()[i] == Approx(plain[i]).margin(1e-11));

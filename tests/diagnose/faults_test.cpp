@@ -79,6 +79,25 @@ TEST_CASE("each fault is found alone, with its size, and what it spoiled does no
     }
 }
 
+TEST_CASE("an extreme that the recorder held is no clipping, a clipped torque of a recorder that holds is") {
+    const auto hold = [](Case& c, std::size_t at, std::size_t samples) {
+        for (std::size_t k = at + 1; k < at + samples; ++k) c.torque_nm[k] = c.torque_nm[at];
+    };
+    Case c = case_with({});
+    const auto peak = std::max_element(c.torque_nm.begin(), c.torque_nm.end());
+    hold(c, static_cast<std::size_t>(peak - c.torque_nm.begin()), 10);
+    for (std::size_t k = 100; k + 12 < c.size(); k += 300) {
+        if (*std::max_element(&c.torque_nm[k], &c.torque_nm[k] + 12) < *peak) hold(c, k, 11);
+    }
+    CHECK_FALSE(std::ranges::count(names(find_faults(c, standard.faults)), "saturation"));
+
+    Case clipped = case_with({"saturation,limit_nm=0.9"});
+    for (std::size_t k = 100; k + 12 < clipped.size(); k += 300) {
+        if (std::abs(clipped.torque_nm[k]) < 0.9) hold(clipped, k, 11);
+    }
+    CHECK(std::ranges::count(names(find_faults(clipped, standard.faults)), "saturation") == 1);
+}
+
 TEST_CASE("whole steps that were rounded once more are steps still, and nothing else") {
     for (const double step_nm : {0.482, 0.317, 0.75}) {
         Case c = case_with({fmt::format("quantization,step_nm={}", step_nm)});

@@ -30,8 +30,31 @@ void apply(const Situation&, std::span<const double> values, std::span<double> t
         torque_nm[k] = std::clamp(torque_nm[k], -values[0], values[0]);
 }
 
+// The most samples in a row of one value that is no end of the range.
+std::size_t longest_hold(std::span<const double> torque_nm, double low_nm, double high_nm) {
+    std::size_t longest = 1, here = 1;
+    for (std::size_t k = 1; k < torque_nm.size(); ++k) {
+        const bool held = torque_nm[k] == torque_nm[k - 1] && torque_nm[k] > low_nm && torque_nm[k] < high_nm;
+        here = held ? here + 1 : 1;
+        longest = std::max(longest, here);
+    }
+    return longest;
+}
+
+// Of samples at an end those that a recorder which holds others so long has not made of one.
+std::size_t counted_once(std::span<const std::size_t> at, std::size_t longest) {
+    std::size_t counted = 0;
+    for (std::size_t first = 0, end = 0; first < at.size(); first = end) {
+        end = first + 1;
+        while (end < at.size() && at[end] == at[end - 1] + 1) ++end;
+        counted += end - first > longest ? end - first : 1;
+    }
+    return counted;
+}
+
 // Samples at an end of the log's range; none where the torque only came to its extreme.
-std::vector<std::size_t> clipped_at(const LoggedTorque& log, double rail_nm, const FaultRules& rules) {
+std::vector<std::size_t> clipped_at(const LoggedTorque& log, double rail_nm, std::size_t longest,
+                                    const FaultRules& rules) {
     std::vector<std::size_t> at;
     std::size_t next = 0;  // samples on the level before the last
     for (std::size_t k = 0; k < log.torque_nm.size(); ++k) {
@@ -44,16 +67,18 @@ std::vector<std::size_t> clipped_at(const LoggedTorque& log, double rail_nm, con
     // On whole steps the extreme is held by chance, but by fewer samples than the level below it.
     const bool by_chance = log.step_nm > 0.0 &&
                            static_cast<double>(at.size()) < rules.clipped_of_next * static_cast<double>(next);
-    if (at.size() < rules.fewest_clipped || by_chance) at.clear();
+    if (counted_once(at, longest) < rules.fewest_clipped || by_chance) at.clear();
     return at;
 }
 
 std::optional<DetectedFault> detect(const LoggedTorque& log, const FaultRules& rules) {
     const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
+    // Whole steps hold a torque as well.
+    const std::size_t longest = log.step_nm > 0.0 ? 1 : longest_hold(log.torque_nm, *low, *high);
     DetectedFault fault;
     double limit_nm = 0.0;
     for (const double rail_nm : {*low, *high}) {
-        const std::vector<std::size_t> at = clipped_at(log, rail_nm, rules);
+        const std::vector<std::size_t> at = clipped_at(log, rail_nm, longest, rules);
         if (at.empty()) continue;
         limit_nm = std::max(limit_nm, std::abs(rail_nm));
         fault.spoiled.insert(fault.spoiled.end(), at.begin(), at.end());
