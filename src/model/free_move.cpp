@@ -42,8 +42,8 @@ FreeMoves::FreeMoves(double damping) : damping_(damping), at_of_at_{1.0, 0.0}, a
     for (Series* series : {&at_of_at_, &at_of_moving_}) {
         for (std::size_t n = 2; n < terms; ++n) {
             const auto power = static_cast<double>(n);
-            (*series)[n] =
-                -(2.0 * damping * (power - 1.0) * (*series)[n - 1] + (*series)[n - 2]) / (power * (power - 1.0));
+            (*series)[n] = -(2.0 * damping * (power - 1.0) * (*series)[n - 1] + (*series)[n - 2]) /
+                           (power * (power - 1.0));
         }
     }
 }

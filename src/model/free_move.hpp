@@ -38,7 +38,7 @@ class FreeMoves {
     [[nodiscard]] FreeMove within(double radians);
 
   private:
-    static constexpr std::size_t terms = 6;
+    static constexpr std::size_t terms = 6;    // by spacing (free_move.cpp): what is left out is rounding
     using Series = std::array<double, terms>;  ///< by power of the radians
     [[nodiscard]] FreeMove shortly(double radians) const;
 

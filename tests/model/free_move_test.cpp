@@ -13,7 +13,8 @@ TEST_CASE("two steps are as one of their length, and a step of none changes noth
         const FreeState begun{{1.0, -0.5}, {0.25, 2.0}};
         for (const double radians : {0.0, 1e-3, 0.4, 3.0, 50.0}) {
             const FreeState once = free_move(damping, 1.5 * radians).of(begun),
-                            twice = free_move(damping, 0.5 * radians).of(free_move(damping, radians).of(begun));
+                            twice =
+                                free_move(damping, 0.5 * radians).of(free_move(damping, radians).of(begun));
             CHECK(std::abs(once.at - twice.at) < 1e-14);
             CHECK(std::abs(once.moving - twice.moving) < 1e-14);
         }

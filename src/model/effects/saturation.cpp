@@ -41,13 +41,15 @@ std::size_t longest_hold(std::span<const double> torque_nm, double low_nm, doubl
     return longest;
 }
 
-// Of samples at an end those that a recorder which holds others so long has not made of one.
+// Of samples at an end those that a recorder which holds others so long has not made of one. Where it holds
+// by chance, each further sample is less likely by the same factor: none is held twice as long as all others.
 std::size_t counted_once(std::span<const std::size_t> at, std::size_t longest) {
+    const std::size_t held = longest > 1 ? 2 * longest : 1;
     std::size_t counted = 0;
     for (std::size_t first = 0, end = 0; first < at.size(); first = end) {
         end = first + 1;
         while (end < at.size() && at[end] == at[end - 1] + 1) ++end;
-        counted += end - first > longest ? end - first : 1;
+        counted += end - first > held ? end - first : 1;
     }
     return counted;
 }

@@ -86,7 +86,8 @@ void Ridge::leave(std::vector<double>& one, std::vector<double>& other) const {
         double *to = one.data() + first, *its_to = other.data() + first;
         for (std::size_t r = 0; r < even; r += 2)
             add_scaled_pair({-own[r], -its[r], -own[r + 1], -its[r + 1]},
-                            {columns_[r].data() + first, columns_[r + 1].data() + first}, {to, its_to}, count);
+                            {columns_[r].data() + first, columns_[r + 1].data() + first}, {to, its_to},
+                            count);
         if (even == columns) continue;
         add_scaled(-own.back(), columns_.back().data() + first, to, count);
         add_scaled(-its.back(), columns_.back().data() + first, its_to, count);
