@@ -136,6 +136,29 @@ TEST_CASE("beside more than it explains a finding is in doubt, and beside a left
     CHECK(with(friction, 0.3, {}).first == FindingStatus::confirmed);
 }
 
+TEST_CASE("a curve of fixed form has to be ahead of another by more than doubtful findings took up") {
+    const std::string_view square = "quadratic-viscous-friction,coefficient_nm_per_deg2_s2=4e-5",
+                           tone = "tone,frequency_hz=3.7,amplitude_nm=0.1,phase_deg=20";
+    const Model truth = joint_with({square, tone});
+    const TestBench on(case_of(plain_log(truth, 57)));
+    const Candidate model = on.fitted(truth);
+    const auto judged = [&](double margin) {
+        std::vector<Finding> findings = {named(square, 8.0), named(tone, 2.0)};
+        findings[0].alternatives = {{"viscous-friction", margin}, {"coulomb-friction", 15.0}};
+        findings[1].status = FindingStatus::tentative;
+        const Candidate kept = believed(on.bench, model, 3, findings);
+        return std::pair(findings[0], kept.gain_left - on.bench.samples());
+    };
+    const double left = judged(1e9).second, tie = standard.judge.tie_margin;
+    CHECK(left > 1000.0);  // of the tone
+    CHECK(judged(left + 2.0 * tie).first.status == FindingStatus::confirmed);
+    const Finding tied = judged(left + 0.5 * tie).first;
+    CHECK(tied.status == FindingStatus::ambiguous);
+    CHECK(tied.alternatives[0].margin == Approx(0.5 * tie));
+    CHECK(tied.alternatives[1].margin == 15.0);  // that curve has a width
+    CHECK(last_against(tied.decisions).rule == "judge.tie_margin");
+}
+
 TEST_CASE("a slight finding beside a far larger one of its kind may only mend its form") {
     std::vector<Finding> findings = {named("coulomb-friction,torque_nm=3,width_deg_s=0.2", 60.0),
                                      named("viscous-friction,coefficient_nm_per_deg_s=0.0001", 0.2)};

@@ -39,11 +39,31 @@ bool is_fixed_curve(const Effect& effect) {
 
 // By how much the rival is behind. Where something is left, two curves of fixed form that lie nearer to each
 // other than to what is there are not told: the form is neither's.
+double ahead_of_left(double behind, const ModelBench& bench, const Candidate& model) {
+    return std::max(behind - std::max(model.gain_left - bench.samples(), 0.0), 0.0);
+}
+
 double margin_of(const ModelBench& bench, const Candidate& model, const Candidate& other, bool is_form_alone,
                  bool something_left) {
     const double behind = other.criterion() - model.criterion();
-    if (!is_form_alone || !something_left || behind <= 0.0) return behind;
-    return std::max(behind - std::max(model.gain_left - bench.samples(), 0.0), 0.0);
+    return !is_form_alone || !something_left || behind <= 0.0 ? behind : ahead_of_left(behind, bench, model);
+}
+
+// What doubtful findings took up is left as well.
+void doubt_for_form(const ModelBench& bench, const Candidate& kept, std::vector<Finding>& findings) {
+    const double tie_margin = bench.rules().judge.tie_margin;
+    for (Finding& finding : findings) {
+        if (finding.status != FindingStatus::confirmed || !is_fixed_curve(*finding.term.effect)) continue;
+        for (RivalFinding& rival : finding.alternatives) {
+            if (!is_fixed_curve(find_effect(rival.effect)) || rival.margin < tie_margin) continue;
+            const double margin = ahead_of_left(rival.margin, bench, kept);
+            if (!Hearing(bench.rules(), finding.decisions)
+                     .asked("judge.tie_margin", margin, margin < tie_margin))
+                continue;
+            rival.margin = margin;
+            finding.status = FindingStatus::ambiguous;
+        }
+    }
 }
 
 void find_rivals(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
@@ -137,7 +157,9 @@ Candidate believed(const ModelBench& bench, const Candidate& model, std::size_t 
         for (std::size_t i = findings.size(); i-- > 0;) {
             if (is_doubtful(findings[i])) kept = without_term(bench, kept, own_terms + i);
         }
-        if (!doubt_beside(bench, kept, own_terms, findings)) return kept;
+        if (doubt_beside(bench, kept, own_terms, findings)) continue;
+        if (kept.stated.terms.size() < model.stated.terms.size()) doubt_for_form(bench, kept, findings);
+        return kept;
     }
 }
 

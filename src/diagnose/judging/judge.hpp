@@ -18,7 +18,8 @@ namespace ripplenotch {
                                          const std::vector<Leftover>& unexplained);
 
 /// The model without findings that are in doubt. Those that stay are looked at once more without these:
-/// beside a surrogate of its own domain a finding may look right that does not by itself.
+/// beside a surrogate of its own domain a finding may look right that does not by itself, and a curve over
+/// the speed has to be ahead of another by more than they took up.
 [[nodiscard]] Candidate believed(const ModelBench& bench, const Candidate& model, std::size_t own_terms,
                                  std::vector<Finding>& findings);
 
