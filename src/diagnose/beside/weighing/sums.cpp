@@ -23,28 +23,32 @@ Sums::Sums(const Lens& lens) : lens_(lens) {
     for (const Shape& shape : lens.shapes()) add(shape);
 }
 
-void Sums::add(const Shape& shape) {
-    std::vector<Column> columns;
-    double part = 0.0;
+Sums::Weighed Sums::weigh(const Shape& shape) const {
+    Weighed all;
     const auto take = [&](Lens::Weighed weighed) {
-        part = std::max(part, weighed.part);
+        all.part = std::max(all.part, weighed.part);
         for (auto& column : weighed.columns)
-            columns.push_back(std::make_shared<const std::vector<double>>(std::move(column)));
+            all.columns.push_back(std::make_shared<const std::vector<double>>(std::move(column)));
     };
     const auto plain =
         shape.ringing ? std::find(shapes_.begin(), shapes_.end(), Shape{shape.term}) : shapes_.end();
-    if (plain != shapes_.end()) {
-        const auto place = static_cast<std::size_t>(plain - shapes_.begin());
-        columns = columns_[place];
-        part = own_part_[place];
-        if (plain_.term != shape.term) plain_ = {shape.term, lens_.torque_nm(*plain)};
-        take(lens_.weighed_ringing(shape, plain_.torque_nm));
-    } else {
+    if (plain == shapes_.end()) {
         take(lens_.weighed(shape));
+        return all;
     }
+    const auto place = static_cast<std::size_t>(plain - shapes_.begin());
+    all = {weighed(place), own_part_[place]};
+    if (plain_.term != shape.term) plain_ = {shape.term, lens_.torque_nm(*plain)};
+    take(lens_.weighed_ringing(shape, plain_.torque_nm));
+    return all;
+}
+
+void Sums::add(const Shape& shape) {
+    Weighed weighed = weigh(shape);
     shapes_.push_back(shape);
-    own_part_.push_back(part);
-    columns_.push_back(std::move(columns));
+    own_part_.push_back(weighed.part);
+    columns_.push_back(std::move(weighed.columns));
+    hold(shapes_.size() - 1);
     std::vector<VectorXd> targets;
     for (const RowRange& fold : lens_.ground().folds()) {
         VectorXd sums(static_cast<Index>(columns_.back().size()));
@@ -54,6 +58,25 @@ void Sums::add(const Shape& shape) {
         targets.push_back(std::move(sums));
     }
     targets_.push_back(std::move(targets));
+}
+
+// A search refines hundreds of shapes and asks again for few: the columns that nobody asked for longest go.
+void Sums::hold(std::size_t shape) const {
+    constexpr double most_bytes =
+        40.0 * 1024.0 * 1024.0;         // by hand, of the 256 MiB that a diagnosis may take
+    constexpr std::size_t fewest = 16;  // by hand: more than a set of names
+    const double bytes = 2.0 * sizeof(double) * static_cast<double>(lens_.ground().rows());
+    const std::size_t most = std::max(fewest, static_cast<std::size_t>(most_bytes / bytes));
+    if (shape < listed()) return;
+    std::erase(held_, shape);
+    held_.push_back(shape);
+    for (; held_.size() > most; held_.pop_front()) columns_[held_.front()].clear();
+}
+
+const std::vector<Sums::Column>& Sums::weighed(std::size_t shape) const {
+    if (columns_[shape].empty()) columns_[shape] = weigh(shapes_[shape]).columns;
+    hold(shape);
+    return columns_[shape];
 }
 
 std::size_t Sums::place_of(const Shape& shape) {
@@ -82,6 +105,10 @@ void Sums::forget_but(Names& kept) {
     columns_.resize(staying.size());
     own_part_.resize(staying.size());
     targets_.resize(staying.size());
+    held_.clear();
+    for (std::size_t i = listed(); i < columns_.size(); ++i) {
+        if (!columns_[i].empty()) held_.push_back(i);
+    }
     std::erase_if(pairs_, [&](const auto& entry) { return entry.first.second >= listed(); });
     for (std::size_t i = 0; i < kept.size(); ++i)
         kept[i] =
@@ -95,23 +122,27 @@ bool Sums::is_told(std::size_t shape) const {
 const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
     const auto [entry, is_new] = pairs_.try_emplace({a, b});
     if (!is_new) return entry->second;
+    // Held here, whatever goes meanwhile.
+    const std::vector<Column> first = weighed(a), second = weighed(b);
     for (const RowRange& fold : lens_.ground().folds()) {
-        MatrixXd sums(static_cast<Index>(columns_[a].size()), static_cast<Index>(columns_[b].size()));
-        const auto of = [&](std::size_t shape, Index column) {
-            return columns_[shape][static_cast<std::size_t>(column)]->data() + fold.first;
+        MatrixXd sums(static_cast<Index>(first.size()), static_cast<Index>(second.size()));
+        const auto of = [&](const std::vector<Column>& columns, Index column) {
+            return columns[static_cast<std::size_t>(column)]->data() + fold.first;
         };
         // Two by two where both have two columns or four.
         if (sums.rows() % 2 == 0 && sums.cols() % 2 == 0) {
             for (Index r = 0; r < sums.rows(); r += 2) {
                 for (Index c = 0; c < sums.cols(); c += 2) {
                     double four[4] = {};
-                    add_dots({of(a, r), of(a, r + 1)}, {of(b, c), of(b, c + 1)}, fold.count, four);
+                    add_dots({of(first, r), of(first, r + 1)}, {of(second, c), of(second, c + 1)}, fold.count,
+                             four);
                     sums.block<2, 2>(r, c) << four[0], four[1], four[2], four[3];
                 }
             }
         } else {
             for (Index r = 0; r < sums.rows(); ++r) {
-                for (Index c = 0; c < sums.cols(); ++c) sums(r, c) = dot(of(a, r), of(b, c), fold.count);
+                for (Index c = 0; c < sums.cols(); ++c)
+                    sums(r, c) = dot(of(first, r), of(second, c), fold.count);
             }
         }
         entry->second.push_back(std::move(sums));
@@ -121,14 +152,14 @@ const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
 
 MatrixXd Sums::products(const Names& names, std::size_t fold) const {
     Index size = 0;
-    for (const std::size_t name : names) size += static_cast<Index>(columns_[name].size());
+    for (const std::size_t name : names) size += targets_[name][0].size();
     MatrixXd all(size, size);
     for (Index a = 0, row = 0; a < static_cast<Index>(names.size()); ++a) {
         const std::size_t first = names[static_cast<std::size_t>(a)];
-        const auto rows = static_cast<Index>(columns_[first].size());
+        const Index rows = targets_[first][0].size();
         for (Index b = 0, column = 0; b <= a; ++b) {
             const std::size_t second = names[static_cast<std::size_t>(b)];
-            const auto columns = static_cast<Index>(columns_[second].size());
+            const Index columns = targets_[second][0].size();
             if (first <= second) {
                 all.block(row, column, rows, columns) = pair(first, second)[fold];
             } else {
@@ -150,7 +181,7 @@ MatrixXd Sums::products(const Names& names) const {
 
 VectorXd Sums::targets(const Names& names, std::size_t fold) const {
     Index size = 0;
-    for (const std::size_t name : names) size += static_cast<Index>(columns_[name].size());
+    for (const std::size_t name : names) size += targets_[name][0].size();
     VectorXd all(size);
     Index row = 0;
     for (const std::size_t name : names) {
@@ -216,7 +247,7 @@ std::vector<double> Sums::residual_outside(const Names& names, std::vector<doubl
         VectorXd sums(all.rows());
         Index value = 0;
         for (const std::size_t name : names) {
-            for (const auto& column : columns_[name])
+            for (const auto& column : weighed(name))
                 sums[value++] = dot(column->data() + rows.first, target.data() + rows.first, rows.count);
         }
         all_targets += sums;
@@ -227,7 +258,7 @@ std::vector<double> Sums::residual_outside(const Names& names, std::vector<doubl
         const RowRange& rows = lens_.ground().folds()[fold];
         Index value = 0;
         for (const std::size_t name : names) {
-            for (const auto& column : columns_[name])
+            for (const auto& column : weighed(name))
                 add_scaled(-x[value++], column->data() + rows.first, target.data() + rows.first, rows.count);
         }
     }

@@ -3,6 +3,7 @@
 // Sums of products by fold of everything that was weighed, so that a set of names costs one small solution
 // for each fold.
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <utility>
@@ -47,23 +48,32 @@ class Sums {
     [[nodiscard]] std::size_t folds() const { return lens_.ground().folds().size(); }
     /// Shared: a ripple that rings has those of the plain one.
     using Column = std::shared_ptr<const std::vector<double>>;
-    [[nodiscard]] const std::vector<Column>& weighed(std::size_t shape) const { return columns_[shape]; }
+    /// Until the next call of whatever of this class: of refined shapes only those asked for last are held,
+    /// the others are weighed once more.
+    [[nodiscard]] const std::vector<Column>& weighed(std::size_t shape) const;
 
   private:
     using ByFold = std::vector<Eigen::MatrixXd>;
     const ByFold& pair(std::size_t a, std::size_t b) const;
+    struct Weighed {
+        std::vector<Column> columns;
+        double part = 0.0;
+    };
+    [[nodiscard]] Weighed weigh(const Shape& shape) const;
     void add(const Shape& shape);
+    void hold(std::size_t shape) const;
     [[nodiscard]] Eigen::VectorXd solved(const Eigen::MatrixXd& products,
                                          const Eigen::VectorXd& targets) const;
 
     const Lens& lens_;
     std::vector<Shape> shapes_;
-    std::vector<std::vector<Column>> columns_;
+    mutable std::vector<std::vector<Column>> columns_;  ///< none of a shape that is not held
+    mutable std::deque<std::size_t> held_;              ///< refined shapes, the last one asked for last
     std::vector<double> own_part_;  ///< of the whitened columns that is outside the always-on ones
     std::vector<std::vector<Eigen::VectorXd>> targets_;  ///< by shape and fold
     std::vector<double> target_squares_;                 ///< by fold
     /// The plain ripple whose ringing was weighed last: a search asks for many in a row.
-    struct {
+    mutable struct {
         Term term;
         std::vector<std::vector<double>> torque_nm;
     } plain_;
