@@ -91,6 +91,26 @@ double frequency_hz(const Weighed& on, const Named& now) {
 
 }  // namespace
 
+TEST_CASE(
+    "a scale that went up and down is where it was, and columns that had to go come again as they were") {
+    Weighed on(log_of({"hysteresis,torque_nm=0.5,width_deg=3"}));
+    const std::size_t begun = on.listed("hysteresis").front();
+    const Shape start = on.sums.shapes()[begun];
+    const Scale width = scales_of(start).front();
+    const double value = value_of(start, width);
+    CHECK(on.sums.place_of(moved(start, width, value * 1.2 * (1.0 / 1.2) * (1.0 + 1e-15))) == begun);
+    const std::size_t first = on.sums.place_of(moved(start, width, value * 1.01));
+    CHECK(first != begun);
+    const std::vector<double> column = *on.sums.weighed(first)[0];
+    // More shapes than 40 MiB hold.
+    const std::size_t many = 40U * 1024 * 1024 / (2 * sizeof(double) * on.lens.ground().rows()) + 10;
+    for (std::size_t k = 0; k < many; ++k)
+        (void)on.sums.place_of(moved(start, width, value * (1.1 + 1e-3 * static_cast<double>(k))));
+    // A pair that nobody asked for before.
+    CHECK(on.named({first, first + 1}).left < on.named({first}).left);
+    CHECK(*on.sums.weighed(first)[0] == column);
+}
+
 TEST_CASE("two frictions are refined until another turn is worth nothing, wherever they begin") {
     Weighed on(log_of({"coulomb-friction,torque_nm=0.1,width_deg_s=1.2",
                        "stribeck-friction,torque_nm=0.6,stribeck_speed_deg_s=12,width_deg_s=0.8"}));
