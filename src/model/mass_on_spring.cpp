@@ -9,13 +9,12 @@
 
 #include "model/between_samples.hpp"
 #include "model/free_move.hpp"
+#include "model/turning_drive.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-// Times are told to a few bits; steps that differ by less than this part are one step.
-constexpr double same_step = 1e-6;
 // Square of ringing that is no more than rounding.
 constexpr double died_away = 1e-36;
 
@@ -25,26 +24,19 @@ std::complex<double> product(std::complex<double> a, std::complex<double> b) {
 
 class Mass {
   public:
-    Mass(const Spring& spring, double step_s, double u)
-        : damping_(spring.damping),
-          radians_per_s_(2.0 * std::numbers::pi * spring.frequency_hz),
-          step_s_(step_s),
-          usual_(free_move(spring.damping, radians_per_s_ * step_s)),
-          moves_(spring.damping),
-          now_(steady(u)) {}
+    Mass(double damping, double u) : damping_(damping), now_(steady(u)) {}
 
     // To the next sample, at a constant frequency of the drive: exact where it is constant, and else the
     // drive is off by an eighth of its change in the step times the step. `turned` is the drive's turn,
     // reversed.
-    void go(double step_s, double u, std::complex<double> turned) {
+    void go(const FreeMove& move, double u, std::complex<double> turned) {
         const FreeState rest = steady(u);
         const FreeState ringing{now_.at - rest.at, now_.moving - rest.moving};
         if (std::norm(ringing.at) + std::norm(ringing.moving) < died_away) {
             now_ = rest;
             return;
         }
-        const bool usual = !(step_s > 0.0) || std::abs(step_s - step_s_) <= same_step * step_s_;
-        const FreeState left = (usual ? usual_ : moves_.within(radians_per_s_ * step_s)).of(ringing);
+        const FreeState left = move.of(ringing);
         now_ = {rest.at + product(turned, left.at), rest.moving + product(turned, left.moving)};
     }
 
@@ -58,9 +50,7 @@ class Mass {
         return {at, {-u * at.imag(), u * at.real()}};
     }
 
-    double damping_, radians_per_s_, step_s_;
-    FreeMove usual_;
-    FreeMoves moves_;
+    double damping_;
     FreeState now_;
 };
 
@@ -116,28 +106,18 @@ void pass_spring(const Spring& spring, Hertz sample_rate, std::span<double> valu
 
 void response_of(const Spring& spring, const Motion& motion, double cycles_per_deg,
                  std::span<std::complex<double>> response) {
-    const std::size_t samples = response.size();
-    if (samples == 0) return;
-    const double* const v = motion.velocity_deg_s.data();
-    const double* const t = motion.time_s.data();
-    Mass mass(spring, 1.0 / motion.sample_rate.value(), cycles_per_deg * v[0] / spring.frequency_hz);
+    if (response.empty()) return;
+    const auto drive = turning_drive(motion, cycles_per_deg);
+    FreeMoves known(spring.damping);
+    std::vector<FreeMove> moves;
+    for (const double step_s : drive->steps_s)
+        moves.push_back(known.within(2.0 * std::numbers::pi * spring.frequency_hz * step_s));
+    Mass mass(spring.damping, drive->hz[0] / spring.frequency_hz);
     response[0] = mass.response();
-    constexpr std::size_t block = 512;  // by hand
-    std::vector<double> angle(block), cosine(block), sine(block);
-    for (std::size_t first = 1; first < samples; first += block) {
-        const std::size_t count = std::min(block, samples - first);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t k = first + i;
-            angle[i] = -360.0 * cycles_per_deg * 0.5 * (v[k - 1] + v[k]) * (t[k] - t[k - 1]);
-        }
-        portable::cos_degrees(std::span(angle).first(count), cosine);
-        portable::sin_degrees(std::span(angle).first(count), sine);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t k = first + i;
-            const double u = cycles_per_deg * (0.5 * (v[k - 1] + v[k])) / spring.frequency_hz;
-            mass.go(t[k] - t[k - 1], u, {cosine[i], sine[i]});
-            response[k] = mass.response();
-        }
+    for (std::size_t k = 1; k < response.size(); ++k) {
+        mass.go(moves[drive->step[k]], drive->hz[k] / spring.frequency_hz,
+                {drive->cosine[k], drive->sine[k]});
+        response[k] = mass.response();
     }
 }
 

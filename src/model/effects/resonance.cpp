@@ -80,9 +80,10 @@ void change_ripple(const Situation& situation, Order order, std::span<const doub
                 passing);
     const auto direct = portable::polar(values[2], values[3] / degrees_per_radian);
     for (std::size_t k = 0; k < gain.size(); ++k) {
-        const auto before = gain[k];
+        const double a = gain[k].real(), b = gain[k].imag();
         const double x = passing[k].real() + direct.real(), y = passing[k].imag() + direct.imag();
-        gain[k] = {before.real() * x - before.imag() * y, before.real() * y + before.imag() * x};
+        gain[k].real(a * x - b * y);
+        gain[k].imag(a * y + b * x);
     }
 }
 
