@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vectors/dot.hpp"
+
 namespace ripplenotch {
 
 double rms(std::span<const double> values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value * value;
+    const double sum = dot(values.data(), values.data(), values.size());
     return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
 }
 

@@ -3,26 +3,16 @@
 // How a mass on a damped spring moves when nothing drives it.
 
 #include <array>
-#include <complex>
 #include <cstddef>
 #include <optional>
 #include <vector>
 
 namespace ripplenotch {
 
-/// Displacement, and speed in displacements a radian of the undamped spring.
-struct FreeState {
-    std::complex<double> at, moving;
-};
-
-/// What becomes of a free mass within a step.
+/// What becomes within a step of a free mass's displacement, and of its speed in displacements a radian of
+/// the undamped spring.
 struct FreeMove {
     double at_of_at, at_of_moving, moving_of_moving;  ///< and -at_of_moving from at to moving
-
-    [[nodiscard]] FreeState of(const FreeState& state) const {
-        return {at_of_at * state.at + at_of_moving * state.moving,
-                moving_of_moving * state.moving - at_of_moving * state.at};
-    }
 };
 
 /// Within so many radians of the undamped spring.

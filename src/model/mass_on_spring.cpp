@@ -18,40 +18,55 @@ namespace {
 // Square of ringing that is no more than rounding.
 constexpr double died_away = 1e-36;
 
-std::complex<double> product(std::complex<double> a, std::complex<double> b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
+// Parts by themselves: complex numbers that go through memory cost more than their products.
+struct Phasor {
+    double real = 0.0, imaginary = 0.0;
+
+    Phasor operator+(const Phasor& b) const { return {real + b.real, imaginary + b.imaginary}; }
+    Phasor operator-(const Phasor& b) const { return {real - b.real, imaginary - b.imaginary}; }
+    Phasor operator*(const Phasor& b) const {
+        return {real * b.real - imaginary * b.imaginary, real * b.imaginary + imaginary * b.real};
+    }
+    Phasor operator*(double b) const { return {real * b, imaginary * b}; }
+    [[nodiscard]] double square() const { return real * real + imaginary * imaginary; }
+};
 
 class Mass {
   public:
-    Mass(double damping, double u) : damping_(damping), now_(steady(u)) {}
+    Mass(double damping, double u) : damping_(damping), rest_(steady(u)) {}
 
     // To the next sample, at a constant frequency of the drive: exact where it is constant, and else the
     // drive is off by an eighth of its change in the step times the step. `turned` is the drive's turn,
     // reversed.
-    void go(const FreeMove& move, double u, std::complex<double> turned) {
-        const FreeState rest = steady(u);
-        const FreeState ringing{now_.at - rest.at, now_.moving - rest.moving};
-        if (std::norm(ringing.at) + std::norm(ringing.moving) < died_away) {
-            now_ = rest;
+    void go(const FreeMove& move, double u, const Phasor& turned) {
+        const State before = rest_;
+        rest_ = steady(u);
+        const Phasor at = ringing_.at + (before.at - rest_.at),
+                     moving = ringing_.moving + (before.moving - rest_.moving);
+        if (at.square() + moving.square() < died_away) {
+            ringing_ = {};
             return;
         }
-        const FreeState left = move.of(ringing);
-        now_ = {rest.at + product(turned, left.at), rest.moving + product(turned, left.moving)};
+        ringing_ = {turned * (at * move.at_of_at + moving * move.at_of_moving),
+                    turned * (moving * move.moving_of_moving - at * move.at_of_moving)};
     }
 
-    [[nodiscard]] std::complex<double> response() const { return now_.at; }
+    [[nodiscard]] Phasor response() const { return rest_.at + ringing_.at; }
 
   private:
-    [[nodiscard]] FreeState steady(double u) const {
+    struct State {
+        Phasor at, moving;
+    };
+
+    [[nodiscard]] State steady(double u) const {
         const double real = 1.0 - u * u, imaginary = 2.0 * damping_ * u;
         const double square = real * real + imaginary * imaginary;
-        const std::complex<double> at(real / square, -imaginary / square);
-        return {at, {-u * at.imag(), u * at.real()}};
+        const Phasor at{real / square, -imaginary / square};
+        return {at, {-u * at.imaginary, u * at.real}};
     }
 
     double damping_;
-    FreeState now_;
+    State rest_, ringing_;
 };
 
 // Integrals over a step of u^m times what a kick at u is at the step's end: displacement, and speed.
@@ -113,11 +128,16 @@ void response_of(const Spring& spring, const Motion& motion, double cycles_per_d
     for (const double step_s : drive->steps_s)
         moves.push_back(known.within(2.0 * std::numbers::pi * spring.frequency_hz * step_s));
     Mass mass(spring.damping, drive->hz[0] / spring.frequency_hz);
-    response[0] = mass.response();
+    const auto tell = [&](std::complex<double>& one) {
+        const Phasor now = mass.response();
+        one.real(now.real);
+        one.imag(now.imaginary);
+    };
+    tell(response[0]);
     for (std::size_t k = 1; k < response.size(); ++k) {
         mass.go(moves[drive->step[k]], drive->hz[k] / spring.frequency_hz,
                 {drive->cosine[k], drive->sine[k]});
-        response[k] = mass.response();
+        tell(response[k]);
     }
 }
 

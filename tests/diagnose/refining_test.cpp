@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "bench_fixture.hpp"
+#include "core/rms.hpp"
 #include "diagnose/beside/naming/exchanges.hpp"
 #include "diagnose/beside/naming/ringing.hpp"
 #include "diagnose/beside/naming/rivals.hpp"
@@ -19,9 +20,9 @@ using fixture::strokes;
 
 // A log, weighed for names beside what is left of it.
 struct Weighed {
-    explicit Weighed(const Trace& log)
+    explicit Weighed(const Trace& log, const DiagnosisRules& rules = standard)
         : looked_at(fixture::case_of(log)),
-          lens(looked_at, {none, none, {}, {}, 0.0, true}, {}, effects, standard, work),
+          lens(looked_at, {none, none, {}, {}, 0.0, true}, {}, effects, rules, work),
           sums(lens) {}
     Weighed(const Weighed&) = delete;
     Weighed& operator=(const Weighed&) = delete;
@@ -109,6 +110,26 @@ TEST_CASE(
     // A pair that nobody asked for before.
     CHECK(on.named({first, first + 1}).left < on.named({first}).left);
     CHECK(*on.sums.weighed(first)[0] == column);
+}
+
+TEST_CASE("what rings, worked out where names are weighed, is what every sample gives") {
+    DiagnosisRules thinned = standard;
+    thinned.beside.most_rate_hz = 250.0;
+    for (const DiagnosisRules& rules : {standard, thinned}) {
+        const Weighed on(log_of({"ripple,order=2,amplitude_nm=0.1,phase_deg=70"}), rules);
+        CAPTURE(rules.beside.most_rate_hz);
+        for (const std::size_t ringing : beginnings_of(on).ringing) {
+            const auto every = on.lens.weighed(on.sums.shapes()[ringing]).columns;
+            const auto found = on.sums.weighed(ringing);
+            REQUIRE(found.size() == every.size());
+            for (std::size_t c = 0; c < every.size(); ++c) {
+                std::vector<double> off = every[c];
+                for (std::size_t k = 0; k < off.size(); ++k) off[k] -= (*found[c])[k];
+                // Between the samples that are weighed the drive is taken to turn evenly.
+                CHECK(rms(off) <= 0.001 * rms(every[c]));
+            }
+        }
+    }
 }
 
 TEST_CASE("two frictions are refined until another turn is worth nothing, wherever they begin") {

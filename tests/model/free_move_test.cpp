@@ -8,17 +8,30 @@
 
 using namespace ripplenotch;
 
+namespace {
+
+struct FreeState {
+    double at, moving;
+};
+
+FreeState after(const FreeMove& move, const FreeState& begun) {
+    return {move.at_of_at * begun.at + move.at_of_moving * begun.moving,
+            move.moving_of_moving * begun.moving - move.at_of_moving * begun.at};
+}
+
+}  // namespace
+
 TEST_CASE("two steps are as one of their length, and a step of none changes nothing") {
     for (const double damping : {0.001, 0.1, 0.7, 1.0, 2.0}) {
-        const FreeState begun{{1.0, -0.5}, {0.25, 2.0}};
+        const FreeState begun{1.0, 0.25};
         for (const double radians : {0.0, 1e-3, 0.4, 3.0, 50.0}) {
-            const FreeState once = free_move(damping, 1.5 * radians).of(begun),
-                            twice =
-                                free_move(damping, 0.5 * radians).of(free_move(damping, radians).of(begun));
+            const FreeState once = after(free_move(damping, 1.5 * radians), begun),
+                            twice = after(free_move(damping, 0.5 * radians),
+                                          after(free_move(damping, radians), begun));
             CHECK(std::abs(once.at - twice.at) < 1e-14);
             CHECK(std::abs(once.moving - twice.moving) < 1e-14);
         }
-        const FreeState stays = free_move(damping, 0.0).of(begun);
+        const FreeState stays = after(free_move(damping, 0.0), begun);
         CHECK(stays.at == begun.at);
         CHECK(stays.moving == begun.moving);
     }

@@ -225,10 +225,14 @@ std::vector<double> Lens::weighed(std::span<const double> torque_nm) const {
 
 Lens::Weighed Lens::weighed(const Shape& shape) const { return weighed(bridged(torque_nm(shape))); }
 
-Lens::Weighed Lens::weighed_ringing(const Shape& shape, const Columns& plain_nm) const {
+std::vector<std::vector<double>> Lens::thinned_nm(const Shape& shape) const {
     Columns thin;
-    for (const auto& column : plain_nm) thin.push_back(ground_.thinned(column));
-    Columns ringing = ringing_nm(shape, thin_, thin);
+    for (const auto& column : torque_nm(shape)) thin.push_back(ground_.thinned(column));
+    return thin;
+}
+
+Lens::Weighed Lens::weighed_ringing(const Shape& shape, const Columns& plain_nm) const {
+    Columns ringing = ringing_nm(shape, thin_, plain_nm);
     for (auto& column : ringing) ground_.bridge(column);
     return weighed(ringing);
 }

@@ -49,7 +49,9 @@ class Lens {
             0.0;  ///< of the whitened columns that the always-on ones leave, of the one of which most is left
     };
     [[nodiscard]] Weighed weighed(const Shape& shape) const;
-    /// The same of what rings of a ripple: without the plain one, whose torque is `plain_nm`.
+    /// Its torque at the ground's samples.
+    [[nodiscard]] std::vector<std::vector<double>> thinned_nm(const Shape& shape) const;
+    /// `weighed` of what rings of a ripple: without the plain one, whose thinned_nm are `plain_nm`.
     [[nodiscard]] Weighed weighed_ringing(const Shape& shape,
                                           const std::vector<std::vector<double>>& plain_nm) const;
     [[nodiscard]] std::vector<double> weighed(std::span<const double> torque_nm) const;

@@ -14,6 +14,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+std::vector<Sums::Column> shared(std::vector<std::vector<double>> columns) {
+    std::vector<Sums::Column> all;
+    for (auto& column : columns)
+        all.push_back(std::make_shared<const std::vector<double>>(std::move(column)));
+    return all;
+}
+
 }  // namespace
 
 Sums::Sums(const Lens& lens) : lens_(lens) {
@@ -23,31 +30,39 @@ Sums::Sums(const Lens& lens) : lens_(lens) {
     for (const Shape& shape : lens.shapes()) add(shape);
 }
 
-Sums::Weighed Sums::weigh(const Shape& shape) const {
-    Weighed all;
-    const auto take = [&](Lens::Weighed weighed) {
-        all.part = std::max(all.part, weighed.part);
-        for (auto& column : weighed.columns)
-            all.columns.push_back(std::make_shared<const std::vector<double>>(std::move(column)));
-    };
-    const auto plain =
-        shape.ringing ? std::find(shapes_.begin(), shapes_.end(), Shape{shape.term}) : shapes_.end();
-    if (plain == shapes_.end()) {
-        take(lens_.weighed(shape));
-        return all;
+std::optional<std::size_t> Sums::plain_of(const Shape& shape) const {
+    if (!shape.ringing) return std::nullopt;
+    const auto end = shapes_.begin() + static_cast<std::ptrdiff_t>(std::min(listed(), shapes_.size()));
+    const auto plain = std::find(shapes_.begin(), end, Shape{shape.term});
+    if (plain == end) return std::nullopt;
+    return static_cast<std::size_t>(plain - shapes_.begin());
+}
+
+Names Sums::parts_of(const Names& names) const {
+    Names parts;
+    for (const std::size_t name : names) {
+        if (plain_of_[name]) parts.push_back(*plain_of_[name]);
+        parts.push_back(name);
     }
-    const auto place = static_cast<std::size_t>(plain - shapes_.begin());
-    all = {weighed(place), own_part_[place]};
-    if (plain_.term != shape.term) plain_ = {shape.term, lens_.torque_nm(*plain)};
-    take(lens_.weighed_ringing(shape, plain_.torque_nm));
-    return all;
+    return parts;
+}
+
+Lens::Weighed Sums::weigh_own(std::size_t shape) const {
+    const auto plain = plain_of_[shape];
+    if (!plain) return lens_.weighed(shapes_[shape]);
+    const Term& term = shapes_[*plain].term;
+    if (plain_.term != term) plain_ = {term, lens_.thinned_nm(shapes_[*plain])};
+    Lens::Weighed own = lens_.weighed_ringing(shapes_[shape], plain_.torque_nm);
+    own.part = std::max(own.part, own_part_[*plain]);
+    return own;
 }
 
 void Sums::add(const Shape& shape) {
-    Weighed weighed = weigh(shape);
+    plain_of_.push_back(plain_of(shape));
     shapes_.push_back(shape);
-    own_part_.push_back(weighed.part);
-    columns_.push_back(std::move(weighed.columns));
+    Lens::Weighed own = weigh_own(shapes_.size() - 1);
+    own_part_.push_back(own.part);
+    columns_.push_back(shared(std::move(own.columns)));
     hold(shapes_.size() - 1);
     std::vector<VectorXd> targets;
     for (const RowRange& fold : lens_.ground().folds()) {
@@ -73,10 +88,19 @@ void Sums::hold(std::size_t shape) const {
     for (; held_.size() > most; held_.pop_front()) columns_[held_.front()].clear();
 }
 
-const std::vector<Sums::Column>& Sums::weighed(std::size_t shape) const {
-    if (columns_[shape].empty()) columns_[shape] = weigh(shapes_[shape]).columns;
+const std::vector<Sums::Column>& Sums::own_columns(std::size_t shape) const {
+    if (columns_[shape].empty()) columns_[shape] = shared(weigh_own(shape).columns);
     hold(shape);
     return columns_[shape];
+}
+
+std::vector<Sums::Column> Sums::weighed(std::size_t shape) const {
+    std::vector<Column> all;
+    for (const std::size_t part : parts_of({shape})) {
+        const std::vector<Column>& own = own_columns(part);
+        all.insert(all.end(), own.begin(), own.end());
+    }
+    return all;
 }
 
 std::size_t Sums::place_of(const Shape& shape) {
@@ -97,11 +121,13 @@ void Sums::forget_but(Names& kept) {
     for (std::size_t i = 0; i < staying.size(); ++i) {
         if (staying[i] == i) continue;
         shapes_[i] = std::move(shapes_[staying[i]]);
+        plain_of_[i] = plain_of_[staying[i]];
         columns_[i] = std::move(columns_[staying[i]]);
         own_part_[i] = own_part_[staying[i]];
         targets_[i] = std::move(targets_[staying[i]]);
     }
     shapes_.resize(staying.size());
+    plain_of_.resize(staying.size());
     columns_.resize(staying.size());
     own_part_.resize(staying.size());
     targets_.resize(staying.size());
@@ -123,7 +149,7 @@ const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
     const auto [entry, is_new] = pairs_.try_emplace({a, b});
     if (!is_new) return entry->second;
     // Held here, whatever goes meanwhile.
-    const std::vector<Column> first = weighed(a), second = weighed(b);
+    const std::vector<Column> first = own_columns(a), second = own_columns(b);
     for (const RowRange& fold : lens_.ground().folds()) {
         MatrixXd sums(static_cast<Index>(first.size()), static_cast<Index>(second.size()));
         const auto of = [&](const std::vector<Column>& columns, Index column) {
@@ -151,14 +177,15 @@ const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
 }
 
 MatrixXd Sums::products(const Names& names, std::size_t fold) const {
+    const Names parts = parts_of(names);
     Index size = 0;
-    for (const std::size_t name : names) size += targets_[name][0].size();
+    for (const std::size_t part : parts) size += targets_[part][0].size();
     MatrixXd all(size, size);
-    for (Index a = 0, row = 0; a < static_cast<Index>(names.size()); ++a) {
-        const std::size_t first = names[static_cast<std::size_t>(a)];
+    for (Index a = 0, row = 0; a < static_cast<Index>(parts.size()); ++a) {
+        const std::size_t first = parts[static_cast<std::size_t>(a)];
         const Index rows = targets_[first][0].size();
         for (Index b = 0, column = 0; b <= a; ++b) {
-            const std::size_t second = names[static_cast<std::size_t>(b)];
+            const std::size_t second = parts[static_cast<std::size_t>(b)];
             const Index columns = targets_[second][0].size();
             if (first <= second) {
                 all.block(row, column, rows, columns) = pair(first, second)[fold];
@@ -180,12 +207,13 @@ MatrixXd Sums::products(const Names& names) const {
 }
 
 VectorXd Sums::targets(const Names& names, std::size_t fold) const {
+    const Names parts = parts_of(names);
     Index size = 0;
-    for (const std::size_t name : names) size += targets_[name][0].size();
+    for (const std::size_t part : parts) size += targets_[part][0].size();
     VectorXd all(size);
     Index row = 0;
-    for (const std::size_t name : names) {
-        const VectorXd& own = targets_[name][fold];
+    for (const std::size_t part : parts) {
+        const VectorXd& own = targets_[part][fold];
         all.segment(row, own.size()) = own;
         row += own.size();
     }

@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -48,18 +49,18 @@ class Sums {
     [[nodiscard]] std::size_t folds() const { return lens_.ground().folds().size(); }
     /// Shared: a ripple that rings has those of the plain one.
     using Column = std::shared_ptr<const std::vector<double>>;
-    /// Until the next call of whatever of this class: of refined shapes only those asked for last are held,
-    /// the others are weighed once more.
-    [[nodiscard]] const std::vector<Column>& weighed(std::size_t shape) const;
+    /// Of refined shapes only those asked for last are held, the others are weighed once more.
+    [[nodiscard]] std::vector<Column> weighed(std::size_t shape) const;
 
   private:
     using ByFold = std::vector<Eigen::MatrixXd>;
+    /// Of a ripple that rings the listed plain one, whose columns are the first of it.
+    [[nodiscard]] std::optional<std::size_t> plain_of(const Shape& shape) const;
+    /// Shapes whose own columns, one after the other, are those of the names.
+    [[nodiscard]] Names parts_of(const Names& names) const;
     const ByFold& pair(std::size_t a, std::size_t b) const;
-    struct Weighed {
-        std::vector<Column> columns;
-        double part = 0.0;
-    };
-    [[nodiscard]] Weighed weigh(const Shape& shape) const;
+    [[nodiscard]] Lens::Weighed weigh_own(std::size_t shape) const;
+    [[nodiscard]] const std::vector<Column>& own_columns(std::size_t shape) const;
     void add(const Shape& shape);
     void hold(std::size_t shape) const;
     [[nodiscard]] Eigen::VectorXd solved(const Eigen::MatrixXd& products,
@@ -67,15 +68,16 @@ class Sums {
 
     const Lens& lens_;
     std::vector<Shape> shapes_;
-    mutable std::vector<std::vector<Column>> columns_;  ///< none of a shape that is not held
+    std::vector<std::optional<std::size_t>> plain_of_;
+    mutable std::vector<std::vector<Column>> columns_;  ///< its own; none of a shape that is not held
     mutable std::deque<std::size_t> held_;              ///< refined shapes, the last one asked for last
     std::vector<double> own_part_;  ///< of the whitened columns that is outside the always-on ones
-    std::vector<std::vector<Eigen::VectorXd>> targets_;  ///< by shape and fold
+    std::vector<std::vector<Eigen::VectorXd>> targets_;  ///< by shape and fold, of its own columns
     std::vector<double> target_squares_;                 ///< by fold
     /// The plain ripple whose ringing was weighed last: a search asks for many in a row.
     mutable struct {
         Term term;
-        std::vector<std::vector<double>> torque_nm;
+        std::vector<std::vector<double>> torque_nm;  ///< at the ground's samples
     } plain_;
     mutable std::map<std::pair<std::size_t, std::size_t>, ByFold> pairs_;
 };
