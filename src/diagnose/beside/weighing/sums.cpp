@@ -14,90 +14,42 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::vector<Sums::Column> shared(std::vector<std::vector<double>> columns) {
-    std::vector<Sums::Column> all;
-    for (auto& column : columns)
-        all.push_back(std::make_shared<const std::vector<double>>(std::move(column)));
-    return all;
-}
-
 }  // namespace
 
-Sums::Sums(const Lens& lens) : lens_(lens) {
+Sums::Sums(const Lens& lens) : lens_(lens), columns_(lens) {
     const auto& target = lens.target();
     for (const RowRange& fold : lens.ground().folds())
         target_squares_.push_back(dot(target.data() + fold.first, target.data() + fold.first, fold.count));
     for (const Shape& shape : lens.shapes()) add(shape);
 }
 
-std::optional<std::size_t> Sums::plain_of(const Shape& shape) const {
-    if (!shape.ringing) return std::nullopt;
-    const auto end = shapes_.begin() + static_cast<std::ptrdiff_t>(std::min(listed(), shapes_.size()));
-    const auto plain = std::find(shapes_.begin(), end, Shape{shape.term});
-    if (plain == end) return std::nullopt;
-    return static_cast<std::size_t>(plain - shapes_.begin());
-}
-
 Names Sums::parts_of(const Names& names) const {
     Names parts;
     for (const std::size_t name : names) {
-        if (plain_of_[name]) parts.push_back(*plain_of_[name]);
+        if (const auto plain = columns_.plain_of(name)) parts.push_back(*plain);
         parts.push_back(name);
     }
     return parts;
 }
 
-Lens::Weighed Sums::weigh_own(std::size_t shape) const {
-    const auto plain = plain_of_[shape];
-    if (!plain) return lens_.weighed(shapes_[shape]);
-    const Term& term = shapes_[*plain].term;
-    if (plain_.term != term) plain_ = {term, lens_.thinned_nm(shapes_[*plain])};
-    Lens::Weighed own = lens_.weighed_ringing(shapes_[shape], plain_.torque_nm);
-    own.part = std::max(own.part, own_part_[*plain]);
-    return own;
-}
-
 void Sums::add(const Shape& shape) {
-    plain_of_.push_back(plain_of(shape));
-    shapes_.push_back(shape);
-    Lens::Weighed own = weigh_own(shapes_.size() - 1);
-    own_part_.push_back(own.part);
-    columns_.push_back(shared(std::move(own.columns)));
-    hold(shapes_.size() - 1);
+    columns_.add(shape);
+    const std::vector<Column>& own = columns_.own(shapes().size() - 1);
     std::vector<VectorXd> targets;
     for (const RowRange& fold : lens_.ground().folds()) {
-        VectorXd sums(static_cast<Index>(columns_.back().size()));
+        VectorXd sums(static_cast<Index>(own.size()));
         for (Index c = 0; c < sums.size(); ++c)
-            sums[c] = dot(columns_.back()[static_cast<std::size_t>(c)]->data() + fold.first,
+            sums[c] = dot(own[static_cast<std::size_t>(c)]->data() + fold.first,
                           lens_.target().data() + fold.first, fold.count);
         targets.push_back(std::move(sums));
     }
     targets_.push_back(std::move(targets));
 }
 
-// A search refines hundreds of shapes and asks again for few: the columns that nobody asked for longest go.
-void Sums::hold(std::size_t shape) const {
-    constexpr double most_bytes =
-        40.0 * 1024.0 * 1024.0;         // by hand, of the 256 MiB that a diagnosis may take
-    constexpr std::size_t fewest = 16;  // by hand: more than a set of names
-    const double bytes = 2.0 * sizeof(double) * static_cast<double>(lens_.ground().rows());
-    const std::size_t most = std::max(fewest, static_cast<std::size_t>(most_bytes / bytes));
-    if (shape < listed()) return;
-    std::erase(held_, shape);
-    held_.push_back(shape);
-    for (; held_.size() > most; held_.pop_front()) columns_[held_.front()].clear();
-}
-
-const std::vector<Sums::Column>& Sums::own_columns(std::size_t shape) const {
-    if (columns_[shape].empty()) columns_[shape] = shared(weigh_own(shape).columns);
-    hold(shape);
-    return columns_[shape];
-}
-
 std::vector<Sums::Column> Sums::weighed(std::size_t shape) const {
     std::vector<Column> all;
     for (const std::size_t part : parts_of({shape})) {
-        const std::vector<Column>& own = own_columns(part);
+        const std::vector<Column>& own = columns_.own(part);
         all.insert(all.end(), own.begin(), own.end());
     }
     return all;
@@ -105,51 +57,36 @@ std::vector<Sums::Column> Sums::weighed(std::size_t shape) const {
 
 std::size_t Sums::place_of(const Shape& shape) {
     const auto known =
-        std::find_if(shapes_.begin(), shapes_.end(), [&](const Shape& one) { return alike(one, shape); });
-    if (known != shapes_.end()) return static_cast<std::size_t>(known - shapes_.begin());
+        std::find_if(shapes().begin(), shapes().end(), [&](const Shape& one) { return alike(one, shape); });
+    if (known != shapes().end()) return static_cast<std::size_t>(known - shapes().begin());
     add(shape);
-    return shapes_.size() - 1;
+    return shapes().size() - 1;
 }
 
 void Sums::forget_but(Names& kept) {
-    std::vector<Shape> shapes;
-    for (const std::size_t name : kept) shapes.push_back(shapes_[name]);
-    std::vector<std::size_t> staying;
-    for (std::size_t i = 0; i < shapes_.size(); ++i) {
-        if (i < listed() || std::find(kept.begin(), kept.end(), i) != kept.end()) staying.push_back(i);
+    Names staying;
+    std::vector<std::vector<VectorXd>> targets;
+    for (std::size_t place = 0; place < shapes().size(); ++place) {
+        if (place >= listed() && std::find(kept.begin(), kept.end(), place) == kept.end()) continue;
+        staying.push_back(place);
+        targets.push_back(std::move(targets_[place]));
     }
-    for (std::size_t i = 0; i < staying.size(); ++i) {
-        if (staying[i] == i) continue;
-        shapes_[i] = std::move(shapes_[staying[i]]);
-        plain_of_[i] = plain_of_[staying[i]];
-        columns_[i] = std::move(columns_[staying[i]]);
-        own_part_[i] = own_part_[staying[i]];
-        targets_[i] = std::move(targets_[staying[i]]);
-    }
-    shapes_.resize(staying.size());
-    plain_of_.resize(staying.size());
-    columns_.resize(staying.size());
-    own_part_.resize(staying.size());
-    targets_.resize(staying.size());
-    held_.clear();
-    for (std::size_t i = listed(); i < columns_.size(); ++i) {
-        if (!columns_[i].empty()) held_.push_back(i);
-    }
+    targets_ = std::move(targets);
+    columns_.keep(staying);
     std::erase_if(pairs_, [&](const auto& entry) { return entry.first.second >= listed(); });
-    for (std::size_t i = 0; i < kept.size(); ++i)
-        kept[i] =
-            static_cast<std::size_t>(std::find(shapes_.begin(), shapes_.end(), shapes[i]) - shapes_.begin());
+    for (std::size_t& name : kept)
+        name = static_cast<std::size_t>(std::find(staying.begin(), staying.end(), name) - staying.begin());
 }
 
 bool Sums::is_told(std::size_t shape) const {
-    return own_part_[shape] > lens_.rules().screening.least_outside;
+    return columns_.part(shape) > lens_.rules().screening.least_outside;
 }
 
 const Sums::ByFold& Sums::pair(std::size_t a, std::size_t b) const {
     const auto [entry, is_new] = pairs_.try_emplace({a, b});
     if (!is_new) return entry->second;
     // Held here, whatever goes meanwhile.
-    const std::vector<Column> first = own_columns(a), second = own_columns(b);
+    const std::vector<Column> first = columns_.own(a), second = columns_.own(b);
     for (const RowRange& fold : lens_.ground().folds()) {
         MatrixXd sums(static_cast<Index>(first.size()), static_cast<Index>(second.size()));
         const auto of = [&](const std::vector<Column>& columns, Index column) {

@@ -3,15 +3,12 @@
 // Sums of products by fold of everything that was weighed, so that a set of names costs one small solution
 // for each fold.
 
-#include <deque>
 #include <map>
-#include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/linear_algebra.hpp"
-#include "diagnose/beside/weighing/lens.hpp"
+#include "diagnose/beside/weighing/shape_columns.hpp"
 
 namespace ripplenotch {
 
@@ -24,7 +21,7 @@ class Sums {
     explicit Sums(const Lens& lens);
 
     [[nodiscard]] const Lens& lens() const { return lens_; }
-    [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }
+    [[nodiscard]] const std::vector<Shape>& shapes() const { return columns_.shapes(); }
     /// How many of them are the lens' own; the others are refined.
     [[nodiscard]] std::size_t listed() const { return lens_.shapes().size(); }
     /// Its place; weighed when it is new.
@@ -47,38 +44,23 @@ class Sums {
     [[nodiscard]] Eigen::MatrixXd products(const Names& names, std::size_t fold) const;
     [[nodiscard]] Eigen::VectorXd targets(const Names& names, std::size_t fold) const;
     [[nodiscard]] std::size_t folds() const { return lens_.ground().folds().size(); }
-    /// Shared: a ripple that rings has those of the plain one.
-    using Column = std::shared_ptr<const std::vector<double>>;
-    /// Of refined shapes only those asked for last are held, the others are weighed once more.
+    using Column = ShapeColumns::Column;
+    /// All of the shape's columns, weighed once more where a refined one's are held no longer.
     [[nodiscard]] std::vector<Column> weighed(std::size_t shape) const;
 
   private:
     using ByFold = std::vector<Eigen::MatrixXd>;
-    /// Of a ripple that rings the listed plain one, whose columns are the first of it.
-    [[nodiscard]] std::optional<std::size_t> plain_of(const Shape& shape) const;
     /// Shapes whose own columns, one after the other, are those of the names.
     [[nodiscard]] Names parts_of(const Names& names) const;
     const ByFold& pair(std::size_t a, std::size_t b) const;
-    [[nodiscard]] Lens::Weighed weigh_own(std::size_t shape) const;
-    [[nodiscard]] const std::vector<Column>& own_columns(std::size_t shape) const;
     void add(const Shape& shape);
-    void hold(std::size_t shape) const;
     [[nodiscard]] Eigen::VectorXd solved(const Eigen::MatrixXd& products,
                                          const Eigen::VectorXd& targets) const;
 
     const Lens& lens_;
-    std::vector<Shape> shapes_;
-    std::vector<std::optional<std::size_t>> plain_of_;
-    mutable std::vector<std::vector<Column>> columns_;  ///< its own; none of a shape that is not held
-    mutable std::deque<std::size_t> held_;              ///< refined shapes, the last one asked for last
-    std::vector<double> own_part_;  ///< of the whitened columns that is outside the always-on ones
+    ShapeColumns columns_;
     std::vector<std::vector<Eigen::VectorXd>> targets_;  ///< by shape and fold, of its own columns
     std::vector<double> target_squares_;                 ///< by fold
-    /// The plain ripple whose ringing was weighed last: a search asks for many in a row.
-    mutable struct {
-        Term term;
-        std::vector<std::vector<double>> torque_nm;  ///< at the ground's samples
-    } plain_;
     mutable std::map<std::pair<std::size_t, std::size_t>, ByFold> pairs_;
 };
 
