@@ -28,7 +28,11 @@ ByteSource::ByteSource(const std::string& path) : ByteSource(std::make_shared<co
 
 ByteSource::ByteSource(std::shared_ptr<const OpenFile> file) : ByteSource(file, shown_name(file->path())) {
     const Hashing how = how_to_hash(*file_, name_);
-    if (how != Hashing::none) hash_ = std::make_unique<HashBeside>(how == Hashing::beside);
+    if (how == Hashing::none) return;
+    // A thread may read it once more: end() notices what was written meanwhile, where the size is known.
+    hash_ = how == Hashing::beside && by_place() && size_
+                ? std::make_unique<HashBeside>(file_->descriptor(), at_)
+                : std::make_unique<HashBeside>();
 }
 
 ByteSource::ByteSource(std::shared_ptr<const OpenFile> file, std::string name)

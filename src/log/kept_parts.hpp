@@ -4,11 +4,19 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
+
+/// Gives mapped memory back.
+struct Unmapped {
+    std::size_t bytes = 0;
+    void operator()(double* numbers) const;
+};
 
 class KeptParts {
   public:
@@ -19,13 +27,11 @@ class KeptParts {
         numbers_ += 4 * rows.size();
         if (numbers_ > most_numbers_) {
             parts_.clear();
+            room_.reset();
             return;
         }
-        const auto copy = [](std::span<const double> from) {
-            return std::vector<double>(from.begin(), from.end());
-        };
-        parts_.push_back({copy(rows.time_s), copy(rows.velocity_deg_s), copy(rows.torque_nm),
-                          copy(rows.position_deg), !rows.run_starts.empty()});
+        parts_.push_back({kept(rows.time_s), kept(rows.velocity_deg_s), kept(rows.torque_nm),
+                          kept(rows.position_deg), !rows.run_starts.empty()});
     }
 
     [[nodiscard]] bool whole() const { return numbers_ <= most_numbers_ && !parts_.empty(); }
@@ -43,11 +49,16 @@ class KeptParts {
 
   private:
     struct Part {
-        std::vector<double> time_s, velocity_deg_s, torque_nm, position_deg;
+        std::span<const double> time_s, velocity_deg_s, torque_nm, position_deg;
         bool begins_run;
     };
+    /// A copy that stays where it is.
+    [[nodiscard]] std::span<const double> kept(std::span<const double> numbers);
+
     std::size_t most_numbers_, numbers_ = 0;
     std::vector<Part> parts_;
+    std::unique_ptr<double, Unmapped> room_;  ///< for all that may be kept, made when it is needed
+    std::size_t used_ = 0;
 };
 
 }  // namespace ripplenotch

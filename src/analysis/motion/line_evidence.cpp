@@ -6,6 +6,7 @@
 #include <complex>
 
 #include "analysis/motion/place_error.hpp"
+#include "core/two_cores.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -21,6 +22,24 @@ double noise_at(const Stack& stack, std::size_t sweep, double place) {
     return bin < floors.size() ? static_cast<double>(floors[bin]) : 0.0;
 }
 
+/// Of each sweep whose noise there is known its sum at a place; on two cores where they are long.
+/// `value_of` a sweep stands for its torque under the weights.
+template <class ValueOf>
+std::vector<FourierPoint> points_of(std::span<const Sweep> sweeps, const Stack& stack, double place,
+                                    double noise_place, const ValueOf& value_of) {
+    std::vector<FourierPoint> points(sweeps.size());
+    on_two_cores(
+        sweeps.size(),
+        [&](std::size_t i) {
+            if (noise_at(stack, i, noise_place) > 0.0)
+                points[i] = fourier_point(places(sweeps[i], stack.axis), value_of(sweeps[i]), place);
+        },
+        are_long(sweeps));
+    return points;
+}
+
+constexpr auto own_value = [](const Sweep& sweep) { return std::span(sweep.value); };
+
 /// Power over noise of one sweep, or of a part of it, at a place; noise scaled from the whole sweep's floor
 /// there.
 struct Piece {
@@ -33,15 +52,14 @@ Piece piece_at(const Sweep& part, const Sweep& whole, Axis axis, double noise, d
     return {power / (noise * scale), part.effective_samples()};
 }
 
-/// `value_of` a sweep stands for its torque under the weights.
 template <class ValueOf>
 double gain_in(std::span<const Sweep> sweeps, const Stack& stack, double place, const ValueOf& value_of) {
+    const std::vector<FourierPoint> points = points_of(sweeps, stack, place, place, value_of);
     double most = 0.0, gain = 0.0;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
         const double noise = noise_at(stack, i, place);
         if (!(noise > 0.0)) continue;
-        const auto value = value_of(sweeps[i]);
-        const double power = std::norm(fourier_point(places(sweeps[i], stack.axis), value, place).value);
+        const double power = std::norm(points[i].value);
         const double weight = sweeps[i].effective_samples();
         most = std::max(most, weight);
         gain += weight * (power / noise - 1.0);
@@ -62,7 +80,7 @@ double gain_at(const Stack& stack, std::size_t bin) {
 }
 
 double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place) {
-    return gain_in(sweeps, stack, place, [](const Sweep& sweep) { return std::span(sweep.value); });
+    return gain_in(sweeps, stack, place, own_value);
 }
 
 double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place) {
@@ -113,11 +131,12 @@ double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bi
     const double start = static_cast<double>(bin) * stack.spacing;
     double place = start;
     for (int round = 0; round < 8; ++round) {
+        const std::vector<FourierPoint> points = points_of(sweeps, stack, place, start, own_value);
         double slope = 0.0, curve = 0.0;
         for (std::size_t i = 0; i < sweeps.size(); ++i) {
             const double noise = noise_at(stack, i, start);
             if (!(noise > 0.0)) continue;
-            const FourierPoint at = fourier_point(places(sweeps[i], stack.axis), sweeps[i].value, place);
+            const FourierPoint& at = points[i];
             const double weight = stack.sweep_weights[i] / noise;
             slope += weight * std::real(std::conj(at.value) * at.first);
             curve += weight * (std::norm(at.first) + std::real(std::conj(at.value) * at.second));
@@ -134,12 +153,12 @@ double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bi
 void measure(std::span<const Sweep> sweeps, const Stack& stack, double place, MotionLine& line) {
     double weights = 0.0, power = 0.0, noise_power = 0.0, lengths = 0.0;
     std::complex<double> together;
+    const std::vector<FourierPoint> points = points_of(sweeps, stack, place, place, own_value);
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
         const Sweep& sweep = sweeps[i];
         const double noise = noise_at(stack, i, place);
         if (!(noise > 0.0)) continue;
-        const std::complex<double> sum = fourier_point(places(sweep, stack.axis), sweep.value, place).value;
-        const std::complex<double> amplitude = 2.0 * sum / sweep.weight_sum;
+        const std::complex<double> amplitude = 2.0 * points[i].value / sweep.weight_sum;
         const double floor = 4.0 * noise / (sweep.weight_sum * sweep.weight_sum);
         const double weight = stack.sweep_weights[i];
         weights += weight;

@@ -86,6 +86,56 @@ class Rows {
     std::vector<double> place_, cosine_;  ///< from 0 to 1 along the piece, and cosine of pi times that
 };
 
+/// Weighted sums of products of the smooth part's terms. Those of two cosines are half the sums of the cosine
+/// of their sum and of their difference, so neighbours tell all others.
+class SmoothProducts {
+  public:
+    explicit SmoothProducts(std::size_t terms)
+        : cosines_(terms - 1), neighbours_(2 * cosines_), by_slope_(terms) {}
+
+    [[nodiscard]] std::size_t terms() const { return by_slope_.size(); }
+
+    void add(const std::array<double, Rows::length>& weight, Rows& rows) {
+        std::array<double, Rows::length> weighed{};
+        const auto weigh = [&](const double* row) {
+            for (std::size_t i = 0; i < Rows::length; ++i) weighed[i] = weight[i] * row[i];
+        };
+        const auto sum_with = [&](std::size_t term) {
+            return dot(weighed.data(), rows.row(term), Rows::length);
+        };
+        weigh(rows.row(slope));
+        for (std::size_t term = 0; term < terms(); ++term) by_slope_[term] += sum_with(term);
+        for (std::size_t m = 0; m < cosines_; ++m) {
+            weigh(rows.row(term_of(m)));
+            neighbours_[2 * m] += sum_with(term_of(m));
+            if (m + 1 < cosines_) neighbours_[2 * m + 1] += sum_with(term_of(m + 1));
+        }
+    }
+
+    /// The lower half of what they are among themselves.
+    void put_into(Eigen::MatrixXd& normal) const {
+        const auto at = [&](std::size_t a, std::size_t b) -> double& {
+            return normal(static_cast<Eigen::Index>(std::max(a, b)),
+                          static_cast<Eigen::Index>(std::min(a, b)));
+        };
+        // Of cosine j of pi u, from that of its two halves by each other.
+        const auto sum_of = [&](std::size_t j) { return 2.0 * neighbours_[j] - neighbours_[j % 2]; };
+        for (std::size_t m = 0; m < cosines_; ++m) {
+            for (std::size_t l = 0; l <= m; ++l)
+                at(term_of(m), term_of(l)) = 0.5 * (sum_of(m + l) + sum_of(m - l));
+        }
+        for (std::size_t term = 0; term < terms(); ++term) at(slope, term) = by_slope_[term];
+    }
+
+  private:
+    static constexpr std::size_t slope = 1;  ///< among the rows
+    static std::size_t term_of(std::size_t cosine) { return cosine == 0 ? 0 : cosine + 1; }
+
+    std::size_t cosines_;
+    std::vector<double> neighbours_;  ///< cosine m by itself and by cosine m + 1, in turn
+    std::vector<double> by_slope_;    ///< every term by the slope
+};
+
 /// Of one sweep what a line is there, sample by sample: nothing where the sweep is too short to tell.
 std::vector<double> there(const Sweep& sweep, const KnownLine& line) {
     const auto at = places(sweep, line.axis);
@@ -143,17 +193,24 @@ void fit_out(Sweep& sweep, std::span<const KnownLine> lines) {
     const auto n = static_cast<Eigen::Index>(rows.count());
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+    SmoothProducts smooth(sweep.trend_terms);
     rows.in_blocks([&](std::size_t first, std::size_t count) {
         std::array<double, Rows::length> weight{}, weighed{};
-        std::copy_n(sweep.weight.begin() + static_cast<std::ptrdiff_t>(first), count, weight.begin());
-        for (Eigen::Index a = 0; a < n; ++a) {
+        for (std::size_t i = 0; i < count; ++i) {
+            weight[i] = sweep.weight[first + i];
+            weighed[i] = weight[i] * sweep.torque_nm[first + i];
+        }
+        smooth.add(weight, rows);
+        for (Eigen::Index a = 0; a < n; ++a)
+            right[a] += dot(weighed.data(), rows.row(static_cast<std::size_t>(a)), count);
+        for (auto a = static_cast<Eigen::Index>(sweep.trend_terms); a < n; ++a) {
             const double* const row = rows.row(static_cast<std::size_t>(a));
             for (std::size_t i = 0; i < Rows::length; ++i) weighed[i] = weight[i] * row[i];
             for (Eigen::Index b = 0; b <= a; ++b)
                 normal(a, b) += dot(weighed.data(), rows.row(static_cast<std::size_t>(b)), count);
-            right[a] += dot(weighed.data(), sweep.torque_nm.data() + first, count);
         }
     });
+    smooth.put_into(normal);
     normal.diagonal().array() *= 1.0 + 1e-10;  // line and first cosine are nearly parallel
     const Eigen::VectorXd found = SymmetricFactors(normal).solve(right);
     rows.in_blocks([&](std::size_t first, std::size_t count) {

@@ -6,6 +6,7 @@
 
 #include "analysis/motion/line_evidence.hpp"
 #include "analysis/motion/line_removal.hpp"
+#include "analysis/motion/stacks.hpp"
 #include "core/two_cores.hpp"
 #include "ripplenotch/core/median.hpp"
 
@@ -123,24 +124,6 @@ bool stands_out(const Stack& stack, std::span<const SignificantPeak> peaks, doub
     });
 }
 
-// The sweeps in both domains, after what has been found so far was taken out of them.
-struct Stacks {
-    Stack angle, time;
-    std::vector<SignificantPeak> angle_peaks, time_peaks;
-};
-
-Stacks stacked(const std::vector<Sweep>& sweeps, const MotionLinesOptions& options) {
-    Stacks stacks;
-    on_two_cores(2, [&](std::size_t i) {
-        const Axis axis = i == 0 ? Axis::angle : Axis::time;
-        Stack& stack = i == 0 ? stacks.angle : stacks.time;
-        stack = stack_sweeps(sweeps, axis, options.stack);
-        // Two domains are asked.
-        (i == 0 ? stacks.angle_peaks : stacks.time_peaks) = stack.peaks(0.5 * options.false_alarm);
-    });
-    return stacks;
-}
-
 LineKind judged(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Rivals& rivals, bool by_angle) {
     const auto& [angle, time, angle_peaks, time_peaks] = stacks;
     const double apart = rivals.gain_angle - rivals.gain_time;
@@ -172,8 +155,13 @@ std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stack
                            const std::vector<double>& taken_orders, const std::vector<double>& taken_hz,
                            const MotionLinesOptions& options) {
     const auto& [angle, time, angle_peaks, time_peaks] = stacks;
-    const auto order = clearest(sweeps, angle, angle_peaks, taken_orders, 0.0);
-    const auto tone = clearest(sweeps, time, time_peaks, taken_hz, options.lowest_tone_hz);
+    std::optional<Candidate> order, tone;
+    on_two_cores(2, [&](std::size_t i) {
+        if (i == 0)
+            order = clearest(sweeps, angle, angle_peaks, taken_orders, 0.0);
+        else
+            tone = clearest(sweeps, time, time_peaks, taken_hz, options.lowest_tone_hz);
+    });
     if (!order && !tone) return std::nullopt;
     Sought sought;
     sought.by_angle = order && (!tone || order->gain >= tone->gain);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/lines/excess_scatter.hpp"
+#include "core/two_cores.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -96,17 +97,32 @@ double disagreement(std::span<const Opinion> opinions) {
 
 }  // namespace
 
+bool are_long(std::span<const Sweep> sweeps) {
+    constexpr std::size_t long_samples = 20'000;  // by hand: a third of a millisecond at one place
+    std::size_t samples = 0;
+    for (const Sweep& sweep : sweeps) samples += sweep.value.size();
+    return samples > long_samples;
+}
+
 double place_error(std::span<const Sweep> sweeps, const Stack& stack, double place) {
-    std::vector<Opinion> whole, parts;
-    double variance = 0.0, curve = 0.0;
+    std::vector<std::size_t> asked;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
-        const double noise = noise_at(stack, i, place);
-        if (!(noise > 0.0)) continue;
-        whole.push_back(opinion_of(sweeps[i], stack.axis, noise, place));
-        const double weight = stack.sweep_weights[i];
-        variance += weight * weight * whole.back().slope_variance;
-        curve += weight * whole.back().curve;
-        if (sweeps.size() < few_sweeps) add_parts(sweeps[i], stack.axis, noise, place, parts);
+        if (noise_at(stack, i, place) > 0.0) asked.push_back(i);
+    }
+    std::vector<Opinion> whole(asked.size()), parts;
+    on_two_cores(
+        asked.size(),
+        [&](std::size_t i) {
+            whole[i] = opinion_of(sweeps[asked[i]], stack.axis, noise_at(stack, asked[i], place), place);
+        },
+        are_long(sweeps));
+    double variance = 0.0, curve = 0.0;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        const double weight = stack.sweep_weights[asked[i]];
+        variance += weight * weight * whole[i].slope_variance;
+        curve += weight * whole[i].curve;
+        if (sweeps.size() < few_sweeps)
+            add_parts(sweeps[asked[i]], stack.axis, noise_at(stack, asked[i], place), place, parts);
     }
     if (!(curve < 0.0) || !(variance > 0.0)) return stack.resolution;
     double error = std::sqrt(variance) / -curve;

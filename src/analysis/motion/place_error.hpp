@@ -14,4 +14,7 @@ namespace ripplenotch {
 /// wanders with speed or load does, the error is widened to what they show.
 [[nodiscard]] double place_error(std::span<const Sweep> sweeps, const Stack& stack, double place);
 
+/// True when to look at one place in all sweeps is worth a second thread.
+[[nodiscard]] bool are_long(std::span<const Sweep> sweeps);
+
 }  // namespace ripplenotch

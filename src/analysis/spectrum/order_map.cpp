@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "analysis/spectrum/hann.hpp"
 #include "core/factorisations.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
@@ -16,7 +17,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double hann_cell = 1.5;            ///< noise bandwidth of a Hann window in 1 / length
 constexpr double bins_per_resolution = 3.0;  // by hand
 constexpr std::size_t fewest_samples = 32;   // by hand
 constexpr double window_share = 1.0 / 16.0;  ///< of the longest run

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -19,21 +18,42 @@ class Extremes {
   public:
     explicit Extremes(std::span<const double> values) : values_(values) {}
     void add(std::size_t k) {
-        while (!high_.empty() && values_[high_.back()] <= values_[k]) high_.pop_back();
-        while (!low_.empty() && values_[low_.back()] >= values_[k]) low_.pop_back();
-        high_.push_back(k);
-        low_.push_back(k);
+        const double value = values_[k];
+        while (!high_.empty() && values_[high_.last()] <= value) high_.drop_last();
+        while (!low_.empty() && values_[low_.last()] >= value) low_.drop_last();
+        high_.add(k);
+        low_.add(k);
     }
     void drop_before(std::size_t k) {
-        while (!high_.empty() && high_.front() < k) high_.pop_front();
-        while (!low_.empty() && low_.front() < k) low_.pop_front();
+        while (!high_.empty() && high_.first() < k) high_.drop_first();
+        while (!low_.empty() && low_.first() < k) low_.drop_first();
     }
-    [[nodiscard]] double highest() const { return values_[high_.front()]; }
-    [[nodiscard]] double lowest() const { return values_[low_.front()]; }
+    [[nodiscard]] double highest() const { return values_[high_.first()]; }
+    [[nodiscard]] double lowest() const { return values_[low_.first()]; }
 
   private:
+    /// Samples that may become the extreme, in their order.
+    class Waiting {
+      public:
+        [[nodiscard]] bool empty() const { return first_ == samples_.size(); }
+        [[nodiscard]] std::size_t first() const { return samples_[first_]; }
+        [[nodiscard]] std::size_t last() const { return samples_.back(); }
+        void add(std::size_t k) { samples_.push_back(k); }
+        void drop_last() { samples_.pop_back(); }
+        void drop_first() {
+            // What is dropped stays until it is half of all.
+            if (2 * ++first_ <= samples_.size()) return;
+            samples_.erase(samples_.begin(), samples_.begin() + static_cast<std::ptrdiff_t>(first_));
+            first_ = 0;
+        }
+
+      private:
+        std::vector<std::size_t> samples_;
+        std::size_t first_ = 0;
+    };
+
     std::span<const double> values_;
-    std::deque<std::size_t> high_, low_;
+    Waiting high_, low_;
 };
 
 struct Band {
@@ -72,8 +92,10 @@ std::vector<Window> maximal_windows(const TraceView& trace, std::span<const doub
         if (const Window window{first, end}; long_enough(window, trace, rule)) windows.push_back(window);
     };
     extremes.add(0);
+    auto next_run = std::upper_bound(trace.run_starts.begin(), trace.run_starts.end(), trace.first_row);
     for (std::size_t k = 1; k < speed.size(); ++k) {
-        const bool jumped = trace.starts_run(k);
+        const bool jumped = next_run != trace.run_starts.end() && *next_run == trace.first_row + k;
+        if (jumped) ++next_run;
         const double lowest = std::min(extremes.lowest(), speed[k]);
         const double highest = std::max(extremes.highest(), speed[k]);
         if (jumped || !band.holds(lowest, highest)) close(k);
@@ -131,19 +153,28 @@ Stretch measured(const TraceView& trace, std::size_t first, std::size_t count, c
 /// Standard deviation of what changes from sample to sample, spikes and steps aside.
 double white_noise_of(std::span<const double> values) {
     if (values.size() < 2) return 0.0;
-    std::vector<double> changes;
-    for (std::size_t k = 1; k < values.size(); ++k) changes.push_back(std::abs(values[k] - values[k - 1]));
+    std::vector<double> changes(values.size() - 1);
+    for (std::size_t k = 0; k < changes.size(); ++k) changes[k] = std::abs(values[k + 1] - values[k]);
     return 1.4826 * median_in(changes) / std::sqrt(2.0);
+}
+
+/// True when values range no further than a few times their white noise.
+bool only_trembles(std::span<const double> values) {
+    constexpr double trembling = 8.0;  // the range of thousands of draws, in deviations
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const double range = *high - *low;
+    double path = 0.0;
+    for (std::size_t k = 1; k < values.size(); ++k) path += std::abs(values[k] - values[k - 1]);
+    // A median is at most twice the mean: where that is not enough there is no need for it.
+    const auto steps = static_cast<double>(std::max<std::size_t>(values.size(), 2) - 1);
+    if (range > trembling * 1.4826 * std::sqrt(2.0) * path / steps * (1.0 + 1e-9)) return false;
+    return range <= trembling * white_noise_of(values);
 }
 
 /// The angle goes no further than noise takes it: a few times its own trembling where it is measured,
 /// `walk_deg` as integrated velocity.
 bool moves_nowhere(const TraceView& trace, double walk_deg) {
-    if (trace.has_position()) {
-        const auto [low, high] = std::minmax_element(trace.position_deg.begin(), trace.position_deg.end());
-        constexpr double trembling = 8.0;  // the range of thousands of draws, in deviations
-        if (*high - *low <= trembling * white_noise_of(trace.position_deg)) return true;
-    }
+    if (trace.has_position() && only_trembles(trace.position_deg)) return true;
     double angle = 0.0, lowest = 0.0, highest = 0.0;
     for (const double v : trace.velocity_deg_s) {
         angle += v / trace.sample_rate.value();

@@ -191,22 +191,41 @@ void MotionPieces::end_piece() {
     in_piece_ = 0;
 }
 
-void MotionPieces::add(const Row& row) {
-    const double step = row.time_s - before_->time_s;
-    piece_.position_change += row.position_deg - before_->position_deg;
-    piece_.velocity_change += row.velocity_deg_s - before_->velocity_deg_s;
-    piece_.integrated_velocity += 0.5 * (before_->velocity_deg_s + row.velocity_deg_s) * step;
-    if (++in_piece_ == rows_in_piece_) end_piece();
-}
-
 void MotionPieces::add(const TraceView& rows) {
-    if (!rows.has_position()) return;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        const Row row{rows.time_s[i], rows.velocity_deg_s[i], rows.position_deg[i]};
-        if (before_ && rows.starts_run(i)) end_piece();
-        if (before_ && !rows.starts_run(i)) add(row);
-        before_ = row;
+    if (!rows.has_position() || rows.size() == 0) return;
+    std::size_t k = 0;
+    const auto row = [&](std::size_t i) {
+        return Row{rows.time_s[i], rows.velocity_deg_s[i], rows.position_deg[i]};
+    };
+    if (!before_ || rows.starts_run(0)) {
+        end_piece();
+        before_ = row(k++);
     }
+    Row before = *before_;
+    auto next_run = std::upper_bound(rows.run_starts.begin(), rows.run_starts.end(), rows.first_row);
+    while (k < rows.size()) {
+        const std::size_t run_end = next_run == rows.run_starts.end()
+                                        ? rows.size()
+                                        : std::min(*next_run - rows.first_row, rows.size());
+        const std::size_t end = std::min(run_end, k + rows_in_piece_ - in_piece_);
+        in_piece_ += end - k;
+        Piece piece = piece_;
+        for (; k < end; ++k) {
+            const Row now = row(k);
+            const double step = now.time_s - before.time_s;
+            piece.position_change += now.position_deg - before.position_deg;
+            piece.velocity_change += now.velocity_deg_s - before.velocity_deg_s;
+            piece.integrated_velocity += 0.5 * (before.velocity_deg_s + now.velocity_deg_s) * step;
+            before = now;
+        }
+        piece_ = piece;
+        if (in_piece_ == rows_in_piece_) end_piece();
+        if (k < run_end || k == rows.size()) continue;
+        end_piece();
+        before = row(k++);
+        ++next_run;
+    }
+    before_ = before;
 }
 
 ClockCheck MotionPieces::check(Hertz sample_rate) {

@@ -38,7 +38,6 @@ class MotionPieces {
     struct Row {
         double time_s, velocity_deg_s, position_deg;
     };
-    void add(const Row& row);
     void end_piece();
 
     std::size_t rows_, rows_in_piece_;

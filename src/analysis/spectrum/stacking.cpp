@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "analysis/spectrum/stacking.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "analysis/spectrum/hann.hpp"
+#include "ripplenotch/analysis/fourier.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr std::size_t most_parts = 8;  // by hand: each holds five sums for every bin
+constexpr double overlap_correlation =
+    1.06;  // half-overlapping Hann pieces count a little less than independent ones
+
+constexpr double smeared_cells = 20.0;  // by hand
+
+struct Reach {
+    std::size_t first = 0, end = 0;  // bins
+};
+
+/// Highest order that a sweep can vouch for. At one speed, lines above half the sample rate fold onto others
+/// exactly; when the speed changes so much that a folded line smears over many resolutions, what stays sharp
+/// is not folded. Not so near the sample rate itself, where the whole motion, far stronger than any line,
+/// folds to.
+double highest_order(const Sweep& sweep) {
+    const double per_turn = sweep.rate_hz * 360.0;
+    const double slow = std::max(sweep.slow_deg_s, 1e-9);
+    const double smear = per_turn / slow - per_turn / std::max(sweep.quick_deg_s, 1e-9);
+    const bool smears = smear > smeared_cells * hann_cell / sweep.length_turns;
+    const double clear_of_motion = 0.8 * per_turn / std::max(sweep.fast_deg_s, 1e-9);
+    return smears ? clear_of_motion : std::min(clear_of_motion, 0.5 * per_turn / slow);
+}
+
+Reach reach_of(const Sweep& sweep, Axis axis, double spacing, std::size_t bins, const StackRule& rule) {
+    const bool angle = axis == Axis::angle;
+    const double lowest =
+        std::max(angle ? rule.lowest_order : rule.lowest_hz, rule.fewest_cycles / length_of(sweep, axis));
+    const double highest = angle ? std::min(rule.highest_order, highest_order(sweep)) : 0.5 * sweep.rate_hz;
+    const auto end = static_cast<std::size_t>(highest / spacing) + 1;
+    return {static_cast<std::size_t>(std::ceil(lowest / spacing)), std::min(end, bins)};
+}
+
+}  // namespace
+
+Stacking::Stacking(std::span<const Sweep> sweeps, Axis axis, const StackRule& rule)
+    : sweeps_(sweeps), rule_(rule) {
+    stack_.axis = axis;
+    stack_.few_cells = rule.few_cells;
+    double longest = 0.0, weights = 0.0, mean_length = 0.0, half_rate = 0.0;
+    for (const Sweep& sweep : sweeps) {
+        longest = std::max(longest, length_of(sweep, axis));
+        weights += sweep.effective_samples();
+        mean_length += sweep.effective_samples() * length_of(sweep, axis);
+        half_rate = std::max(half_rate, 0.5 * sweep.rate_hz);
+        stack_.sweep_weights.push_back(sweep.effective_samples());
+    }
+    if (!(longest > 0.0)) {
+        stack_.sweep_weights.clear();
+        return;
+    }
+    mean_length /= weights;
+    stack_.spacing = 0.5 / longest;
+    stack_.resolution = hann_cell / mean_length;
+    stack_.tries_factor = longest / mean_length;
+    const double highest = axis == Axis::angle ? rule.highest_order : half_rate;
+    bins_ = static_cast<std::size_t>(highest / stack_.spacing) + 1;
+    stack_.floors.resize(sweeps.size());
+    const std::size_t parts = std::min(most_parts, sweeps.size());
+    for (std::size_t part = 0; part < parts; ++part)
+        parts_.push_back({.first = sweeps.size() * part / parts,
+                          .end = sweeps.size() * (part + 1) / parts,
+                          .ratio = {},
+                          .amplitude = {},
+                          .floor = {},
+                          .weight = {},
+                          .square = {},
+                          .low = bins_});
+}
+
+void Stacking::run(std::size_t number) {
+    Part& part = parts_[number];
+    for (auto* sums : {&part.ratio, &part.amplitude, &part.floor, &part.weight, &part.square})
+        sums->assign(bins_, 0.0);
+    for (std::size_t sweep = part.first; sweep < part.end; ++sweep) add(sweep, part);
+}
+
+void Stacking::add(std::size_t number, Part& part) {
+    const Sweep& sweep = sweeps_[number];
+    const Reach reach = reach_of(sweep, stack_.axis, stack_.spacing, bins_, rule_);
+    auto& floors = stack_.floors[number];
+    floors.assign(bins_, 0.0F);
+    const double cell = hann_cell / (length_of(sweep, stack_.axis) * stack_.spacing);
+    if (static_cast<double>(reach.end) < static_cast<double>(reach.first) + 10.0 * cell) return;
+    const auto sums = nonuniform_fourier(places(sweep, stack_.axis), sweep.value, stack_.spacing, reach.end);
+    std::vector<double> power(reach.end);
+    for (std::size_t k = 0; k < reach.end; ++k) power[k] = std::norm(sums[k]);
+    const std::vector<double> floor = noise_floor({power, 1.0, cell, reach.first, {}});
+    const double weight = stack_.sweep_weights[number];
+    const double to_amplitude = 4.0 / (sweep.weight_sum * sweep.weight_sum);
+    for (std::size_t k = reach.first; k < reach.end; ++k) {
+        floors[k] = static_cast<float>(floor[k]);
+        part.ratio[k] += weight * power[k] / floor[k];
+        part.amplitude[k] += weight * power[k] * to_amplitude;
+        part.floor[k] += weight * floor[k] * to_amplitude;
+        part.weight[k] += weight;
+        part.square[k] += weight * weight;
+    }
+    part.low = std::min(part.low, reach.first);
+    part.high = std::max(part.high, reach.end);
+}
+
+Stack Stacking::stack() {
+    if (parts_.empty()) return std::move(stack_);
+    Part all = std::move(parts_.front());
+    for (std::size_t i = 1; i < parts_.size(); ++i) {
+        const Part& part = parts_[i];
+        for (std::size_t k = part.low; k < part.high; ++k) {
+            all.ratio[k] += part.ratio[k];
+            all.amplitude[k] += part.amplitude[k];
+            all.floor[k] += part.floor[k];
+            all.weight[k] += part.weight[k];
+            all.square[k] += part.square[k];
+        }
+        all.low = std::min(all.low, part.low);
+        all.high = std::max(all.high, part.high);
+    }
+    stack_.first = std::min(all.low, bins_);
+    const std::size_t end = std::min(std::max(all.low, all.high), bins_);
+    for (auto* means : {&stack_.ratio, &stack_.averages, &stack_.amplitude_nm, &stack_.floor_nm})
+        means->resize(end);
+    for (std::size_t k = stack_.first; k < end; ++k) {
+        // Bins that no sweep reaches (between sweeps of very different speed) read as noise.
+        const double weight = all.weight[k];
+        const bool used = weight > 0.0;
+        stack_.ratio[k] = used ? all.ratio[k] / weight : 1.0;
+        stack_.averages[k] =
+            used ? std::max(1.0, weight * weight / all.square[k] / overlap_correlation) : 1.0;
+        stack_.amplitude_nm[k] = used ? std::sqrt(all.amplitude[k] / weight) : 0.0;
+        stack_.floor_nm[k] = used ? std::sqrt(all.floor[k] / weight) : 0.0;
+    }
+    return std::move(stack_);
+}
+
+Stack stack_sweeps(std::span<const Sweep> sweeps, Axis axis, const StackRule& rule) {
+    Stacking stacking(sweeps, axis, rule);
+    for (std::size_t part = 0; part < stacking.parts(); ++part) stacking.run(part);
+    return stacking.stack();
+}
+
+}  // namespace ripplenotch
