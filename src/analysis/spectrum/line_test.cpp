@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analysis/spectrum/running_median.hpp"
+#include "core/many_numbers.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -175,15 +176,19 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
             1e-300);
     };
     // Between places a stride apart the floor runs on a straight line in log power.
-    double here = at(spectrum.first);
+    std::vector<double> levels{at(spectrum.first)}, factors;
     for (std::size_t from = spectrum.first; from < n; from += stride) {
         const std::size_t to = std::min(from + stride, n - 1);
-        const double there = at(to);
-        const double factor =
-            to > from ? portable::exp(portable::log(there / here) / static_cast<double>(to - from)) : 1.0;
-        double level = here;
-        for (std::size_t k = from; k < std::min(from + stride, n); ++k, level *= factor) floor[k] = level;
-        here = there;
+        const double here = levels.back();
+        levels.push_back(at(to));
+        factors.push_back(to > from ? portable::log(levels.back() / here) / static_cast<double>(to - from)
+                                    : 0.0);
+    }
+    portable::many_exp(factors);
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const std::size_t from = spectrum.first + i * stride;
+        double level = levels[i];
+        for (std::size_t k = from; k < std::min(from + stride, n); ++k, level *= factors[i]) floor[k] = level;
     }
     return floor;
 }

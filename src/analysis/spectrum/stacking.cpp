@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_parts = 8;  // by hand: each holds five sums for every bin
+constexpr std::size_t most_parts = 3;  // by hand: more did not help two cores; each holds five sums a bin
 constexpr double overlap_correlation =
     1.06;  // half-overlapping Hann pieces count a little less than independent ones
 
