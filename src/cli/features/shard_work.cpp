@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "cli/features/feature_lines.hpp"
+#include "core/two_cores.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/document/features_json.hpp"
@@ -114,6 +115,7 @@ void do_shard(const FeatureRequest& request, const FeatureWork& work, const Mani
         return;
     }
     std::string text;
+    const OneCore engine_has_the_others;
     for (const ManifestEntry& entry : part_of(manifest, record.shard)) {
         ++record.logs;
         for (const FeatureLine& line : feature_lines(entry, work)) {
