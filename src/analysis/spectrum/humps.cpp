@@ -2,6 +2,7 @@
 #include "ripplenotch/analysis/humps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -134,28 +135,30 @@ class Level {
         const double said = spectrum_.averages_at(blocks_.first + at * blocks_.bins);
         return std::max(1.0, cells * counted_) * std::max(1.0, averages_share_ * said);
     }
-    /// Of blocks [from, to) that are not next to the window at `at`.
+    /// Blocks [from, to) that are not next to the window at `at`: those before it and those behind it.
     struct Beside {
         std::size_t from = 0, to = 0, at = 0;
-        [[nodiscard]] bool has(std::size_t i) const {
-            return i + guard_blocks < at || i >= at + window_blocks + guard_blocks;
+        using Range = std::pair<std::size_t, std::size_t>;
+        [[nodiscard]] std::array<Range, 2> ranges() const {
+            const std::size_t before = std::min(to, at - std::min(at, guard_blocks)),
+                              behind = std::max(from, at + window_blocks + guard_blocks);
+            return {Range{from, std::max(from, before)}, Range{std::min(behind, to), to}};
         }
     };
     /// Their median.
     double median_of(const Beside& beside) {
         scratch_.clear();
-        for (std::size_t i = beside.from; i < beside.to; ++i) {
-            if (beside.has(i)) scratch_.push_back(blocks_.mean[i]);
-        }
+        for (const auto& [from, to] : beside.ranges())
+            scratch_.insert(scratch_.end(), blocks_.mean.begin() + static_cast<std::ptrdiff_t>(from),
+                            blocks_.mean.begin() + static_cast<std::ptrdiff_t>(to));
         return median_in(scratch_);
     }
     /// That their median is above `most`, by a count: what most windows come to costs no median.
     [[nodiscard]] bool median_above(double most, const Beside& beside) const {
         std::size_t count = 0, above = 0;
-        for (std::size_t i = beside.from; i < beside.to; ++i) {
-            const auto counts = static_cast<std::size_t>(beside.has(i));
-            count += counts;
-            above += counts & static_cast<std::size_t>(blocks_.mean[i] > most);
+        for (const auto& [from, to] : beside.ranges()) {
+            count += to - from;
+            for (std::size_t i = from; i < to; ++i) above += static_cast<std::size_t>(blocks_.mean[i] > most);
         }
         return above > 0 && above >= count - count / 2;
     }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "analysis/kernels/power_kernel.hpp"
+#include "core/many_numbers.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -18,10 +19,10 @@ constexpr double even_share = 1e-3;
 constexpr double most_steps = 3.0;     // that one sample stands for, beside a gap
 constexpr std::size_t most_ahead = 8;  // pieces; those of usual lengths stay in the processor's cache
 
-/// At a place and for a length in the same unit.
-double hann(double place, double length) {
-    return 0.5 + 0.5 * portable::cos(2.0 * std::numbers::pi * place / length);
-}
+/// Of which the cosine is the window's; at a place and for a length in the same unit.
+double hann_angle(double place, double length) { return 2.0 * std::numbers::pi * place / length; }
+
+double hann(double place, double length) { return 0.5 + 0.5 * portable::cos(hann_angle(place, length)); }
 
 void remove_line(std::span<const double> t, std::vector<double>& x) {
     const auto n = static_cast<double>(x.size());
@@ -45,12 +46,18 @@ PieceMaker::PieceMaker(std::size_t length, Hertz rate)
       step_s_(1.0 / rate.value()),
       transform_(length) {
     const double middle = 0.5 * (static_cast<double>(length) - 1.0);
+    even_time_s_.resize(length);
+    even_window_.resize(length);
     for (std::size_t k = 0; k < length; ++k) {
         const double place = static_cast<double>(k) - middle;
-        even_time_s_.push_back(place * step_s_);
-        even_window_.push_back(hann(place, static_cast<double>(length)));
-        even_sum_ += even_window_.back();
-        even_square_sum_ += even_window_.back() * even_window_.back();
+        even_time_s_[k] = place * step_s_;
+        even_window_[k] = hann_angle(place, static_cast<double>(length));
+    }
+    portable::cos(even_window_, even_window_);
+    for (double& weight : even_window_) {
+        weight = 0.5 + 0.5 * weight;
+        even_sum_ += weight;
+        even_square_sum_ += weight * weight;
     }
 }
 

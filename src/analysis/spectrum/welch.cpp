@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/spectrum/hann.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double hann_noise_bandwidth = 1.5;  // bins
 constexpr double hann_error_factor =
     1.5307;                           // standard error of a Hann-windowed frequency over the Cramer-Rao bound
 constexpr double skirt_margin = 2.0;  // a side lobe may be this much higher than the window's own
@@ -67,7 +67,7 @@ std::size_t Welch::add(std::span<const double> time_s, std::span<const double> t
 PowerSpectrum Welch::tested() const {
     // Half-overlapping Hann pieces: neighbours share a sixth of their power in correlation, (1 + 2/36)^-1.
     const double averages = std::max(1.0, static_cast<double>(pieces_) / (pieces_ > 1 ? 1.0556 : 1.0));
-    return {power_, averages, hann_noise_bandwidth, std::min(trend_bins, power_.size()), {}};
+    return {power_, averages, hann_cell, std::min(trend_bins, power_.size()), {}};
 }
 
 std::optional<Welch> Welch::at(Hertz rate) const {
@@ -126,7 +126,7 @@ std::vector<SpectralHump> Welch::humps() const {
         double square = 0.0;
         std::size_t highest = found.first;
         for (std::size_t k = found.first; k < found.end; ++k) {
-            square += (rest[k] - found.floor) / (2.0 * hann_noise_bandwidth);
+            square += (rest[k] - found.floor) / (2.0 * hann_cell);
             if (rest[k] > rest[highest]) highest = k;
         }
         // What widens a line, because its frequency or amplitude moves, is no hump beside it.
@@ -165,7 +165,7 @@ SpectralPeak Welch::peak(std::size_t line) const {
     peak.phase_deg = std::remainder(meter.phase_rad() * degrees_per_radian, 360.0);
     // var f = 3 S / (pi^2 A^2 T^3) for one-sided noise density S; floor^2 = 2 S * noise bandwidth.
     const double duration = static_cast<double>(length_) / rate_;
-    const double density = peak.floor_nm * peak.floor_nm / (2.0 * hann_noise_bandwidth * bin_hz());
+    const double density = peak.floor_nm * peak.floor_nm / (2.0 * hann_cell * bin_hz());
     const double bound =
         std::sqrt(3.0 * density / (peak.amplitude_nm * peak.amplitude_nm * duration * duration * duration)) /
         std::numbers::pi;
@@ -177,7 +177,7 @@ SpectralPeak Welch::peak(std::size_t line) const {
 Spectrum Welch::spectrum() const {
     Spectrum spectrum;
     spectrum.bin_width = Hertz(bin_hz());
-    spectrum.resolution = Hertz(hann_noise_bandwidth * bin_hz());
+    spectrum.resolution = Hertz(hann_cell * bin_hz());
     spectrum.piece_duration = Seconds(static_cast<double>(length_) / rate_);
     spectrum.pieces = pieces_;
     const std::size_t bins = power_.size(), first = tested().first;
