@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

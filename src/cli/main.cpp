@@ -21,7 +21,7 @@
 #include "cli/progress_bar.hpp"
 #include "cli/reference/reference.hpp"
 #include "cli/talk.hpp"
-#include "core/unfinished_files.hpp"
+#include "core/files/unfinished_files.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/version.hpp"

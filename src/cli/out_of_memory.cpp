@@ -15,8 +15,8 @@
 #include <exception>
 #include <new>
 
-#include "core/sanitized.hpp"
-#include "core/unfinished_files.hpp"
+#include "core/files/unfinished_files.hpp"
+#include "core/process/sanitized.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/version.hpp"
 

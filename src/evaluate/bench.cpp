@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 
 namespace ripplenotch {
 namespace {

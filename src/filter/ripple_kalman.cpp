@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "filter/gain_schedule.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/first_outside.hpp"
+#include "core/rows/first_outside.hpp"
 
 namespace ripplenotch {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/factorisations.hpp"
-#include "core/tall_triangle.hpp"
+#include "core/matrices/factorisations.hpp"
+#include "core/matrices/tall_triangle.hpp"
 #include "core/vectors/dot.hpp"
 #include "model/carriers.hpp"
 #include "model/fit_coordinates.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

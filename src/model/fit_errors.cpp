@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/factorisations.hpp"
-#include "core/tall_triangle.hpp"
+#include "core/matrices/factorisations.hpp"
+#include "core/matrices/tall_triangle.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "core/hash_beside.hpp"
+#include "core/files/hash_beside.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <random>
 #include <string>
 
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

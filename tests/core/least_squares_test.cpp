@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "core/least_squares.hpp"
+#include "core/matrices/least_squares.hpp"
 
-#include "core/rms.hpp"
+#include "core/rows/rms.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

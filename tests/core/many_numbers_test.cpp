@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 
 #include <bit>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 
 #include <mutex>
 #include <set>

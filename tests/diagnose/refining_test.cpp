@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "bench_fixture.hpp"
-#include "core/rms.hpp"
+#include "core/rows/rms.hpp"
 #include "diagnose/beside/naming/exchanges.hpp"
 #include "diagnose/beside/naming/ringing.hpp"
 #include "diagnose/beside/naming/rivals.hpp"

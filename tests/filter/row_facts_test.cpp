@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "core/first_outside.hpp"
-#include "core/row_facts.hpp"
+#include "core/rows/first_outside.hpp"
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/log/format.hpp"
 #include "support/catch.hpp"
 #include "support/vectors.hpp"

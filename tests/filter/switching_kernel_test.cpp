@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/first_outside.hpp"
+#include "core/rows/first_outside.hpp"
 #include "filter/filter_bank.hpp"
 #include "filter/kernels/direct_form.hpp"
 #include "filter/kernels/in_series.hpp"

@@ -56,7 +56,7 @@ DOORS = {
     r"(?<!\")\bstderr\b(?!\")|std::(cerr|clog|cout)\b|STDERR_FILENO": {"src/cli/talk.cpp", "src/cli/out_of_memory.cpp", "src/cli/progress_bar.cpp", "src/figure/gnuplot_process.cpp"},
     r"\bwrite_all\(\"-\"": set(),
     r"\b(HouseholderQR|LLT|LDLT|PartialPivLU|JacobiSVD|\w*EigenSolver|\w+Decomposition)<|[.>](ldlt|llt|eigenvalues|inverse|\w*[qQ]r|"
-    r"\w+PivLu|\w+Svd)\(\)": {"src/core/factorisations.hpp", "src/core/factorisations.cpp"},
+    r"\w+PivLu|\w+Svd)\(\)": {"src/core/matrices/factorisations.hpp", "src/core/matrices/factorisations.cpp"},
 }
 
 

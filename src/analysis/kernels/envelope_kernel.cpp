@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "core/matrices/linear_algebra.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

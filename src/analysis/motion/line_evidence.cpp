@@ -6,7 +6,7 @@
 #include <complex>
 
 #include "analysis/motion/place_error.hpp"
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

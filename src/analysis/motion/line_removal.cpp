@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/factorisations.hpp"
-#include "core/many_numbers.hpp"
-#include "core/two_cores.hpp"
+#include "core/functions/many_numbers.hpp"
+#include "core/matrices/factorisations.hpp"
+#include "core/process/two_cores.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {

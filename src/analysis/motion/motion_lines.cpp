@@ -7,7 +7,7 @@
 #include "analysis/motion/line_evidence.hpp"
 #include "analysis/motion/line_removal.hpp"
 #include "analysis/motion/stacks.hpp"
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 #include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/lines/excess_scatter.hpp"
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

@@ -2,7 +2,7 @@
 #include "analysis/motion/stacks.hpp"
 
 #include "analysis/spectrum/stacking.hpp"
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 
 namespace ripplenotch {
 

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "analysis/motion/line_removal.hpp"
-#include "core/many_numbers.hpp"
-#include "core/two_cores.hpp"
+#include "core/functions/many_numbers.hpp"
+#include "core/process/two_cores.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 
 namespace ripplenotch {

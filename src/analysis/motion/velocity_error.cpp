@@ -7,7 +7,7 @@
 
 #include "analysis/motion/velocity_noise.hpp"
 #include "analysis/motion/velocity_power.hpp"
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/linear_algebra.hpp"
+#include "core/matrices/linear_algebra.hpp"
 #include "ripplenotch/analysis/sweeps.hpp"
 
 namespace ripplenotch {

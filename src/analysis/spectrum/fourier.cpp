@@ -19,7 +19,7 @@
 #include "analysis/kernels/piece_kernel.hpp"
 #include "analysis/kernels/point_kernel.hpp"
 #include "analysis/kernels/power_kernel.hpp"
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

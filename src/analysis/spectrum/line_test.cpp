@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "analysis/spectrum/running_median.hpp"
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

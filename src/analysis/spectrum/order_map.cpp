@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "analysis/spectrum/hann.hpp"
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/analysis/track_by_speed.hpp"

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "analysis/kernels/power_kernel.hpp"
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

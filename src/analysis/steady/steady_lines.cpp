@@ -8,7 +8,7 @@
 
 #include "analysis/steady/steady_offset.hpp"
 #include "analysis/steady/tone_family.hpp"
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 #include "ripplenotch/analysis/alias.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"

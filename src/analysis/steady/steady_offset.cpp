@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/lines/excess_scatter.hpp"
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

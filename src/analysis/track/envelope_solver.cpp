@@ -8,7 +8,7 @@
 #include <complex>
 #include <numbers>
 
-#include "core/linear_algebra.hpp"
+#include "core/matrices/linear_algebra.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/phasor.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"

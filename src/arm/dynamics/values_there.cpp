@@ -5,7 +5,7 @@
 #include <random>
 
 #include "arm/dynamics/arm_row.hpp"
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/arm/arm_dynamics.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

@@ -7,7 +7,7 @@
 #include "arm/fit/checked_log.hpp"
 #include "arm/fit/ridge.hpp"
 #include "arm/fit/smooth_along.hpp"
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 // Knowledge of values that belong together as knowledge of as many others that do not.
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/arm/arm_fit.hpp"
 
 namespace ripplenotch {

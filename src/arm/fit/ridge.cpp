@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "arm/fit/arm_rows.hpp"
-#include "core/linear_algebra.hpp"
+#include "core/matrices/linear_algebra.hpp"
 
 namespace ripplenotch {
 

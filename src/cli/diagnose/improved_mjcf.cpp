@@ -8,7 +8,7 @@
 
 #include "cli/diagnose/decided_text.hpp"
 #include "cli/talk.hpp"
-#include "core/rms.hpp"
+#include "core/rows/rms.hpp"
 #include "ripplenotch/arm/chain_files.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/version.hpp"

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "cli/features/feature_lines.hpp"
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/document/features_json.hpp"

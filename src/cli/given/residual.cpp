@@ -5,7 +5,7 @@
 
 #include "cli/gear/joint_methods.hpp"
 #include "cli/given/stated_along.hpp"
-#include "core/rms.hpp"
+#include "core/rows/rms.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/model/measured_motion.hpp"

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/least_squares.hpp"
+#include "core/matrices/least_squares.hpp"
 #include "core/vectors/dot.hpp"
 #include "ripplenotch/core/error.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "cli/text_table.hpp"
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "ripplenotch/core/how_many.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -13,7 +13,7 @@
 #include "cli/options/name_list.hpp"
 #include "cli/simulate/joint_model.hpp"
 #include "cli/talk.hpp"
-#include "core/rms.hpp"
+#include "core/rows/rms.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/progress.hpp"
 #include "ripplenotch/document/simulation_json.hpp"

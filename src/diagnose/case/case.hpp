@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/rms.hpp"
+#include "core/rows/rms.hpp"
 #include "model/weighing.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/rules.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {

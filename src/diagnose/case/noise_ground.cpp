@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 
 namespace ripplenotch {
 

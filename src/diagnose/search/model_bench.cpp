@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/rms.hpp"
+#include "core/rows/rms.hpp"
 #include "diagnose/search/stated_speed.hpp"
 #include "ripplenotch/model/prediction.hpp"
 

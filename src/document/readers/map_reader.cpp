@@ -3,7 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "document/fields/document_head.hpp"
 #include "document/fields/fields.hpp"
 #include "ripplenotch/core/error.hpp"

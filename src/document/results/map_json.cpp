@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/map_json.hpp"
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "document/fields/document_head.hpp"
 #include "document/json/json.hpp"
 

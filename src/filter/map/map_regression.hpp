@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/linear_algebra.hpp"
+#include "core/matrices/linear_algebra.hpp"
 #include "filter/map/map_data.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

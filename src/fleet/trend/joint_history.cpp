@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "fleet/trend/line_checks.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"

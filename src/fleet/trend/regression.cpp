@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/least_squares.hpp"
+#include "core/matrices/least_squares.hpp"
 
 namespace ripplenotch {
 namespace {

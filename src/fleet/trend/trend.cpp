@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "fleet/trend/cause.hpp"
 #include "fleet/trend/courses.hpp"
 #include "fleet/trend/kinds.hpp"

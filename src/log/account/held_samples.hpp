@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/row_facts.hpp"
+#include "core/rows/row_facts.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/log/recording.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/first_outside.hpp"
+#include "core/rows/first_outside.hpp"
 #include "log/clock/step_sums.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"

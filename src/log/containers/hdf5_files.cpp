@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "core/open_file.hpp"
+#include "core/files/open_file.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

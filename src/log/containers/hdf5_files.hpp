@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "core/temporary_file.hpp"
+#include "core/files/temporary_file.hpp"
 #include "log/containers/hdf5_handles.hpp"
 #include "log/containers/stored_bytes.hpp"
 

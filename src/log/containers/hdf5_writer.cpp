@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/open_file.hpp"
+#include "core/files/open_file.hpp"
 #include "log/containers/hdf5_files.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <optional>
 
-#include "core/temporary_file.hpp"
+#include "core/files/temporary_file.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <span>
 
-#include "core/fixed_texts.hpp"
+#include "core/text/fixed_texts.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 #include "model/effects.hpp"
 
 namespace ripplenotch {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 #include "model/direction.hpp"
 #include "model/effects.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 #include "model/effects.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

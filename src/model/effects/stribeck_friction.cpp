@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 #include "model/effects.hpp"
 
 namespace ripplenotch {

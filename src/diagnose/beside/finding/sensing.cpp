@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/beside/naming/evidence.hpp"
 #include "diagnose/case/place.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <complex>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 #include "diagnose/beside/weighing/ringing_torque.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/normal_errors.hpp"
+#include "core/matrices/normal_errors.hpp"
 #include "diagnose/beside/weighing/sums.hpp"
 #include "ripplenotch/model/fit.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 
 namespace ripplenotch {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/linear_algebra.hpp"
+#include "core/matrices/linear_algebra.hpp"
 #include "diagnose/beside/weighing/shape_columns.hpp"
 
 namespace ripplenotch {

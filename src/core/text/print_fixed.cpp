@@ -2,7 +2,7 @@
 // Four numbers at a time: scaled and rounded to whole numbers, these split into digits by multiplications,
 // all of them in place before and behind the mark, and what comes before the first digit made minus signs:
 // the text begins at the last of these, or behind it.
-#include "core/print_fixed.hpp"
+#include "core/text/print_fixed.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/inputs_read.hpp"
+#include "core/files/inputs_read.hpp"
 
 #include <atomic>
 #include <map>

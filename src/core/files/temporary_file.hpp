@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "core/unfinished_files.hpp"
+#include "core/files/unfinished_files.hpp"
 
 namespace ripplenotch {
 

@@ -5,9 +5,9 @@
 #include <cerrno>
 #include <utility>
 
-#include "core/hash_beside.hpp"
-#include "core/inputs_read.hpp"
-#include "core/open_file.hpp"
+#include "core/files/hash_beside.hpp"
+#include "core/files/inputs_read.hpp"
+#include "core/files/open_file.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"

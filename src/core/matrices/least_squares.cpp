@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "core/least_squares.hpp"
+#include "core/matrices/least_squares.hpp"
 
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 #include "core/vectors/dot.hpp"
 
 namespace ripplenotch {

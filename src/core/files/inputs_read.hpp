@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/open_file.hpp"
+#include "core/files/open_file.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 
 namespace ripplenotch {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/hash_beside.hpp"
+#include "core/files/hash_beside.hpp"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include <system_error>
 #include <vector>
 
-#include "core/two_cores.hpp"
+#include "core/process/two_cores.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

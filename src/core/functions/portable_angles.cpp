@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/circle_terms.hpp"
-#include "core/polynomial.hpp"
+#include "core/functions/circle_terms.hpp"
+#include "core/functions/polynomial.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

@@ -3,7 +3,7 @@
 // Eigen's factorisations, each made once for the whole library: made anew in every file that used one, each
 // took 2 to 8 CPU seconds of compiling there.
 
-#include "core/linear_algebra.hpp"
+#include "core/matrices/linear_algebra.hpp"
 
 namespace ripplenotch {
 

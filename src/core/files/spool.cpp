@@ -6,8 +6,8 @@
 #include <cerrno>
 #include <vector>
 
-#include "core/open_file.hpp"
-#include "core/temporary_file.hpp"
+#include "core/files/open_file.hpp"
+#include "core/files/temporary_file.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

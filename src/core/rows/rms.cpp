@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/rms.hpp"
+#include "core/rows/rms.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -13,8 +13,8 @@
 #include <cstring>
 #include <iterator>
 
-#include "core/eight_digits.hpp"
-#include "core/shortest_digits.hpp"
+#include "core/text/eight_digits.hpp"
+#include "core/text/shortest_digits.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

@@ -5,7 +5,7 @@
 // Giulietti, The Schubfach way to render doubles, 2020). In the range taken here 5^n is a 64-bit number, so
 // all products are exact, and no end of the interval is a multiple of ten: twice its distance is even, 5^n is
 // odd.
-#include "core/shortest_digits.hpp"
+#include "core/text/shortest_digits.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/eight_digits.hpp"
+#include "core/text/eight_digits.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -7,8 +7,8 @@
 #include <complex>
 #include <numbers>
 
-#include "core/circle_terms.hpp"
-#include "core/many_numbers.hpp"
+#include "core/functions/circle_terms.hpp"
+#include "core/functions/many_numbers.hpp"
 #include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"

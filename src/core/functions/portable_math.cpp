@@ -11,8 +11,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/polynomial.hpp"
-#include "core/power_terms.hpp"
+#include "core/functions/polynomial.hpp"
+#include "core/functions/power_terms.hpp"
 
 namespace ripplenotch::portable {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "core/fixed_texts.hpp"
+#include "core/text/fixed_texts.hpp"
 
 #include <algorithm>
 
-#include "core/print_fixed.hpp"
+#include "core/text/print_fixed.hpp"
 #include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {

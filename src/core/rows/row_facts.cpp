@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/row_facts.hpp"
+#include "core/rows/row_facts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/tall_triangle.hpp"
+#include "core/matrices/tall_triangle.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "core/unfinished_files.hpp"
+#include "core/files/unfinished_files.hpp"
 
 #include <unistd.h>
 
 #include <atomic>
 #include <csignal>
 
-#include "core/sanitized.hpp"
+#include "core/process/sanitized.hpp"
 
 namespace ripplenotch {
 

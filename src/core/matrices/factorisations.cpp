@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/factorisations.hpp"
+#include "core/matrices/factorisations.hpp"
 
 namespace ripplenotch {
 

@@ -11,9 +11,9 @@
 #include <cstdlib>
 #include <optional>
 
-#include "core/open_file.hpp"
-#include "core/pipes.hpp"
-#include "core/temporary_file.hpp"
+#include "core/files/open_file.hpp"
+#include "core/files/pipes.hpp"
+#include "core/files/temporary_file.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/files.hpp"
 #include "ripplenotch/core/progress.hpp"

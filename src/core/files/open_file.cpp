@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/open_file.hpp"
+#include "core/files/open_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-#include "core/pipes.hpp"
+#include "core/files/pipes.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/first_outside.hpp"
+#include "core/rows/first_outside.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/temporary_file.hpp"
+#include "core/files/temporary_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 #include <random>
 #include <utility>
 
-#include "core/open_file.hpp"
+#include "core/files/open_file.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {

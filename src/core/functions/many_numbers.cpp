@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The steps of portable_math.cpp in the same order, four numbers at a time, so the bits are the same. Numbers
 // that need a special case there are left to it.
-#include "core/many_numbers.hpp"
+#include "core/functions/many_numbers.hpp"
 
 #include <cmath>
 #include <numbers>
 
-#include "core/power_terms.hpp"
+#include "core/functions/power_terms.hpp"
 #include "core/vectors/lanes.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
