@@ -5,7 +5,7 @@
 
 #include "benchmark.hpp"
 #include "core/vectors/dispatch.hpp"
-#include "filter/filter_bank.hpp"
+#include "filter/bank/filter_bank.hpp"
 #include "filter/kernels/block_cascade.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/filter/method.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "export/bank.hpp"
+#include "export/run/bank.hpp"
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "filter/block_pipeline.hpp"
+#include "filter/run/block_pipeline.hpp"
 
 #include <atomic>
 #include <chrono>

@@ -5,10 +5,10 @@
 
 #include <array>
 
-#include "filter/gain_schedule.hpp"
-#include "filter/motor_angle.hpp"
+#include "filter/bank/gain_schedule.hpp"
 #include "filter/moves.hpp"
-#include "filter/ripple_kalman.hpp"
+#include "filter/ripple/motor_angle.hpp"
+#include "filter/ripple/ripple_kalman.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/rows/first_outside.hpp"
-#include "filter/filter_bank.hpp"
+#include "filter/bank/filter_bank.hpp"
 #include "filter/kernels/direct_form.hpp"
 #include "filter/kernels/in_series.hpp"
 #include "filter/tables.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/between_samples.hpp"
+#include "model/spring/between_samples.hpp"
 
 #include <cmath>
 #include <complex>

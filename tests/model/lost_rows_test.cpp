@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/lost_rows.hpp"
+#include "model/motion/lost_rows.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The response of a mass on a damped spring against the equation of motion, integrated in steps a hundred
 // times finer.
-#include "model/mass_on_spring.hpp"
+#include "model/spring/mass_on_spring.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "model/local_motion.hpp"
+#include "model/motion/local_motion.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 
+#include "analysis/steady/likely_offset.hpp"
 #include "analysis/steady/steady_offset.hpp"
 #include "analysis/steady/tone_family.hpp"
 #include "core/process/two_cores.hpp"

@@ -3,82 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include "analysis/lines/excess_scatter.hpp"
+#include "analysis/steady/likely_offset.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
-
-constexpr double likely_offset_share = 0.01;  // by hand: of the fastest speed, as in changing motion
-constexpr int offsets_a_side = 60;            // to either side, each a twentieth of the likely share
-constexpr double per_step = 0.05;             // as many offsets_a_side reach three times the likely share
-constexpr std::size_t fewest_speeds = 3;      // two agree on an order at some offset, whatever they are
-constexpr double apart_share = 0.1;  // by hand: as far apart an order and a tone stay two at any offset
-constexpr std::size_t most_stretches = 40;  // by hand: for a start, whose cost grows with their square
-constexpr std::size_t clearest_few = 3;     // by hand: lines of a stretch that are compared
-
-/// Speeds that differ, by their sign, too.
-std::size_t speeds_of(std::vector<double> signed_speeds) {
-    std::sort(signed_speeds.begin(), signed_speeds.end());
-    std::size_t count = 0;
-    double last = 0.0;
-    for (const double speed : signed_speeds) {
-        if (count > 0 && speed - last <= apart_share * std::abs(speed)) continue;
-        last = speed;
-        ++count;
-    }
-    return count;
-}
-
-std::vector<Sighting> clearest_of_each(std::span<const Sighting> sightings) {
-    std::map<std::size_t, std::vector<Sighting>> by_stretch;
-    for (const Sighting& seen : sightings) {
-        if (seen.by_velocity && seen.speed_deg_s != 0.0) by_stretch[seen.stretch].push_back(seen);
-    }
-    std::vector<Sighting> kept;
-    const std::size_t every = (by_stretch.size() + most_stretches - 1) / most_stretches;
-    std::size_t place = 0;
-    for (auto& [stretch, lines] : by_stretch) {
-        if (place++ % every != 0) continue;
-        std::stable_sort(lines.begin(), lines.end(),
-                         [](const Sighting& a, const Sighting& b) { return a.snr > b.snr; });
-        lines.resize(std::min(lines.size(), clearest_few));
-        kept.insert(kept.end(), lines.begin(), lines.end());
-    }
-    return kept;
-}
-
-/// Two sightings at different speeds: how far apart their orders are in their logarithm, how that changes
-/// with an offset, and its standard error.
-struct Pair {
-    double apart = 0.0, per_deg_s = 0.0, error = 0.0;
-};
-
-std::vector<Pair> pairs_of(std::span<const Sighting> sightings, double step) {
-    std::vector<Pair> pairs;
-    for (std::size_t i = 0; i < sightings.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-            const Sighting &a = sightings[i], &b = sightings[j];
-            const double fast = std::max(std::abs(a.speed_deg_s), std::abs(b.speed_deg_s));
-            if (a.stretch == b.stretch ||
-                std::abs(std::abs(a.speed_deg_s) - std::abs(b.speed_deg_s)) < apart_share * fast)
-                continue;
-            Pair pair;
-            pair.apart = portable::log(a.order_output() / b.order_output());
-            pair.per_deg_s = 1.0 / a.speed_deg_s - 1.0 / b.speed_deg_s;
-            // A step of the search is no error, but what lies within one is found.
-            pair.error =
-                portable::hypot(portable::hypot(a.hz_error / a.hz, b.hz_error / b.hz, step * pair.per_deg_s),
-                                a.speed_share_error, b.speed_share_error);
-            pairs.push_back(pair);
-        }
-    }
-    return pairs;
-}
 
 /// NormalEquations of one least squares: a sighting each, whitened with what its stretch's sightings share.
 struct NormalEquations {
@@ -142,33 +75,6 @@ NormalEquations normal_equations(std::span<const OffsetRow> rows, std::size_t li
 
 }  // namespace
 
-DegPerSec likely_offset(std::span<const Sighting> sightings) {
-    const std::vector<Sighting> seen = clearest_of_each(sightings);
-    std::vector<double> speeds;
-    double fastest = 0.0;
-    for (const Sighting& one : seen) {
-        speeds.push_back(one.speed_deg_s);
-        fastest = std::max(fastest, std::abs(one.speed_deg_s));
-    }
-    if (speeds_of(speeds) < fewest_speeds) return DegPerSec(0.0);
-    const double step = per_step * likely_offset_share * fastest;
-    const std::vector<Pair> pairs = pairs_of(seen, step);
-    double best = 0.0, most = -1e300;
-    for (int k = -offsets_a_side; k <= offsets_a_side; ++k) {
-        const double share = per_step * k;
-        double agreement = -0.5 * share * share;
-        for (const Pair& pair : pairs) {
-            const double off = (pair.apart + k * step * pair.per_deg_s) / pair.error;
-            agreement += portable::exp(-0.5 * off * off);
-        }
-        if (agreement > most) {
-            most = agreement;
-            best = k * step;
-        }
-    }
-    return DegPerSec(best);
-}
-
 std::optional<SteadyOffset> steady_offset(std::span<const SteadyLine> lines, DegPerSec likely) {
     const std::vector<OffsetRow> rows = offset_rows(lines);
     std::vector<double> speeds;
@@ -180,7 +86,7 @@ std::optional<SteadyOffset> steady_offset(std::span<const SteadyLine> lines, Deg
         speeds.push_back(-1.0 / row.per_deg_s);
         fastest = std::max(fastest, std::abs(speeds.back()));
     }
-    if (speeds_of(speeds) < fewest_speeds) return std::nullopt;
+    if (!speeds_tell_offset(std::move(speeds))) return std::nullopt;
     NormalEquations sum = normal_equations(rows, count);
     const Eigen::Index n = sum.normal.rows();
     const SymmetricFactors without_offset(sum.normal.bottomRightCorner(n - 1, n - 1));

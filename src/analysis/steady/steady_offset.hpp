@@ -11,17 +11,11 @@
 
 namespace ripplenotch {
 
-/// The offset, from -3 to 3 % of the fastest speed, at which the clearest sightings of different speeds agree
-/// best on their orders; smaller ones are likelier beforehand (normal, 1 %). A start, as coarse as a
-/// twentieth of a percent. 0 where the sightings have no three speeds, told apart by their sign, too: two
-/// speeds agree at some offset whatever their lines are. `sightings` are of logs without position.
-[[nodiscard]] DegPerSec likely_offset(std::span<const Sighting> sightings);
-
 /// How far what the sightings of `lines` still say of an offset is from none: a velocity v with the offset d
 /// puts ripple of order k at k (v - d) / 360, so that the order that is seen is ln k - d/v in its logarithm.
 /// Generalised least squares of all lines of kind order, where lines of one stretch share the error of its
-/// speed. The error is widened by what the stretches scatter more than theirs. Empty where these lines have
-/// fewer than three speeds.
+/// speed. The error is widened by what the stretches scatter more than theirs. Empty where the speeds of
+/// these lines do not tell it.
 [[nodiscard]] std::optional<SteadyOffset> steady_offset(std::span<const SteadyLine> lines, DegPerSec likely);
 
 /// Speeds less than three times the offset stay as they are: what turns there is not known.

@@ -9,8 +9,8 @@
 #include "diagnose/beside/weighing/ridge.hpp"
 #include "diagnose/case/lines.hpp"
 #include "diagnose/case/undecidable.hpp"
-#include "model/fit_coordinates.hpp"
-#include "model/local_motion.hpp"
+#include "model/fit/fit_coordinates.hpp"
+#include "model/motion/local_motion.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/rows/rms.hpp"
-#include "model/weighing.hpp"
+#include "model/fit/weighing.hpp"
 #include "ripplenotch/core/trace.hpp"
 #include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/model/model.hpp"

@@ -8,7 +8,7 @@
 #include "diagnose/search/projection.hpp"
 #include "diagnose/search/search_starts.hpp"
 #include "model/carriers.hpp"
-#include "model/fit_coordinates.hpp"
+#include "model/fit/fit_coordinates.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/prediction.hpp"
 

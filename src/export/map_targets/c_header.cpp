@@ -6,10 +6,10 @@
 #include <cmath>
 #include <memory>
 
-#include "export/map_code.hpp"
-#include "export/map_run.hpp"
-#include "export/map_targets.hpp"
-#include "export/method_code_parts.hpp"
+#include "export/code/map_code.hpp"
+#include "export/code/method_code_parts.hpp"
+#include "export/map/map_targets.hpp"
+#include "export/run/map_run.hpp"
 #include "export/text.hpp"
 #include "export/text_reader.hpp"
 

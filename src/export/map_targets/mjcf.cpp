@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "export/flat_map.hpp"
-#include "export/map_targets.hpp"
+#include "export/map/flat_map.hpp"
+#include "export/map/map_targets.hpp"
 #include "export/text.hpp"
 #include "export/text_reader.hpp"
 #include "ripplenotch/core/number.hpp"

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "export/bank.hpp"
-#include "export/c_code.hpp"
+#include "export/code/c_code.hpp"
+#include "export/run/bank.hpp"
 #include "export/targets.hpp"
 #include "export/text.hpp"
 #include "export/text_reader.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "filter/ripple_windows.hpp"
+#include "filter/ripple/ripple_windows.hpp"
 #include "ripplenotch/core/phasor.hpp"
 
 namespace ripplenotch {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "filter/map/map_runner.hpp"
-#include "filter/motor_angle.hpp"
-#include "filter/ripple_kalman.hpp"
+#include "filter/ripple/motor_angle.hpp"
+#include "filter/ripple/ripple_kalman.hpp"
 
 namespace ripplenotch {
 

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "filter/ripple_keys.hpp"
+#include "filter/ripple/ripple_keys.hpp"
 #include "ripplenotch/core/spec.hpp"
 
 namespace ripplenotch {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "filter/ripple_keys.hpp"
+#include "filter/ripple/ripple_keys.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/design/ripple_map.hpp"
 

@@ -3,7 +3,7 @@
 // follow speed.
 #include <array>
 
-#include "filter/cascade_filter.hpp"
+#include "filter/bank/cascade_filter.hpp"
 #include "filter/methods/list.hpp"
 #include "ripplenotch/design/notch.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "filter/cascade_filter.hpp"
+#include "filter/bank/cascade_filter.hpp"
 #include "filter/methods/list.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/design/low_pass.hpp"

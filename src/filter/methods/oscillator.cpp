@@ -11,14 +11,14 @@
 #include <optional>
 #include <utility>
 
-#include "filter/gain_schedule.hpp"
+#include "filter/bank/gain_schedule.hpp"
 #include "filter/map/map_mean.hpp"
 #include "filter/methods/designs.hpp"
 #include "filter/methods/list.hpp"
-#include "filter/motor_angle.hpp"
-#include "filter/observer_cascade.hpp"
-#include "filter/oscillator_keys.hpp"
-#include "filter/ripple_kalman.hpp"
+#include "filter/ripple/motor_angle.hpp"
+#include "filter/ripple/observer_cascade.hpp"
+#include "filter/ripple/oscillator_keys.hpp"
+#include "filter/ripple/ripple_kalman.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "filter/methods/list.hpp"
-#include "filter/ripple_course.hpp"
-#include "filter/ripple_keys.hpp"
-#include "filter/ripple_windows.hpp"
+#include "filter/ripple/ripple_course.hpp"
+#include "filter/ripple/ripple_keys.hpp"
+#include "filter/ripple/ripple_windows.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/rate_edge.hpp"
 

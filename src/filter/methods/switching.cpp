@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "filter/methods/list.hpp"
-#include "filter/transition.hpp"
+#include "filter/run/transition.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/filter/supervisor.hpp"

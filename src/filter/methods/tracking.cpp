@@ -10,7 +10,7 @@
 
 #include "filter/methods/designs.hpp"
 #include "filter/methods/list.hpp"
-#include "filter/ripple_keys.hpp"
+#include "filter/ripple/ripple_keys.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/filter_bank.hpp"
+#include "filter/bank/filter_bank.hpp"
 
 namespace ripplenotch {
 namespace {

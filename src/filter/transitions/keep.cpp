@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "filter/kernels/direct_form.hpp"
-#include "filter/transition.hpp"
+#include "filter/run/transition.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "filter/kernels/in_series.hpp"
-#include "filter/transition.hpp"
+#include "filter/run/transition.hpp"
 #include "ripplenotch/core/state_variable.hpp"
 
 namespace ripplenotch {

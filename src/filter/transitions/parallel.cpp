@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "filter/filter_bank.hpp"
+#include "filter/bank/filter_bank.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "filter/kernels/serial_cascade.hpp"
-#include "filter/transition.hpp"
+#include "filter/run/transition.hpp"
 
 namespace ripplenotch {
 namespace {

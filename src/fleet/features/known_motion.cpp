@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/local_motion.hpp"
+#include "model/motion/local_motion.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 

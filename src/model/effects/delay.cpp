@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "model/between_samples.hpp"
 #include "model/effects.hpp"
-#include "model/lost_rows.hpp"
+#include "model/motion/lost_rows.hpp"
+#include "model/spring/between_samples.hpp"
 
 namespace ripplenotch {
 namespace {

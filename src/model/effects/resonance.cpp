@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "model/effects.hpp"
-#include "model/lost_rows.hpp"
-#include "model/mass_on_spring.hpp"
+#include "model/motion/lost_rows.hpp"
+#include "model/spring/mass_on_spring.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {

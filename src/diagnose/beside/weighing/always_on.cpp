@@ -5,7 +5,7 @@
 
 #include "core/vectors/dot.hpp"
 #include "diagnose/beside/weighing/ridge.hpp"
-#include "model/fit_coordinates.hpp"
+#include "model/fit/fit_coordinates.hpp"
 #include "ripplenotch/model/prediction.hpp"
 #include "ripplenotch/model/sensors.hpp"
 

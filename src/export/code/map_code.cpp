@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "export/code/map_code.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <complex>
+
+#include "export/run/map_run.hpp"
+#include "ripplenotch/core/portable_math.hpp"
+
+namespace ripplenotch {
+namespace {
+
+using Products = std::vector<std::pair<std::string, std::string>>;
+
+constexpr double slowest_blend_deg_s = 0.1;
+
+// From -0.5 to 0.5 between two speeds.
+constexpr std::string_view along_code = R"c(    const @real@ size = @abs@(speed_deg_s);
+    @real@ along;
+    int at = 0;
+    while (at + 2 < @speeds@ && @name@_speeds[at + 1] < size) ++at;
+    along = @name@_fma(size, @name@_slopes[at], @name@_offsets[at]);
+    if (@abs@(along) > (@real@)0.5) along = along < 0 ? (@real@)-0.5 : (@real@)0.5;
+)c";
+
+// Turns of the joint beyond the middle of its range, whole ones aside, within what was seen.
+constexpr std::string_view held_code =
+    R"c(    @real@ joint = @name@_fma(joint_deg, (@real@)0.002777777777777778, @name@_limits[1]);
+    joint = @name@_beside_whole(joint);
+    if (@abs@(joint) > @name@_limits[2]) joint = joint < 0 ? -@name@_limits[2] : @name@_limits[2];
+)c";
+
+constexpr std::string_view clamped_code =
+    R"c(    const @real@ {0} = {1} < @name@_limits[{2}] ? @name@_limits[{2}] : {1} > @name@_limits[{3}] ? @name@_limits[{3}] : {1};
+)c";
+
+// The joint position that its angle is counted from: the middle of what was seen, or the map's zero.
+double counted_from_deg(const RippleMap& map) {
+    const MapRange& seen = map.positions_deg;
+    return seen.to > seen.from ? seen.middle() : map.zero_deg;
+}
+
+// A column behind those of the speeds; those of the joint's turn for an angle so counted.
+std::complex<double> from_middle(const RippleMap& map, const std::vector<std::complex<double>>& z,
+                                 std::size_t at) {
+    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
+    const std::size_t within = at % each - speeds;
+    if (within >= 2 * map.form.turn_harmonics) return z[at];
+    const double angle = static_cast<double>(within / 2 + 1) * (counted_from_deg(map) - map.zero_deg);
+    const double c = portable::cos_degrees(angle), s = portable::sin_degrees(angle);
+    return within % 2 == 0 ? c * z[at] + s * z[at + 1] : c * z[at] - s * z[at - 1];
+}
+
+}  // namespace
+
+MapTables::MapTables(const RippleMap& map) : speeds(map.form.speeds_deg_s) {
+    for (std::size_t k = 0; k + 1 < std::max<std::size_t>(speeds.size(), 2); ++k) {
+        const double gap = speeds.size() > 1 ? speeds[k + 1] - speeds[k] : 0.0;
+        slopes.push_back(gap > 0.0 ? 1.0 / gap : 0.0);
+        offsets.push_back(gap > 0.0 ? -0.5 * (speeds[k] + speeds[k + 1]) / gap : 0.0);
+    }
+    const MapRange& positions = map.positions_deg;
+    const bool held = positions.to > positions.from;
+    const double middle = map.temperatures_degc.middle();
+    limits = {std::max(map.speeds_deg_s.from, slowest_blend_deg_s),
+              -counted_from_deg(map) / 360.0,
+              held ? (positions.to - positions.from) / 720.0 : 0.5,
+              map.loads_nm.from,
+              map.loads_nm.to,
+              middle,
+              map.temperatures_degc.from - middle,
+              map.temperatures_degc.to - middle};
+    const std::size_t each = map.form.columns_a_direction();
+    for (std::size_t d = 0; d < map.form.directions; ++d) {
+        for (std::size_t k = 0; k + 1 < speeds.size(); ++k) {
+            const std::size_t c = d * each + k;
+            add(map, [c](const auto& z) { return 0.5 * (z[c] + z[c + 1]); });
+            add(map, [c](const auto& z) { return z[c + 1] - z[c]; });
+        }
+        if (speeds.size() == 1) add(map, [at = d * each](const auto& z) { return z[at]; });
+        for (std::size_t c = speeds.size(); c < each; ++c)
+            add(map, [&, at = d * each + c](const auto& z) { return from_middle(map, z, at); });
+    }
+}
+
+template <class Of>
+void MapTables::add(const RippleMap& map, const Of& of) {
+    for (const auto& order : map.values) {
+        amplitudes.push_back(of(order).real());
+        amplitudes.push_back(of(order).imag());
+    }
+}
+
+std::size_t MapTables::columns_a_direction(const MapForm& form) {
+    const std::size_t speeds = form.speeds_deg_s.size();
+    return form.columns_a_direction() - speeds + (speeds > 1 ? 2 * (speeds - 1) : 1);
+}
+
+MapTables::MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style)
+    : speeds(style.read(reader, "speeds", map.form.speeds_deg_s.size())),
+      slopes(style.read(reader, "slopes", std::max<std::size_t>(speeds.size(), 2) - 1)),
+      offsets(style.read(reader, "offsets", slopes.size())),
+      limits(style.read(reader, "limits", 8)),
+      amplitudes(style.read(reader, "amplitudes",
+                            2 * map.orders.size() * map.form.directions * columns_a_direction(map.form))) {}
+
+std::string MapCode::arguments(bool with_types, std::string_view torque) const {
+    const MapForm& form = map_.form;
+    std::string text;
+    const auto add = [&](bool is, std::string_view name, std::string_view value) {
+        if (is) text += with_types ? fmt::format("@real@ {}, ", name) : fmt::format("{}, ", value);
+    };
+    add(form.speeds_deg_s.size() > 1 || form.directions > 1, "speed_deg_s", "speed_deg_s");
+    add(form.turn_harmonics > 0, "joint_deg", "joint_deg");
+    add(form.by_load, "torque_nm", torque);
+    add(form.by_temperature, "temperature_degc", "temperature_degc");
+    return text;
+}
+
+std::string MapCode::parameters() const { return "@real@ speed_deg_s, @real@ joint_deg"; }
+
+std::string MapCode::amplitudes_here(std::string_view torque) const {
+    std::string text;
+    if (map_.form.speeds_deg_s.size() == 1 && map_.form.directions == 1) text += "    (void)speed_deg_s;\n";
+    if (map_.form.turn_harmonics == 0) text += "    (void)joint_deg;\n";
+    if (is_constant()) return text + "    const @real@* const z = @name@_amplitudes;\n";
+    return text + fmt::format("    @real@ z[{}];\n    @name@_at({}z);\n", 2 * map_.orders.size(),
+                              arguments(false, torque));
+}
+
+// What the columns are multiplied by.
+std::string MapCode::factors() const {
+    const MapForm& form = map_.form;
+    std::string text;
+    if (form.speeds_deg_s.size() > 1) {
+        text += along_code;
+        text.replace(text.find("@speeds@"), 8, std::to_string(form.speeds_deg_s.size()));
+    }
+    if (form.turn_harmonics > 0)
+        text += std::string(held_code) + "    @real@ c1, s1;\n    @name@_on_circle(joint, &c1, &s1);\n";
+    for (std::size_t k = 2; k <= form.turn_harmonics; ++k) {
+        text += fmt::format(
+            "    const @real@ c{0} = @name@_fma(c1, c{1}, -s1 * s{1}), s{0} = @name@_fma(s1, c{1}, c1 * "
+            "s{1});\n",
+            k, k - 1);
+    }
+    if (form.by_load) text += fmt::format(fmt::runtime(clamped_code), "load", "torque_nm", 3, 4);
+    if (form.by_temperature) {
+        text += "    const @real@ beyond = temperature_degc - @name@_limits[5];\n";
+        text += fmt::format(fmt::runtime(clamped_code), "warmer", "beyond", 6, 7);
+    }
+    return text;
+}
+
+// A cosine or sine amplitude, as map_run.hpp adds it up.
+std::string MapCode::sum(std::size_t part) const {
+    const MapForm& form = map_.form;
+    const std::size_t parts = 2 * map_.orders.size(), speeds = form.speeds_deg_s.size();
+    Products products;
+    if (speeds > 1) products.emplace_back("along", fmt::format("low[{}]", part + parts));
+    std::size_t at = (speeds > 1 ? 2 * (speeds - 1) : 1) * parts + part;
+    const auto add = [&](const std::string& factor) {
+        products.emplace_back(factor, fmt::format("v[{}]", at));
+        at += parts;
+    };
+    for (std::size_t k = 1; k <= form.turn_harmonics; ++k) {
+        add(fmt::format("c{}", k));
+        add(fmt::format("s{}", k));
+    }
+    if (form.by_load) add("load");
+    if (form.by_temperature) add("warmer");
+    return sum_code(fmt::format("{}[{}]", speeds > 1 ? "low" : "v", part), products);
+}
+
+// The amplitudes of one direction, put where `form` says: {0} their place, {1} their value.
+std::string MapCode::side(std::size_t direction, std::string_view indent, std::string_view form) const {
+    const std::size_t parts = 2 * map_.orders.size();
+    std::string text = fmt::format("{}const @real@* const v = @name@_amplitudes + {};\n", indent,
+                                   direction * parts * MapTables::columns_a_direction(map_.form));
+    if (map_.form.speeds_deg_s.size() > 1)
+        text += fmt::format("{}const @real@* const low = v + {} * at;\n", indent, 2 * parts);
+    for (std::size_t i = 0; i < parts; ++i)
+        text += fmt::format("{}{}\n", indent, fmt::format(fmt::runtime(form), i, sum(i)));
+    return text;
+}
+
+std::string MapCode::definitions() const {
+    const MapForm& form = map_.form;
+    const MapTables tables(map_);
+    std::string text = style_.array("speeds", tables.speeds) + style_.array("slopes", tables.slopes) +
+                       style_.array("offsets", tables.offsets) + style_.array("limits", tables.limits) +
+                       style_.array("amplitudes", tables.amplitudes);
+    if (is_constant()) return text;
+    std::string code = fmt::format(
+        "\n/* Of each order the amplitudes of cosine and sine, Nm. */\n"
+        "static inline void @name@_at({}@real@* z) {{\n",
+        arguments(true, ""));
+    // C99 lets declarations follow statements.
+    code += factors();
+    if (form.directions == 1) {
+        code += side(0, "    ", "z[{0}] = {1};");
+    } else {
+        // Each side by itself: a compiler that sees both in one expression looks both up.
+        code += "    if (speed_deg_s >= @name@_limits[0]) {\n" + side(0, "        ", "z[{0}] = {1};") +
+                "    } else if (speed_deg_s <= -@name@_limits[0]) {\n" +
+                side(1, "        ", "z[{0}] = {1};") +
+                "    } else { /* the directions run into each other */\n"
+                "        const @real@ share = (@real@)0.5 - (@real@)0.5 * speed_deg_s / @name@_limits[0];\n" +
+                "        {\n" + side(0, "            ", "z[{0}] = {1};") + "        }\n" +
+                side(1, "        ", "z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);") + "    }\n";
+    }
+    return text + style_.filled(code + "}\n");
+}
+
+std::string order_angles_code(const std::vector<double>& orders, std::string_view turns) {
+    std::string text = "    @real@ ";
+    for (std::size_t i = 0; i < orders.size(); ++i)
+        text += fmt::format("{}c{}, s{}", i > 0 ? ", " : "", i, i);
+    text += ";\n";
+    for (std::size_t i = 0; i < orders.size(); ++i) {
+        const std::size_t half = half_of(orders, i);
+        if (half < i) {
+            text += fmt::format(
+                "    s{0} = s{1} + s{1};\n    c{0} = @name@_fma(-s{0}, s{1}, 1);\n    s{0} *= c{1};\n", i,
+                half);
+        } else {
+            text += fmt::format("    @name@_on_circle({}({}), &c{}, &s{});\n",
+                                orders[i] == 1.0 ? "" : fmt::format("@name@_orders[{}] * ", i), turns, i, i);
+        }
+    }
+    return text;
+}
+
+}  // namespace ripplenotch

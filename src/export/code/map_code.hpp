@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The amplitudes of a map as C: what its form needs, written out.
+
+#include <string>
+#include <vector>
+
+#include "export/code/method_code_parts.hpp"
+#include "ripplenotch/design/ripple_map.hpp"
+
+namespace ripplenotch {
+
+/// The numbers of a map, as C holds them.
+class MapTables {
+  public:
+    std::vector<double> speeds;
+    /// Between each speed and the next: 1 / gap, and less the middle times that.
+    std::vector<double> slopes, offsets;
+    /// Speed below which the directions blend; of the joint in turns: less the middle of its range, from
+    /// which it is counted, and half of the range; least and greatest load; of the temperature the middle,
+    /// and least and greatest beyond it.
+    std::vector<double> limits;
+    /// By direction and column, in it by order, cosine before sine. In the place of the speeds' columns stand
+    /// for each gap the value in its middle and what it gains across.
+    std::vector<double> amplitudes;
+
+    explicit MapTables(const RippleMap& map);
+    /// Those of a header; `map` says how many there are.
+    MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& style);
+    MapTables() = default;
+    [[nodiscard]] static std::size_t columns_a_direction(const MapForm& form);
+
+  private:
+    template <class Of>
+    void add(const RippleMap& map, const Of& of);
+};
+
+/// The C of one map. Functions take what the form needs, so that a compiler has nothing to warn of.
+class MapCode {
+  public:
+    MapCode(const RippleMap& map, const CodeStyle& style) : map_(map), style_(style) {}
+
+    /// Tables, and the function NAME_at where amplitudes are not the same everywhere.
+    [[nodiscard]] std::string definitions() const;
+    /// What a public function is told beside torque and motor angle: "speed_deg_s, joint_deg" with types.
+    [[nodiscard]] std::string parameters() const;
+    /// Lines that declare z[], the amplitudes here, cosine before sine. `torque` is the load's expression.
+    [[nodiscard]] std::string amplitudes_here(std::string_view torque) const;
+
+  private:
+    [[nodiscard]] bool is_constant() const { return map_.form.columns() == 1; }
+    [[nodiscard]] std::string arguments(bool with_types, std::string_view torque) const;
+    [[nodiscard]] std::string factors() const;
+    [[nodiscard]] std::string sum(std::size_t part) const;
+    [[nodiscard]] std::string side(std::size_t direction, std::string_view indent,
+                                   std::string_view form) const;
+
+    const RippleMap& map_;
+    const CodeStyle& style_;
+};
+
+/// How the orders show at an angle, as lines that set c0, s0, c1, ...; an order twice an earlier one is its
+/// double angle. `turns` is the angle's expression.
+[[nodiscard]] std::string order_angles_code(const std::vector<double>& orders, std::string_view turns);
+
+}  // namespace ripplenotch

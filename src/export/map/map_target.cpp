@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "ripplenotch/export/map_target.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "export/map/map_targets.hpp"
+#include "ripplenotch/core/error.hpp"
+
+namespace ripplenotch {
+namespace {
+
+constexpr const MapTarget* every_map_target[] = {
+#define MAP_TARGET(name) &map_target_list::name,
+#include "export/map_targets/map_targets.def"
+#undef MAP_TARGET
+};
+
+// Places of the motor that no harmonic and no table repeats: multiples of the golden section.
+constexpr double golden_turns = 0.6180339887498949;
+constexpr int places = 2000;
+
+}  // namespace
+
+std::span<const MapTarget* const> map_targets() { return every_map_target; }
+
+const MapTarget& find_map_target(std::string_view name) {
+    std::vector<std::string> known;
+    for (const MapTarget* target : map_targets()) {
+        if (target->name == name) return *target;
+        known.emplace_back(target->name);
+    }
+    const auto near = nearest_name(name, known);
+    raise<UsageError>("there is no export target '{}' for a map{}; targets: {}", name,
+                      near ? fmt::format(" (did you mean {}?)", *near) : "", fmt::join(known, ", "));
+}
+
+MapCheck verify_map_export(const RippleMap& map, const LoadedMap& loaded) {
+    MapCheck check;
+    const double span_deg =
+        std::max(map.positions_deg.to - map.positions_deg.from, 360.0 / map.gear_ratio.value());
+    double ripple = 0.0, not_held = 0.0;
+    for (const double speed : {map.speeds_deg_s.from, map.speeds_deg_s.middle(), map.speeds_deg_s.to}) {
+        for (const double sign : {1.0, -1.0}) {
+            double share = 0.0;
+            const auto warm = map.form.by_temperature ? std::optional(sign > 0.0 ? map.temperatures_degc.to
+                                                                                 : map.temperatures_degc.from)
+                                                      : std::nullopt;
+            for (int k = 0; k < places; ++k) {
+                share += golden_turns;
+                share -= std::floor(share);
+                const MapState state{sign * speed, map.positions_deg.from + share * span_deg,
+                                     map.loads_nm.middle(), warm};
+                const double whole = map_torque(map, state), held = map_torque(loaded.held, state);
+                ripple += whole * whole;
+                not_held += (whole - held) * (whole - held);
+                check.largest_error_nm =
+                    std::max(check.largest_error_nm, std::abs(loaded.torque_nm(state) - held));
+                ++check.states;
+            }
+        }
+    }
+    const double count = static_cast<double>(check.states);
+    check.ripple_nm = std::sqrt(ripple / count);
+    check.not_held_nm = std::sqrt(not_held / count);
+    return check;
+}
+
+}  // namespace ripplenotch
