@@ -145,7 +145,8 @@ struct RippleMeter::State {
 void RippleMeter::State::expect_in(std::size_t rows, Sums& into) const {
     const std::size_t parts = std::min(parts_of_window, rows - 1);
     const double step_s = (time_s[rows - 1] - time_s.front()) / static_cast<double>(rows - 1);
-    std::vector<std::complex<double>> now(orders.size()), mean(orders.size());
+    std::vector<std::complex<double>> now(orders.size());
+    auto mean = now;
     for (std::size_t part = 0; part < parts; ++part) {
         const std::size_t first = (rows - 1) * part / parts, last = (rows - 1) * (part + 1) / parts;
         const double seconds = step_s * static_cast<double>(last - first);

@@ -230,7 +230,9 @@ class MatWalk {
         if (shape->rows > numbers.size / storage->size / shape->columns)
             fail(numbers.data, fmt::format("{} bytes of numbers of {}, expected {} x {} of {} bytes",
                                            numbers.size, path, shape->rows, shape->columns, storage->size));
-        StoredArray array{path, *shape, {}, "", {}, ""};
+        StoredArray array;
+        array.path = path;
+        array.shape = *shape;
         array.type.kind = storage->kind;
         array.type.size = storage->size;
         array.type.big_endian = big_endian_;
