@@ -23,7 +23,8 @@ std::string range_text(const std::optional<Range>& range) {
 std::string first_sentence(const LogInfo& log) {
     std::string text = log.source + ": " + how_many(log.rows, "row");
     if (log.duration_s && log.clock.nominal_rate.value() > 0.0) {
-        text += fmt::format(" over {:.6g} s at {:.5g} Hz", *log.duration_s, log.clock.nominal_rate.value());
+        text += fmt::format(" over {:.6g} s", *log.duration_s);
+        if (log.clock.refusal.empty()) text += fmt::format(" at {:.5g} Hz", log.clock.nominal_rate.value());
     } else {
         text += " without a clock";
     }
