@@ -154,13 +154,13 @@ struct Sought {
 std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stacks, const SpeedRange& range,
                            const std::vector<double>& taken_orders, const std::vector<double>& taken_hz,
                            const MotionLinesOptions& options) {
-    const auto& [angle, time, angle_peaks, time_peaks] = stacks;
+    const Stack &angle = stacks.angle, &time = stacks.time;
     std::optional<Candidate> order, tone;
     on_two_cores(2, [&](std::size_t i) {
         if (i == 0)
-            order = clearest(sweeps, angle, angle_peaks, taken_orders, 0.0);
+            order = clearest(sweeps, stacks.angle, stacks.angle_peaks, taken_orders, 0.0);
         else
-            tone = clearest(sweeps, time, time_peaks, taken_hz, options.lowest_tone_hz);
+            tone = clearest(sweeps, stacks.time, stacks.time_peaks, taken_hz, options.lowest_tone_hz);
     });
     if (!order && !tone) return std::nullopt;
     Sought sought;
