@@ -253,6 +253,23 @@ TEST_CASE("outside of their domains the functions answer as those of the C libra
 
 // What a seed means rests on these bits. Reference in the comments: 40-digit arithmetic (Python 3.11, module
 // decimal).
+TEST_CASE("an angle without end has no cosine, alone or among many") {
+    for (const double angle :
+         {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+          std::numeric_limits<double>::quiet_NaN()}) {
+        CHECK(std::isnan(portable::cos(angle)));
+        CHECK(std::isnan(portable::sin(angle)));
+        CHECK(std::isnan(portable::cos_degrees(angle)));
+        CHECK(std::isnan(portable::sin_degrees(angle)));
+        const std::vector<double> many{1.0, angle, 2.0, 3.0, angle};
+        std::vector<double> cosine(many.size());
+        portable::cos_degrees(many, cosine);
+        CHECK(std::isnan(cosine[1]));
+        CHECK(cosine[3] == portable::cos_degrees(3.0));
+        CHECK(std::isnan(cosine[4]));
+    }
+}
+
 TEST_CASE("elementary functions keep their bits") {
     CHECK(portable::cos_degrees(1.0) == 0x1.ffec097f5af8ap-1);   // 0.99984769515639123915701155881...
     CHECK(portable::sin_degrees(1.0) == 0x1.1df0b2b89dd1ep-6);   // 0.01745240643728351281941897851...

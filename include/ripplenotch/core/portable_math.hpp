@@ -17,7 +17,7 @@ namespace ripplenotch::portable {
 [[nodiscard]] double tan(double angle_rad);
 
 /// Within 2 units in the last place of 1. Exact at multiples of 90 degrees, with period 360 degrees to the
-/// last bit. Any finite angle.
+/// last bit. Any finite angle; of others no number.
 [[nodiscard]] double cos_degrees(double angle_deg);
 [[nodiscard]] double sin_degrees(double angle_deg);
 /// The same bits for each of many angles, faster. The second span is as long as the first, or longer.

@@ -48,7 +48,10 @@ struct Reduced {
     double remainder;  ///< within an eighth of a turn, in the unit of the angle
 };
 
-int quadrant_of(double quarters) { return static_cast<int>(static_cast<long long>(quarters) & 3); }
+// What is no number stays none by its remainder, and has no quadrant.
+int quadrant_of(double quarters) {
+    return quarters == quarters ? static_cast<int>(static_cast<long long>(quarters) & 3) : 0;
+}
 
 // Exact: 90 * turns and the difference are representable, since both numbers are multiples of the angle's
 // last bit.
