@@ -39,6 +39,9 @@ struct Spec {
     [[nodiscard]] std::string text() const;  ///< canonical form, as it would be typed again
 };
 
+/// The pieces between separators: "a::b" by ':' are "a", "" and "b", and "" is one empty piece.
+[[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
+
 /// Splits "name,key=value,..."; throws UsageError on an empty name, a piece without '=', or a repeated key.
 [[nodiscard]] Spec parse_spec(std::string_view text);
 

@@ -7,19 +7,10 @@
 
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/quantity.hpp"
+#include "ripplenotch/core/spec.hpp"
 
 namespace ripplenotch {
 namespace {
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> pieces;
-    while (true) {
-        const std::size_t at = text.find(separator);
-        pieces.push_back(text.substr(0, at));
-        if (at == std::string_view::npos) return pieces;
-        text.remove_prefix(at + 1);
-    }
-}
 
 // The unit that a number was written with. An exponent belongs to the number: "1e3" has none.
 std::string_view unit_of(std::string_view text) {
