@@ -16,12 +16,6 @@ namespace {
 constexpr double recurrence_chance = 0.01;  // by hand: as the false alarms allowed by default
 constexpr double most_of_log = 0.6;         // by hand: no second piece to ask
 
-double noise_at(const Stack& stack, std::size_t sweep, double place) {
-    const auto bin = static_cast<std::size_t>(std::lround(std::max(0.0, place / stack.spacing)));
-    const auto& floors = stack.floors[sweep];
-    return bin < floors.size() ? static_cast<double>(floors[bin]) : 0.0;
-}
-
 /// Of each sweep whose noise there is known its sum at a place; on two cores where they are long.
 /// `value_of` a sweep stands for its torque under the weights.
 template <class ValueOf>

@@ -158,9 +158,9 @@ std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stack
     std::optional<Candidate> order, tone;
     on_two_cores(2, [&](std::size_t i) {
         if (i == 0)
-            order = clearest(sweeps, stacks.angle, stacks.angle_peaks, taken_orders, 0.0);
+            order = clearest(sweeps, angle, stacks.angle_peaks, taken_orders, 0.0);
         else
-            tone = clearest(sweeps, stacks.time, stacks.time_peaks, taken_hz, options.lowest_tone_hz);
+            tone = clearest(sweeps, time, stacks.time_peaks, taken_hz, options.lowest_tone_hz);
     });
     if (!order && !tone) return std::nullopt;
     Sought sought;

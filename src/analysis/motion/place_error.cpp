@@ -57,12 +57,6 @@ Opinion opinion_of(const Sweep& sweep, Axis axis, double noise, double place) {
     return opinion;
 }
 
-double noise_at(const Stack& stack, std::size_t sweep, double place) {
-    const auto bin = static_cast<std::size_t>(std::lround(std::max(0.0, place / stack.spacing)));
-    const auto& floors = stack.floors[sweep];
-    return bin < floors.size() ? static_cast<double>(floors[bin]) : 0.0;
-}
-
 /// Thirds of a sweep, each with a window of its own.
 void add_parts(const Sweep& sweep, Axis axis, double noise, double place, std::vector<Opinion>& opinions) {
     const std::size_t n = sweep.turns.size();
@@ -96,6 +90,12 @@ double disagreement(std::span<const Opinion> opinions) {
 }
 
 }  // namespace
+
+double noise_at(const Stack& stack, std::size_t sweep, double place) {
+    const auto bin = static_cast<std::size_t>(std::lround(std::max(0.0, place / stack.spacing)));
+    const auto& floors = stack.floors[sweep];
+    return bin < floors.size() ? static_cast<double>(floors[bin]) : 0.0;
+}
 
 bool are_long(std::span<const Sweep> sweeps) {
     constexpr std::size_t long_samples = 20'000;  // by hand: a third of a millisecond at one place

@@ -14,6 +14,9 @@ namespace ripplenotch {
 /// wanders with speed or load does, the error is widened to what they show.
 [[nodiscard]] double place_error(std::span<const Sweep> sweeps, const Stack& stack, double place);
 
+/// Mean noise power |S|^2 of a sweep at a place; 0 where the sweep is not used there.
+[[nodiscard]] double noise_at(const Stack& stack, std::size_t sweep, double place);
+
 /// True when to look at one place in all sweeps is worth a second thread.
 [[nodiscard]] bool are_long(std::span<const Sweep> sweeps);
 

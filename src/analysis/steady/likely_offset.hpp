@@ -9,7 +9,7 @@
 
 namespace ripplenotch {
 
-/// Of the fastest speed, a standard deviation, as in changing motion: by hand.
+/// Of the fastest speed, a standard deviation, as in changing motion.
 inline constexpr double likely_offset_share = 0.01;  // by hand
 
 /// True when these speeds, by their sign, too, are three or more: two agree on an order at some offset,

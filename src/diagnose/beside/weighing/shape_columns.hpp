@@ -20,7 +20,7 @@ class ShapeColumns {
 
     [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }
     void add(const Shape& shape);
-    /// Only these places, in their order, become places 0, 1, ...
+    /// Only these places, in their order, become places 0, 1, ...; first of them are all listed ones.
     void keep(std::span<const std::size_t> places);
 
     /// Of a ripple that rings the place of the plain one, if that is listed: its columns come before the
