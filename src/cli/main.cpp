@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <csignal>
@@ -22,6 +21,7 @@
 #include "cli/reference/reference.hpp"
 #include "cli/talk.hpp"
 #include "core/files/unfinished_files.hpp"
+#include "core/process/heap.hpp"
 #include "ripplenotch/core/inputs_read.hpp"
 #include "ripplenotch/core/spec.hpp"
 #include "ripplenotch/core/version.hpp"
@@ -229,14 +229,7 @@ ExitCode run(const Words& words) {
 }  // namespace ripplenotch
 
 int main(int argc, char** argv) {
-#ifdef __GLIBC__
-    // What one thread has freed another may take: with a heap each `identify` goes beyond its 64 MiB.
-    ::mallopt(M_ARENA_MAX, 1);
-    // What is freed is wanted again at once: to give pages back and to have them zeroed anew took an eighth
-    // of the time of `identify`. 32 MiB is the most that glibc takes.
-    ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
-#endif
+    ripplenotch::keep_what_is_freed();
     // "| head" must end us quietly even where the parent process has SIGPIPE ignored.
     std::signal(SIGPIPE, SIG_DFL);
     ripplenotch::hold_closed_streams();

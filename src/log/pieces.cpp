@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/process/heap.hpp"
 #include "ripplenotch/log/passes.hpp"
 
 namespace ripplenotch {
@@ -63,6 +64,7 @@ class PieceTaker {
 
 std::optional<Log> read_pieces(const std::shared_ptr<const Spool>& log, const ReadOptions& options,
                                std::size_t most_rows, std::size_t joint) {
+    grow_heap_in_large_pages();
     LogPasses passes(log, options, joint);
     passes.keep_rows(most_bytes_kept);
     passes.first([](const TraceView&) {});
