@@ -85,11 +85,24 @@ void tell_places(Diagnosis& diagnosis, std::size_t own) {
     }
 }
 
+// Beside a leftover the sandwich's errors are too small by themselves.
+void widen(FittedValue& value, double times) {
+    if (!value.ci95) return;
+    const double middle = 0.5 * (value.ci95->low + value.ci95->high);
+    value.ci95->low = middle + times * (value.ci95->low - middle);
+    value.ci95->high = middle + times * (value.ci95->high - middle);
+}
+
+Model beside(Model model, std::span<const GivenTerm> given) {
+    model.beside_simulation = is_given(given, "simulated");
+    return model;
+}
+
 class GivenDiagnosis {
   public:
     GivenDiagnosis(const Model& model, const TraceView& log, const TraceView* validation,
                    const DiagnosisOptions& options)
-        : model_(model),
+        : model_(beside(model, options.given)),
           options_(options),
           rules_(options.rules),
           work_(rules_.search.most_evaluations),
@@ -173,6 +186,7 @@ class GivenDiagnosis {
         told_.leftover = left_by_band(rest, last.stated);
         const Candidate with_errors = bench.settled(last);
         told_.values = with_errors.values;
+        for (FittedValue& value : told_.values) widen(value, rules_.beside.interval_factor);
         return with_errors;
     }
 
@@ -203,7 +217,7 @@ class GivenDiagnosis {
         told_.evaluations = work_.spent() * Work::unit_samples / static_cast<double>(whole_.c.size());
     }
 
-    const Model& model_;
+    Model model_;
     const DiagnosisOptions& options_;
     const DiagnosisRules& rules_;
     Work work_;

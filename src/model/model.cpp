@@ -42,6 +42,11 @@ Term parse_term(std::string_view text) {
     return term;
 }
 
+double least_in(const Model& model, const Effect& effect, std::size_t parameter) {
+    const Parameter& described = effect.parameters[parameter];
+    return model.beside_simulation && effect.resists && parameter == 0 ? -described.upper : described.lower;
+}
+
 Side side_of(const Term& term) {
     const auto& whole = term.effect->whole;
     return whole && term.values[*whole].value_or(0.0) >= 0.5 ? Side::sensor : term.effect->side;

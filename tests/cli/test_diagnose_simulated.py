@@ -109,6 +109,64 @@ class Simulated(unittest.TestCase):
                 for key, value in stated["nuisance"].items():
                     self.assertAlmostEqual(told[key], value, delta=0.02 + 0.05 * abs(value))
 
+    def write_with_friction(self, friction_nm, payload=1.03):
+        """The log beside a simulation that has this friction, and the viscous one as it is."""
+        simulated = [arm_nm(t, q, 1.0) + friction_nm * math.tanh(v) + 0.012 * v for t, v, _, q in self.rows]
+        log = [[t, v, tau + arm_nm(t, q, payload), q, nm] for (t, v, tau, q), nm in zip(self.rows, simulated, strict=True)]
+        written(self.path / "rubs.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], log)
+
+    def test_what_a_simulation_has_too_much_of_is_no_name_and_said_where_it_is_said_to_have_friction(self):
+        self.write_with_friction(1.3)  # 0.9 are there
+        words = ["diagnose", "rubs.csv", "--gear-ratio", "100"]
+        done = self.run_tool(*words, "--simulated", "tau_model_nm")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("its size is below 0", done.stdout)
+        self.assertIn("next: if the simulation has friction of its own, --simulated ...,friction=fit", done.stdout)
+        done = self.run_tool(*words, "--simulated", "tau_model_nm,friction=fit", "-o", "improved.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"simulated: coulomb-friction, torque_nm = -0\.4\d* \[.*: it has too much of it, as scaled")
+        self.assertNotIn("friction=fit", done.stdout)
+        self.assertIn("named: nothing", done.stdout)
+        improved = json.loads((self.path / "improved.json").read_text())
+        (own,) = improved["effects"]
+        self.assertEqual(own["effect"], "coulomb-friction")
+        too_much_nm = 1.3 * improved["simulated"]["scale"] - 0.9
+        self.assertAlmostEqual(own["torque_nm"], -too_much_nm, delta=0.03)  # its own error is 0.01 Nm, the width's another
+        self.assertLess(self.residual_nm("--model", "improved.json", "rubs.csv"), 0.06)  # the noise is 0.05 Nm
+        del improved["simulated"]
+        (self.path / "alone.json").write_text(json.dumps(improved))
+        done = self.run_tool("simulate", "--model", "alone.json", "rubs.csv")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("torque_nm is -0.", done.stderr)
+
+    def test_a_friction_below_0_that_is_accepted_is_taken_into_the_model(self):
+        self.write_with_friction(1.3)
+        done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm", "--accept",
+                             "coulomb-friction", "-o", "improved.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"accepted by you .*: coulomb-friction, torque_nm = -0\.4")
+        self.assertLess(self.residual_nm("--model", "improved.json", "rubs.csv"), 0.06)
+
+    def test_of_a_simulation_with_the_right_friction_no_error_is_told(self):
+        self.write_with_friction(0.9, payload=1.0)
+        done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm,friction=fit")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "simulated: coulomb-friction, .*: no error of it is told")
+        self.assertIn("named: nothing", done.stdout)
+
+    def test_friction_of_a_simulation_is_fitted_once_and_by_diagnose_alone(self):
+        model = {"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "coulomb-friction", "torque_nm": 0.5}]}
+        (self.path / "model.json").write_text(json.dumps(model))
+        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--simulated", "tau_model_nm,friction=fit")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("leave its torque_nm out there", done.stderr)
+        done = self.run_tool("simulate", "log.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm,scale=1,friction=fit")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("simulated.friction", done.stderr)
+        done = self.run_tool("diagnose", "log.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm,friction=yes")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("fit", done.stderr)
+
     def test_simulate_takes_a_simulation_whose_scale_is_stated(self):
         words = ["--gear-ratio", "100", "--effect", "coulomb-friction,torque_nm=0.9,width_deg_s=1"]
         left = self.residual_nm(*words, "--simulated", "column,name=tau_model_nm,scale=1", "log.csv")

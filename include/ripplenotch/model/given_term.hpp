@@ -4,7 +4,9 @@
 // of the user's own simulation. Unlike an effect it has columns of the whole log, and values that nobody asks
 // for one by one.
 
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ripplenotch {
@@ -23,5 +25,10 @@ struct GivenTerm {
     std::vector<double> mean, deviation;
     bool bears_load = true;  ///< gear and bearings carry this torque
 };
+
+/// True when one of these, terms or values of them, has the name.
+[[nodiscard]] bool is_given(const auto& given, std::string_view name) {
+    return std::ranges::any_of(given, [name](const auto& one) { return one.name == name; });
+}
 
 }  // namespace ripplenotch

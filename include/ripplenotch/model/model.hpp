@@ -34,8 +34,14 @@ struct Term {
 struct Model {
     GearRatio gear_ratio;
     std::vector<Term> terms;
+    /// A simulation's torque is beside it, and that may hold too much of a friction: such a term's size is
+    /// below 0.
+    bool beside_simulation = false;
     bool operator==(const Model&) const = default;
 };
+
+/// The least that this parameter of an effect may be in the model.
+[[nodiscard]] double least_in(const Model& model, const Effect& effect, std::size_t parameter);
 
 /// Gear ratios that a model may have: above 0, at most this (no gear comes near it).
 inline constexpr GearRatio largest_gear_ratio{1e5};

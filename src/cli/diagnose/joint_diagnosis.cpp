@@ -111,6 +111,16 @@ GivenTerms given_of(const DiagnoseRequest& request, const ModelWithGiven& model,
     return given;
 }
 
+// Coulomb friction of the simulation, whose error is a value of the model.
+void add_friction(Model& model) {
+    const Term own = parse_term("coulomb-friction");
+    if (std::ranges::find(model.terms, own.effect, &Term::effect) != model.terms.end())
+        raise<UsageError>(
+            "--simulated: friction=fit, and the model has coulomb-friction already; leave its torque_nm out "
+            "there, and it is fitted");
+    model.terms.push_back(own);
+}
+
 }  // namespace
 
 bool JointDiagnosis::is_conclusive() const {
@@ -124,7 +134,7 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     LogOptions words = request.log;
     if (joint) words.joint = *joint;
     const std::string path = joint ? with_joint(request.model, *joint) : request.model;
-    const ModelWithGiven model = model_of(request, path, words, one.provenance);
+    ModelWithGiven model = model_of(request, path, words, one.provenance);
     take_joint_of(model, words.joint);
     one.gear = gear_of(model.model, path.empty()             ? "--gear-ratio"
                                     : path == model_from_log ? "identify"
@@ -138,6 +148,7 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     std::optional<Log> other;
     if (request.validate) other = read(request, most, reading, *request.validate, one.provenance);
     one.given = given_of(request, model, reading, most, source, one, other);
+    if (one.given.simulated && one.given.simulated->fit_friction) add_friction(model.model);
     for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);

@@ -66,6 +66,7 @@ std::vector<std::string> GivenTerms::open() const {
     std::vector<std::string> names;
     if (simulated && !simulated->scale) names.emplace_back("simulated.scale");
     if (simulated && simulated->fit_delay) names.emplace_back("simulated.delay_s");
+    if (simulated && simulated->fit_friction) names.emplace_back("simulated.friction");
     if (fitted_arm) names.emplace_back("arm.links");
     return names;
 }

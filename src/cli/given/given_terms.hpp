@@ -29,7 +29,7 @@ struct GivenOptions {
 inline constexpr std::string_view simulated_option_help =
     "torque of your own simulation, beside which is searched: a column of the log, tau_model, or "
     "of another file, log,file=sim.csv,column=torque; scale=1 keeps it as it is, delay=2ms or delay=fit says "
-    "how much later it is";
+    "how much later it is, friction=fit that it has friction of its own, which may be too much";
 void attach_given(Options& options, GivenOptions& given);
 
 /// A log of one joint as a command reads it.

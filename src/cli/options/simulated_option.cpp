@@ -22,11 +22,16 @@ constexpr double usual_scale = 10.0;
 // Of a delay that is fitted.
 constexpr double usual_delay_s = 0.02;
 
-constexpr std::array<std::string_view, 1> aligns = {"start"};
+constexpr std::array<std::string_view, 1> aligns = {"start"}, frictions = {"fit"};
+constexpr Key friction_key = {.name = "friction",
+                              .kind = KeyKind::choice,
+                              .choices = frictions,
+                              .help = "fit: it has Coulomb friction of its own, which may be too much"};
 constexpr Key column_keys[] = {
     {.name = "name", .kind = KeyKind::text, .required = true, .help = "of the column"},
     {.name = "scale", .kind = KeyKind::number, .help = "factor; left out: fitted"},
     {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, or 'fit'"},
+    friction_key,
 };
 constexpr Key log_keys[] = {
     {.name = "file", .kind = KeyKind::text, .required = true, .help = "the simulation's log"},
@@ -35,6 +40,7 @@ constexpr Key log_keys[] = {
     {.name = "align", .kind = KeyKind::choice, .choices = aligns, .help = "start: both logs begin together"},
     {.name = "scale", .kind = KeyKind::number, .help = "factor; left out: fitted"},
     {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, or 'fit'"},
+    friction_key,
 };
 
 // The cubic through the four samples about a time.
@@ -162,8 +168,10 @@ SimulatedOption::SimulatedOption(std::string_view text, const std::optional<Simu
         const std::string column = std::exchange(term_.column, {});
         term_ = *stated;
         term_.column = column;
+        term_.fit_friction = settings.has("friction");
         return;
     }
+    term_.fit_friction = settings.has("friction");
     if (settings.has("scale")) term_.scale = settings.number("scale");
     const std::string delay = settings.text("delay");
     term_.fit_delay = delay == "fit";

@@ -226,7 +226,7 @@ Diagnosis read_diagnosis(std::string_view text, const std::string& source) {
     diagnosis.false_alarm = fields.number("false_alarm");
     Fields model = fields.object("model");
     model.ignore({"schema"});
-    diagnosis.model = model_of(model);
+    diagnosis.model = model_of(model, is_given(diagnosis.given, "simulated"));
     model.finish();
     diagnosis.baseline.gear_ratio = diagnosis.model.gear_ratio;
     fields.finish();

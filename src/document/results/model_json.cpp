@@ -31,19 +31,20 @@ Json term_json(const Term& term) {
     return json;
 }
 
-Term term_of(Fields& fields) {
+Term term_of(Fields& fields, const Model& model) {
     const Effect& effect = effect_of(fields);
     Term term{&effect, {}};
-    for (const Parameter& parameter : effect.parameters) {
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+        const Parameter& parameter = effect.parameters[p];
         if (!fields.has(parameter.name)) {
             term.values.emplace_back();
             continue;
         }
         const double value = fields.number(parameter.name);
-        if (!allows(parameter, value)) {
+        const double least = least_in(model, effect, p);
+        if (!(least <= value && value <= parameter.upper)) {
             raise<DataError>("{} is {}, expected a number between {} and {} {}", fields.where(parameter.name),
-                             shortest(value), shortest(parameter.lower), shortest(parameter.upper),
-                             parameter.unit);
+                             shortest(value), shortest(least), shortest(parameter.upper), parameter.unit);
         }
         term.values.emplace_back(value);
     }
@@ -114,15 +115,16 @@ const Effect& effect_of(Fields& fields) {
     }
 }
 
-Model model_of(Fields& fields) {
+Model model_of(Fields& fields, bool beside_simulation) {
     Model model;
+    model.beside_simulation = beside_simulation;
     model.gear_ratio = GearRatio(fields.number("gear_ratio"));
     if (!(model.gear_ratio.value() > 0.0 && model.gear_ratio <= largest_gear_ratio)) {
         raise<DataError>("{} is {}, expected a number above 0 and at most {}", fields.where("gear_ratio"),
                          shortest(model.gear_ratio.value()), shortest(largest_gear_ratio.value()));
     }
     fields.each(
-        "effects", [&](Fields& entry) { model.terms.push_back(term_of(entry)); }, most_effects);
+        "effects", [&](Fields& entry) { model.terms.push_back(term_of(entry, model)); }, most_effects);
     return model;
 }
 
@@ -131,7 +133,7 @@ ModelWithGiven read_model_with_given(std::string_view text, const std::string& s
     Fields fields(json, source, "");
     fields.ignore_head();
     ModelWithGiven found;
-    found.model = model_of(fields);
+    found.model = model_of(fields, fields.has("simulated"));
     if (fields.has("simulated")) {
         Fields simulated = fields.object("simulated");
         found.simulated = simulated_of(simulated);

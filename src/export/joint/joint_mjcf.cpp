@@ -94,6 +94,11 @@ class Taking {
                                       "it rings, and cogging has one size and phase at every speed"});
             return;
         }
+        if (term.effect->resists && *term.values.front() < 0.0) {
+            mjcf_.not_held.push_back({std::string(term.effect->name),
+                                      "its size is below 0: take it off the friction of the simulation"});
+            return;
+        }
         std::string words = place_of(term.effect->name, values_of(term));
         std::string name(term.effect->name);
         if (words.empty()) {

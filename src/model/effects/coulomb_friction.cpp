@@ -51,6 +51,7 @@ const Effect effects::coulomb_friction{
     .side = Side::joint,
     .domain = Domain::speed,
     .parameters = parameters,
+    .resists = true,
     .apply = apply,
 };
 

@@ -83,6 +83,7 @@ const Effect effects::hysteresis{
     .side = Side::joint,
     .domain = Domain::position,
     .parameters = parameters,
+    .resists = true,
     .apply = apply,
 };
 

@@ -60,6 +60,7 @@ const Effect effects::load_friction{
     .domain = Domain::speed,
     .parameters = parameters,
     .uses_load = true,
+    .resists = true,
     .apply = apply,
 };
 

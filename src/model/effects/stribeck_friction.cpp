@@ -63,6 +63,7 @@ const Effect effects::stribeck_friction{
     .side = Side::joint,
     .domain = Domain::speed,
     .parameters = parameters,
+    .resists = true,
     .apply = apply,
 };
 

@@ -38,6 +38,7 @@ const Effect effects::viscous_friction{
     .side = Side::joint,
     .domain = Domain::speed,
     .parameters = parameters,
+    .resists = true,
     .apply = apply,
 };
 

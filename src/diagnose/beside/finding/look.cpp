@@ -260,11 +260,7 @@ BesideOutcome outcome_of(Look& look, const GivenCase& log, const Candidate& mode
 }
 
 bool is_arm_alone(std::span<const GivenTerm> given) {
-    const auto is = [](std::string_view name) {
-        return [name](const GivenTerm& term) { return term.name == name; };
-    };
-    return std::any_of(given.begin(), given.end(), is("arm")) &&
-           std::none_of(given.begin(), given.end(), is("simulated"));
+    return is_given(given, "arm") && !is_given(given, "simulated");
 }
 
 }  // namespace ripplenotch

@@ -16,6 +16,9 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+constexpr std::string_view below_zero =
+    "its size is below 0: it would drive the joint, or something given holds too much of it";
+
 void doubt(BesideFinding& finding, std::string reason) {
     finding.status = FindingStatus::tentative;
     finding.reason = std::move(reason);
@@ -31,8 +34,7 @@ void look_alone(const Sums& sums, const Names& names, std::size_t place, bool ev
     const Index first = columns_at(sums, names, place).first;
     finding.same = sameness_of(sums, names, place);
     if (is_against_motion(effect) && sums.sizes(names)[first] <= 0.0)
-        doubt(finding,
-              "its size is below 0: it would drive the joint, or something given holds too much of it");
+        doubt(finding, std::string(below_zero));
     else if (sums.lens().bounds().is_bent(finding.shape))
         doubt(finding, "its shape ends at a bound: it stands in for something else");
     else if (hearing.asked("beside.same_sign", finding.same.same_sign,
@@ -99,17 +101,21 @@ void look_at_sizes(const Sums& sums, std::vector<BesideFinding>& findings) {
     }
 }
 
-// A friction that drives the joint bends the curve of another that grows with the speed. Alone it is what a
-// simulation has too much of.
+// A friction that drives the joint bends the curve of another that grows with the speed, or of the model's
+// own. Alone it is what a simulation has too much of, of whatever form.
 void look_at_driving(const Sums& sums, const Names& names, std::vector<BesideFinding>& findings) {
     const auto resists = [&](std::size_t place) {
         return kind_of(*findings[place].shape.term.effect) == Kind::speed && !drives(sums, names, place);
     };
+    const auto& own = sums.lens().model().terms;
+    const bool of_model = std::ranges::any_of(own, [](const Term& term) { return term.effect->resists; });
     bool is_other = false;
     for (std::size_t place = 0; place < names.size(); ++place) is_other = is_other || resists(place);
     for (std::size_t place = 0; place < names.size(); ++place) {
         BesideFinding& finding = findings[place];
-        if (!is_other || finding.status != FindingStatus::confirmed || !drives(sums, names, place)) continue;
+        if (finding.status != FindingStatus::confirmed || !drives(sums, names, place)) continue;
+        if (!is_other && !of_model) doubt(finding, std::string(below_zero));
+        if (!is_other) continue;
         finding.status = FindingStatus::shape_correction;
         finding.reason = "its size is below 0: it mends the form of another friction";
     }

@@ -33,7 +33,7 @@ std::vector<Mend> mends_of(const Model& model, std::span<const GivenTerm> given,
     if (given.empty()) return mends;
     const bool simulated =
         std::any_of(given.begin(), given.end(), [](const GivenTerm& term) { return term.name != arm; }) &&
-        std::none_of(given.begin(), given.end(), [](const GivenTerm& term) { return term.name == arm; });
+        !is_given(given, arm);
     if (simulated && !has_effect(model, "inertia"))
         mends.push_back({"inertia_kgm2", parse_term("inertia,inertia_kgm2=1"), rules.mended_inertia_kgm2});
     if (simulated && !has_effect(model, "gravity")) {

@@ -40,6 +40,7 @@ class Lens {
     [[nodiscard]] const Ground& ground() const { return ground_; }
     [[nodiscard]] const AlwaysOn& columns() const { return columns_->always; }
     [[nodiscard]] const DiagnosisRules& rules() const { return rules_; }
+    [[nodiscard]] const Model& model() const { return prediction_->model(); }
 
     /// Torque of the shape over the samples of the case, a column each.
     [[nodiscard]] std::vector<std::vector<double>> torque_nm(const Shape& shape) const;
