@@ -121,6 +121,7 @@ class Simulated(unittest.TestCase):
         done = self.run_tool(*words, "--simulated", "tau_model_nm")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("its size is below 0", done.stdout)
+        self.assertIn("named: nothing", done.stdout)
         self.assertIn("next: if the simulation has friction of its own, --simulated ...,friction=fit", done.stdout)
         done = self.run_tool(*words, "--simulated", "tau_model_nm,friction=fit", "-o", "improved.json")
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/model_json.hpp"
 
+#include <fmt/format.h>
+
 #include "ripplenotch/arm/chain_files.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
@@ -105,6 +107,29 @@ TEST_CASE("a simulation is read back as it was written, and refused by who canno
                             "simulated": {"column": "tau", "skale": 1}})",
                         "m.json"),
                     DataError);
+}
+
+TEST_CASE("beside a simulation a friction may be below 0, and nothing else may, and without one none may") {
+    const auto text = [](std::string_view effect, std::string_view size, bool simulated) {
+        return fmt::format(R"({{"schema": "ripplenotch/model/1", "gear_ratio": 100, {}
+                              "effects": [{{"effect": "{}", "{}": -0.3}}]}})",
+                           simulated ? R"("simulated": {"column": "tau"},)" : "", effect, size);
+    };
+    for (const Effect* effect : catalogue()) {
+        const Parameter& size = effect->parameters[0];
+        if (size.lower < -0.3 || size.upper <= 0.0) continue;
+        CAPTURE(effect->name);
+        CHECK_THROWS_AS(read_model_with_given(text(effect->name, size.name, false), "m.json"), DataError);
+        if (!effect->resists) {
+            CHECK_THROWS_AS(read_model_with_given(text(effect->name, size.name, true), "m.json"), DataError);
+            continue;
+        }
+        const Model model = read_model_with_given(text(effect->name, size.name, true), "m.json").model;
+        CHECK(model.terms.at(0).values.at(0) == -0.3);
+        CHECK(least_in(model, *effect, 0) == -size.upper);
+        for (std::size_t p = 1; p < effect->parameters.size(); ++p)
+            CHECK(least_in(model, *effect, p) == effect->parameters[p].lower);
+    }
 }
 
 TEST_CASE("an arm is read back as it was written, and refused where nobody knows what to do with it") {

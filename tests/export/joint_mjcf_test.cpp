@@ -109,6 +109,20 @@ TEST_CASE("ripple that a resonance of its own changes is not held without it") {
     CHECK(mjcf.not_held[1].effect == "resonance");
 }
 
+TEST_CASE("a friction below 0 is the simulation's, and no joint holds it") {
+    for (const char* name : {"coulomb-friction", "viscous-friction", "hysteresis"}) {
+        Model model = model_of({name});
+        Term& term = model.terms[0];
+        for (std::size_t p = 0; p < term.values.size(); ++p)
+            term.values[p] = term.effect->parameters[p].start;
+        term.values[0] = -0.3;
+        const JointMjcf mjcf = joint_mjcf(model);
+        CHECK(mjcf.held.terms.empty());
+        REQUIRE(mjcf.not_held.size() == 1);
+        CHECK_THAT(mjcf.not_held[0].words, Contains("below 0"));
+    }
+}
+
 TEST_CASE("a second step of friction is told, and so is a bristle that does not begin at rest") {
     const JointMjcf two = joint_mjcf(model_of(
         {"coulomb-friction,torque_nm=2,width_deg_s=0.2", "coulomb-friction,torque_nm=1,width_deg_s=0.2"}));
