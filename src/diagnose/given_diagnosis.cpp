@@ -93,6 +93,20 @@ void widen(FittedValue& value, double times) {
     value.ci95->high = middle + times * (value.ci95->high - middle);
 }
 
+// Of the same value, an interval that holds both.
+void span_fits(std::vector<FittedValue>& values, std::span<const FittedValue> others) {
+    for (FittedValue& value : values) {
+        const auto other = std::ranges::find_if(others, [&](const FittedValue& one) {
+            return one.term == value.term && one.parameter == value.parameter;
+        });
+        if (other == others.end() || !value.ci95) continue;
+        if (!other->ci95) value.ci95.reset();
+        if (!other->ci95) continue;
+        value.ci95->low = std::min(value.ci95->low, other->ci95->low);
+        value.ci95->high = std::max(value.ci95->high, other->ci95->high);
+    }
+}
+
 Model beside(Model model, std::span<const GivenTerm> given) {
     model.beside_simulation = is_given(given, "simulated");
     return model;
@@ -186,8 +200,25 @@ class GivenDiagnosis {
         told_.leftover = left_by_band(rest, last.stated);
         const Candidate with_errors = bench.settled(last);
         told_.values = with_errors.values;
+        span_fits(told_.values, fitted_beside_frictions(last, bench));
         for (FittedValue& value : told_.values) widen(value, rules_.beside.interval_factor);
         return with_errors;
+    }
+
+    // A friction of the model and one that was found share what both could be: the model's own values once
+    // more, with the found ones open.
+    [[nodiscard]] std::vector<FittedValue> fitted_beside_frictions(const Candidate& last,
+                                                                   const ModelBench& bench) const {
+        const auto own_end = static_cast<std::ptrdiff_t>(model_.terms.size());
+        const auto resists = [](const Term& term) { return term.effect->resists; };
+        Candidate open = last;
+        const auto found = open.open.terms.begin() + own_end;
+        if (!std::any_of(open.open.terms.begin(), found, resists) ||
+            !std::any_of(found, open.open.terms.end(), resists))
+            return {};
+        for (auto term = found; term != open.open.terms.end(); ++term)
+            if (resists(*term)) term->values.assign(term->values.size(), std::nullopt);
+        return bench.settled(open).values;
     }
 
     void finish(const Candidate& last, const std::vector<double>& values) {
