@@ -26,13 +26,13 @@ def arm_nm(t, q, payload):
 
 
 @functools.cache
-def made():
+def made(friction="coulomb-friction,torque_nm=0.9,width_deg_s=1"):
     """The rows of a joint that moves alone, simulated once for all tests."""
     with tempfile.TemporaryDirectory() as folder:
         motion = [word for lap in range(3) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.7), (-20, 1.2))
                   for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
         plain = pathlib.Path(folder) / "plain.csv"
-        subprocess.run([TOOL, "simulate", "--gear-ratio", "100", "--effect", "coulomb-friction,torque_nm=0.9,width_deg_s=1",
+        subprocess.run([TOOL, "simulate", "--gear-ratio", "100", "--effect", friction,
                         "--effect", "viscous-friction,coefficient_nm_per_deg_s=0.012", *motion, "--sample-rate", "500Hz",
                         "--noise", "0.05Nm", "--seed", "1", "-o", plain], check=True, capture_output=True, timeout=300)
         with open(plain) as file:
@@ -139,6 +139,21 @@ class Simulated(unittest.TestCase):
         done = self.run_tool("simulate", "--model", "alone.json", "rubs.csv")
         self.assertEqual(done.returncode, 3)
         self.assertIn("torque_nm is -0.", done.stderr)
+
+    def test_friction_of_another_form_than_the_simulation_has_is_named_once_that_is_fitted_and_nothing_else_before(self):
+        self.rows = made("hysteresis,torque_nm=0.9,width_deg=3")
+        self.write_with_friction(0.9)
+        words = ["diagnose", "rubs.csv", "--gear-ratio", "100", "--json"]
+        done = self.run_tool(*words, "--simulated", "tau_model_nm,friction=fit")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual(found["named"], ["hysteresis"])
+        low, high = found["own_terms"][0]["parameters"]["torque_nm"]["ci95"]
+        all_of_it_nm = 0.9 * found["simulated"]["scale"]["value"]
+        self.assertTrue(low <= -all_of_it_nm <= high, (low, high))
+        done = self.run_tool(*words, "--simulated", "tau_model_nm")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLessEqual(set(json.loads(done.stdout)["named"]), {"hysteresis"})
 
     def test_a_friction_below_0_that_is_accepted_is_taken_into_the_model(self):
         self.write_with_friction(1.3)

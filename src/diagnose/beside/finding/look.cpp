@@ -99,7 +99,8 @@ std::vector<double> sum_of(const std::vector<BesideValues>& believed, const Mode
 NamedBeside named_in(Sums& sums, const GivenCase& log, const Candidate& model,
                      std::span<const Effect* const> effects) {
     LongerLook longer(sums.lens(), model, log.given, effects);
-    return named_beside(sums, {catalogue().size(), log.given.empty(), &longer});
+    return named_beside(sums,
+                        {catalogue().size(), log.given.empty(), &longer, is_given(log.given, "simulated")});
 }
 
 // Sharp, told, and among the frequencies that the line has.

@@ -79,6 +79,27 @@ void look_at_rivals(Sums& sums, const Names& names, std::size_t place, const Jud
         doubt(finding, "its size is below 0, and another name does as well: it would drive the joint");
 }
 
+// What stands for a friction that something given has too much of is not there when that is.
+void look_beside_too_much(Sums& sums, const Names& names, std::size_t place, const Judgement& by,
+                          BesideFinding& finding) {
+    if (finding.status != FindingStatus::confirmed) return;
+    Names beside = names;
+    beside.erase(beside.begin() + static_cast<std::ptrdiff_t>(place));
+    for (const TooMuch& friction : by.too_much) {
+        beside.push_back(sums.place_of(friction.shape));
+        const bool stands = stands_beside(sums, beside, names[place], finding.price);
+        beside.pop_back();
+        const double part = finding.gain.gain / friction.gain;
+        const bool slight =
+            Hearing(sums.lens().rules(), finding.decisions)
+                .asked("beside.least_of_too_much", part, part < sums.lens().rules().beside.least_of_too_much);
+        if (stands && !slight) continue;
+        doubt(finding, fmt::format("what is given may have too much {}, which explains more",
+                                   shape_name(friction.shape)));
+        return;
+    }
+}
+
 // A small one of a kind mends the form of the largest.
 void look_at_sizes(const Sums& sums, std::vector<BesideFinding>& findings) {
     const DiagnosisRules& rules = sums.lens().rules();
@@ -201,6 +222,7 @@ std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Jud
         finding.size_nm = swing_nm(sums, now.names, place);
         look_alone(sums, now.names, place, by.even_by_speed, finding);
         if (by.even_by_speed) look_at_form(sums, now.names, place, by.effects, finding);
+        look_beside_too_much(sums, now.names, place, by, finding);
         findings.push_back(std::move(finding));
     }
     look_at_sizes(sums, findings);
@@ -210,7 +232,7 @@ std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Jud
     return findings;
 }
 
-NamedBeside named_beside(Sums& sums, const Judgement& by) {
+NamedBeside named_beside(Sums& sums, Judgement by) {
     Named now = search_beside(sums, {}, {}, by.effects);
     std::vector<BesideFinding> withdrawn;
     Barred barred;
@@ -233,6 +255,8 @@ NamedBeside named_beside(Sums& sums, const Judgement& by) {
             return {std::move(now), std::move(findings)};
         }
         barred.push_back(findings[*weakest].shape);
+        if (by.simulated && findings[*weakest].reason == below_zero)
+            by.too_much.push_back({findings[*weakest].shape, findings[*weakest].gain.gain});
         withdrawn.push_back(std::move(findings[*weakest]));
         now.names.erase(now.names.begin() + static_cast<std::ptrdiff_t>(*weakest));
         now.left = sums.left_outside(now.names);

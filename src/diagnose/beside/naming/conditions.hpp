@@ -27,6 +27,12 @@ struct BesideFinding {
     double rival_margin = 0.0, rival_t = 0.0;
 };
 
+/// A friction of a size below 0, and what it gained.
+struct TooMuch {
+    Shape shape;
+    double gain = 0.0;
+};
+
 /// What a name is held against.
 struct Judgement {
     std::size_t effects = 1;  ///< in the catalogue, for the price
@@ -35,6 +41,9 @@ struct Judgement {
     /// another's.
     bool even_by_speed = false;
     LongerLook* longer = nullptr;  ///< where ties are looked at again; without one they stay
+    bool simulated = false;        ///< a simulation is given, which may have too much of a friction
+    /// Frictions of a size below 0 that were withdrawn beside one. A name has to stand beside each.
+    std::vector<TooMuch> too_much = {};
 };
 
 [[nodiscard]] std::vector<BesideFinding> judged_beside(Sums& sums, const Named& now, const Judgement& by);
@@ -45,6 +54,6 @@ struct NamedBeside {
     std::vector<BesideFinding> findings;
 };
 /// Searches, judges, and withdraws the weakest that is tentative, until none is.
-[[nodiscard]] NamedBeside named_beside(Sums& sums, const Judgement& by);
+[[nodiscard]] NamedBeside named_beside(Sums& sums, Judgement by);
 
 }  // namespace ripplenotch
