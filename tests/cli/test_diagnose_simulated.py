@@ -125,7 +125,7 @@ class Simulated(unittest.TestCase):
         self.assertIn("next: if the simulation has friction of its own, --simulated ...,friction=fit", done.stdout)
         done = self.run_tool(*words, "--simulated", "tau_model_nm,friction=fit", "-o", "improved.json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"simulated: coulomb-friction, torque_nm = -0\.4\d* \[.*: it has too much of it, as scaled")
+        self.assertRegex(done.stdout, r"simulated: coulomb-friction, torque_nm = -0\.4\d* \[.*: 1.0\d* times the simulation's torque has too much of it")
         self.assertNotIn("friction=fit", done.stdout)
         self.assertIn("named: nothing", done.stdout)
         improved = json.loads((self.path / "improved.json").read_text())

@@ -69,20 +69,23 @@ std::string scale_text(const GivenValue& scale) {
     return text + (off ? ": torque constant, gear ratio or unit\n" : "\n");
 }
 
-// Frictions of the user's own model beside a simulation: what that has too little of, or too much.
-std::string own_friction_text(const Diagnosis& diagnosis) {
+// Frictions of the user's own model beside a simulation: what that has too little of, or too much. A fitted
+// scale acts on its friction as well.
+std::string own_friction_text(const Diagnosis& diagnosis, const GivenValue& scale) {
+    const std::string simulation =
+        scale.ci95 ? fmt::format("{} times the simulation's torque", short_number(scale.value))
+                   : "the simulation";
     std::string text;
     for (std::size_t place = 0; place < diagnosis.baseline.terms.size(); ++place) {
         const Term& term = diagnosis.model.terms[place];
         if (!term.effect->resists) continue;
-        std::string values;
-        std::string_view off = "no error of it is told";
+        std::string values, off = "no error of it is told";
         for (const FittedValue& value : diagnosis.values) {
             if (value.term != place) continue;
             values += fmt::format("{}{}", values.empty() ? "" : ", ", value_text(term, value));
             if (value.parameter != 0 || !value.ci95) continue;
-            if (value.ci95->low > 0.0) off = "it has too little of it, as scaled";
-            if (value.ci95->high < 0.0) off = "it has too much of it, as scaled";
+            if (value.ci95->low > 0.0) off = simulation + " has too little of it";
+            if (value.ci95->high < 0.0) off = simulation + " has too much of it";
         }
         if (!values.empty()) text += fmt::format("simulated: {}, {}: {}\n", term.effect->name, values, off);
     }
@@ -107,7 +110,7 @@ std::string given_text(const Diagnosis& diagnosis) {
                                 short_number(1e3 * value.value / scale->value));
         }
     }
-    if (scale != nullptr) text += own_friction_text(diagnosis);
+    if (scale != nullptr) text += own_friction_text(diagnosis, *scale);
     if (!mended.empty()) text += fmt::format("  mended beside it, by nobody's name: {}\n", mended);
     return text;
 }
