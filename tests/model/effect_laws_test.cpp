@@ -132,6 +132,20 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("what resists is a friction at the joint whose first parameter is its size, 0 or more") {
+    int count = 0;
+    for (const Effect* effect : catalogue()) {
+        if (!effect->resists) continue;
+        CAPTURE(effect->name);
+        ++count;
+        CHECK(effect->side == Side::joint);
+        CHECK_FALSE(effect->polar);
+        CHECK(effect->parameters[0].linear);
+        CHECK(effect->parameters[0].lower == 0.0);
+    }
+    CHECK(count == 5);
+}
+
 TEST_CASE("neutral values change nothing, to the last bit") {
     const auto without = measured(base_model());
     for (const Effect* effect : catalogue()) {

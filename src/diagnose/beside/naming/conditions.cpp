@@ -16,12 +16,14 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr std::string_view below_zero =
-    "its size is below 0: it would drive the joint, or something given holds too much of it";
-
 void doubt(BesideFinding& finding, std::string reason) {
     finding.status = FindingStatus::tentative;
     finding.reason = std::move(reason);
+}
+
+void doubt_driving(BesideFinding& finding) {
+    finding.is_driving = true;
+    doubt(finding, "its size is below 0: it would drive the joint, or something given holds too much of it");
 }
 
 void look_alone(const Sums& sums, const Names& names, std::size_t place, bool even_by_speed,
@@ -34,7 +36,7 @@ void look_alone(const Sums& sums, const Names& names, std::size_t place, bool ev
     const Index first = columns_at(sums, names, place).first;
     finding.same = sameness_of(sums, names, place);
     if (is_against_motion(effect) && sums.sizes(names)[first] <= 0.0)
-        doubt(finding, std::string(below_zero));
+        doubt_driving(finding);
     else if (sums.lens().bounds().is_bent(finding.shape))
         doubt(finding, "its shape ends at a bound: it stands in for something else");
     else if (hearing.asked("beside.same_sign", finding.same.same_sign,
@@ -135,7 +137,7 @@ void look_at_driving(const Sums& sums, const Names& names, std::vector<BesideFin
     for (std::size_t place = 0; place < names.size(); ++place) {
         BesideFinding& finding = findings[place];
         if (finding.status != FindingStatus::confirmed || !drives(sums, names, place)) continue;
-        if (!is_other && !of_model) doubt(finding, std::string(below_zero));
+        if (!is_other && !of_model) doubt_driving(finding);
         if (!is_other) continue;
         finding.status = FindingStatus::shape_correction;
         finding.reason = "its size is below 0: it mends the form of another friction";
@@ -255,7 +257,7 @@ NamedBeside named_beside(Sums& sums, Judgement by) {
             return {std::move(now), std::move(findings)};
         }
         barred.push_back(findings[*weakest].shape);
-        if (by.simulated && findings[*weakest].reason == below_zero)
+        if (by.simulated && findings[*weakest].is_driving)
             by.too_much.push_back({findings[*weakest].shape, findings[*weakest].gain.gain});
         withdrawn.push_back(std::move(findings[*weakest]));
         now.names.erase(now.names.begin() + static_cast<std::ptrdiff_t>(*weakest));

@@ -17,7 +17,8 @@ namespace ripplenotch {
 struct BesideFinding {
     Shape shape;
     FindingStatus status = FindingStatus::confirmed;
-    std::string reason;  ///< of another status
+    std::string reason;       ///< of another status
+    bool is_driving = false;  ///< a friction that is withdrawn for a size below 0
     std::vector<Decision> decisions;
     OutsideGain gain;  ///< beside the other names
     double price = 0.0;
