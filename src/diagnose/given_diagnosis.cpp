@@ -2,6 +2,7 @@
 #include "diagnose/given_diagnosis.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -107,6 +108,20 @@ void span_fits(std::vector<FittedValue>& values, std::span<const FittedValue> ot
     }
 }
 
+// The scale of a simulation acts on its own friction too: what of that is too much is as uncertain.
+bool is_scale_told(std::span<const GivenValue> given) {
+    constexpr double told = 0.05;  // by hand, of it: a scale that is off by less is no finding
+    const auto scale = std::ranges::find(given, "simulated", &GivenValue::name);
+    return scale == given.end() || !scale->ci95 ||
+           scale->ci95->high - scale->ci95->low <= 2.0 * told * std::abs(scale->value);
+}
+
+// A shape that ends at a bound stands in for something else.
+bool is_bent(std::span<const FittedValue> values, std::size_t term) {
+    return std::ranges::any_of(
+        values, [term](const FittedValue& value) { return value.term == term && value.at_bound; });
+}
+
 Model beside(Model model, std::span<const GivenTerm> given) {
     model.beside_simulation = is_given(given, "simulated");
     return model;
@@ -201,7 +216,13 @@ class GivenDiagnosis {
         const Candidate with_errors = bench.settled(last);
         told_.values = with_errors.values;
         span_fits(told_.values, fitted_beside_frictions(last, bench));
-        for (FittedValue& value : told_.values) widen(value, rules_.beside.interval_factor);
+        for (FittedValue& value : told_.values) {
+            widen(value, rules_.beside.interval_factor);
+            const bool of_friction = value.term < model_.terms.size() &&
+                                     model_.terms[value.term].effect->resists && value.parameter == 0;
+            if (of_friction && (!is_scale_told(told_.given) || is_bent(told_.values, value.term)))
+                value.ci95.reset();
+        }
         return with_errors;
     }
 

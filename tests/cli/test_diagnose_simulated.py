@@ -155,6 +155,28 @@ class Simulated(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertLessEqual(set(json.loads(done.stdout)["named"]), {"hysteresis"})
 
+    def test_where_the_scale_is_not_told_neither_is_what_of_the_friction_is_too_much(self):
+        # All else that the simulation holds is the joint's own weight, which is mended.
+        def write(viscous):
+            rows = []
+            for t, v, tau, q in self.rows:  # 0.012 Nm per deg/s of it are viscous
+                weight = 30 * math.cos(math.radians(q))
+                rows.append([t, v, tau + (viscous - 0.012) * v + weight, q, weight + 1.3 * math.tanh(v)])
+            written(self.path / "alone.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], rows)
+        write(0.0)
+        words = ["diagnose", "alone.csv", "--gear-ratio", "100", "--simulated"]
+        done = self.run_tool(*words, "tau_model_nm,friction=fit")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("whether it has too much or too little is not told", done.stdout)
+        self.assertNotIn("coulomb-friction, torque_nm = -0.4 [", done.stdout)
+        done = self.run_tool(*words, "tau_model_nm,friction=fit,scale=1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"torque_nm = -0\.(39|40?)\d* \[.*: the simulation has too much of it")
+        write(0.012)  # viscous friction is missing as well, and the step of the other is bent towards it
+        done = self.run_tool(*words, "tau_model_nm,friction=fit,scale=1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("has too little of it", done.stdout)
+
     def test_a_friction_below_0_that_is_accepted_is_taken_into_the_model(self):
         self.write_with_friction(1.3)
         done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm", "--accept",
@@ -167,7 +189,7 @@ class Simulated(unittest.TestCase):
         self.write_with_friction(0.9, payload=1.0)
         done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm,friction=fit")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, "simulated: coulomb-friction, .*: no error of it is told")
+        self.assertRegex(done.stdout, "simulated: coulomb-friction, .*: whether it has too much or too little is not told")
         self.assertIn("named: nothing", done.stdout)
 
     def test_friction_of_a_simulation_is_fitted_once_and_by_diagnose_alone(self):

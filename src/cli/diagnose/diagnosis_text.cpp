@@ -79,7 +79,7 @@ std::string own_friction_text(const Diagnosis& diagnosis, const GivenValue& scal
     for (std::size_t place = 0; place < diagnosis.baseline.terms.size(); ++place) {
         const Term& term = diagnosis.model.terms[place];
         if (!term.effect->resists) continue;
-        std::string values, off = "no error of it is told";
+        std::string values, off = "whether it has too much or too little is not told";
         for (const FittedValue& value : diagnosis.values) {
             if (value.term != place) continue;
             values += fmt::format("{}{}", values.empty() ? "" : ", ", value_text(term, value));
