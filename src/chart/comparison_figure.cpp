@@ -25,7 +25,7 @@ Look look_of(const Contender& contender, std::size_t& taken) {
 }
 
 // Short, as in the table; a contender that was not measured by its text.
-std::string name_of(const Comparison& comparison, const Contender& contender) {
+std::string contender_name(const Comparison& comparison, const Contender& contender) {
     for (const MethodFigures& figures : comparison.methods) {
         if (figures.method == contender.text) return short_name(figures, comparison);
     }
@@ -75,13 +75,13 @@ std::vector<Panel> course_panels(const Comparison& comparison, std::span<const C
         const Look look = look_of(contender, taken);
         if (comparison.step_nm) {
             const double height = *comparison.step_nm;
-            step.curves.push_back(run(contender, name_of(comparison, contender), comparison, duration_s, look,
-                                      [height](double) { return height; }));
+            step.curves.push_back(run(contender, contender_name(comparison, contender), comparison,
+                                      duration_s, look, [height](double) { return height; }));
         }
         if (comparison.ramp_nm_s) {
             const double slope = *comparison.ramp_nm_s;
-            ramp.curves.push_back(run(contender, name_of(comparison, contender), comparison, duration_s, look,
-                                      [slope](double t) { return slope * t; }));
+            ramp.curves.push_back(run(contender, contender_name(comparison, contender), comparison,
+                                      duration_s, look, [slope](double t) { return slope * t; }));
         }
     }
     if (comparison.step_nm) {
@@ -132,12 +132,12 @@ std::vector<Panel> response_panels(const Comparison& comparison, std::span<const
         const auto frozen = contender.frozen(comparison.sample_rate, comparison.speed);
         if (!frozen) continue;
         const FilterResponse response = filter_response(frozen->cascade, comparison.sample_rate, lines_hz);
-        panels.magnitude.curves.push_back(
-            {name_of(comparison, contender), look.ink, look.style, response.hz, response.magnitude_db});
+        panels.magnitude.curves.push_back({contender_name(comparison, contender), look.ink, look.style,
+                                           response.hz, response.magnitude_db});
         panels.phase.curves.push_back(
-            {name_of(comparison, contender), look.ink, look.style, response.hz, response.phase_deg});
-        panels.delay.curves.push_back(
-            {name_of(comparison, contender), look.ink, look.style, response.hz, response.group_delay_ms});
+            {contender_name(comparison, contender), look.ink, look.style, response.hz, response.phase_deg});
+        panels.delay.curves.push_back({contender_name(comparison, contender), look.ink, look.style,
+                                       response.hz, response.group_delay_ms});
         longest_dc_ms = std::max(longest_dc_ms, response.group_delay_ms.front());
         deepest_db = std::min(deepest_db,
                               *std::min_element(response.magnitude_db.begin(), response.magnitude_db.end()));

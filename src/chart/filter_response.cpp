@@ -5,14 +5,14 @@
 #include <limits>
 #include <numbers>
 
-#include "chart/nothing.hpp"
 #include "ripplenotch/chart/comparison_figure.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr int points = 600;
+constexpr int response_points = 600;
 constexpr double lowest_share = 1e-4, highest_share = 0.499;  // of the sample rate
 
 // Where a section's zeros lie on the unit circle, if they do.
@@ -29,8 +29,9 @@ FilterResponse filter_response(std::span<const Biquad> cascade, Hertz sample_rat
                                std::span<const double> also_hz) {
     FilterResponse result;
     const double lowest = lowest_share * sample_rate.value(), highest = highest_share * sample_rate.value();
-    for (int i = 0; i <= points; ++i)
-        result.hz.push_back(lowest * portable::pow(highest / lowest, static_cast<double>(i) / points));
+    for (int i = 0; i <= response_points; ++i)
+        result.hz.push_back(lowest *
+                            portable::pow(highest / lowest, static_cast<double>(i) / response_points));
     const auto add = [&](double hz) {
         if (hz > lowest && hz < highest) result.hz.push_back(hz);
     };
@@ -58,8 +59,8 @@ FilterResponse filter_response(std::span<const Biquad> cascade, Hertz sample_rat
         result.magnitude_db.push_back(std::max(db, lowest_magnitude_db));
         const bool at_null = std::any_of(nulls.begin(), nulls.end(),
                                          [hz](double null) { return std::abs(hz / null - 1.0) < 1e-9; });
-        result.phase_deg.push_back(at_null ? nothing : phase_rad * degrees_per_radian);
-        result.group_delay_ms.push_back(at_null ? nothing
+        result.phase_deg.push_back(at_null ? not_a_number : phase_rad * degrees_per_radian);
+        result.group_delay_ms.push_back(at_null ? not_a_number
                                                 : 1e3 * group_delay(cascade, Hertz(hz), sample_rate).value());
     }
     return result;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/chart/residual_figure.hpp"
-#include "chart/nothing.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
 namespace ripplenotch {
@@ -44,7 +44,7 @@ HeatMap rms_map(std::span<const double> across, std::span<const double> along,
         count[cell] += 1.0;
     }
     for (std::size_t i = 0; i < sum.size(); ++i)
-        map.cells.push_back(count[i] > 0.0 ? std::sqrt(sum[i] / count[i]) : nothing);
+        map.cells.push_back(count[i] > 0.0 ? std::sqrt(sum[i] / count[i]) : not_a_number);
     return map;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/chart/spectrum_figure.hpp"
-#include "chart/nothing.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
 namespace ripplenotch {
@@ -30,7 +30,7 @@ double lowest_shown(const std::vector<double>& amplitude_nm, const std::vector<d
 
 std::vector<double> where_known(std::vector<double> floor_nm) {
     for (double& floor : floor_nm)
-        if (!(floor > 0.0)) floor = nothing;
+        if (!(floor > 0.0)) floor = not_a_number;
     return floor_nm;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "chart/nothing.hpp"
 #include "ripplenotch/chart/spectrum_figure.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -51,7 +50,7 @@ HeatMap heat_map(const SpeedMap& map, const Columns& columns) {
     std::vector<double> values;
     for (std::size_t k = 0; k < bins; k += pool) {
         for (const auto& row : columns.row) {
-            double cell = nothing;
+            double cell = not_a_number;
             for (std::size_t j = k; row && j < std::min(k + pool, bins); ++j) {
                 const double amplitude = map.amplitude_nm[*row][j];
                 cell = std::isnan(cell) ? amplitude : std::max(cell, amplitude);

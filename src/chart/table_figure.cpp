@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/chart/table_figure.hpp"
-#include "chart/nothing.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +22,7 @@ Curve stairs(const CandidateTable& table, std::string name, Ink ink,
     for (const Band& band : table.bands()) {
         if (!curve.x.empty() && curve.x.back() < band.from.value()) {
             curve.x.push_back(band.from.value());
-            curve.y.push_back(nothing);
+            curve.y.push_back(not_a_number);
         }
         for (const DegPerSec edge : {band.from, band.to}) {
             curve.x.push_back(edge.value());

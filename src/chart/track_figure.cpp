@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "chart/nothing.hpp"
 #include "ripplenotch/analysis/track_report.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/figure/min_max.hpp"
 
 namespace ripplenotch {
@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::size_t most_ribbon_rows = 2000;
 
-Ink ink_of(const TrackName& line) {
+Ink track_ink(const TrackName& line) {
     if (line.order) return order_ink(*line.order);
     return line.is_tone ? tone_ink : unknown_ink;
 }
 
-CurveStyle style_of(const TrackName& line, CurveStyle style) {
+CurveStyle track_style(const TrackName& line, CurveStyle style) {
     return line.order ? order_style(*line.order, style) : other_mark(style);
 }
 
@@ -45,7 +45,7 @@ void break_at(const std::vector<std::size_t>& breaks, Curve& curve) {
     for (std::size_t i = breaks.size(); i-- > 0;) {
         const auto at = static_cast<std::ptrdiff_t>(breaks[i]);
         curve.x.insert(curve.x.begin() + at, 0.5 * (curve.x[breaks[i] - 1] + curve.x[breaks[i]]));
-        curve.y.insert(curve.y.begin() + at, nothing);
+        curve.y.insert(curve.y.begin() + at, not_a_number);
     }
 }
 
@@ -69,7 +69,7 @@ void add_line(TrackPanels& panels, const TrackName& line, const std::vector<doub
               std::vector<double> amplitude_nm, const std::vector<double>& half_width_nm,
               const std::vector<double>& phase_deg, const std::vector<std::size_t>& breaks,
               const TrackScale& scale) {
-    const Ink ink = ink_of(line);
+    const Ink ink = track_ink(line);
     Ribbon ribbon{"", ink, x, {}, {}};
     for (std::size_t i = 0; i < x.size(); ++i) {
         amplitude_nm[i] *= scale.factor;
@@ -80,11 +80,11 @@ void add_line(TrackPanels& panels, const TrackName& line, const std::vector<doub
     if (x.size() <= most_ribbon_rows) {
         for (Ribbon& part : parts_of(ribbon, breaks)) panels.amplitude.ribbons.push_back(std::move(part));
     }
-    Curve amplitude{line.words, ink, style_of(line, CurveStyle::line), x, std::move(amplitude_nm)};
+    Curve amplitude{line.words, ink, track_style(line, CurveStyle::line), x, std::move(amplitude_nm)};
     break_at(breaks, amplitude);
     panels.amplitude.curves.push_back(thinned(amplitude));
     panels.phase.curves.push_back(
-        thinned({line.words, ink, style_of(line, CurveStyle::points), x, phase_deg}));
+        thinned({line.words, ink, track_style(line, CurveStyle::points), x, phase_deg}));
 }
 
 Figure figure_of(const std::string& source, TrackPanels panels) {

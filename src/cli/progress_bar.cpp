@@ -18,7 +18,7 @@
 namespace ripplenotch {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 constexpr auto patience = std::chrono::seconds(1);
 constexpr auto tick = std::chrono::milliseconds(100);
 
@@ -37,7 +37,9 @@ int columns() {
     return known ? size.ws_col - 1 : 79;
 }
 
-void put(std::string_view text) { static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size())); }
+void put_at_once(std::string_view text) {
+    static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
+}
 
 }  // namespace
 
@@ -71,12 +73,12 @@ struct ProgressBar::Painter {
 
     void hide() {
         const std::lock_guard lock(mutex);
-        if (on_screen) put("\r\x1b[K");
+        if (on_screen) put_at_once("\r\x1b[K");
         on_screen = false;
     }
 
     void paint() {
-        const auto start = Clock::now();
+        const auto start = SteadyClock::now();
         auto stage_start = start;
         unsigned stage = 0;
         std::unique_lock lock(mutex);
@@ -84,10 +86,11 @@ struct ProgressBar::Painter {
             const Progress::State state = Progress::current().state();
             if (state.stage != stage) {
                 stage = state.stage;
-                stage_start = Clock::now();
+                stage_start = SteadyClock::now();
             }
-            if (stage == 0 || Clock::now() - start < patience) continue;
-            put("\r" + progress_line(command, state, Clock::now() - stage_start, columns()) + "\x1b[K");
+            if (stage == 0 || SteadyClock::now() - start < patience) continue;
+            put_at_once("\r" + progress_line(command, state, SteadyClock::now() - stage_start, columns()) +
+                        "\x1b[K");
             on_screen = true;
         }
     }

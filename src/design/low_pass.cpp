@@ -13,7 +13,7 @@ namespace {
 
 constexpr int highest_order = 20;  // by hand
 
-void check(const LowPassSpec& spec, Hertz sample_rate) {
+void check_low_pass(const LowPassSpec& spec, Hertz sample_rate) {
     if (!std::isfinite(sample_rate.value()) || !(sample_rate.value() > 0.0)) {
         raise<UsageError>("the sample rate is {} Hz; it must be known and above 0 Hz",
                           shortest(sample_rate.value()));
@@ -33,7 +33,7 @@ void check(const LowPassSpec& spec, Hertz sample_rate) {
 }  // namespace
 
 Cascade design_low_pass(const LowPassSpec& spec, Hertz sample_rate) {
-    check(spec, sample_rate);
+    check_low_pass(spec, sample_rate);
     const double k = portable::tan(std::numbers::pi * (spec.cutoff / sample_rate));
     Cascade cascade;
     if (spec.order % 2 == 1) {

@@ -11,7 +11,7 @@
 namespace ripplenotch {
 namespace {
 
-void check(const NotchSpec& spec, Hertz sample_rate) {
+void check_notch(const NotchSpec& spec, Hertz sample_rate) {
     if (!std::isfinite(sample_rate.value()) || !(sample_rate.value() > 0.0)) {
         raise<UsageError>("the sample rate is {} Hz; it must be known and above 0 Hz",
                           shortest(sample_rate.value()));
@@ -46,7 +46,7 @@ void check(const NotchSpec& spec, Hertz sample_rate) {
 std::string_view width_rule_name(WidthRule rule) { return rule == WidthRule::analog ? "analog" : "digital"; }
 
 Biquad design_notch(const NotchSpec& spec, Hertz sample_rate) {
-    check(spec, sample_rate);
+    check_notch(spec, sample_rate);
     const double omega = 2.0 * std::numbers::pi * (spec.center / sample_rate);
     const double c = portable::cos(omega);
     // The two rules differ in one number: how far the poles stand inside the unit circle. sin(omega) / (2 Q)

@@ -17,7 +17,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t longest_run = 10'000'000;  // samples; 80 MB of output
-constexpr std::size_t block = 16384;             // by hand
+constexpr std::size_t block_samples = 16384;     // by hand
 
 // One filter and one signal, run on for as long as somebody wants to see more of it.
 class Run {
@@ -36,10 +36,10 @@ class Run {
                 "{}: the output has not come to rest after {:.3g} samples; it cannot be measured", method_,
                 static_cast<double>(out_.size()));
         }
-        const std::vector<double> velocity(block, speed_deg_s_);
-        std::vector<double> torque(block), position(block);
+        const std::vector<double> velocity(block_samples, speed_deg_s_);
+        std::vector<double> torque(block_samples), position(block_samples);
         while (out_.size() < count) {
-            const std::size_t first = out_.size(), added = std::min(block, count - first);
+            const std::size_t first = out_.size(), added = std::min(block_samples, count - first);
             for (std::size_t i = 0; i < added; ++i) {
                 torque[i] = signal(first + i);
                 position[i] = speed_deg_s_ * static_cast<double>(first + i) / rate_hz_;

@@ -16,7 +16,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr const LogFormat* const list[] = {
+constexpr const LogFormat* const all_formats[] = {
 #define FORMAT(name) &formats::name,
 #include "log/formats/formats.def"
 #undef FORMAT
@@ -24,7 +24,7 @@ constexpr const LogFormat* const list[] = {
 
 }  // namespace
 
-std::span<const LogFormat* const> log_formats() { return list; }
+std::span<const LogFormat* const> log_formats() { return all_formats; }
 
 std::vector<std::string> formats_not_built() {
     std::vector<std::string> missing;

@@ -12,7 +12,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr const Effect* const list[] = {
+constexpr const Effect* const all_effects[] = {
 #define EFFECT(name) &effects::name,
 #include "model/effects/effects.def"
 #undef EFFECT
@@ -24,7 +24,7 @@ constexpr Dimension dimensions[] = {Dimension::time,    Dimension::frequency, Di
 
 }  // namespace
 
-std::span<const Effect* const> catalogue() { return list; }
+std::span<const Effect* const> catalogue() { return all_effects; }
 
 std::string_view side_name(Side side) {
     constexpr std::string_view names[] = {"motion", "ripple", "joint", "sensor", "converter"};

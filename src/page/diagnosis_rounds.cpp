@@ -8,7 +8,7 @@
 namespace ripplenotch {
 namespace {
 
-std::string from_to(double before_nm, double after_nm) {
+std::string gap_from_to(double before_nm, double after_nm) {
     return fmt::format("{} to {}", coarse_text(before_nm), coarse_text(after_nm));
 }
 
@@ -18,9 +18,9 @@ Json row_of(const Finding& finding) {
     row["parameters"] = parameters_json(finding.term, finding.values);
     row["where"] = place_json(finding.where);
     row["explains_nm"] = finite_or_null(finding.evidence.share_nm);
-    row["gap_nm"] = from_to(finding.gap_before_nm, finding.gap_after_nm);
+    row["gap_nm"] = gap_from_to(finding.gap_before_nm, finding.gap_after_nm);
     if (finding.validation_before_nm)
-        row["validation_nm"] = from_to(*finding.validation_before_nm, *finding.validation_after_nm);
+        row["validation_nm"] = gap_from_to(*finding.validation_before_nm, *finding.validation_after_nm);
     std::string rivals;
     for (const RivalFinding& rival : finding.alternatives)
         rivals += fmt::format("{}{}", rivals.empty() ? "" : ", ", rival.effect);

@@ -25,7 +25,7 @@ std::string cell(const Json& row, const char* name) {
     return coarse_text(found->get<double>());
 }
 
-std::vector<std::pair<std::string, std::string>> cells_of(const Json& method) {
+std::vector<std::pair<std::string, std::string>> method_cells(const Json& method) {
     std::vector<std::pair<std::string, std::string>> cells;
     if (const auto meets = method.find("meets"); meets != method.end() && meets->is_boolean())
         cells.emplace_back("fits", meets->get<bool>() ? "yes" : "no");
@@ -84,7 +84,7 @@ PageTable comparison_table(const Json& methods) {
         const std::string label = spec == "none" ? spec : label_of(labels++);
         if (spec != "none") table.legend.push_back({label, legend_of(method, spec)});
         table.rows.push_back({label});
-        all.push_back(cells_of(method));
+        all.push_back(method_cells(method));
         for (const auto& [column, value] : all.back())
             if (std::find(table.header.begin(), table.header.end(), column) == table.header.end())
                 table.header.push_back(column);

@@ -8,6 +8,7 @@
 
 #include "core/rows/first_outside.hpp"
 #include "core/rows/row_facts.hpp"
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/log/format.hpp"
 #include "support/catch.hpp"
 #include "support/vectors.hpp"
@@ -17,8 +18,7 @@ using namespace ripplenotch::testing;
 
 namespace {
 
-const double infinity = std::numeric_limits<double>::infinity(),
-             not_a_number = std::numeric_limits<double>::quiet_NaN();
+const double infinity = std::numeric_limits<double>::infinity();
 
 /// Few values, so that neighbours are often equal.
 std::vector<double> coarse(std::size_t size, std::mt19937& engine) {

@@ -127,6 +127,50 @@ def types_defined_in(text):
                 yield "::".join([*spaces, found[1]])
 
 
+def names_unnamed_in(text):
+    """Types, functions and values that a file defines at the level of its unnamed namespaces."""
+    names, inside = set(), False
+    for line in text.split("\n"):
+        if line == "namespace {":
+            inside = True
+        elif line.startswith("}  // namespace"):
+            inside = False
+        elif not inside or not line[:1].isalpha() or line.startswith(("template <template", "namespace")):
+            continue
+        elif found := re.match(r"(?:struct|class|union|enum(?: class)?) (\w+)|using (\w+) =", line):
+            names.add(found[1] or found[2])
+        elif line.startswith("using"):
+            continue
+        elif found := re.match(r"(?:inline |static )*(?:constexpr|const|double|bool|int)\b[^({]*?[ &*](\w+)(?:\[[^]]*\])?(?: =|\{|;)", line):
+            names.update([found[1], *re.findall(r", (\w+) = ", line)])
+        elif found := re.match(r"[\w:<>,&*\[\] ]+?[ &*](\w+)\(", line):
+            names.add(found[1])
+    return names
+
+
+class Together(unittest.TestCase):
+    """Files of a room are compiled together (docs/decisions/0023-compiling-together.md)."""
+
+    def test_no_two_of_them_have_one_name_for_two_things(self):
+        # The compiler sees most of these; of functions that differ in what they take it would choose one.
+        lists = (SOURCE / "src/CMakeLists.txt").read_text()
+        alone = re.findall(r'"(\^[^"]*)"', re.search(r"^set\(alone ([^#]*?)\)\n", lists, re.M)[1])
+        self.assertGreater(len(alone), 1)
+        found = {}
+        for path in sorted((SOURCE / "src").rglob("*.cpp")):
+            name = str(path.relative_to(SOURCE / "src"))
+            if not any(re.match(place, name) for place in alone):
+                for one in names_unnamed_in(path.read_text()):
+                    found.setdefault((name.split("/")[0], one), []).append(name)
+        self.assertGreater(len(found), 1500)
+        self.assertEqual({name: files for name, files in found.items() if len(files) > 1}, {})
+
+    def test_a_name_is_seen_whatever_it_names(self):
+        text = "\nnamespace {\n\nstruct A {\n    int no;\n};\nusing B = A;\nconstexpr double c = 1.0, d = 2.0;\n" \
+               "constexpr int e[] = {1};\nstd::vector<A> f(int no) {\n}\n\n}  // namespace\n\nvoid no() {\n}\n"
+        self.assertEqual(names_unnamed_in(text), set("ABcdef"))
+
+
 class Rooms(unittest.TestCase):
     def test_no_two_types_have_one_name(self):
         files = {}

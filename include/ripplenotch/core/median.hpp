@@ -17,6 +17,9 @@ namespace ripplenotch {
     return *middle;
 }
 
+/// Standard deviations in the median of what normal values are off by.
+inline constexpr double deviations_of_median = 1.4826;
+
 [[nodiscard]] inline double median_of(std::vector<double> values) { return median_in(values); }
 
 }  // namespace ripplenotch

@@ -4,11 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace ripplenotch {
+
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Reads one finite or non-finite decimal number that fills `text` entirely (a leading '+' is allowed, white
 /// space is not). Correctly rounded. `decimal_mark` is '.' or ','. Empty when the text is not a number or

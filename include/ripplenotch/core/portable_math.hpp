@@ -6,7 +6,14 @@
 // docs/decisions/0004-same-bytes.md.
 
 #include <complex>
+#include <numbers>
 #include <span>
+
+namespace ripplenotch {
+
+inline constexpr double full_turn = 2.0 * std::numbers::pi;  ///< in radians
+
+}  // namespace ripplenotch
 
 namespace ripplenotch::portable {
 

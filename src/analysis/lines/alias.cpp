@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/shared_limits.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double decisive_nats = 5.0;        // by hand: odds of 150 to 1
-constexpr double floor_doubt = 0.15;         // by hand: of a gain, since the noise is not known better
 constexpr double comb_share = 0.006;         // as wide as the fit of the ratio takes its combs
 constexpr std::size_t most_samples = 20000;  // by hand: bounds the time
 constexpr std::size_t most_folds = 40;       // by hand: bounds the time

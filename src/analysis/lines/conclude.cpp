@@ -21,7 +21,7 @@ bool any_of_kind(const Identification& result, LineKind kind) {
 }
 
 /// Smallest amplitude that would have been reported, roughly: the floor times what the false-alarm rate asks.
-double detectable(const Looked& looked) {
+double detectable_nm(const Looked& looked) {
     double floor = 0.0;
     constexpr double threshold = 4.5;  // amplitude over floor of a line at the 1 % level in one stretch
     if (looked.motion && looked.motion->sweeps > 0) return looked.motion->detectable_nm;
@@ -38,7 +38,7 @@ Grounds grounds_of(const Looked& looked, const IdentifyOptions& options, LineEvi
     grounds.false_alarm = options.false_alarm;
     grounds.steady_for = options.steady_for;
     grounds.needed_turns = least_turns;
-    grounds.detectable_nm = detectable(looked);
+    grounds.detectable_nm = detectable_nm(looked);
     if (looked.steady) {
         grounds.stretches = looked.steady->moving;
         grounds.rests = looked.steady->resting;

@@ -15,7 +15,6 @@ constexpr double least_spread = 0.1;       // of amplitudes, of their mean
 constexpr double usual_scatter = 0.03;     // of amplitudes, from run to run of a joint that has not changed
 constexpr double like_speed_share = 0.05;  // by hand
 constexpr double like_order_share = 0.01, like_ratio_share = 0.1;  // by hand
-constexpr std::size_t fewest_for_scatter = 3;                      // fewer have no median
 
 using Value = Disagreement::Value;
 

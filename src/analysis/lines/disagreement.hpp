@@ -21,6 +21,9 @@ namespace ripplenotch {
 /// Recordings that agree differ by as much less often than this, where they are told.
 inline constexpr double least_chance_of_alike = 0.001;
 
+/// Recordings of which a scatter is told: fewer have no median.
+inline constexpr std::size_t fewest_for_scatter = 3;
+
 /// The chance that values which are one differ by as much of their errors.
 [[nodiscard]] double chance_of_alike(const std::vector<Disagreement::Value>& values);
 

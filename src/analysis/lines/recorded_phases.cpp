@@ -26,11 +26,10 @@ struct RecordedPhases::Phase {
 
 namespace {
 
-constexpr double least_apart_deg = 20.0;       // by hand
-constexpr double usual_turn_deg = 0.05;        // of the joint: by the load's torsion, from run to run
-constexpr double coherent = 0.7;               // of the sum of a line's lengths, its sum
-constexpr double least_above_noise = 4.0;      // in amplitude
-constexpr std::size_t fewest_for_scatter = 3;  // fewer have no median
+constexpr double least_apart_deg = 20.0;   // by hand
+constexpr double usual_turn_deg = 0.05;    // of the joint: by the load's torsion, from run to run
+constexpr double coherent = 0.7;           // of the sum of a line's lengths, its sum
+constexpr double least_above_noise = 4.0;  // in amplitude
 
 double turned_to_half(double deg) { return deg - 360.0 * std::round(deg / 360.0); }
 

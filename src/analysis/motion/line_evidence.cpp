@@ -36,11 +36,11 @@ constexpr auto own_value = [](const Sweep& sweep) { return std::span(sweep.value
 
 /// Power over noise of one sweep, or of a part of it, at a place; noise scaled from the whole sweep's floor
 /// there.
-struct Piece {
+struct SweepPart {
     double ratio = 0.0, weight = 0.0;
 };
 
-Piece piece_at(const Sweep& part, const Sweep& whole, Axis axis, double noise, double place) {
+SweepPart piece_at(const Sweep& part, const Sweep& whole, Axis axis, double noise, double place) {
     const double scale = part.weight_square_sum / whole.weight_square_sum;
     const double power = std::norm(fourier_point(places(part, axis), part.value, place).value);
     return {power / (noise * scale), part.effective_samples()};
@@ -82,7 +82,7 @@ double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const 
 }
 
 bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {
-    std::vector<Piece> pieces;
+    std::vector<SweepPart> pieces;
     std::size_t strongest = 0;
     double total = 0.0;
     std::vector<std::size_t> index;
@@ -110,7 +110,7 @@ bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {
     }
     pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(strongest));
     double sum = 0.0, weights = 0.0, squares = 0.0;
-    for (const Piece& piece : pieces) {
+    for (const SweepPart& piece : pieces) {
         sum += piece.weight * piece.ratio;
         weights += piece.weight;
         squares += piece.weight * piece.weight;

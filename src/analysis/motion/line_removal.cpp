@@ -10,11 +10,11 @@
 #include "core/matrices/factorisations.hpp"
 #include "core/process/two_cores.hpp"
 #include "core/vectors/dot.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double tau = 2.0 * std::numbers::pi;
 // Under a Hann window lines so many cycles apart have a thousandth of each other in them.
 constexpr double clear_cycles = 10.0;
 
@@ -74,7 +74,7 @@ class Rows {
     void fill_line(std::size_t line, std::size_t first, std::size_t here) {
         std::array<double, length> angle{};
         const auto at = places(sweep_, lines_[line].axis).subspan(first, here);
-        for (std::size_t i = 0; i < here; ++i) angle[i] = tau * lines_[line].place * at[i];
+        for (std::size_t i = 0; i < here; ++i) angle[i] = full_turn * lines_[line].place * at[i];
         double* const cosine = row(sweep_.trend_terms + 2 * line);
         portable::phasors(std::span(angle).first(here), std::span(cosine, length),
                           std::span(cosine + length, length));
@@ -143,7 +143,7 @@ std::vector<double> there(const Sweep& sweep, const KnownLine& line) {
     std::array<double, Rows::length> angle{};
     for (std::size_t first = 0; first < at.size(); first += angle.size()) {
         const std::size_t here = std::min(angle.size(), at.size() - first);
-        for (std::size_t i = 0; i < here; ++i) angle[i] = tau * line.place * at[first + i];
+        for (std::size_t i = 0; i < here; ++i) angle[i] = full_turn * line.place * at[first + i];
         portable::phasors(std::span(angle).first(here), std::span(cosine).subspan(first),
                           std::span(sine).subspan(first));
     }

@@ -7,17 +7,15 @@
 #include "analysis/motion/line_evidence.hpp"
 #include "analysis/motion/line_removal.hpp"
 #include "analysis/motion/stacks.hpp"
+#include "analysis/shared_limits.hpp"
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
 namespace {
 
-// An axis must explain a line better than the other by this factor of likelihood (in nats) to own it.
-constexpr double decisive_nats = 5.0;
-constexpr double kept_share = 0.8;    // by hand: of a gain, left once the other line is out
-constexpr double floor_doubt = 0.15;  // by hand: as in alias.cpp
-constexpr double line_cells = 2.0;    // half width of a line's main lobe, in resolutions
+constexpr double kept_share = 0.8;  // by hand: of a gain, left once the other line is out
+constexpr double line_cells = 2.0;  // half width of a line's main lobe, in resolutions
 
 struct Candidate {
     SignificantPeak peak;
@@ -51,7 +49,7 @@ std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& st
 
 /// The most that any line of the other axis explains where this one could be seen there, from..to on that
 /// axis.
-Candidate best_between(const Stack& stack, double from, double to) {
+Candidate best_place_between(const Stack& stack, double from, double to) {
     Candidate best;
     const auto last = static_cast<std::size_t>(std::max(0.0, to / stack.spacing)) + 2;
     const auto begin = static_cast<std::size_t>(std::max(0.0, from / stack.spacing - 1.0));
@@ -169,15 +167,16 @@ std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stack
     if (sought.by_angle) {
         order_bin = order->peak.bin;
         sought.seen_at = static_cast<double>(order_bin) * angle.spacing;
-        hz_bin = best_between(time, sought.seen_at * range.slow / 360.0, sought.seen_at * range.fast / 360.0)
-                     .peak.bin;
+        hz_bin =
+            best_place_between(time, sought.seen_at * range.slow / 360.0, sought.seen_at * range.fast / 360.0)
+                .peak.bin;
         sought.line.false_alarm = order->peak.false_alarm;
     } else {
         hz_bin = tone->peak.bin;
         sought.seen_at = static_cast<double>(hz_bin) * time.spacing;
-        order_bin =
-            best_between(angle, sought.seen_at * 360.0 / range.fast, sought.seen_at * 360.0 / range.slow)
-                .peak.bin;
+        order_bin = best_place_between(angle, sought.seen_at * 360.0 / range.fast,
+                                       sought.seen_at * 360.0 / range.slow)
+                        .peak.bin;
         sought.line.false_alarm = tone->peak.false_alarm;
     }
     Rivals& rivals = sought.rivals;

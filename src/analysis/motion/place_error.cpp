@@ -14,11 +14,10 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double tau = 2.0 * std::numbers::pi;
 constexpr double clear_ratio = 6.0;      // of power over noise; below, a peak's own place is not near normal
 constexpr std::size_t few_sweeps = 4;    // by hand: fewer are cut in parts, for a scatter
 constexpr std::size_t parts_of_few = 3;  // the fewest with a scatter
-constexpr std::size_t fewest_samples = 24;  // by hand
+constexpr std::size_t fewest_samples_for_error = 24;  // by hand
 
 /// What one piece of motion says about a line near a place: slope and curvature of half its power over noise,
 /// and the variance that noise gives the slope.
@@ -49,10 +48,10 @@ Opinion opinion_of(const Sweep& sweep, Axis axis, double noise, double place) {
     opinion.ratio = std::norm(sum.value) / noise;
     opinion.slope = std::real(std::conj(sum.value) * sum.first) / noise;
     opinion.curve = (std::norm(sum.first) + std::real(std::conj(sum.value) * sum.second)) / noise;
-    // Slope = Re(conj(X) X'). Noise of power N in X has N tau^2 sum w^2 (u - mean)^2 / sum w^2 in X', half of
-    // it in phase with X.
+    // Slope = Re(conj(X) X'). Noise of power N in X has N full_turn^2 sum w^2 (u - mean)^2 / sum w^2 in X',
+    // half of it in phase with X.
     opinion.slope_variance =
-        0.5 * std::max(0.0, opinion.ratio - 1.0) * tau * tau * second / sweep.weight_square_sum;
+        0.5 * std::max(0.0, opinion.ratio - 1.0) * full_turn * full_turn * second / sweep.weight_square_sum;
     opinion.reach = 1.0 / length_of(sweep, axis);
     return opinion;
 }
@@ -62,7 +61,7 @@ void add_parts(const Sweep& sweep, Axis axis, double noise, double place, std::v
     const std::size_t n = sweep.turns.size();
     for (std::size_t part = 0; part < parts_of_few; ++part) {
         const std::size_t first = n * part / parts_of_few, end = n * (part + 1) / parts_of_few;
-        if (end - first < fewest_samples) return;
+        if (end - first < fewest_samples_for_error) return;
         const Sweep piece = part_of(sweep, first, end - first);
         if (!(piece.weight_square_sum > 0.0)) continue;
         opinions.push_back(

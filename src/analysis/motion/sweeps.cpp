@@ -87,7 +87,7 @@ class SpeedShares {
 };
 
 /// Hann window over the sweep's own length, times the angle that each sample stands for.
-void weigh(Sweep& sweep) {
+void weigh_sweep(Sweep& sweep) {
     sweep.length_turns = std::abs(sweep.turns.back() - sweep.turns.front());
     sweep.duration_s = sweep.time_s.back() - sweep.time_s.front();
     sweep.weight.resize(sweep.turns.size());
@@ -128,7 +128,7 @@ Sweep make_sweep(const TraceView& log, const SampleRun& span, std::span<const do
             std::abs(speed[k]) * std::clamp(0.5 * (before + after), 0.0, 3.0 * step) / 360.0;
         sweep.fast_deg_s = std::max(sweep.fast_deg_s, std::abs(speed[k]));
     }
-    weigh(sweep);
+    weigh_sweep(sweep);
     if (!(sweep.weight_sum > 0.0)) return sweep;
     for (std::size_t k = 0; k < n; ++k) sweep.mean_deg_s += sweep.weight[k] * speed[k] / sweep.weight_sum;
     const SpeedShares shares(speed, sweep.weight);
@@ -189,7 +189,7 @@ Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count) {
     part.time_s = cut(sweep.time_s);
     part.torque_nm = cut(sweep.torque_nm);
     part.share_turns = cut(sweep.share_turns);
-    weigh(part);
+    weigh_sweep(part);
     part.value.resize(count);
     for (std::size_t k = 0; k < count; ++k) part.value[k] = part.torque_nm[k] * part.weight[k];
     return part;

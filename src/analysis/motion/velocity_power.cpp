@@ -14,7 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Complex = std::complex<double>;
 
-constexpr double full_turn = 2.0 * std::numbers::pi;  // in radians
 // So many of a sweep turn less than a tenth of a cycle each where the whole is wrong by five cycles.
 constexpr std::size_t cells_per_sweep = 48;
 
@@ -52,8 +51,8 @@ PowerMoments power_moments(const DemodulatedSweep& cells, const std::array<doubl
 }
 
 /// Sums of weight * column a * column b over the cells.
-double spread(const DemodulatedSweep& cells, const std::vector<double>& weight, std::size_t a,
-              std::size_t b) {
+double spread_of_cells(const DemodulatedSweep& cells, const std::vector<double>& weight, std::size_t a,
+                       std::size_t b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < weight.size(); ++i)
         sum += weight[i] * cells.column[a][i] * cells.column[b][i];
@@ -107,7 +106,7 @@ void RipplePower::add(const DemodulatedSweep& cells, const VectorXd& unknown, At
             const double curve =
                 std::real(std::conj(m.first[a]) * m.first[b] + std::conj(m.value) * m.second[a][b]) /
                 cells.noise;
-            const double expected = stiff * spread(cells, cells.weight, a, b);
+            const double expected = stiff * spread_of_cells(cells, cells.weight, a, b);
             sum.curve(place[a], place[b]) += curve;
             sum.expected(place[a], place[b]) += expected;
             if (a == b) continue;
@@ -156,7 +155,7 @@ RipplePower::SlopeVariance RipplePower::slope_variance(const VectorXd& unknown) 
             }
             for (std::size_t b = 0; b < 3; ++b) {
                 variance.own(place[a], place[b]) += 0.5 * power * rate * rate *
-                                                    spread(cells, cells.weight_square, a, b) /
+                                                    spread_of_cells(cells, cells.weight_square, a, b) /
                                                     cells.weight_squares;
             }
         }

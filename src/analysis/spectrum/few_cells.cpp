@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/shared_limits.hpp"
 #include "ripplenotch/analysis/line_test.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double guard_cells = 2.0;        // a Hann line's main lobe
+constexpr double lobe_cells = 2.0;         // a Hann line's main lobe
 constexpr double fewest_beside = 1.5;      // cells beyond the guard on each side
-constexpr double tries_per_cell = 1.6;     // as in line_test.cpp
 constexpr double median_knowledge = 0.48;  // of a mean's: exceedance() counts cells behind a median
 
 double mean(const std::vector<double>& values) {
@@ -26,7 +26,7 @@ std::vector<SignificantPeak> significant_peaks_of_few_cells(const PowerSpectrum&
                                                             double false_alarm) {
     std::vector<SignificantPeak> peaks;
     const auto& power = spectrum.power;
-    const auto guard = static_cast<std::size_t>(std::ceil(guard_cells * spectrum.bins_per_cell));
+    const auto guard = static_cast<std::size_t>(std::ceil(lobe_cells * spectrum.bins_per_cell));
     const auto beside = static_cast<std::size_t>(std::ceil(fewest_beside * spectrum.bins_per_cell));
     if (power.size() < spectrum.first + 2 * (guard + beside)) return peaks;
     const double tries =

@@ -26,8 +26,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double tau = 2.0 * std::numbers::pi;
-
 template <class T>
 using FftwArray = std::unique_ptr<T, decltype(&fftw_free)>;
 
@@ -96,7 +94,7 @@ class Places {
         for (std::size_t first_row = 0; first_row < where_.size(); first_row += angle.size()) {
             const std::size_t count = std::min(angle.size(), where_.size() - first_row);
             for (std::size_t i = 0; i < count; ++i)
-                angle[i] = -tau * frequency * (where_[first_row + i] - middle_);
+                angle[i] = -full_turn * frequency * (where_[first_row + i] - middle_);
             portable::phasors(std::span(angle).first(count), cosine, sine);
             for (std::size_t i = 0; i < count; ++i) {
                 const std::complex<double> phasor(cosine[i], sine[i]);
@@ -112,7 +110,8 @@ class Places {
     /// The same, placed as they are; derivatives by frequency stay those of the centred sum.
     [[nodiscard]] FourierPoint point(std::span<const double> value, double frequency) const {
         const FourierPoint point = centred(value, frequency);
-        const std::complex<double> back = unit_phasor(-tau * frequency * middle_), turn(0.0, -tau);
+        const std::complex<double> back = unit_phasor(-full_turn * frequency * middle_),
+                                   turn(0.0, -full_turn);
         return {point.value * back, turn * point.first * back, turn * turn * point.second * back};
     }
 

@@ -97,7 +97,7 @@ struct Blocks {
     }
 };
 
-struct Candidate {
+struct HumpCandidate {
     SignificantHump hump;
     double gain = 0.0;  // nats
 };
@@ -116,7 +116,7 @@ class Level {
         return blocks_.mean.size() >= window_blocks + 2 * (guard_blocks + fewest_side_blocks);
     }
     [[nodiscard]] double tries() const { return tries_per_window * static_cast<double>(blocks_.mean.size()); }
-    void search(double tries, double false_alarm, std::vector<Candidate>& into) {
+    void search(double tries, double false_alarm, std::vector<HumpCandidate>& into) {
         const std::size_t margin = guard_blocks + fewest_side_blocks;
         for (std::size_t at = margin; at + window_blocks + margin <= blocks_.mean.size(); ++at) {
             double power = 0.0;
@@ -162,7 +162,8 @@ class Level {
         }
         return above > 0 && above >= count - count / 2;
     }
-    void judge(std::size_t at, double power, double tries, double false_alarm, std::vector<Candidate>& into) {
+    void judge(std::size_t at, double power, double tries, double false_alarm,
+               std::vector<HumpCandidate>& into) {
         const std::size_t end = at + window_blocks, count = blocks_.mean.size();
         const auto before = [at](std::size_t blocks) { return at - std::min(at, blocks + guard_blocks); };
         const auto after = [=](std::size_t blocks) { return std::min(count, end + blocks + guard_blocks); };
@@ -219,11 +220,11 @@ std::vector<SignificantHump> significant_humps(const PowerSpectrum& spectrum, do
         tries += level.tries();
         levels.push_back(std::move(level));
     }
-    std::vector<Candidate> candidates;
+    std::vector<HumpCandidate> candidates;
     for (Level& level : levels) level.search(tries, false_alarm, candidates);
     std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
-    for (const Candidate& candidate : candidates) {
+                     [](const HumpCandidate& a, const HumpCandidate& b) { return a.gain > b.gain; });
+    for (const HumpCandidate& candidate : candidates) {
         const SignificantHump& one = candidate.hump;
         const bool known = std::any_of(humps.begin(), humps.end(), [&](const SignificantHump& hump) {
             return one.first < hump.end && hump.first < one.end;

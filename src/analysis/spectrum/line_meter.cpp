@@ -10,10 +10,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double tau = 2.0 * std::numbers::pi;
-constexpr double reach_bins = 0.5;  // of the moments
-constexpr int most_rounds = 8;      // by hand
-constexpr double settled = 1e-9;    // bins
+constexpr double reach_bins = 0.5;     // of the moments
+constexpr int most_rounds = 8;         // by hand
+constexpr double settled_bins = 1e-9;  // bins
 
 /// S(x) = sum over d of (-i x)^d / d! M_d with its first two derivatives; x is 2 pi (f - start) half a piece.
 struct Point {
@@ -38,14 +37,14 @@ void LineMeter::expect_even_pieces(std::span<const double> even_time_s) {
     half_s_ = 0.5 / bin_hz_;
     for (const double t : even_time_s) {
         place_.push_back(t / half_s_);
-        cosine_.push_back(portable::cos(tau * start_hz_ * t));
-        sine_.push_back(-portable::sin(tau * start_hz_ * t));
+        cosine_.push_back(portable::cos(full_turn * start_hz_ * t));
+        sine_.push_back(-portable::sin(full_turn * start_hz_ * t));
     }
 }
 
 bool LineMeter::search_moments(const Piece& piece, Maximum& found) const {
     const Moments moments = turned_moments(piece.value, place_, cosine_, sine_);
-    const double bin = tau * bin_hz_ * half_s_;
+    const double bin = full_turn * bin_hz_ * half_s_;
     double x = 0.0;
     for (int round = 0; round < most_rounds; ++round) {
         const Point at(moments, x);
@@ -54,9 +53,9 @@ bool LineMeter::search_moments(const Piece& piece, Maximum& found) const {
         const double step = std::real(std::conj(at.value) * at.first) / curve;
         x -= step;
         if (std::abs(x) > reach_bins * bin) return false;
-        if (std::abs(step) < settled * bin) break;
+        if (std::abs(step) < settled_bins * bin) break;
     }
-    found = {start_hz_ + x / (tau * half_s_), Point(moments, x).value};
+    found = {start_hz_ + x / (full_turn * half_s_), Point(moments, x).value};
     return true;
 }
 
@@ -84,6 +83,8 @@ double LineMeter::hz() const { return power_ > 0.0 ? weighted_hz_ / power_ : sta
 
 double LineMeter::amplitude_nm() const { return std::sqrt(power_ / static_cast<double>(pieces_)); }
 
-double LineMeter::phase_rad() const { return portable::arg(strongest_) - tau * hz() * strongest_middle_s_; }
+double LineMeter::phase_rad() const {
+    return portable::arg(strongest_) - full_turn * hz() * strongest_middle_s_;
+}
 
 }  // namespace ripplenotch

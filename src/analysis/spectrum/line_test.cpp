@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/shared_limits.hpp"
 #include "analysis/spectrum/running_median.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/median.hpp"
@@ -18,9 +19,6 @@ constexpr double far_cells = 40.0;        // by hand: for a median that is known
 constexpr double inner_from_cells = 2.0;  // noise through a lightly damped resonance is only a few cells wide
 constexpr double inner_to_cells = 5.0;    // by hand
 constexpr double fewest_cells = 4.0;      // by hand
-// Maxima are looked for among correlated bins: about this many independent tries per cell. With it, white
-// noise raises a false alarm somewhat less often than allowed.
-constexpr double tries_per_cell = 1.6;
 
 /// Continued fraction of the incomplete beta function, by the modified method of Lentz.
 double beta_fraction(double x, double a, double b) {

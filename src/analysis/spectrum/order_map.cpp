@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "analysis/shared_limits.hpp"
 #include "analysis/spectrum/hann.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
@@ -17,10 +18,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double bins_per_resolution = 3.0;  // by hand
-constexpr std::size_t fewest_samples = 32;   // by hand
-constexpr double window_share = 1.0 / 16.0;  ///< of the longest run
-constexpr Eigen::Index trend_terms = 4;
+constexpr double bins_per_resolution = 3.0;           // by hand
+constexpr std::size_t fewest_samples_of_window = 32;  // by hand
+constexpr double window_share = 1.0 / 16.0;           ///< of the longest run
 
 double default_length(Axis axis, double longest) {
     const double least = axis == Axis::angle ? 16.0 : 0.25, most = axis == Axis::angle ? 64.0 : 2.0;
@@ -46,20 +46,20 @@ std::vector<SampleRun> half_overlapping(const SampleRun& run, std::span<const do
 }
 
 /// One window: places from its start, Hann weights that count how much of the axis a sample stands for.
-struct Window {
+struct MapWindow {
     std::vector<double> where, weight, value;
     double weight_sum = 0.0;
 };
 
 /// A cubic under the window's own weights: at its edges, where it matters least, it fits least.
-void remove_cubic(Window& window, std::span<const double> torque) {
+void remove_cubic(MapWindow& window, std::span<const double> torque) {
     const double length = std::abs(window.where.back() - window.where.front());
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
     Eigen::Vector4d right = Eigen::Vector4d::Zero(), row;
     const auto fill = [&](std::size_t k) {
         const double s = 2.0 * std::abs(window.where[k] - window.where.front()) / length - 1.0;
         double power = 1.0;
-        for (Eigen::Index i = 0; i < trend_terms; ++i, power *= s) row[i] = power;
+        for (Eigen::Index i = 0; i < window_trend_terms; ++i, power *= s) row[i] = power;
     };
     for (std::size_t k = 0; k < torque.size(); ++k) {
         fill(k);
@@ -74,9 +74,9 @@ void remove_cubic(Window& window, std::span<const double> torque) {
     }
 }
 
-Window make_window(const TraceView& log, const SampleRun& run, std::span<const double> place,
-                   std::span<const double> torque) {
-    Window window;
+MapWindow make_window(const TraceView& log, const SampleRun& run, std::span<const double> place,
+                      std::span<const double> torque) {
+    MapWindow window;
     const std::size_t n = run.size();
     const double start = place[run.first], length = place[run.end - 1] - start;
     window.where.resize(n);
@@ -115,7 +115,7 @@ std::vector<SampleRun> cut(const std::vector<SampleRun>& runs, std::span<const d
                            const MapOptions& options, double& length, std::size_t& too_short) {
     double longest = 0.0;
     for (const SampleRun& run : runs) {
-        if (run.size() >= fewest_samples)
+        if (run.size() >= fewest_samples_of_window)
             longest = std::max(longest, std::abs(place[run.end - 1] - place[run.first]));
     }
     if (!(longest > 0.0)) raise<DataError>("the joint does not move: there is no speed to map over");
@@ -127,7 +127,7 @@ std::vector<SampleRun> cut(const std::vector<SampleRun>& runs, std::span<const d
         const auto found = half_overlapping(run, place, length);
         if (found.empty()) ++too_short;
         for (const SampleRun& window : found) {
-            if (window.size() >= fewest_samples) windows.push_back(window);
+            if (window.size() >= fewest_samples_of_window) windows.push_back(window);
         }
     }
     return windows;
@@ -146,7 +146,8 @@ SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
     const auto runs = directed_runs(speed_deg_s, log.run_starts, {});
     const std::vector<SampleRun> windows = cut(runs, place, options, length, map.runs_too_short);
     if (windows.empty())
-        raise<DataError>("no window of the map holds {} samples; use a finer resolution", fewest_samples);
+        raise<DataError>("no window of the map holds {} samples; use a finer resolution",
+                         fewest_samples_of_window);
     map.resolution = hann_cell / length;
     map.spacing = map.resolution / bins_per_resolution;
 
@@ -167,7 +168,7 @@ SpeedMap speed_map(const TraceView& log, std::span<const double> shaft_turns,
 
     std::map<long long, Gathered> rows;
     for (std::size_t i = 0; i < windows.size(); ++i) {
-        const Window window = make_window(log, windows[i], place, log.torque_nm);
+        const MapWindow window = make_window(log, windows[i], place, log.torque_nm);
         if (!(window.weight_sum > 0.0)) continue;
         Gathered& row = rows[std::llround(speeds[i] / map.speed_step_deg_s)];
         row.power.resize(bins, 0.0);

@@ -37,12 +37,12 @@ std::vector<Sighting> clearest_of_each(std::span<const Sighting> sightings) {
 
 /// Two sightings at different speeds: how far apart their orders are in their logarithm, how that changes
 /// with an offset, and its standard error.
-struct Pair {
+struct OffsetPair {
     double apart = 0.0, per_deg_s = 0.0, error = 0.0;
 };
 
-std::vector<Pair> pairs_of(std::span<const Sighting> sightings, double step) {
-    std::vector<Pair> pairs;
+std::vector<OffsetPair> pairs_of(std::span<const Sighting> sightings, double step) {
+    std::vector<OffsetPair> pairs;
     for (std::size_t i = 0; i < sightings.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             const Sighting &a = sightings[i], &b = sightings[j];
@@ -50,7 +50,7 @@ std::vector<Pair> pairs_of(std::span<const Sighting> sightings, double step) {
             if (a.stretch == b.stretch ||
                 std::abs(std::abs(a.speed_deg_s) - std::abs(b.speed_deg_s)) < apart_share * fast)
                 continue;
-            Pair pair;
+            OffsetPair pair;
             pair.apart = portable::log(a.order_output() / b.order_output());
             pair.per_deg_s = 1.0 / a.speed_deg_s - 1.0 / b.speed_deg_s;
             // A step of the search is no error, but what lies within one is found.
@@ -88,12 +88,12 @@ DegPerSec likely_offset(std::span<const Sighting> sightings) {
     }
     if (!speeds_tell_offset(std::move(speeds))) return DegPerSec(0.0);
     const double step = per_step * likely_offset_share * fastest;
-    const std::vector<Pair> pairs = pairs_of(seen, step);
+    const std::vector<OffsetPair> pairs = pairs_of(seen, step);
     double best = 0.0, most = -1e300;
     for (int k = -offsets_a_side; k <= offsets_a_side; ++k) {
         const double share = per_step * k;
         double agreement = -0.5 * share * share;
-        for (const Pair& pair : pairs) {
+        for (const OffsetPair& pair : pairs) {
             const double off = (pair.apart + k * step * pair.per_deg_s) / pair.error;
             agreement += portable::exp(-0.5 * off * off);
         }

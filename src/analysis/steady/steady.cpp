@@ -155,7 +155,7 @@ double white_noise_of(std::span<const double> values) {
     if (values.size() < 2) return 0.0;
     std::vector<double> changes(values.size() - 1);
     for (std::size_t k = 0; k < changes.size(); ++k) changes[k] = std::abs(values[k + 1] - values[k]);
-    return 1.4826 * median_in(changes) / std::sqrt(2.0);
+    return deviations_of_median * median_in(changes) / std::sqrt(2.0);
 }
 
 /// True when values range no further than a few times their white noise.
@@ -167,7 +167,7 @@ bool only_trembles(std::span<const double> values) {
     for (std::size_t k = 1; k < values.size(); ++k) path += std::abs(values[k] - values[k - 1]);
     // A median is at most twice the mean: where that is not enough there is no need for it.
     const auto steps = static_cast<double>(std::max<std::size_t>(values.size(), 2) - 1);
-    if (range > trembling * 1.4826 * std::sqrt(2.0) * path / steps * (1.0 + 1e-9)) return false;
+    if (range > trembling * deviations_of_median * std::sqrt(2.0) * path / steps * (1.0 + 1e-9)) return false;
     return range <= trembling * white_noise_of(values);
 }
 

@@ -186,7 +186,7 @@ Group grow_folded(std::size_t seed, const std::vector<Sighting>& all, const std:
 }
 
 /// Puts the sightings at the frequencies whose images they are.
-void unfold(SteadyLine& line, double order) {
+void unfold_line(SteadyLine& line, double order) {
     for (Sighting& seen : line.sightings) {
         const double hz = order * std::abs(seen.speed_deg_s) / 360.0;
         const double turns = std::round(hz / seen.rate_hz);
@@ -220,7 +220,7 @@ std::vector<SteadyLine> grouped(const std::vector<Sighting>& all, const std::vec
         const bool at_rest = std::any_of(line.sightings.begin(), line.sightings.end(),
                                          [](const Sighting& seen) { return seen.speed_deg_s == 0.0; });
         line.kind = at_rest ? LineKind::tone : best.speeds > 1 ? best.kind : LineKind::unknown;
-        if (line.kind == LineKind::alias) unfold(line, best.order);
+        if (line.kind == LineKind::alias) unfold_line(line, best.order);
         lines.push_back(std::move(line));
     }
 }

@@ -51,7 +51,7 @@ std::vector<Member> members_of(std::span<const Sighting> all, std::span<const St
     return members;
 }
 
-FoundFamily matched(const std::vector<Member>& members, double hz) {
+FoundFamily matched_family(const std::vector<Member>& members, double hz) {
     FoundFamily family;
     family.multiple.resize(members.size());
     // Its own frequency from all that lie near a multiple, once more with the better value.
@@ -122,7 +122,7 @@ FoundFamily best_family(const std::vector<Member>& members, double nats_for_mult
     FoundFamily best;
     for (const Member& first : members) {
         for (int n = 1; n <= highest_multiple && first.hz / n >= lowest_hz; ++n) {
-            FoundFamily family = matched(members, first.hz / n);
+            FoundFamily family = matched_family(members, first.hz / n);
             if (!(family.hz > 0.0)) continue;
             std::set<int> multiples;
             family.nats = nats_of_members(members, family, nats_for_multiple, multiples);

@@ -7,7 +7,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double near_share = 0.5;      ///< lines closer than this share of the bandwidth ...
+constexpr double close_share = 0.5;     ///< lines closer than this share of the bandwidth ...
 constexpr std::size_t near_widths = 8;  ///< ... for most of so many times 1/bandwidth are one
 
 /// True at the points around which a line turns by fewer than `fewest` cycles within `width` points.
@@ -32,7 +32,7 @@ std::vector<bool> stay_together(const std::vector<double>& apart_cycles, std::si
     for (std::size_t j = 0; j < n; ++j) {
         const std::size_t from = j > reach ? j - reach : 0, to = std::min(j + reach, n - 1);
         const double rate = std::abs(apart_cycles[to] - apart_cycles[from]) / static_cast<double>(to - from);
-        near[j + 1] = near[j] + (rate * static_cast<double>(width) < near_share ? 1 : 0);
+        near[j + 1] = near[j] + (rate * static_cast<double>(width) < close_share ? 1 : 0);
     }
     const std::size_t window = std::min(near_widths * width, n);
     std::vector<bool> together(n);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/shared_limits.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -17,12 +18,11 @@
 namespace ripplenotch {
 namespace {
 
-constexpr Eigen::Index trend_terms = 4;
 /// Smallest pivot of the normal equations with unit columns. Below, a line is what the others already say, to
 /// within rounding times the torque's range.
 constexpr double least_pivot = 1e-9;
 
-void check(const TrackedSignal& signal, const WindowRule& rule) {
+void check_signal(const TrackedSignal& signal, const WindowRule& rule) {
     if (signal.lines.empty()) raise<UsageError>("there is no order to track");
     for (const TrackedLine& line : signal.lines) {
         if (!(line.order > 0.0)) raise<UsageError>("order {} is not above 0", shortest(line.order));
@@ -63,7 +63,7 @@ class WindowFit {
         : signal_(signal), degree_(rule.envelope_degree) {}
 
     [[nodiscard]] Eigen::Index unknowns() const {
-        return trend_terms + 2 * (degree_ + 1) * static_cast<Eigen::Index>(signal_.lines.size());
+        return window_trend_terms + 2 * (degree_ + 1) * static_cast<Eigen::Index>(signal_.lines.size());
     }
 
     /// False when the lines cannot be told apart within the window.
@@ -89,7 +89,7 @@ class WindowFit {
     [[nodiscard]] double residual_square() const { return residual_square_; }
 
     void report(std::size_t line, LineTrack& track) const {
-        const Eigen::Index c = trend_terms + 2 * (degree_ + 1) * static_cast<Eigen::Index>(line);
+        const Eigen::Index c = window_trend_terms + 2 * (degree_ + 1) * static_cast<Eigen::Index>(line);
         const double a = coefficients_[c], b = coefficients_[c + 1];
         const double amplitude = portable::hypot(a, b);
         const double ua = amplitude > 0.0 ? a / amplitude : 1.0, ub = amplitude > 0.0 ? b / amplitude : 0.0;
@@ -111,8 +111,8 @@ class WindowFit {
             const double s = (2.0 * signal_.time_s[at] - start - end) / (end - start);
             torque_[k] = signal_.torque_nm[at];
             double power = 1.0;
-            for (Eigen::Index i = 0; i < trend_terms; ++i, power *= s) basis_(k, i) = power;
-            Eigen::Index column = trend_terms;
+            for (Eigen::Index i = 0; i < window_trend_terms; ++i, power *= s) basis_(k, i) = power;
+            Eigen::Index column = window_trend_terms;
             for (const TrackedLine& line : signal_.lines) {
                 const double angle = 2.0 * std::numbers::pi * line.order * line.turns[at];
                 const std::complex<double> phasor = portable::phasor(angle);
@@ -172,7 +172,7 @@ double separating_window_turns(std::span<const double> orders) {
 }
 
 OrderTracks track_orders(const TrackedSignal& signal, const WindowRule& rule) {
-    check(signal, rule);
+    check_signal(signal, rule);
     OrderTracks tracks;
     tracks.lines.resize(signal.lines.size());
     const bool by_time = rule.seconds.value() > 0.0;

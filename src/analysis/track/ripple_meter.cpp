@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "analysis/shared_limits.hpp"
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
@@ -21,10 +22,12 @@ constexpr double turns_needed = 4.0;             // by hand: half of what is wan
 constexpr double longest_window_s = 2.0;         ///< the torque itself is no quadratic for longer
 constexpr double fewest_samples_a_period = 3.0;  // by hand: the sampling theorem asks for two
 constexpr double reversal_turns = 0.25;  ///< back from the furthest angle by more: the joint has turned round
-constexpr Eigen::Index trend_terms =
-    4;  ///< a cubic: a quadratic leaks into order 2 where a joint turns round
-constexpr std::size_t parts_of_window = 16;  ///< in each of which the speed counts as constant
-constexpr std::size_t most_peaks = 4096;     ///< values kept for the median
+constexpr std::size_t parts_of_window = 16;     ///< in each of which the speed counts as constant
+constexpr std::size_t most_values_kept = 4096;  ///< values kept for the median
+
+double spread(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
+
+}  // namespace
 
 // A median of any number of values in bounded memory: every stride-th window is kept, and when the store is
 // full every second one of those.
@@ -35,7 +38,7 @@ struct ThinnedMedian {
     void add(double value) {
         if (seen++ % stride != 0) return;
         values.push_back(value);
-        if (values.size() < most_peaks) return;
+        if (values.size() < most_values_kept) return;
         for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = values[2 * i];
         values.resize(values.size() / 2);
         stride *= 2;
@@ -48,7 +51,7 @@ struct ThinnedMedian {
 };
 
 // Sums over windows; amplitudes are weighted by rows.
-struct Sums {
+struct RippleSums {
     std::vector<double> amplitude_squared;  ///< [order * signals + signal]
     std::vector<double> expected_squared;   ///< [order], of gains
     std::vector<double> residual_squared;   ///< [signal]
@@ -57,10 +60,6 @@ struct Sums {
     double turns = 0.0, seconds = 0.0;
     std::size_t windows = 0, rows = 0, steps = 0, too_few_samples = 0, too_slow = 0;
 };
-
-double spread(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
-
-}  // namespace
 
 struct RippleMeter::State {
     double ratio;
@@ -74,7 +73,7 @@ struct RippleMeter::State {
     bool has_last = false;
     double last_velocity = 0.0, last_position = 0.0, last_s = 0.0;
     std::size_t seen = 0;
-    Sums sums;
+    RippleSums sums;
     LineGains gains;
 
     [[nodiscard]] double turned(double step_s, double velocity_deg_s, const double* position_deg) const {
@@ -128,7 +127,7 @@ struct RippleMeter::State {
     }
 
     // A window that ends early still counts up to its last whole turn, if there are enough of them.
-    bool close(Sums& into) const {
+    bool close(RippleSums& into) const {
         const double whole = std::floor(std::abs(furthest));
         if (whole < turns_needed) return false;
         std::size_t rows = 0;
@@ -137,12 +136,12 @@ struct RippleMeter::State {
         return true;
     }
 
-    void measure(std::size_t rows, Sums& into) const;
-    void expect_in(std::size_t rows, Sums& into) const;
+    void measure(std::size_t rows, RippleSums& into) const;
+    void expect_in(std::size_t rows, RippleSums& into) const;
 };
 
 // What the fit of a window sees is the mean of the filtered line's amplitude and phase over it.
-void RippleMeter::State::expect_in(std::size_t rows, Sums& into) const {
+void RippleMeter::State::expect_in(std::size_t rows, RippleSums& into) const {
     const std::size_t parts = std::min(parts_of_window, rows - 1);
     const double step_s = (time_s[rows - 1] - time_s.front()) / static_cast<double>(rows - 1);
     std::vector<std::complex<double>> now(orders.size());
@@ -158,11 +157,11 @@ void RippleMeter::State::expect_in(std::size_t rows, Sums& into) const {
 }
 
 // Fits all signals over the first `rows` rows of the window under way.
-void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
+void RippleMeter::State::measure(std::size_t rows, RippleSums& into) const {
     const double turned_by = std::abs(turns[rows - 1]);
     const double highest = *std::max_element(orders.begin(), orders.end());
     const auto n = static_cast<Eigen::Index>(rows);
-    const auto columns = trend_terms + static_cast<Eigen::Index>(2 * orders.size());
+    const auto columns = window_trend_terms + static_cast<Eigen::Index>(2 * orders.size());
     if (static_cast<double>(rows - 1) < fewest_samples_a_period * highest * turned_by || n < 2 * columns) {
         ++into.too_few_samples;
         return;
@@ -171,12 +170,12 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
     for (Eigen::Index k = 0; k < n; ++k) {
         const double s = 2.0 * static_cast<double>(k) / static_cast<double>(n - 1) - 1.0;
         double power = 1.0;
-        for (Eigen::Index i = 0; i < trend_terms; ++i, power *= s) basis(k, i) = power;
+        for (Eigen::Index i = 0; i < window_trend_terms; ++i, power *= s) basis(k, i) = power;
         for (std::size_t i = 0; i < orders.size(); ++i) {
             const double phase = 2.0 * std::numbers::pi * orders[i] * turns[static_cast<std::size_t>(k)];
             const std::complex<double> phasor = portable::phasor(phase);
-            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i)) = phasor.real();
-            basis(k, trend_terms + static_cast<Eigen::Index>(2 * i + 1)) = phasor.imag();
+            basis(k, window_trend_terms + static_cast<Eigen::Index>(2 * i)) = phasor.real();
+            basis(k, window_trend_terms + static_cast<Eigen::Index>(2 * i + 1)) = phasor.imag();
         }
     }
     const Eigen::MatrixXd normal = basis.transpose() * basis;
@@ -190,14 +189,15 @@ void RippleMeter::State::measure(std::size_t rows, Sums& into) const {
     for (std::size_t j = 0; j < signals; ++j) {
         const auto column = static_cast<Eigen::Index>(j);
         for (std::size_t i = 0; i < orders.size(); ++i) {
-            const auto row = trend_terms + static_cast<Eigen::Index>(2 * i);
+            const auto row = window_trend_terms + static_cast<Eigen::Index>(2 * i);
             into.amplitude_squared[i * signals + j] +=
                 weight * (portable::pow(fitted(row, column), 2) + portable::pow(fitted(row + 1, column), 2));
         }
         const Eigen::VectorXd detrended =
-            torque.col(column) - basis.leftCols(trend_terms) * fitted.col(column).head(trend_terms);
-        const Eigen::VectorXd ripple =
-            basis.rightCols(columns - trend_terms) * fitted.col(column).tail(columns - trend_terms);
+            torque.col(column) -
+            basis.leftCols(window_trend_terms) * fitted.col(column).head(window_trend_terms);
+        const Eigen::VectorXd ripple = basis.rightCols(columns - window_trend_terms) *
+                                       fitted.col(column).tail(columns - window_trend_terms);
         into.residual_squared[j] += detrended.squaredNorm();
         into.peak_to_peak[j].add(spread(detrended));
         into.ripple_peak_to_peak[j] = std::max(into.ripple_peak_to_peak[j], spread(ripple));
@@ -251,7 +251,7 @@ void RippleMeter::split() {
 }
 
 RippleLevels RippleMeter::levels() const {
-    Sums sums = state_->sums;
+    RippleSums sums = state_->sums;
     if (state_->has_last) static_cast<void>(state_->close(sums));
     const double rows = static_cast<double>(std::max<std::size_t>(sums.rows, 1));
     RippleLevels levels;

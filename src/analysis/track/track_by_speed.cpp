@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -15,10 +16,9 @@ namespace {
 constexpr double ranges_wanted = 24.0;  // by hand: rows that a person reads
 constexpr double finest_share =
     0.01;  ///< of the highest speed: a steady log is not cut up by its speed noise
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 void gather_line(const LineTrack& track, const std::vector<std::size_t>& rows, SpeedTrack::Line& line) {
-    double sum = 0.0, square = 0.0, hz = 0.0, error = nan;
+    double sum = 0.0, square = 0.0, hz = 0.0, error = not_a_number;
     std::complex<double> arrow;
     std::size_t count = 0;
     for (const std::size_t row : rows) {
@@ -32,12 +32,12 @@ void gather_line(const LineTrack& track, const std::vector<std::size_t>& rows, S
         arrow += portable::polar(amplitude, track.phase_deg[row] / degrees_per_radian);
     }
     const double n = static_cast<double>(count);
-    const double mean = count > 0 ? sum / n : nan;
+    const double mean = count > 0 ? sum / n : not_a_number;
     const double variance = count > 1 ? std::max(0.0, (square - sum * mean) / (n - 1.0)) : error * error;
     line.amplitude_nm.push_back(mean);
     line.spread_nm.push_back(std::sqrt(variance));
-    line.phase_deg.push_back(count > 0 ? portable::arg(arrow) * degrees_per_radian : nan);
-    line.hz.push_back(count > 0 ? hz / n : nan);
+    line.phase_deg.push_back(count > 0 ? portable::arg(arrow) * degrees_per_radian : not_a_number);
+    line.hz.push_back(count > 0 ? hz / n : not_a_number);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ Settled settled_of(const TrackReport& report, const std::vector<double>& amplitu
     return settled;
 }
 
-const std::vector<double>& speeds(const TrackReport& report) {
+const std::vector<double>& speeds_of(const TrackReport& report) {
     return report.by_speed ? report.by_speed->speed_deg_s : report.tracks.speed_deg_s;
 }
 
@@ -163,8 +163,8 @@ TrackSummary track_summary(const TrackReport& report, std::size_t line) {
             factor * median,
             factor * sorted.front().first,
             factor * sorted.back().first,
-            speeds(report)[sorted.front().second],
-            speeds(report)[sorted.back().second]};
+            speeds_of(report)[sorted.front().second],
+            speeds_of(report)[sorted.back().second]};
 }
 
 std::string track_verdict(const TrackReport& report) {

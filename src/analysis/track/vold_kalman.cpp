@@ -26,9 +26,8 @@ constexpr double widest_share = 0.25;      ///< of the sample rate
 constexpr double worst_condition = 1e13;   // rounding shows in the third digit (docs/theory.md)
 constexpr double trend_widths = 4.0;       ///< the trend's bandwidth over a line's
 constexpr double fewest_cycles = 1.0;  ///< of a line within 1/bandwidth, or it is one with its mirror image
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-void check(const TrackedSignal& signal, const VoldKalmanRule& rule) {
+void check_rule(const TrackedSignal& signal, const VoldKalmanRule& rule) {
     if (signal.lines.empty()) raise<UsageError>("there is no order to track");
     for (const TrackedLine& line : signal.lines) {
         if (!(line.order > 0.0)) raise<UsageError>("order {} is not above 0", shortest(line.order));
@@ -138,9 +137,9 @@ class RunTracker {
     void add_value(LineTrack& track, std::size_t line, std::size_t point, double hz, double error,
                    bool unknown) const {
         const double a = envelopes_.value[2 * line][point], b = envelopes_.value[2 * line + 1][point];
-        track.amplitude_nm.push_back(unknown ? nan : portable::hypot(a, b));
-        track.phase_deg.push_back(unknown ? nan : portable::atan2(b, a) * degrees_per_radian);
-        track.standard_error_nm.push_back(unknown ? nan : error);
+        track.amplitude_nm.push_back(unknown ? not_a_number : portable::hypot(a, b));
+        track.phase_deg.push_back(unknown ? not_a_number : portable::atan2(b, a) * degrees_per_radian);
+        track.standard_error_nm.push_back(unknown ? not_a_number : error);
         track.hz.push_back(hz);
     }
 
@@ -223,13 +222,13 @@ double vold_kalman_weight(double bandwidth_share, int poles) {
 }
 
 VoldKalmanTracks track_vold_kalman(const TrackedSignal& signal, const VoldKalmanRule& rule) {
-    check(signal, rule);
+    check_rule(signal, rule);
     const EnvelopeSettings settings = settings_of(signal, rule);
     VoldKalmanTracks result;
     const std::vector<SampleRun> runs = long_runs(signal, rule, result.runs_too_short);
     result.envelope_step = Seconds(settings.step_s);
-    result.waveform_nm.assign(signal.lines.size(), std::vector<double>(signal.time_s.size(), nan));
-    result.trend_nm.assign(signal.time_s.size(), nan);
+    result.waveform_nm.assign(signal.lines.size(), std::vector<double>(signal.time_s.size(), not_a_number));
+    result.trend_nm.assign(signal.time_s.size(), not_a_number);
     result.tracks.lines.resize(signal.lines.size());
 
     std::vector<RunTracker> trackers;

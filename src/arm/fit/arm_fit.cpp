@@ -106,7 +106,7 @@ std::size_t told(const ArmRidge& ridge, const Found& found, std::size_t links) {
     for (Index v = 0; v < scale.size(); ++v)
         scale[v] = scale[v] > 1e-12 * largest ? 1.0 / std::sqrt(scale[v]) : 0.0;
     const MatrixXd scaled = scale.asDiagonal() * said * scale.asDiagonal();
-    const VectorXd sizes = symmetric_eigenvalues(scaled);
+    const VectorXd sizes = singular_directions(scaled).lengths;
     return static_cast<std::size_t>((sizes.array() > told_of_largest * sizes.maxCoeff()).count());
 }
 

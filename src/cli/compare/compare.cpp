@@ -31,7 +31,7 @@ namespace {
 constexpr double default_step_nm = 10.0,
                  default_ramp_nm_s = 20.0;  // the paper's; on a log nobody need say them
 
-struct Request {
+struct CompareRequest {
     CommonOptions common;
     PlotRequest plot;
     LogOptions log_options;
@@ -55,9 +55,9 @@ const MethodFigures& match_subject(const Comparison& comparison) {
     return *subject;
 }
 
-bool wants_match(const Request& request) { return request.match_low_pass || request.match_attenuation_db; }
+bool wants_match(const CompareRequest& asked) { return asked.match_low_pass || asked.match_attenuation_db; }
 
-std::optional<double> asked_gain(const Request& request) {
+std::optional<double> asked_gain(const CompareRequest& request) {
     if (!request.match_attenuation_db) return std::nullopt;
     if (!(*request.match_attenuation_db > 0.0)) {
         raise<UsageError>("--match-attenuation {} dB is not above 0 dB",
@@ -66,11 +66,11 @@ std::optional<double> asked_gain(const Request& request) {
     return portable::pow(10.0, -*request.match_attenuation_db / 20.0);
 }
 
-std::string asked_text(const Request& request) {
+std::string asked_text(const CompareRequest& request) {
     return fmt::format("{} dB", shortest(*request.match_attenuation_db));
 }
 
-void add_match_at_speed(Comparison& comparison, const Request& request) {
+void add_match_at_speed(Comparison& comparison, const CompareRequest& request) {
     if (!comparison.lines) raise_no_gear("--match-lowpass");
     auto gain = asked_gain(request);
     const std::string subject = gain ? asked_text(request) : match_subject(comparison).method;
@@ -90,7 +90,7 @@ void add_match_at_speed(Comparison& comparison, const Request& request) {
                                                     &*comparison.lines));
 }
 
-Comparison compare_on_signals(const Request& request, const Field& field) {
+Comparison compare_on_signals(const CompareRequest& request, const Field& field) {
     if (!request.truth.empty()) raise<UsageError>("--truth goes with a LOG");
     if (!request.step_nm && !request.ramp_nm_s) {
         raise<UsageError>("nothing to compare on; give a LOG, or --step 10Nm, or --ramp 20Nm/s");
@@ -154,7 +154,7 @@ void add_methods(Comparison& comparison, const std::vector<Contender>& contender
     comparison.measured_share = levels->measured_share;
 }
 
-void add_match_on_log(Comparison& comparison, const Request& request, const ComparedLog& log) {
+void add_match_on_log(Comparison& comparison, const CompareRequest& request, const ComparedLog& log) {
     if (!comparison.lines) raise_no_gear("--match-lowpass");
     if (comparison.windows == 0) {
         raise<DataError>("--match-lowpass: the log has no window in which its ripple can be measured");
@@ -169,7 +169,7 @@ void add_match_on_log(Comparison& comparison, const Request& request, const Comp
 }
 
 // The torque that a perfect sensor would have given, row by row: another log of the same motion.
-std::vector<double> true_torque(const Request& request, const ReadOptions& read, std::size_t rows,
+std::vector<double> true_torque(const CompareRequest& request, const ReadOptions& read, std::size_t rows,
                                 Provenance& provenance) {
     if (request.truth.empty()) return {};
     Log truth = read_log_in_part(request.truth, read);
@@ -182,7 +182,7 @@ std::vector<double> true_torque(const Request& request, const ReadOptions& read,
     return std::move(truth.trace.torque_nm);
 }
 
-Comparison compare_on_log(const Request& request, const Field& field, Provenance& provenance,
+Comparison compare_on_log(const CompareRequest& request, const Field& field, Provenance& provenance,
                           ComparedCourse& course) {
     if (request.log_options.joint == "all")
         raise<UsageError>("--joint all: compare looks at one joint; name it");
@@ -229,7 +229,7 @@ Comparison compare_on_log(const Request& request, const Field& field, Provenance
     return comparison;
 }
 
-ExitCode run(const Request& request, const std::string& command_line) {
+ExitCode run_compare(const CompareRequest& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     if (request.log.empty() && (request.log_options.from || request.log_options.to))
         raise<UsageError>("--from and --to: there is no LOG to take rows of");
@@ -257,8 +257,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
     return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_compare(Options& options) {
+    auto request = std::make_shared<CompareRequest>();
     options.argument("LOG", request->log, false, "a log; - is standard input. Without one, --step or --ramp");
     options.texts(
         "--method", request->methods, "NAME,KEY=VALUE,...",
@@ -281,7 +281,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_plot(options, request->plot);
     attach_log(options, request->log_options);
     attach_common(options, request->common, {"a comparison", ".txt .json", true});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_compare(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -294,7 +294,7 @@ const Command commands::compare = {
         "shown.\nThe paper's figures: ripplenotch compare --step 10Nm --ramp 20Nm/s --speed 90deg/s "
         "--sample-rate 1kHz\n--gear-ratio 100 --orders 1,2 --method fixed,centers=25Hz:50Hz,q=0.25 --method "
         "lowpass,cutoff=13rad/s",
-    .attach = attach,
+    .attach = attach_compare,
 };
 
 }  // namespace ripplenotch

@@ -32,7 +32,7 @@ struct ViewColumn {
     bool with_next = false;  ///< stands beside the next one: they share a title
 };
 
-std::string fixed(const std::optional<double>& value, int decimals) {
+std::string fixed_or_empty(const std::optional<double>& value, int decimals) {
     return value ? rounded(*value, decimals) : "";
 }
 
@@ -49,18 +49,20 @@ std::vector<ViewColumn> cost_columns(const Comparison& comparison) {
     for (std::size_t b = 0; b < settle_bands_percent.size(); ++b) {
         columns.push_back(
             {b == 0 ? "settles, ms" : "", fmt::format("to {} %", settle_bands_percent[b]),
-             [b](const MethodFigures& f) { return f.settle_ms ? fixed((*f.settle_ms)[b], 0) : ""; },
+             [b](const MethodFigures& f) { return f.settle_ms ? fixed_or_empty((*f.settle_ms)[b], 0) : ""; },
              b + 1 < settle_bands_percent.size()});
     }
     columns.push_back(
-        {"overshoot", "%", [](const MethodFigures& f) { return fixed(f.overshoot_percent, 1); }});
+        {"overshoot", "%", [](const MethodFigures& f) { return fixed_or_empty(f.overshoot_percent, 1); }});
+    columns.push_back({"ramp delay", "ms",
+                       [](const MethodFigures& f) { return fixed_or_empty(f.ramp_delay_ms, 1); }, true});
     columns.push_back(
-        {"ramp delay", "ms", [](const MethodFigures& f) { return fixed(f.ramp_delay_ms, 1); }, true});
-    columns.push_back({"DC delay", "ms", [](const MethodFigures& f) { return fixed(f.dc_delay_ms, 1); }});
+        {"DC delay", "ms", [](const MethodFigures& f) { return fixed_or_empty(f.dc_delay_ms, 1); }});
     if (comparison.crossover) {
         columns.push_back({fmt::format("lag at {:g} Hz", comparison.crossover->value()), "deg",
-                           [](const MethodFigures& f) { return fixed(f.phase_lag_deg, 1); }, true});
-        columns.push_back({"", "dB", [](const MethodFigures& f) { return fixed(f.crossover_db, 1); }});
+                           [](const MethodFigures& f) { return fixed_or_empty(f.phase_lag_deg, 1); }, true});
+        columns.push_back(
+            {"", "dB", [](const MethodFigures& f) { return fixed_or_empty(f.crossover_db, 1); }});
     }
     return columns;
 }
@@ -72,17 +74,19 @@ std::vector<ViewColumn> result_columns(const Comparison& comparison) {
         columns.push_back({fmt::format("order {}", shortest(comparison.lines->orders[i].value())), "dB",
                            [i](const MethodFigures& f) { return attenuation(f, i); }});
     }
-    columns.push_back({"ripple", "Nm rms", [](const MethodFigures& f) { return fixed(f.ripple_rms_nm, 4); }});
     columns.push_back(
-        {"residual", "Nm rms", [](const MethodFigures& f) { return fixed(f.residual_rms_nm, 4); }, true});
+        {"ripple", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.ripple_rms_nm, 4); }});
+    columns.push_back({"residual", "Nm rms",
+                       [](const MethodFigures& f) { return fixed_or_empty(f.residual_rms_nm, 4); }, true});
     columns.push_back(
-        {"", "Nm p-p", [](const MethodFigures& f) { return fixed(f.residual_peak_to_peak_nm, 3); }});
-    columns.push_back({"error", "Nm rms", [](const MethodFigures& f) { return fixed(f.error_rms_nm, 4); }});
+        {"", "Nm p-p", [](const MethodFigures& f) { return fixed_or_empty(f.residual_peak_to_peak_nm, 3); }});
+    columns.push_back(
+        {"error", "Nm rms", [](const MethodFigures& f) { return fixed_or_empty(f.error_rms_nm, 4); }});
     columns.push_back({"switches", "",
                        [](const MethodFigures& f) { return f.switches ? std::to_string(*f.switches) : ""; },
                        true});
     columns.push_back(
-        {"largest", "jump, Nm", [](const MethodFigures& f) { return fixed(f.largest_jump_nm, 3); }});
+        {"largest", "jump, Nm", [](const MethodFigures& f) { return fixed_or_empty(f.largest_jump_nm, 3); }});
     return columns;
 }
 

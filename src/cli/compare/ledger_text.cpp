@@ -12,14 +12,14 @@
 namespace ripplenotch {
 namespace {
 
-std::string where(const LedgerEntry& entry) {
+std::string ledger_place(const LedgerEntry& entry) {
     if (entry.band > 0)
         return fmt::format("{}: {:.5g}-{:.5g}", entry.band, entry.from.value(), entry.to.value());
     return entry.to.value() > 0.0 ? fmt::format("{:g}", entry.from.value()) : "any";
 }
 
-std::vector<std::string> row(const LedgerEntry& entry, bool crossover) {
-    std::vector<std::string> cells = {where(entry), rounded(1e3 * entry.dc_delay.value(), 1)};
+std::vector<std::string> ledger_row(const LedgerEntry& entry, bool crossover) {
+    std::vector<std::string> cells = {ledger_place(entry), rounded(1e3 * entry.dc_delay.value(), 1)};
     cells.push_back(entry.ramp_delay ? rounded(1e3 * entry.ramp_delay->value(), 1) : "-");
     for (std::size_t i = 0; i < settle_bands_percent.size(); ++i)
         cells.push_back(entry.step ? rounded(1e3 * entry.step->settle[i].value(), 0) : "-");
@@ -88,7 +88,7 @@ std::string ledger_text(const Comparison& comparison) {
             rows[1].insert(rows[1].end(), {"deg", "dB"});
         }
         for (const LedgerEntry& entry : figures.ledger)
-            rows.push_back(row(entry, comparison.crossover.has_value()));
+            rows.push_back(ledger_row(entry, comparison.crossover.has_value()));
         text += fmt::format("\n{}\n", figures.method) + text_table(rows, "r") + switches_text(figures);
     }
     if (comparison.no_notch_below)

@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 3> rule_names = {"pass", "hold", "fade"};
 constexpr std::array<std::string_view, 3> form_names = {"text", "csv", "json"};
 
 // The options that would give this table without a joint.json and without arithmetic.
-std::string option_line(const TableSpec& spec) {
+std::string as_if_options(const TableSpec& spec) {
     std::string orders, bands;
     for (const Order order : spec.orders) orders += (orders.empty() ? "" : ",") + shortest(order.value());
     for (const auto& [from, to] : spec.bands) {
@@ -125,7 +125,7 @@ ExitCode print_frontier(const DesignRequest& request, const std::string& form, c
     return ExitCode::done;
 }
 
-ExitCode run(const DesignRequest& request, const std::string& command_line) {
+ExitCode run_design(const DesignRequest& request, const std::string& command_line) {
     const std::string form = form_of(request);
     check_plot(request.plot, request.common);
     Provenance provenance{{}, command_line};
@@ -139,7 +139,7 @@ ExitCode run(const DesignRequest& request, const std::string& command_line) {
     const TableSpec spec = design_spec(request, gear);
     if (request.frontier) return print_frontier(request, form, spec, gear, provenance);
     const Drawn drawn = draw(request, spec, gear);
-    say(request.common, fmt::format("designed as if with {}", option_line(drawn.table.spec())));
+    say(request.common, fmt::format("designed as if with {}", as_if_options(drawn.table.spec())));
     say_warnings(request.common, alias_warnings(drawn.table));
     const std::string text = form == "json"  ? table_to_json(drawn.table, provenance, drawn.note)
                              : form == "csv" ? table_to_csv(drawn.table)
@@ -151,7 +151,7 @@ ExitCode run(const DesignRequest& request, const std::string& command_line) {
     return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
 }
 
-std::function<ExitCode()> attach(Options& options) {
+std::function<ExitCode()> attach_design(Options& options) {
     auto request = std::make_shared<DesignRequest>();
     options.argument("JOINT", request->joint, false, "the same as --joint-file; - is standard input");
     attach_gear(options, request->gear);
@@ -193,7 +193,7 @@ std::function<ExitCode()> attach(Options& options) {
                    "form of the result (default: by the name of -o, else text)");
     attach_plot(options, request->plot);
     attach_common(options, request->common, {"a table", ".txt .csv .json"});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_design(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -206,7 +206,7 @@ const Command commands::design = {
         "360 of the\nband's middle speed, with the delay, settling time and worst attenuation that it "
         "costs.\nTable 1 of the paper: ripplenotch design --gear-ratio 100 --orders 1,2 --sample-rate 1kHz "
         "--speed 18:180:18",
-    .attach = attach,
+    .attach = attach_design,
 };
 
 }  // namespace ripplenotch

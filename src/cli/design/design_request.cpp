@@ -98,8 +98,8 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_of(const DesignRequest& reque
                             range.width ? *range.width : width_of_spacing(*request.spacing, spec));
 }
 
-void fill_gear(TableSpec& spec, const DesignRequest& request, const GearChoice& choice,
-               const std::optional<JointFacts>& joint) {
+void fill_gear_of_table(TableSpec& spec, const DesignRequest& request, const GearChoice& choice,
+                        const std::optional<JointFacts>& joint) {
     const auto gear = choice.of();
     if (!gear) raise_no_gear("a table");
     say(request.common, gear_in_words(*gear));
@@ -135,7 +135,7 @@ bool leaves_bands(const DesignRequest& request) {
 TableSpec design_spec(const DesignRequest& request, const GearChoice& gear) {
     const auto joint = gear.facts();
     TableSpec spec;
-    fill_gear(spec, request, gear, joint);
+    fill_gear_of_table(spec, request, gear, joint);
     spec.q = request.q.value_or(spec.q);
     if (request.depth_db) spec.depth_db = *request.depth_db;
     spec.width = request.width == "digital" ? WidthRule::digital : WidthRule::analog;

@@ -116,7 +116,7 @@ ExitCode run_all(const DiagnoseRequest& request, GivenSource& given, const std::
     return request.require_conclusive && !conclusive ? ExitCode::inconclusive : ExitCode::done;
 }
 
-ExitCode run(const DiagnoseRequest& request, const std::string& command_line) {
+ExitCode run_diagnose(const DiagnoseRequest& request, const std::string& command_line) {
     const DiagnosisRules rules = rules_of(request);  // refused before anything is read
     if (request.list_rules) {
         write_text("-", rules_text(rules), ByteSink::Overwrite::no);
@@ -128,7 +128,7 @@ ExitCode run(const DiagnoseRequest& request, const std::string& command_line) {
                                 : run_one(request, given, command_line);
 }
 
-std::function<ExitCode()> attach(Options& options) {
+std::function<ExitCode()> attach_diagnose(Options& options) {
     const auto request = std::make_shared<DiagnoseRequest>();
     options.argument("LOG", request->path, false, "the measured log; - is standard input");
     options.text(
@@ -164,7 +164,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a model", ""});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_diagnose(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -178,7 +178,7 @@ const Command commands::diagnose{
         "what is missing, and says what no effect explains. -o takes the improved model.json; named .xml or\n"
         ".mjcf, it is written for MuJoCo, with a list of what has no place there.\n"
         "Example: ripplenotch diagnose log.csv --model model.json --validate other.csv -o improved.json",
-    .attach = attach,
+    .attach = attach_diagnose,
 };
 
 }  // namespace ripplenotch

@@ -65,7 +65,7 @@ void add_given(JointMjcf& parts, const JointDiagnosis& one, const std::optional<
                                        short_number(value.value))});
 }
 
-std::vector<std::string> heading_of(const JointDiagnosis& one, const MjcfAccount& account) {
+std::vector<std::string> mjcf_heading(const JointDiagnosis& one, const MjcfAccount& account) {
     std::vector<std::string> lines = {fmt::format("Made by {} {}:", tool_name, version()),
                                       one.provenance.command};
     for (const InputRecord& input : one.provenance.inputs)
@@ -95,7 +95,7 @@ MjcfAccount write_improved_mjcf(const DiagnoseRequest& request, const JointDiagn
     const MjcfAccount account{path, parts.holds, parts.not_held,
                               held_gap(one, found.baseline, motion, found.residual_before_nm),
                               held_gap(one, model.model, motion, found.residual_after_nm)};
-    const std::vector<std::string> heading = heading_of(one, account);
+    const std::vector<std::string> heading = mjcf_heading(one, account);
     write_text(path,
                tree ? write_into_mjcf(parts, read_chain_file(*tree), *tree, model.arm->joint, heading)
                     : write_mjcf(parts, one.joint.empty() ? "joint" : one.joint, heading),

@@ -20,7 +20,7 @@ namespace {
 // along the samples searched.
 constexpr std::size_t most_rows_diagnosed = std::size_t{1} << 17, most_rows_with_arm = 40'960;
 
-std::string source_of(const std::string& model) { return model == "-" ? "standard input" : model; }
+std::string model_source(const std::string& model) { return model == "-" ? "standard input" : model; }
 
 ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path, const LogOptions& words,
                         Provenance& provenance) {
@@ -31,7 +31,7 @@ ModelWithGiven model_of(const DiagnoseRequest& request, const std::string& path,
         return model;
     }
     if (path.empty()) return {{GearRatio(*request.gear.ratio), {}}};
-    ModelWithGiven model = read_model_with_given(read_all(path), source_of(path));
+    ModelWithGiven model = read_model_with_given(read_all(path), model_source(path));
     if (path != "-") provenance.inputs.push_back(input_record(path));
     return model;
 }
@@ -138,7 +138,7 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     take_joint_of(model, words.joint);
     one.gear = gear_of(model.model, path.empty()             ? "--gear-ratio"
                                     : path == model_from_log ? "identify"
-                                                             : source_of(path));
+                                                             : model_source(path));
     say(request.common, gear_in_words(one.gear));
     const ReadOptions reading = read_options(words, one.gear);
     const std::size_t most = most_rows(request.given, model);

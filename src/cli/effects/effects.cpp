@@ -14,7 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-struct Request {
+struct EffectsRequest {
     CommonOptions common;
     std::string name;
     std::function<std::string()> command_line;
@@ -51,7 +51,7 @@ std::string effect_text(const Effect& effect) {
     return text + fmt::format("source: {}\n", effect.source);
 }
 
-ExitCode explain(const Request& request) {
+ExitCode explain(const EffectsRequest& request) {
     const Effect* only = request.name.empty() ? nullptr : &find_effect(request.name);
     std::string text = only != nullptr ? effect_text(*only) : list_text();
     if (request.common.json) {
@@ -62,8 +62,8 @@ ExitCode explain(const Request& request) {
     return ExitCode::done;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_effects(Options& options) {
+    auto request = std::make_shared<EffectsRequest>();
     options.argument("NAME", request->name, false, "effect to explain; without it, the list");
     attach_common(options, request->common, {"a list of effects", ".txt .json", true});
     request->command_line = [&options] { return options.command_line(); };
@@ -78,7 +78,7 @@ const Command commands::effects{
     .description =
         "Lists the catalogue, or explains one effect of it.\n"
         "Example: ripplenotch effects stribeck-friction",
-    .attach = attach,
+    .attach = attach_effects,
 };
 
 }  // namespace ripplenotch

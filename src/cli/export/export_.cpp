@@ -31,7 +31,7 @@ namespace {
 
 constexpr std::size_t most_violations_said = 5;
 
-struct Request {
+struct ExportRequest {
     std::string table, to;
     std::optional<std::string> method;
     std::optional<Hertz> sample_rate;
@@ -51,7 +51,7 @@ std::string steady_methods(const char* words) {
     return joined;
 }
 
-void check(const Request& request) {
+void check_export(const ExportRequest& request) {
     if (request.to.empty()) raise<UsageError>("--to is missing; targets: {}", name_list(export_targets()));
     if (request.table.empty() == !request.method) {
         raise<UsageError>("{}", request.method
@@ -79,7 +79,7 @@ void check(const Request& request) {
     }
 }
 
-FilterSet filters_of_method(const Request& request) {
+FilterSet filters_of_method(const ExportRequest& request) {
     const Method& method = find_method(parse_spec(*request.method).name);
     if (method.steady == nullptr) {
         raise<UsageError>("method {} is no set of coefficients; export takes a table.json, {}", method.name,
@@ -100,8 +100,8 @@ std::vector<std::string> heading_of(const Provenance& provenance) {
     return lines;
 }
 
-void verify(const Request& request, const Target& target, const Settings& settings, const FilterSet& filters,
-            const Written& written, ExportReport& report) {
+void verify(const ExportRequest& request, const Target& target, const Settings& settings,
+            const FilterSet& filters, const Written& written, ExportReport& report) {
     const ReadBack again = read_back(written, request.common);
     const LoadedFilters loaded = target.read(again.bytes, again.source, filters, settings);
     report.checks = verify_export(filters, loaded, again.source);
@@ -120,8 +120,8 @@ void say_violations(const ExportReport& report) {
     }
 }
 
-ExitCode run(const Request& request, const std::string& command_line) {
-    check(request);
+ExitCode run_export(const ExportRequest& request, const std::string& command_line) {
+    check_export(request);
     if (is_map(request.table))
         return export_map({request.table, request.to, request.verify, request.common}, command_line);
     if (request.method && has_code(parse_spec(*request.method).name)) {
@@ -173,8 +173,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
     return report.violations.empty() ? ExitCode::done : ExitCode::limit_violated;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_export(Options& options) {
+    auto request = std::make_shared<ExportRequest>();
     options.argument("TABLE", request->table, false,
                      "table.json from design, or map.json from map; - is standard input");
     options.text("--to", request->to, "TARGET[,KEY=VALUE...]",
@@ -198,7 +198,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.number("--max-pole-radius", request->limits.pole_radius, Dimension::none,
                    "exit code 1 when a pole is further out; 1 and beyond is always refused");
     attach_common(options, request->common, {});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_export(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -213,7 +213,7 @@ const Command commands::export_ = {
         "written "
         "file is read again,\nrun in the target's arithmetic, and measured.\n"
         "ripplenotch export table.json --to c-header -o notch.h --verify --min-depth-db 60",
-    .attach = attach,
+    .attach = attach_export,
 };
 
 }  // namespace ripplenotch

@@ -38,7 +38,7 @@ FeatureWork work_of(const FeatureRequest& request) {
 
 namespace {
 
-void check(const FeatureRequest& request) {
+void check_features(const FeatureRequest& request) {
     if (request.csv && (request.ndjson || request.common.json))
         raise<UsageError>("--csv and {}: one of them", request.ndjson ? "--ndjson" : "--json");
     if (request.shard && !request.manifest)
@@ -97,8 +97,8 @@ ExitCode print_lines(const FeatureRequest& request, const FeatureWork& work,
     return failed > 0 ? ExitCode::data : ExitCode::done;
 }
 
-ExitCode run(FeatureRequest& request, const std::string& command_line) {
-    check(request);
+ExitCode run_features(FeatureRequest& request, const std::string& command_line) {
+    check_features(request);
     if (request.missing) return print_missing(request);
     const FeatureWork work = work_of(request);
     Manifest manifest;
@@ -126,7 +126,7 @@ void attach_output(Options& options, FeatureRequest& request) {
     options.flag("-v,--verbose", request.common.verbose, "say on standard error what was decided");
 }
 
-std::function<ExitCode()> attach(Options& options) {
+std::function<ExitCode()> attach_features(Options& options) {
     const auto request = std::make_shared<FeatureRequest>();
     options.arguments("LOG", request->logs, false, "logs, in any number");
     attach_gear(options, request->gear);
@@ -147,7 +147,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "a number");
     attach_log(options, request->log);
     attach_output(options, *request);
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_features(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ const Command commands::features{
         "tells that there was one.\n"
         "Example: ripplenotch features logs/*.csv --gear-ratio 100 --date-from-name '*_%Y-%m-%d.csv' -o "
         "all.ndjson",
-    .attach = attach,
+    .attach = attach_features,
 };
 
 }  // namespace ripplenotch

@@ -93,7 +93,7 @@ std::vector<FilterJob> jobs_of(const FilterRequest& request) {
     return jobs;
 }
 
-void check_joints(const FilterRequest& request) {
+void check_every_joint(const FilterRequest& request) {
     if (request.common.json)
         raise<UsageError>(
             "--json prints the metrics of one joint; for all of them use --metrics 'NAME-{}.json'",
@@ -105,12 +105,12 @@ void check_joints(const FilterRequest& request) {
     }
 }
 
-void check(const FilterRequest& request) {
+void check_filter(const FilterRequest& request) {
     if (request.method.empty() && !request.table) {
         raise<UsageError>(
             "--method is missing, for example --method lowpass,cutoff=13rad/s or --table table.json");
     }
-    if (request.every_joint()) check_joints(request);
+    if (request.every_joint()) check_every_joint(request);
     if (request.metrics && !metrics_in_folder(request))
         check_output_name(*request.metrics, "a record of metrics", ".json .txt", "--metrics");
     if (!(request.gap_steps > 1.0))
@@ -204,8 +204,8 @@ bool run_job(const FilterRequest& request, const FilterJob& job, JointMethods& m
     return within;
 }
 
-ExitCode run(const FilterRequest& request, const std::string& command_line) {
-    check(request);
+ExitCode run_filter(const FilterRequest& request, const std::string& command_line) {
+    check_filter(request);
     const bool told = request.metrics || request.common.json || request.plot.wanted();
     hash_inputs(told ? Hashing::here : Hashing::none);  // threads are the pipeline's, which --threads counts
     JointMethods methods(method_request(request));
@@ -217,7 +217,7 @@ ExitCode run(const FilterRequest& request, const std::string& command_line) {
     return within ? ExitCode::done : ExitCode::limit_violated;
 }
 
-std::function<ExitCode()> attach(Options& options) {
+std::function<ExitCode()> attach_filter(Options& options) {
     auto request = std::make_shared<FilterRequest>();
     options.arguments("LOG", request->logs, true, "logs to filter; - is standard input");
     options.text("--method", request->method, "SPEC",
@@ -252,7 +252,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_filter(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -265,7 +265,7 @@ const Command commands::filter = {
         "With --from or --to the rows outside are not written.\n"
         "ripplenotch filter log.csv --table table.json -o filtered.csv --metrics metrics.json\n"
         "cat log.csv | ripplenotch filter --method lowpass,cutoff=13rad/s,order=1 - | ripplenotch spectrum -",
-    .attach = attach,
+    .attach = attach_filter,
 };
 
 }  // namespace ripplenotch

@@ -14,7 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-ModelWithGiven model_of(const ResidualOptions& residual, const std::string& joint) {
+ModelWithGiven residual_model(const ResidualOptions& residual, const std::string& joint) {
     // Without a model nothing depends on its ratio.
     if (!residual.model) return {{GearRatio(1.0), {}}};
     const std::string path = with_joint(*residual.model, joint);
@@ -59,7 +59,7 @@ void take_residual(const ResidualOptions& residual, ReadOptions reading, std::si
     if (logs > 1 && residual.simulated && residual.simulated->starts_with("log,"))
         raise<UsageError>("--simulated log,...: it is the simulation of one log, and there are {}", logs);
     if (!log.log.trace.joint.empty()) reading.joint = log.log.trace.joint;
-    const ModelWithGiven model = model_of(residual, log.log.trace.joint);
+    const ModelWithGiven model = residual_model(residual, log.log.trace.joint);
     if (residual.model && *residual.model != "-")
         provenance.inputs.push_back(input_record(with_joint(*residual.model, log.log.trace.joint)));
     const std::vector<double> predicted = predicted_nm(residual, model, reading, log);

@@ -31,7 +31,7 @@ constexpr std::array<std::string_view, 3> evidence_names = {"automatic", "steady
 
 constexpr std::size_t fewest_rows_held = most_rows_held / 4;  // of each of many long logs
 
-struct Request {
+struct IdentifyRequest {
     CommonOptions common;
     PlotRequest plot;
     LogOptions log;
@@ -50,7 +50,7 @@ struct Joint {
     std::vector<Log> logs;
 };
 
-std::vector<Joint> read_all_joints(const Request& request, Provenance& provenance) {
+std::vector<Joint> read_all_joints(const IdentifyRequest& request, Provenance& provenance) {
     std::vector<Joint> joints;
     LogOptions words = request.log;
     take_joint_of(request.residual, words.joint);
@@ -95,7 +95,7 @@ Hertz controller_rate(const Joint& joint) {
     return longest->recording.clock.nominal_rate;
 }
 
-Identification identified(const Joint& joint, const Request& request) {
+Identification identified_joint(const Joint& joint, const IdentifyRequest& request) {
     for (const Log& log : joint.logs) {
         if (log.trace.size() < fewest_identify_samples) {
             raise<DataError>("{}: {} samples, at least {} are needed to look for lines; leave this log out",
@@ -109,7 +109,7 @@ Identification identified(const Joint& joint, const Request& request) {
 }
 
 // What was believed and turned out otherwise is told, and not left to the notes.
-void say_other_ratio(const Request& request, const Identification& found) {
+void say_other_ratio(const IdentifyRequest& request, const Identification& found) {
     constexpr double rounding = 0.001;
     const GearRatioFit& fit = found.gear_ratio;
     if (!request.gear.ratio || !fit.value) return;
@@ -122,7 +122,7 @@ void say_other_ratio(const Request& request, const Identification& found) {
                                 shortest(*request.gear.ratio), *fit.value, fit.ci95_low, fit.ci95_high)});
 }
 
-void check(Request& request) {
+void check_identify(IdentifyRequest& request) {
     request.identify.way = request.evidence == "steady"  ? IdentifyOptions::Way::steady
                            : request.evidence == "order" ? IdentifyOptions::Way::order
                                                          : IdentifyOptions::Way::automatic;
@@ -140,7 +140,7 @@ void check(Request& request) {
         raise<UsageError>("--steady-band must not be negative");
 }
 
-std::vector<std::string> names_of(const Joint& joint) {
+std::vector<std::string> log_names(const Joint& joint) {
     std::vector<std::string> names;
     for (const Log& log : joint.logs) names.push_back(log.layout.source);
     return names;
@@ -150,8 +150,8 @@ std::string logs_in_words(const std::vector<std::string>& logs) {
     return logs.size() == 1 ? logs.front() : fmt::format("{} and {} more", logs.front(), logs.size() - 1);
 }
 
-ExitCode run(Request& request, const std::string& command_line) {
-    check(request);
+ExitCode run_identify(IdentifyRequest& request, const std::string& command_line) {
+    check_identify(request);
     check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
@@ -160,7 +160,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     // How long one joint takes cannot be told beforehand.
     Progress::current().begin("looking for lines", "joints", joints.size() > 1 ? joints.size() : 0);
     for (const Joint& joint : joints) {
-        found.push_back(identified(joint, request));
+        found.push_back(identified_joint(joint, request));
         say_other_ratio(request, found.back());
         if (joints.size() > 1) Progress::current().add(1);
     }
@@ -169,7 +169,7 @@ ExitCode run(Request& request, const std::string& command_line) {
         raise<UsageError>("--plot draws one joint, and --joint all found {}; name one", found.size());
     std::string text;
     for (std::size_t i = 0; i < found.size(); ++i)
-        text += (text.empty() ? "" : "\n") + identification_report(found[i], names_of(joints[i]));
+        text += (text.empty() ? "" : "\n") + identification_report(found[i], log_names(joints[i]));
     const bool json_file = ends_with_json(request.common.output);
     if (request.common.json || json_file) {
         if (names_joint(request.common.output)) {
@@ -193,8 +193,8 @@ ExitCode run(Request& request, const std::string& command_line) {
     return conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    const auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_identify(Options& options) {
+    const auto request = std::make_shared<IdentifyRequest>();
     options.arguments("LOG", request->logs, true, "logs of one joint; several are fitted together");
     attach_gear(options, request->gear,
                 {.ratio = "what you believe the ratio is; checked against the lines, not believed",
@@ -217,7 +217,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"what identify found", ".txt .json"});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_identify(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -232,7 +232,7 @@ const Command commands::identify{
         "that there is\n"
         "no line, or that these logs cannot tell.\n"
         "Example: ripplenotch identify 60.csv 120.csv 180.csv -o joint.json",
-    .attach = attach,
+    .attach = attach_identify,
 };
 
 }  // namespace ripplenotch

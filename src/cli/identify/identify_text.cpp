@@ -20,7 +20,7 @@ std::string hz_range(const Line& line) {
     return seen ? range(seen->lowest_hz, seen->highest_hz, 4) : "-";
 }
 
-std::string row(const Line& line) {
+std::string line_row(const Line& line) {
     return fmt::format("{:<8} {:>5} {:>13} {:>13} {:>10.3g} {:>8} {:>6.1f} {:>12}  {}",
                        line_kind_name(line.kind), line.order ? fmt::format("{:g}", *line.order) : "-",
                        line.order_output ? fmt::format("{:.3f}", *line.order_output) : "-", hz_range(line),
@@ -74,7 +74,7 @@ std::string identification_report(const Identification& found, const std::vector
         text += trimmed(fmt::format("{:<8} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "", "", "per turn",
                                     "", "Nm", "deg", "", "deg/s")) +
                 "\n";
-        for (const Line& line : found.lines) text += trimmed(row(line)) + "\n";
+        for (const Line& line : found.lines) text += trimmed(line_row(line)) + "\n";
     }
     if (ratio.candidates.size() > (ratio.value ? 1U : 0U)) {
         text += ratio.value ? "\nrival ratios\n" : "\npossible ratios\n";

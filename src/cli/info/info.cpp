@@ -17,13 +17,13 @@
 namespace ripplenotch {
 namespace {
 
-struct Request {
+struct InfoRequest {
     CommonOptions common;
     LogOptions log;
     std::vector<std::string> paths;
 };
 
-ExitCode run(const Request& request, const std::string& command_line) {
+ExitCode run_info(const InfoRequest& request, const std::string& command_line) {
     const ReadOptions options = request.log.resolve();
     hash_where_told(request.common);
     std::vector<LogInfo> logs;
@@ -46,12 +46,12 @@ ExitCode run(const Request& request, const std::string& command_line) {
     return ExitCode::done;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_info(Options& options) {
+    auto request = std::make_shared<InfoRequest>();
     options.arguments("LOG", request->paths, true, "logs to look at; - is standard input");
     attach_log(options, request->log);
     attach_common(options, request->common, {"an inventory", ".txt .json", true});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_info(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ const Command commands::info = {
         "Columns with their roles, units and joints; the measured sample rate, jitter, gaps, held samples; "
         "whether position\n"
         "agrees with integrated velocity; steady stretches. Example: ripplenotch info run7.csv",
-    .attach = attach,
+    .attach = attach_info,
 };
 
 }  // namespace ripplenotch

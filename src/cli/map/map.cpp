@@ -24,7 +24,7 @@
 namespace ripplenotch {
 namespace {
 
-struct Request {
+struct MapRequest {
     CommonOptions common;
     PlotRequest plot;
     LogOptions log;
@@ -42,7 +42,7 @@ struct Read {
     std::vector<std::vector<double>> temperatures_degc;
 };
 
-Read read_logs(const Request& request, const GearAccount& gear, Provenance& provenance) {
+Read read_map_logs(const MapRequest& request, const GearAccount& gear, Provenance& provenance) {
     const ReadOptions options = read_options(request.log, gear);
     Read read;
     for (const std::string& path : request.logs) {
@@ -65,8 +65,8 @@ Read read_logs(const Request& request, const GearAccount& gear, Provenance& prov
     return read;
 }
 
-MapFit fitted(const Read& read, const OtherReading& reading, const Request& request,
-              const GearAccount& gear) {
+MapFit fitted_map(const Read& read, const OtherReading& reading, const MapRequest& request,
+                  const GearAccount& gear) {
     std::vector<Trace> traces;
     for (const Log& log : read.logs) traces.push_back(read_otherwise(log.trace, reading));
     std::vector<TraceView> views;
@@ -76,13 +76,13 @@ MapFit fitted(const Read& read, const OtherReading& reading, const Request& requ
 
 // A reading under which something turns with the motor is confirmed by that; where two have it, or none of
 // several, nobody knows which one holds.
-MapFit fitted_by_readings(const Read& read, const Request& request, const GearAccount& gear) {
+MapFit fitted_by_readings(const Read& read, const MapRequest& request, const GearAccount& gear) {
     const std::vector<Log>& logs = read.logs;
-    MapFit fit = fitted(read, {}, request, gear);
+    MapFit fit = fitted_map(read, {}, request, gear);
     std::vector<std::string> rivals;
     for (const OtherReading& reading : open_readings(logs)) {
         if (reading.changes_side) continue;
-        const MapFit other = fitted(read, reading, request, gear);
+        const MapFit other = fitted_map(read, reading, request, gear);
         if (other.finding == MapFinding::mapped || fit.finding != MapFinding::mapped)
             rivals.push_back(reading.words);
     }
@@ -96,7 +96,7 @@ MapFit fitted_by_readings(const Read& read, const Request& request, const GearAc
     return fit;
 }
 
-ExitCode run_one(const Request& request, const std::string& command_line) {
+ExitCode run_map_once(const MapRequest& request, const std::string& command_line) {
     check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
@@ -104,7 +104,7 @@ ExitCode run_one(const Request& request, const std::string& command_line) {
     const std::optional<GearAccount> gear = choice.of();
     if (!gear) raise_no_gear("map");
     say(request.common, gear_in_words(*gear));
-    const Read read = read_logs(request, *gear, provenance);
+    const Read read = read_map_logs(request, *gear, provenance);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
     MapFit fit = fitted_by_readings(read, request, *gear);
     fit.map.joint = read.logs.front().trace.joint;
@@ -128,7 +128,7 @@ ExitCode run_one(const Request& request, const std::string& command_line) {
     return fit.conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
 }
 
-void check_each(const Request& request) {
+void check_each(const MapRequest& request) {
     if (std::find(request.logs.begin(), request.logs.end(), "-") != request.logs.end())
         raise<UsageError>("--joint all: standard input can be read once only; give a file");
     const auto require_joint = [](std::string_view option, const std::string& path) {
@@ -142,9 +142,9 @@ void check_each(const Request& request) {
 }
 
 // A joint that has no map is no reason to keep those of the others back.
-ExitCode run_or_complain(const Request& request, const std::string& command_line) {
+ExitCode run_or_complain(const MapRequest& request, const std::string& command_line) {
     try {
-        return run_one(request, command_line);
+        return run_map_once(request, command_line);
     } catch (const MemoryError&) {
         throw;
     } catch (const Error& error) {
@@ -155,7 +155,7 @@ ExitCode run_or_complain(const Request& request, const std::string& command_line
 
 // Each joint of the first log by itself, with files of its own. The exit code is that of the first joint that
 // failed; where none did, what the maps come to.
-ExitCode run_each(const Request& request, const std::string& command_line) {
+ExitCode run_each(const MapRequest& request, const std::string& command_line) {
     constexpr std::size_t for_names = 4096;  // rows
     check_each(request);
     ReadOptions options = request.log.resolve();
@@ -163,7 +163,7 @@ ExitCode run_each(const Request& request, const std::string& command_line) {
     ExitCode maps = ExitCode::done;
     std::optional<ExitCode> failed;
     for (const Log& log : read_joints_in_part(request.logs.front(), options, for_names)) {
-        Request one = request;
+        MapRequest one = request;
         const std::string& joint = log.trace.joint;
         one.log.joint = joint;
         one.heads = true;
@@ -179,12 +179,12 @@ ExitCode run_each(const Request& request, const std::string& command_line) {
     return failed.value_or(maps);
 }
 
-ExitCode run(const Request& request, const std::string& command_line) {
-    return request.log.joint == "all" ? run_each(request, command_line) : run_one(request, command_line);
+ExitCode run_map(const MapRequest& request, const std::string& command_line) {
+    return request.log.joint == "all" ? run_each(request, command_line) : run_map_once(request, command_line);
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    const auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_map(Options& options) {
+    const auto request = std::make_shared<MapRequest>();
     options.arguments("LOG", request->logs, true,
                       "logs of one joint; several make one map, and are held together");
     attach_gear(options, request->gear);
@@ -197,7 +197,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a ripple map", ".txt .json"});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_map(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -215,7 +215,7 @@ const Command commands::map{
         "The map is\n"
         "empty where nothing turns with the motor.\n"
         "Example: ripplenotch map log.csv --gear-ratio 100 --orders 1,2 -o map.json",
-    .attach = attach,
+    .attach = attach_map,
 };
 
 }  // namespace ripplenotch

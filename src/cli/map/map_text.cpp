@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
+using MapRows = std::vector<std::vector<std::string>>;
 
 std::string whole(double value) { return fmt::format("{:.0f}", std::round(value) + 0.0); }
 
@@ -24,8 +24,8 @@ std::string decibels(double from_nm, double to_nm) {
     return fmt::format("{:.1f}", 20.0 * portable::log10(from_nm / to_nm) + 0.0);
 }
 
-Rows scores_of(const MapFit& fit) {
-    Rows rows = {{"order", "ripple Nm", "left Nm", "dB", "noise allows dB", "predicted %", ""}};
+MapRows scores_of(const MapFit& fit) {
+    MapRows rows = {{"order", "ripple Nm", "left Nm", "dB", "noise allows dB", "predicted %", ""}};
     for (const MapOrderScore& score : fit.scores) {
         rows.push_back({shortest(score.order), fmt::format("{:.3f}", score.ripple_nm),
                         fmt::format("{:.3f}", score.left_nm), decibels(score.ripple_nm, score.left_nm),
@@ -35,8 +35,8 @@ Rows scores_of(const MapFit& fit) {
     return rows;
 }
 
-Rows values_of(const MapFit& fit) {
-    Rows rows = {{"order", "at", "cosine Nm", "+/-", "sine Nm", "+/-", "amplitude Nm", "phase deg"}};
+MapRows values_of(const MapFit& fit) {
+    MapRows rows = {{"order", "at", "cosine Nm", "+/-", "sine Nm", "+/-", "amplitude Nm", "phase deg"}};
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
         for (std::size_t c = 0; c < fit.map.values[i].size(); ++c) {
             const std::complex<double> z = fit.map.values[i][c], error = normal_95_errors * fit.errors[i][c];
@@ -50,8 +50,8 @@ Rows values_of(const MapFit& fit) {
     return rows;
 }
 
-Rows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
-    Rows rows = {{"order", "times as large", "+/-", "deg ahead", "+/-", "", "log"}};
+MapRows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
+    MapRows rows = {{"order", "times as large", "+/-", "deg ahead", "+/-", "", "log"}};
     for (const MapAgreement& one : fit.agreement) {
         rows.push_back({shortest(one.order), fmt::format("{:.2f}", one.amplitude_ratio),
                         fmt::format("{:.2f}", normal_95_errors * one.amplitude_error), whole(one.phase_deg),

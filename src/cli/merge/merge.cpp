@@ -14,12 +14,12 @@
 namespace ripplenotch {
 namespace {
 
-struct Request {
+struct MergeRequest {
     CommonOptions common;
     std::vector<std::string> folders;
 };
 
-ExitCode run(const Request& request) {
+ExitCode run_merge(const MergeRequest& request) {
     const ShardFolder found = read_shard_folders(request.folders);
     if (found.records.empty())
         raise<DataError>("{}: no complete shard; 'features --manifest LIST --shard i/n -o {}' makes them",
@@ -52,8 +52,8 @@ ExitCode run(const Request& request) {
     return ExitCode::done;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    const auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_merge(Options& options) {
+    const auto request = std::make_shared<MergeRequest>();
     options.arguments("DIR", request->folders, true, "folders that 'features --shard' wrote into");
     CommonOptions& common = request->common;
     options.text("-o,--output", common.output, "FILE", "where the lines go; - is standard output");
@@ -63,7 +63,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.flag("--no-sync", common.no_sync, "do not wait until written files are on the disk");
     options.flag("-q,--quiet", common.quiet, "no warnings on standard error");
     options.flag("-v,--verbose", common.verbose, "say on standard error what was decided");
-    return [request] { return run(*request); };
+    return [request] { return run_merge(*request); };
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ const Command commands::merge{
         "were "
         "written.\n"
         "Example: ripplenotch merge shards -o fleet.ndjson",
-    .attach = attach,
+    .attach = attach_merge,
 };
 
 }  // namespace ripplenotch

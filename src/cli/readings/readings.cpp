@@ -200,7 +200,7 @@ Identification identify_readings(std::span<const Log> logs, const IdentifyOption
 
 namespace {
 
-std::string in_words(const Diagnosis& diagnosis) {
+std::string gap_in_words(const Diagnosis& diagnosis) {
     const std::string named = fmt::format("{}", fmt::join(diagnosis.named, ", "));
     return fmt::format("the log is {}{}{}", verdict_name(diagnosis.verdict), named.empty() ? "" : " with ",
                        named);
@@ -224,11 +224,11 @@ Diagnosis diagnose_readings(const Model& model, const Log& log, const Log* valid
         if (reading.changes_side) continue;
         const Diagnosis then = under(reading);
         if (then.verdict == taken.verdict && then.named == taken.named) continue;
-        doubt += fmt::format("; if {}, {}", reading.words, in_words(then));
+        doubt += fmt::format("; if {}, {}", reading.words, gap_in_words(then));
     }
     if (doubt.empty()) return taken;
     taken.doubt = fmt::format("Cannot tell: {}, {}{}; {} settles it.", assumed_reading({&log, 1}),
-                              in_words(taken), doubt, settling_options({&log, 1}));
+                              gap_in_words(taken), doubt, settling_options({&log, 1}));
     taken.verdict = DiagnosisVerdict::undecided;
     taken.model = taken.baseline;
     taken.values.clear();

@@ -24,7 +24,7 @@
 namespace ripplenotch {
 namespace {
 
-struct Request {
+struct RecommendRequest {
     CommonOptions common;
     LogOptions log_options;
     std::string log;
@@ -42,7 +42,7 @@ struct Parts {
     std::optional<SidesOfLog> temperature;
 };
 
-void check(const Request& request) {
+void check_recommend(const RecommendRequest& request) {
     if (request.log == "-")
         raise<UsageError>(
             "recommend reads the log three times; standard input can be read once: name a file");
@@ -63,7 +63,7 @@ double split_at(const Log& log, double percent) {
     return *parse_number(fmt::format("{:.{}f}", at_s, std::max(-digits, 0)));
 }
 
-Parts read_parts(const Request& request, const std::optional<GearAccount>& gear, double& split_s,
+Parts read_parts(const RecommendRequest& request, const std::optional<GearAccount>& gear, double& split_s,
                  Provenance& provenance) {
     Parts parts;
     parts.whole = read_log_in_part(request.log, read_options(request.log_options, gear));
@@ -81,7 +81,7 @@ Parts read_parts(const Request& request, const std::optional<GearAccount>& gear,
 }
 
 // The joint's temperature beside the rows of both parts, as map and filter read it.
-void read_temperature(const Request& request, const std::optional<GearAccount>& gear, Parts& parts) {
+void read_temperature(const RecommendRequest& request, const std::optional<GearAccount>& gear, Parts& parts) {
     if (!request.temperature) return;
     const std::string& joint = parts.whole.trace.joint;
     std::vector<std::string> notes;
@@ -145,8 +145,8 @@ void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation&
     found.orders.clear();  // of the one reading alone
 }
 
-std::vector<std::string> assumptions(const Request& request, const Parts& parts, const GearAccount& gear,
-                                     bool stated) {
+std::vector<std::string> assumptions(const RecommendRequest& request, const Parts& parts,
+                                     const GearAccount& gear, bool stated) {
     std::vector<std::string> all;
     for (const Assumption& one : parts.whole.layout.assumptions)
         all.push_back(fmt::format("{}: {} ({})", one.about, one.assumed, one.settle_with));
@@ -188,7 +188,7 @@ Recommendation judged_methods(TriedMethods& candidates, const Parts& parts, cons
     }
 }
 
-RecommendationReport report_of(const Request& request, Provenance& provenance) {
+RecommendationReport report_of(const RecommendRequest& request, Provenance& provenance) {
     RecommendationReport report;
     report.target = request.target.value_or("");
     const auto target = request.target ? std::optional(find_any_target(*request.target)) : std::nullopt;
@@ -227,8 +227,8 @@ RecommendationReport report_of(const Request& request, Provenance& provenance) {
     return report;
 }
 
-ExitCode run(const Request& request, const std::string& command_line) {
-    check(request);
+ExitCode run_recommend(const RecommendRequest& request, const std::string& command_line) {
+    check_recommend(request);
     Provenance provenance{{}, command_line};
     const RecommendationReport report = report_of(request, provenance);
     write_text(request.common.output,
@@ -238,8 +238,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
     return report.conclusive || !request.require_conclusive ? ExitCode::done : ExitCode::inconclusive;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    const auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_recommend(Options& options) {
+    const auto request = std::make_shared<RecommendRequest>();
     options.argument("LOG", request->log, true, "a log of the joint, as it moves at work");
     attach_gear(options, request->gear);
     options.duration("--max-delay", request->limits.max_delay,
@@ -259,7 +259,7 @@ std::function<ExitCode()> attach(Options& options) {
                  "exit with code 5 when the log does not settle it");
     attach_log(options, request->log_options);
     attach_common(options, request->common, {"a recommendation", ".txt .json", true});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_recommend(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -272,7 +272,7 @@ const Command commands::recommend = {
         "are measured on\nthe rest, as compare measures. Answers with the one whose output is off by least, "
         "within what it may cost\nand must do, and with the next one.\n"
         "Example: ripplenotch recommend log.csv --gear-ratio 100 --orders 1,2 --max-delay 10ms",
-    .attach = attach,
+    .attach = attach_recommend,
 };
 
 }  // namespace ripplenotch

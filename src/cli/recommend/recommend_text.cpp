@@ -13,11 +13,11 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t page_width = 110, widest_name = 60;
+constexpr std::size_t text_width = 110, widest_name = 60;
 
-std::string paragraph(const std::string& sentence) {
+std::string wrapped_sentence(const std::string& sentence) {
     std::string text;
-    for (const std::string& line : wrapped(sentence, page_width)) text += line + "\n";
+    for (const std::string& line : wrapped(sentence, text_width)) text += line + "\n";
     return text;
 }
 
@@ -55,12 +55,12 @@ std::string methods_text(const Recommendation& found) {
     return "\n" + text_table(rows, "lr");
 }
 
-std::string list(std::string_view head, const std::vector<std::string>& sentences) {
+std::string bulleted(std::string_view head, const std::vector<std::string>& sentences) {
     if (sentences.empty()) return "";
     std::string text = fmt::format("\n{}\n", head);
     for (const std::string& sentence : sentences) {
         std::string lead = "* ";
-        for (const std::string& line : wrapped(sentence, page_width - 2)) {
+        for (const std::string& line : wrapped(sentence, text_width - 2)) {
             text += lead + line + "\n";
             lead = "  ";
         }
@@ -72,7 +72,7 @@ std::string list(std::string_view head, const std::vector<std::string>& sentence
 
 std::string recommendation_view(const RecommendationReport& report) {
     const Recommendation& found = report.found;
-    std::string text = paragraph(recommendation_verdict(found));
+    std::string text = wrapped_sentence(recommendation_verdict(found));
     text += next_commands("To take it:", report.take);
     text += next_commands("The other:", report.runner_up);
     if (!found.orders.empty()) text += orders_text(found);
@@ -85,7 +85,7 @@ std::string recommendation_view(const RecommendationReport& report) {
             report.split_s, found.windows, 1e-3 * found.torque_rate_nm_s, found.torque_rate_nm_s);
     }
     if (!report.check.empty()) text += next_commands("To measure it again:", {report.check});
-    return text + list("Assumed:", report.assumed) + list("Not tried:", report.left_out);
+    return text + bulleted("Assumed:", report.assumed) + bulleted("Not tried:", report.left_out);
 }
 
 }  // namespace ripplenotch

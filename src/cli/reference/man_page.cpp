@@ -31,7 +31,7 @@ constexpr std::array exit_words = {
 };
 
 // Backslashes and dashes as they are, and no line that troff takes for a request.
-std::string plain(std::string_view text) {
+std::string plain_roff(std::string_view text) {
     std::string escaped;
     for (const char c : text) {
         const bool opens_line = escaped.empty() || escaped.back() == '\n';
@@ -47,8 +47,8 @@ std::string plain(std::string_view text) {
     return escaped;
 }
 
-std::string bold(std::string_view text) { return "\\fB" + plain(text) + "\\fR"; }
-std::string slanted(std::string_view text) { return "\\fI" + plain(text) + "\\fR"; }
+std::string bold(std::string_view text) { return "\\fB" + plain_roff(text) + "\\fR"; }
+std::string slanted(std::string_view text) { return "\\fI" + plain_roff(text) + "\\fR"; }
 
 std::string upper(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
@@ -64,7 +64,7 @@ std::string paragraphs(const std::string& text) {
     for (std::string line; std::getline(lines, line);) {
         const bool example = line.starts_with("Example");
         if (example || after_example) page += ".PP\n";
-        page += plain(line) + "\n";
+        page += plain_roff(line) + "\n";
         after_example = example;
     }
     return page;
@@ -80,9 +80,9 @@ std::string option_item(const OptionEntry& option) {
     for (const std::string& name : option.names)
         head += (head.empty() ? "" : ", ") + (option.is_argument ? slanted(name) : bold(name));
     if (option.takes_value() && !option.is_argument) head += " " + slanted(option.type);
-    std::string item = ".TP\n" + head + "\n" + plain(option.help) + "\n";
+    std::string item = ".TP\n" + head + "\n" + plain_roff(option.help) + "\n";
     if (!option.default_text.empty() && option.takes_value() && !option.is_argument)
-        item += fmt::format("[default: {}]\n", plain(option.default_text));
+        item += fmt::format("[default: {}]\n", plain_roff(option.default_text));
     if (option.repeats && !option.is_argument) item += "May be given several times.\n";
     return item;
 }
@@ -99,7 +99,7 @@ std::string options_section(const CommandEntry& command, bool arguments) {
 std::string exit_section() {
     std::string section = ".SH EXIT STATUS\n";
     for (const ExitWords& one : exit_words)
-        section += fmt::format(".TP\n\\fB{}\\fR\n{}\n", static_cast<int>(one.code), plain(one.words));
+        section += fmt::format(".TP\n\\fB{}\\fR\n{}\n", static_cast<int>(one.code), plain_roff(one.words));
     return section;
 }
 
@@ -110,7 +110,7 @@ std::string page_name(const CommandEntry* command) {
 std::string head(const CommandEntry* command, std::string_view summary) {
     const std::string name = page_name(command);
     return fmt::format(".TH {} 1 \"\" \"{} {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n",
-                       upper(plain(name)), tool_name, version(), plain(name), plain(summary));
+                       upper(plain_roff(name)), tool_name, version(), plain_roff(name), plain_roff(summary));
 }
 
 std::string program_page(const Reference& reference) {
@@ -119,7 +119,8 @@ std::string program_page(const Reference& reference) {
             slanted("ARGUMENT") + "...]\n.SH DESCRIPTION\n" + paragraphs(reference.program.description) +
             ".SH COMMANDS\n";
     for (const CommandEntry& command : reference.commands)
-        page += fmt::format(".TP\n\\fB{}\\fR(1)\n{}\n", plain(page_name(&command)), plain(command.summary));
+        page += fmt::format(".TP\n\\fB{}\\fR(1)\n{}\n", plain_roff(page_name(&command)),
+                            plain_roff(command.summary));
     return page + options_section(reference.program, false) + exit_section();
 }
 

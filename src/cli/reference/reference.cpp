@@ -12,7 +12,7 @@
 namespace ripplenotch {
 namespace {
 
-OptionEntry entry_of(const CLI::Option& option) {
+OptionEntry option_entry(const CLI::Option& option) {
     OptionEntry entry;
     for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
@@ -28,9 +28,9 @@ OptionEntry entry_of(const CLI::Option& option) {
     return entry;
 }
 
-CommandEntry entry_of(const CLI::App& app) {
+CommandEntry option_entry(const CLI::App& app) {
     CommandEntry entry{app.get_name(), app.get_description(), app.get_footer(), {}};
-    for (const CLI::Option* option : app.get_options()) entry.options.push_back(entry_of(*option));
+    for (const CLI::Option* option : app.get_options()) entry.options.push_back(option_entry(*option));
     return entry;
 }
 
@@ -58,8 +58,9 @@ const std::string& OptionEntry::longest_name() const {
 }
 
 Reference reference_of(const CLI::App& app) {
-    Reference reference{entry_of(app), {}};
-    for (const CLI::App* command : app.get_subcommands({})) reference.commands.push_back(entry_of(*command));
+    Reference reference{option_entry(app), {}};
+    for (const CLI::App* command : app.get_subcommands({}))
+        reference.commands.push_back(option_entry(*command));
     return reference;
 }
 

@@ -11,7 +11,7 @@ namespace ripplenotch {
 namespace {
 
 // Within single quotes, and where a mark would end a part of a specification.
-std::string in_quotes(std::string_view text, std::string_view marks) {
+std::string escaped_in_quotes(std::string_view text, std::string_view marks) {
     std::string safe;
     for (const char c : text) {
         if (c == '\'') {
@@ -33,16 +33,17 @@ std::string action_of(const OptionEntry& option) {
 
 std::string specification(const OptionEntry& option) {
     if (option.is_argument)
-        return fmt::format("'{}:{}:{}'", option.repeats ? "*" : "", in_quotes(option.longest_name(), ":[]"),
+        return fmt::format("'{}:{}:{}'", option.repeats ? "*" : "",
+                           escaped_in_quotes(option.longest_name(), ":[]"),
                            option.names_file() ? "_files" : "");
     std::string lines;
     for (const std::string& name : option.names) {
         // The other names of an option that was given are not offered.
         const std::string others = option.repeats ? "*" : fmt::format("({})", fmt::join(option.names, " "));
         lines += fmt::format("{}'{}{}[{}]", lines.empty() ? "" : " \\\n            ", others, name,
-                             in_quotes(option.help, "[]:"));
+                             escaped_in_quotes(option.help, "[]:"));
         if (option.takes_value())
-            lines += fmt::format(":{}:{}", in_quotes(option.type, "[]:"), action_of(option));
+            lines += fmt::format(":{}:{}", escaped_in_quotes(option.type, "[]:"), action_of(option));
         lines += "'";
     }
     return lines;
@@ -59,7 +60,7 @@ std::string arguments_of(const CommandEntry& command) {
 std::string zsh_completion(const Reference& reference) {
     std::string names, branches;
     for (const CommandEntry& command : reference.commands) {
-        names += fmt::format("        '{}:{}'\n", command.name, in_quotes(command.summary, ":"));
+        names += fmt::format("        '{}:{}'\n", command.name, escaped_in_quotes(command.summary, ":"));
         branches +=
             fmt::format("        {})\n            {}\n            ;;\n", command.name, arguments_of(command));
     }

@@ -16,7 +16,7 @@
 namespace ripplenotch {
 namespace {
 
-struct Request {
+struct ReportRequest {
     std::vector<std::string> results;
     std::string output = "-", title = "ripplenotch report";
     std::optional<std::string> plotly;
@@ -36,7 +36,7 @@ std::optional<std::string> installed_plotly() {
     return std::nullopt;
 }
 
-std::optional<std::string> plotly_js_of(const Request& request) {
+std::optional<std::string> plotly_js_of(const ReportRequest& request) {
     if (request.no_plotly) return std::nullopt;
     const auto path = request.plotly ? request.plotly : installed_plotly();
     if (!path) {
@@ -56,7 +56,7 @@ std::optional<std::string> plotly_js_of(const Request& request) {
     return text;
 }
 
-ExitCode run(const Request& request) {
+ExitCode run_report(const ReportRequest& request) {
     if (ends_with_json(request.output))
         raise<UsageError>("-o {}: a report is an HTML page; name it .html", request.output);
     check_output_name(request.output, "a report", ".html .htm");
@@ -70,8 +70,8 @@ ExitCode run(const Request& request) {
     return ExitCode::done;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    const auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_report(Options& options) {
+    const auto request = std::make_shared<ReportRequest>();
     options.arguments(
         "RESULT", request->results, true,
         "JSON that commands wrote: joint.json, table.json, metrics, comparisons, diagnoses, figures "
@@ -85,7 +85,7 @@ std::function<ExitCode()> attach(Options& options) {
     options.flag("--force", request->force, "overwrite existing files");
     options.flag("--no-sync", request->no_sync, "do not wait until the page is on the disk");
     options.flag("-q,--quiet", request->quiet, "no warnings on standard error");
-    return [request] { return run(*request); };
+    return [request] { return run_report(*request); };
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ const Command commands::report{
         "and the "
         "command\nthat makes each again. The page loads nothing from anywhere.\n"
         "Example: ripplenotch report joint.json table.json torque.json -o page.html",
-    .attach = attach,
+    .attach = attach_report,
 };
 
 }  // namespace ripplenotch

@@ -91,7 +91,7 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
             std::move(given.torque_nm), log.trace.view().has_position(), {{log.recording}}};
 }
 
-void add_given(const Course& course, std::vector<double>& torque_nm) {
+void add_given_torque(const Course& course, std::vector<double>& torque_nm) {
     for (std::size_t k = 0; k < course.given_nm.size(); ++k) torque_nm[k] += course.given_nm[k];
 }
 
@@ -106,7 +106,7 @@ std::vector<NumberColumn> make_columns(const SimulateOptions& options, const Mod
     add_noise(noise_nm, {.rms = options.noise.value(), .correlation = options.noise_correlation}, seed,
               NoiseChannel::torque);
     std::vector<double> torque_nm = measure_nm(model, course.motion, noise_nm, chance_of(options));
-    add_given(course, torque_nm);
+    add_given_torque(course, torque_nm);
     add_white_noise(course.velocity_deg_s, options.velocity_noise.value(), seed, NoiseChannel::velocity);
     std::vector<NumberColumn> columns;
     columns.push_back({"time_s", std::move(course.motion.time_s)});
@@ -122,7 +122,7 @@ std::optional<Followed> followed(const SimulateOptions& options, const Model& mo
     if (!options.along_log()) return std::nullopt;
     std::vector<double> residual_nm = course.measured_nm;
     auto predicted_nm = predict_nm(model, course.motion);
-    add_given(course, predicted_nm);
+    add_given_torque(course, predicted_nm);
     for (std::size_t k = 0; k < residual_nm.size(); ++k) residual_nm[k] -= predicted_nm[k];
     return Followed{options.smoothing, rms(course.measured_nm), rms(residual_nm)};
 }
@@ -147,7 +147,7 @@ void check_course(const SimulateOptions& options) {
     if (!options.sample_rate) raise<UsageError>("--sample-rate is missing, for example --sample-rate 1kHz");
 }
 
-void check(const SimulateOptions& options) {
+void check_simulate(const SimulateOptions& options) {
     check_course(options);
     if (options.noise.value() < 0.0)
         raise<UsageError>("--noise: {} Nm is below 0", shortest(options.noise.value()));
@@ -203,7 +203,7 @@ std::string summary(const SimulateOptions& options, const Model& model, Hertz sa
 }
 
 ExitCode simulate(const SimulateOptions& options) {
-    check(options);
+    check_simulate(options);
     const LogFormat& format = output_format(options.common.output, options.format);
     const ModelWithGiven whole = assemble_model(options.joint, options.along_log());
     const Model& model = whole.model;
@@ -230,7 +230,7 @@ ExitCode simulate(const SimulateOptions& options) {
     return ExitCode::done;
 }
 
-std::function<ExitCode()> attach(Options& options) {
+std::function<ExitCode()> attach_simulate(Options& options) {
     auto o = std::make_shared<SimulateOptions>();
     options.argument("LOG", o->log, false, "log whose measured motion is used in place of --motion");
     attach_joint_model(options, o->joint);
@@ -278,7 +278,7 @@ const Command commands::simulate{
         "Example: ripplenotch simulate --gear-ratio 100 --ripple 1:0.8Nm --motion "
         "constant,speed=60deg/s,duration=5s \\\n"
         "           --sample-rate 1kHz --noise 0.05Nm --seed 1 -o log.csv",
-    .attach = attach,
+    .attach = attach_simulate,
 };
 
 }  // namespace ripplenotch

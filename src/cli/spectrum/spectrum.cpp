@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> domain_names = {"frequency", "order"};
 
-struct Request {
+struct SpectrumRequest {
     CommonOptions common;
     LogOptions log;
     std::string path, domain = "frequency";
@@ -47,7 +47,8 @@ struct Request {
 };
 
 /// The parts of the log that are asked for: all of it, every steady stretch, or one of them by number.
-std::vector<std::pair<std::optional<int>, Stretch>> parts_of(const Request& request, const TraceView& trace) {
+std::vector<std::pair<std::optional<int>, Stretch>> parts_of(const SpectrumRequest& request,
+                                                             const TraceView& trace) {
     if (!request.stretch) return {{std::nullopt, whole_log(trace)}};
     const std::vector<Stretch> found = steady_stretches(trace, request.steady);
     std::vector<std::pair<std::optional<int>, Stretch>> parts;
@@ -76,7 +77,7 @@ struct Result {
     std::function<Figure()> figure;
 };
 
-Result order_result(const Request& request, const TraceView& trace, const std::string& joint,
+Result order_result(const SpectrumRequest& request, const TraceView& trace, const std::string& joint,
                     const Provenance& provenance) {
     if (request.stretch || request.segment)
         raise<UsageError>("--stretch and --segment belong to --domain frequency");
@@ -109,7 +110,7 @@ Figure frequency_figure(const std::string& source, const std::vector<StretchSpec
     return spectrum_figure(source, shown);
 }
 
-std::vector<StretchSpectrum> frequency_spectra(const Request& request, const TraceView& trace) {
+std::vector<StretchSpectrum> frequency_spectra(const SpectrumRequest& request, const TraceView& trace) {
     std::vector<StretchSpectrum> spectra;
     for (const auto& [number, stretch] : parts_of(request, trace)) {
         spectra.push_back({number, stretch,
@@ -120,7 +121,7 @@ std::vector<StretchSpectrum> frequency_spectra(const Request& request, const Tra
 }
 
 // A piece that is longer than what there is is all of it.
-void say_segment(const Request& request, const StretchSpectrum& one) {
+void say_segment(const SpectrumRequest& request, const StretchSpectrum& one) {
     constexpr double rounding = 1.01;  // of the piece's length to whole samples
     const double piece_s = one.spectrum.piece_duration.value();
     if (!request.segment || request.segment->value() <= rounding * piece_s) return;
@@ -130,7 +131,7 @@ void say_segment(const Request& request, const StretchSpectrum& one) {
                                          shortest(request.segment->value()), what, piece_s)});
 }
 
-Result frequency_result(const Request& request, std::vector<StretchSpectrum> spectra,
+Result frequency_result(const SpectrumRequest& request, std::vector<StretchSpectrum> spectra,
                         const std::string& joint, const Provenance& provenance) {
     for (const StretchSpectrum& one : spectra) say_segment(request, one);
     if (!request.common.json && !request.peaks && request.common.verbose && !request.common.quiet)
@@ -143,7 +144,7 @@ Result frequency_result(const Request& request, std::vector<StretchSpectrum> spe
             }};
 }
 
-Result map_result(const Request& request, const MapLines& lines, const Trace& trace,
+Result map_result(const SpectrumRequest& request, const MapLines& lines, const Trace& trace,
                   const Provenance& provenance) {
     SpeedMapResult result = speed_map_result(request.map, lines, trace, request.common, provenance);
     return {std::move(result.text),
@@ -155,7 +156,7 @@ Result map_result(const Request& request, const MapLines& lines, const Trace& tr
 using Made = std::pair<Result, Provenance>;
 
 /// The log goes by and is not held.
-Made piecewise_result(const Request& request, const std::string& command_line) {
+Made piecewise_result(const SpectrumRequest& request, const std::string& command_line) {
     LogPasses log(request.path, request.log.resolve());
     const StretchSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
         say_layout(request.common, log.layout());
@@ -168,7 +169,7 @@ Made piecewise_result(const Request& request, const std::string& command_line) {
 // Of a log that is held with all that is made of it; measured.
 constexpr double bytes_a_row_by_frequency = 144.0, bytes_a_row_by_order = 88.0;
 
-void require_memory(const Request& request, const ReadOptions& read) {
+void require_memory_for_spectrum(const SpectrumRequest& request, const ReadOptions& read) {
     const auto rows = estimated_rows(request.path, read);
     const auto left = memory_to_be_had();
     if (!rows || !left) return;
@@ -183,14 +184,14 @@ void require_memory(const Request& request, const ReadOptions& read) {
         request.path, bytes / mebibyte, *rows, static_cast<double>(*left) / mebibyte);
 }
 
-Made whole_result(const Request& request, const std::string& command_line) {
+Made whole_result(const SpectrumRequest& request, const std::string& command_line) {
     Provenance provenance{{}, command_line};
     const MapLines lines = request.map.map ? map_lines(request.map, provenance) : MapLines{};
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
     LogOptions words = request.log;
     take_joint_of(request.residual, words.joint);
     const ReadOptions reading = read_options(words, lines.gear);
-    require_memory(request, reading);
+    require_memory_for_spectrum(request, reading);
     Log log = read_log(request.path, reading);
     say_layout(request.common, log.layout);
     take_residual(request.residual, reading, 1, {request.path, log}, request.common, provenance);
@@ -205,7 +206,7 @@ Made whole_result(const Request& request, const std::string& command_line) {
             provenance};
 }
 
-ExitCode run(Request& request, const std::string& command_line) {
+ExitCode run_spectrum(SpectrumRequest& request, const std::string& command_line) {
     if (!(request.false_alarm > 0.0) || request.false_alarm > 0.5) {
         raise<UsageError>("--false-alarm {} is not between 0 and 0.5", shortest(request.false_alarm));
     }
@@ -227,8 +228,8 @@ ExitCode run(Request& request, const std::string& command_line) {
     return ExitCode::done;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    const auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_spectrum(Options& options) {
+    const auto request = std::make_shared<SpectrumRequest>();
     options.argument("LOG", request->path, true, "a log; - is standard input");
     options.choice("--domain", request->domain, domain_names,
                    "against frequency, or against cycles per output turn");
@@ -249,7 +250,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a spectrum", ".csv .txt .json", true});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_spectrum(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -262,7 +263,7 @@ const Command commands::spectrum{
         "that stand out of the\n"
         "noise. Amplitudes are zero to peak in Nm, whatever the window and the length.\n"
         "Example: ripplenotch spectrum log.csv --peaks",
-    .attach = attach,
+    .attach = attach_spectrum,
 };
 
 }  // namespace ripplenotch

@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 2> method_names = {"ls", "vold-kalman"};
 constexpr std::array<std::string_view, 3> amplitude_names = {"peak", "rms", "peak-to-peak"};
 constexpr std::array<std::string_view, 2> against_names = {"time", "speed"};
 
-struct Request {
+struct TrackRequest {
     CommonOptions common;
     PlotRequest plot;
     LogOptions log;
@@ -41,9 +41,9 @@ struct Request {
     int poles = 2;
 };
 
-bool by_vold_kalman(const Request& request) { return request.method == "vold-kalman"; }
+bool by_vold_kalman(const TrackRequest& request) { return request.method == "vold-kalman"; }
 
-void check(const Request& request) {
+void check_track(const TrackRequest& request) {
     const bool vold_kalman = by_vold_kalman(request);
     if (vold_kalman && (request.window_turns || request.window)) {
         raise<UsageError>("--window and --window-turns belong to --method ls; vold-kalman has a --bandwidth");
@@ -66,7 +66,7 @@ void check(const Request& request) {
     if (request.log.joint == "all") raise<UsageError>("--joint all: track looks at one joint; name it");
 }
 
-void read_gear(Request& request, Provenance& provenance) {
+void read_gear(TrackRequest& request, Provenance& provenance) {
     const GearChoice choice(request.gear_options);
     if (choice.joint()) provenance.inputs.push_back(input_record(choice.joint()->path));
     request.gear = choice.of();
@@ -93,7 +93,7 @@ struct Prepared {
     std::vector<double> reference_orders;  ///< of the lines that turn, per turn of the reference shaft
 };
 
-std::unique_ptr<Prepared> prepare(const Request& request, const TraceView& trace) {
+std::unique_ptr<Prepared> prepare(const TrackRequest& request, const TraceView& trace) {
     auto p = std::make_unique<Prepared>();
     p->angle = output_angle(trace);
     p->speed = smoothed_speed(trace);
@@ -118,7 +118,7 @@ std::unique_ptr<Prepared> prepare(const Request& request, const TraceView& trace
     return p;
 }
 
-void track_by_least_squares(const Request& request, const Prepared& prepared, TrackReport& report) {
+void track_by_least_squares(const TrackRequest& request, const Prepared& prepared, TrackReport& report) {
     WindowRule rule;
     if (request.window) {
         rule.seconds = *request.window;
@@ -134,7 +134,7 @@ void track_by_least_squares(const Request& request, const Prepared& prepared, Tr
     report.tracks = track_orders(prepared.signal, rule);
 }
 
-void track_by_vold_kalman(const Request& request, const Prepared& prepared, TrackReport& report) {
+void track_by_vold_kalman(const TrackRequest& request, const Prepared& prepared, TrackReport& report) {
     VoldKalmanRule rule;
     if (request.bandwidth) rule.bandwidth = *request.bandwidth;
     if (request.rows_per_second) rule.rows_per_second = *request.rows_per_second;
@@ -146,7 +146,7 @@ void track_by_vold_kalman(const Request& request, const Prepared& prepared, Trac
     report.tracks = std::move(found.tracks);
 }
 
-void write_columns(const Request& request, const TrackReport& report) {
+void write_columns(const TrackRequest& request, const TrackReport& report) {
     const LogFormat& format = output_format(request.common.output, std::nullopt);
     std::vector<NumberColumn> columns;
     for (TrackColumn& column : track_columns(report)) {
@@ -160,7 +160,7 @@ void write_columns(const Request& request, const TrackReport& report) {
     sink.finish();
 }
 
-Figure figure_of(const Request& request, const TrackReport& report) {
+Figure figure_of(const TrackRequest& request, const TrackReport& report) {
     std::vector<TrackName> names;
     for (const TrackLabel& label : report.labels) {
         names.push_back({label.words(), {}, label.kind == TrackLabel::Kind::tone});
@@ -177,7 +177,7 @@ Figure figure_of(const Request& request, const TrackReport& report) {
     return figure;
 }
 
-TrackReport report_of(const Request& request, const Prepared& prepared, const std::string& joint) {
+TrackReport track_report_of(const TrackRequest& request, const Prepared& prepared, const std::string& joint) {
     TrackReport report;
     report.joint = joint;
     report.method = request.method;
@@ -195,8 +195,8 @@ TrackReport report_of(const Request& request, const Prepared& prepared, const st
     return report;
 }
 
-ExitCode run(Request& request, const std::string& command_line) {
-    check(request);
+ExitCode run_track(TrackRequest& request, const std::string& command_line) {
+    check_track(request);
     check_plot(request.plot, request.common);
     hash_where_told(request.common, request.plot);
     Provenance provenance{{}, command_line};
@@ -209,7 +209,7 @@ ExitCode run(Request& request, const std::string& command_line) {
     provenance.recordings.push_back({log.recording});
 
     const auto prepared = prepare(request, log.trace.view());
-    TrackReport report = report_of(request, *prepared, log.trace.joint);
+    TrackReport report = track_report_of(request, *prepared, log.trace.joint);
     say_warnings(request.common, track_warnings(report));
     if (report.tracks.time_s.empty())
         raise<DataError>("{}: no row could be measured: {}", request.path, why_nothing_tracked(report));
@@ -225,8 +225,8 @@ ExitCode run(Request& request, const std::string& command_line) {
     return ExitCode::done;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    const auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_track(Options& options) {
+    const auto request = std::make_shared<TrackRequest>();
     options.argument("LOG", request->path, true, "a log; - is standard input");
     attach_gear(options, request->gear_options);
     options.numbers("--output-orders", request->output_orders, Dimension::none,
@@ -253,7 +253,7 @@ std::function<ExitCode()> attach(Options& options) {
     attach_plot(options, request->plot);
     attach_log(options, request->log);
     attach_common(options, request->common, {"a track", ".csv .txt .npy .json", true});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_track(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -266,7 +266,7 @@ const Command commands::track{
         "standard error.\n"
         "All lines are fitted at once, so that close and crossing ones are told apart.\n"
         "Example: ripplenotch track log.csv --orders 1,2 --gear-ratio 100 --against speed",
-    .attach = attach,
+    .attach = attach_track,
 };
 
 }  // namespace ripplenotch

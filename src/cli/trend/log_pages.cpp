@@ -52,7 +52,7 @@ std::string filled(std::string pattern, const JointTrend& joint, const std::stri
     return address;
 }
 
-std::string beside(const std::string& log) {
+std::string page_beside(const std::string& log) {
     std::error_code failed;
     for (const fs::path& page : {fs::path(log).replace_extension(".html"), fs::path(log + ".html")})
         if (page != fs::path(log) && fs::is_regular_file(page, failed)) return as_address(page.string());
@@ -75,7 +75,7 @@ void add_log_pages(Trend& trend, const std::optional<std::string>& pattern) {
         const auto page_of = [&](const std::string& log, const std::string& date) {
             if (pattern) return filled(*pattern, joint, log, date);
             const auto [at, is_new] = known.try_emplace(log);
-            if (is_new) at->second = beside(log);
+            if (is_new) at->second = page_beside(log);
             return at->second;
         };
         for (JointChange& change : joint.changes) {

@@ -21,7 +21,7 @@
 namespace ripplenotch {
 namespace {
 
-struct Request {
+struct TrendRequest {
     CommonOptions common;
     PlotRequest plot;
     std::vector<std::string> files;
@@ -41,7 +41,7 @@ double rate_of(const std::string& text) {
     return *number / *of;
 }
 
-std::vector<FeatureLine> read_lines(const Request& request, Provenance& provenance) {
+std::vector<FeatureLine> read_lines(const TrendRequest& request, Provenance& provenance) {
     std::vector<FeatureLine> lines;
     for (const std::string& path : request.files) {
         const std::string source = path == "-" ? "standard input" : path;
@@ -52,7 +52,7 @@ std::vector<FeatureLine> read_lines(const Request& request, Provenance& provenan
     return lines;
 }
 
-ExitCode run(const Request& request, const std::string& command_line) {
+ExitCode run_trend(const TrendRequest& request, const std::string& command_line) {
     const double rate = rate_of(request.false_alarms);
     if (request.ndjson && request.common.json) raise<UsageError>("--ndjson and --json: one of them");
     check_page_pattern(request.log_page);
@@ -78,8 +78,8 @@ ExitCode run(const Request& request, const std::string& command_line) {
     return ExitCode::done;
 }
 
-std::function<ExitCode()> attach(Options& options) {
-    const auto request = std::make_shared<Request>();
+std::function<ExitCode()> attach_trend(Options& options) {
+    const auto request = std::make_shared<TrendRequest>();
     options.arguments("FEATURES", request->files, true,
                       "lines of features, of any number of logs; - is standard input");
     options.text("--false-alarms", request->false_alarms, "RATE",
@@ -91,7 +91,7 @@ std::function<ExitCode()> attach(Options& options) {
         "where a log's own report is: '{stem}.html', 'pages/{robot}/{date}.html'; default: beside the log");
     attach_plot(options, request->plot);
     attach_common(options, request->common, {"a trend", ".txt .json .ndjson"});
-    return [request, &options] { return run(*request, options.command_line()); };
+    return [request, &options] { return run_trend(*request, options.command_line()); };
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ const Command commands::trend{
         "whole "
         "report.\n"
         "Example: ripplenotch trend fleet.ndjson -o trend.json --plot trend.svg",
-    .attach = attach,
+    .attach = attach_trend,
 };
 
 }  // namespace ripplenotch

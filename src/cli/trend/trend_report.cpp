@@ -10,7 +10,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_odd = 20, most_notes = 20;
-using Rows = std::vector<std::vector<std::string>>;
+using TrendRows = std::vector<std::vector<std::string>>;
 
 std::string day_of(const std::string& date) { return date.substr(0, 10); }
 
@@ -27,8 +27,8 @@ std::string size_of(const ChangedDescriptor& one) {
     return text;
 }
 
-Rows alerts_of(const Trend& trend) {
-    Rows rows = {{"joint", "alert", "since", "surest sign, 95 %", "p", ""}};
+TrendRows alerts_of(const Trend& trend) {
+    TrendRows rows = {{"joint", "alert", "since", "surest sign, 95 %", "p", ""}};
     for (const JointTrend& joint : trend.joints) {
         for (const JointChange& change : joint.changes) {
             rows.push_back({joint.name(), (change.drift ? "drift: " : "") + change.cause, days_of(change),
@@ -40,8 +40,8 @@ Rows alerts_of(const Trend& trend) {
     return rows;
 }
 
-Rows odd_of(const Trend& trend) {
-    Rows rows = {{"joint", "descriptor", "baseline", "its kind", "deviations"}};
+TrendRows odd_of(const Trend& trend) {
+    TrendRows rows = {{"joint", "descriptor", "baseline", "its kind", "deviations"}};
     for (const JointTrend& joint : trend.joints)
         for (const OddDescriptor& one : joint.odd)
             if (rows.size() <= most_odd)
@@ -66,7 +66,7 @@ std::string notes_of(const Trend& trend) {
 
 std::string trend_report(const Trend& trend) {
     std::string text = trend_verdict(trend) + "\n";
-    const Rows alerts = alerts_of(trend), odd = odd_of(trend);
+    const TrendRows alerts = alerts_of(trend), odd = odd_of(trend);
     if (alerts.size() > 1) text += "\n" + text_table(alerts, "llllrl");
     if (odd.size() > 1) text += "\nunlike the others of their kind\n" + text_table(odd, "llrrr");
     return text + notes_of(trend);

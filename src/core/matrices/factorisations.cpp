@@ -41,10 +41,6 @@ SingularDirections singular_directions(const MatrixXd& square) {
     return {svd.matrixV(), svd.singularValues()};
 }
 
-VectorXd symmetric_eigenvalues(const MatrixXd& matrix) {
-    return Eigen::SelfAdjointEigenSolver<MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
 VectorXcd eigenvalues(const MatrixXd& matrix) { return matrix.eigenvalues(); }
 
 }  // namespace ripplenotch

@@ -84,9 +84,7 @@ struct SingularDirections {
 };
 [[nodiscard]] SingularDirections singular_directions(const Eigen::MatrixXd& square);
 
-/// Of a symmetric matrix, of which the lower half is read; the smallest first.
-[[nodiscard]] Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
-/// Of any square matrix; conjugates next to each other.
+/// Of a square matrix; conjugates next to each other.
 [[nodiscard]] Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& matrix);
 
 }  // namespace ripplenotch

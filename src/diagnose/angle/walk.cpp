@@ -22,7 +22,7 @@ Motion moved(Motion motion, double by_deg) {
     return motion;
 }
 
-std::vector<double> left_of(const Case& looked_at, const Model& stated, const Motion& motion) {
+std::vector<double> left_of_stated(const Case& looked_at, const Model& stated, const Motion& motion) {
     std::vector<double> left = predict_nm(stated, motion);
     for (std::size_t k = 0; k < left.size(); ++k)
         left[k] = looked_at.use[k] != 0 ? looked_at.torque_nm[k] - left[k] : 0.0;
@@ -61,7 +61,7 @@ std::vector<double> sine_of(const std::vector<double>& time_s, std::size_t mode)
 // What of the quick part is noise of the sensor counts as it is. The rest is coherent as long as the window
 // is: an effect without a name, a lag for one, turns the ripple's phase with the speed, and must not pass for
 // a walk.
-double noise_of(const Case& looked_at, const std::vector<double>& quick, double window_s) {
+double quick_noise_of(const Case& looked_at, const std::vector<double>& quick, double window_s) {
     const double white_nm = sample_noise(looked_at.torque_nm);
     const double square = dot(quick.data(), quick.data(), quick.size()) /
                           static_cast<double>(std::max<std::size_t>(looked_at.used(), 1));
@@ -111,7 +111,7 @@ Walk walk_of(const Case& looked_at, const Model& stated, WalkOf of, const Record
 }
 
 // How the torque changes with the values that are fitted beside the walk.
-void add_slopes(Walk& walk, const Case& looked_at, const Model& open, const Model& stated) {
+void add_walk_slopes(Walk& walk, const Case& looked_at, const Model& open, const Model& stated) {
     const Prediction prediction(stated, looked_at.motion);
     const Coordinates coordinates(open, &stated);
     std::vector<double> point;
@@ -126,7 +126,7 @@ void add_slopes(Walk& walk, const Case& looked_at, const Model& open, const Mode
 
 // `window_s`: of what is quick; 0: of everything.
 double squares_left(const Case& looked_at, const Model& stated, double by_deg, double window_s) {
-    auto left = left_of(looked_at, stated, moved(looked_at.motion, by_deg));
+    auto left = left_of_stated(looked_at, stated, moved(looked_at.motion, by_deg));
     if (window_s > 0.0) left = quick_part(left, looked_at.motion.sample_rate.value(), window_s);
     return dot(left.data(), left.data(), left.size());
 }
@@ -156,12 +156,14 @@ void step_of_walk(Case& looked_at, const Model& open, const Model& stated, WalkO
                   const RecordingRules& rules) {
     Walk walk = walk_of(looked_at, stated, of, rules);
     if (walk.position_deg.empty()) return;
-    if (of == WalkOf::log) add_slopes(walk, looked_at, open, stated);
+    if (of == WalkOf::log) add_walk_slopes(walk, looked_at, open, stated);
     const double rate_hz = looked_at.motion.sample_rate.value();
     for (auto& torque : walk.torque_nm) torque = quick_part(torque, rate_hz, rules.angle_window_s);
-    const auto left = quick_part(left_of(looked_at, stated, looked_at.motion), rate_hz, rules.angle_window_s);
+    const auto left =
+        quick_part(left_of_stated(looked_at, stated, looked_at.motion), rate_hz, rules.angle_window_s);
     const auto sizes =
-        Ridge(walk.torque_nm, walk.deviation, noise_of(looked_at, left, rules.angle_window_s)).solve(left);
+        Ridge(walk.torque_nm, walk.deviation, quick_noise_of(looked_at, left, rules.angle_window_s))
+            .solve(left);
     std::vector<double> change(looked_at.size(), 0.0);
     for (std::size_t i = 0; i < walk.position_deg.size(); ++i)
         add_scaled(sizes[i], walk.position_deg[i].data(), change.data(), change.size());

@@ -12,8 +12,6 @@
 namespace ripplenotch {
 namespace {
 
-using NoiseRules = DiagnosisRules::NoiseRules;
-
 void add_slopes(NoiseColumns& columns, const Case& c, const Model& model, const Model& open) {
     const Coordinates coordinates(open, &model);
     std::vector<double> point;
@@ -52,7 +50,7 @@ void color_of(const std::vector<double>& covariance, double samples, double lag_
 }
 
 // rms of a stretch of the log that is quieter than most.
-double quiet_rms(const std::vector<double>& left, const Case& c, const NoiseRules& rules) {
+double quiet_rms(const std::vector<double>& left, const Case& c, const DiagnosisRules::NoiseRules& rules) {
     const std::size_t length = std::max<std::size_t>(left.size() / rules.quiet_stretches, 50);
     std::vector<double> powers;
     for (std::size_t first = 0; first + length <= left.size(); first += length) {

@@ -54,7 +54,7 @@ void add_wave(NoiseColumns& columns, const NoiseWave& wave, const std::vector<do
 }
 
 // tanh of the speed over the width of a step of direction, at every sample.
-std::vector<double> direction_of(const Case& c, const NoiseRules& rules) {
+std::vector<double> unit_direction(const Case& c, const NoiseRules& rules) {
     const double width_deg_s = rules.step_part * c.moving_deg_s;
     std::vector<double> direction = c.motion.velocity_deg_s;
     for (double& value : direction) value /= width_deg_s;
@@ -77,7 +77,7 @@ std::vector<std::vector<double>> swells_of(const Case& c, const NoiseRules& rule
         swells[6].push_back(elapsed * elapsed);
         swells[7].push_back(m.position_deg[k]);
     }
-    swells[3] = direction_of(c, rules);
+    swells[3] = unit_direction(c, rules);
     return swells;
 }
 
@@ -125,7 +125,7 @@ void add_smooth(NoiseColumns& columns, const Case& c, const NoiseRules& rules) {
         [&](std::size_t k) { return m.time_s[k]; }, [](std::size_t) { return true; });
     columns.add([&](std::size_t k) { return m.acceleration_deg_s2[k]; });
     columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]); });
-    const std::vector<double> direction = direction_of(c, rules);
+    const std::vector<double> direction = unit_direction(c, rules);
     columns.add([&](std::size_t k) { return direction[k]; });
     columns.add([&](std::size_t k) { return std::abs(m.acceleration_deg_s2[k]) * direction[k]; });
 }

@@ -43,7 +43,7 @@ class Basis {
 };
 
 // How the torque changes with each value of the model that a fit would look for.
-void add_slopes(const Prediction& prediction, Basis& basis) {
+void add_slope_columns(const Prediction& prediction, Basis& basis) {
     const Model& model = prediction.model();
     for (std::size_t t = 0; t < model.terms.size(); ++t) {
         for (std::size_t p = 0; p < model.terms[t].values.size(); ++p) {
@@ -59,30 +59,30 @@ void add_slopes(const Prediction& prediction, Basis& basis) {
     }
 }
 
-Basis beside(const AskedTerm& asked, const Prediction& prediction, std::size_t samples) {
+Basis basis_beside(const AskedTerm& asked, const Prediction& prediction, std::size_t samples) {
     Basis basis;
     if (asked.term.effect->name != "offset") basis.add(Column(samples, 1.0));
-    add_slopes(prediction, basis);
+    add_slope_columns(prediction, basis);
     return basis;
 }
 
 // Torques of the effect, of a size of 1, at one place of its shape: two where it has a phase.
-struct Place {
+struct TriedPlace {
     std::vector<Term> terms;
     std::vector<Column> columns;
 };
 
-std::vector<Place> places_of(const Effect& effect, const Prediction& prediction) {
+std::vector<TriedPlace> tried_places(const Effect& effect, const Prediction& prediction) {
     constexpr std::size_t most_places = 40;
     double cells = 1.0;
     std::vector<Term> starts = starts_of(effect, {}, 0.0, cells);
     if (starts.size() > most_places) starts.resize(most_places);
-    std::vector<Place> places;
+    std::vector<TriedPlace> places;
     for (Term& start : starts) {
         for (std::size_t p = 0; p < start.values.size(); ++p)
             if (effect.parameters[p].linear && start.values[p] == effect.parameters[p].neutral)
                 start.values[p] = effect.parameters[p].neutral + 1.0;
-        Place place;
+        TriedPlace place;
         place.terms.push_back(start);
         if (effect.polar) {
             place.terms.push_back(start);
@@ -95,7 +95,7 @@ std::vector<Place> places_of(const Effect& effect, const Prediction& prediction)
 }
 
 // Squares of `target` that the place leaves, all of it beside the basis.
-double left_beside(const Basis& basis, const Column& target, const Place& place) {
+double left_beside(const Basis& basis, const Column& target, const TriedPlace& place) {
     Basis own;
     for (const Column& column : place.columns) own.add(basis.left(column));
     return square(own.left(target));
@@ -105,13 +105,13 @@ double left_beside(const Basis& basis, const Column& target, const Place& place)
 
 Separation separation(const AskedTerm& asked, const Motion& motion) {
     const Prediction prediction(asked.rest, motion);
-    const Basis basis = beside(asked, prediction, motion.size());
+    const Basis basis = basis_beside(asked, prediction, motion.size());
     Column torque = prediction.added(asked.term);
     for (double& value : torque) value *= asked.scale;
     torque = basis.left(std::move(torque));
     Separation least{square(torque), {}};
     for (const Effect* const rival : asked.rivals) {
-        for (const Place& place : places_of(*rival, prediction)) {
+        for (const TriedPlace& place : tried_places(*rival, prediction)) {
             const double left = left_beside(basis, torque, place);
             if (left < least.squares || least.rival.empty())
                 least = {std::min(left, least.squares), rival->name};
@@ -122,11 +122,11 @@ Separation separation(const AskedTerm& asked, const Motion& motion) {
 
 bool nearest_rival(const AskedTerm& asked, const Effect& rival, const Motion& motion, Term& found) {
     const Prediction prediction(asked.rest, motion);
-    const Basis basis = beside(asked, prediction, motion.size());
+    const Basis basis = basis_beside(asked, prediction, motion.size());
     const Column torque = basis.left(prediction.added(asked.term));
     double least = square(torque);
     bool any = false;
-    for (const Place& place : places_of(rival, prediction)) {
+    for (const TriedPlace& place : tried_places(rival, prediction)) {
         const double left = left_beside(basis, torque, place);
         const Column one = basis.left(place.columns.front());
         if (!(left < least) || !(square(one) > 0.0)) continue;

@@ -66,7 +66,7 @@ std::string why_not(const Diagnosis& diagnosis, const std::string& name) {
 }
 
 // Of the squared gap above the floor.
-std::optional<double> closed_percent(double before_nm, double after_nm, double floor_nm) {
+std::optional<double> closed_of_round(double before_nm, double after_nm, double floor_nm) {
     const double before = before_nm * before_nm - floor_nm * floor_nm;
     if (!(before > 0.0)) return std::nullopt;
     return 100.0 * (1.0 - std::max(after_nm * after_nm - floor_nm * floor_nm, 0.0) / before);
@@ -74,11 +74,11 @@ std::optional<double> closed_percent(double before_nm, double after_nm, double f
 
 void take_gap_before(const DiagnosisGap& first, DiagnosisGap& gap) {
     gap.before_nm = first.before_nm;
-    gap.closed_percent = closed_percent(gap.before_nm, gap.after_nm, gap.noise_floor_nm);
+    gap.closed_percent = closed_of_round(gap.before_nm, gap.after_nm, gap.noise_floor_nm);
     if (!first.validation_before_nm) return;
     gap.validation_before_nm = first.validation_before_nm;
     gap.validation_closed_percent =
-        closed_percent(*gap.validation_before_nm, *gap.validation_after_nm, gap.noise_floor_nm);
+        closed_of_round(*gap.validation_before_nm, *gap.validation_after_nm, gap.noise_floor_nm);
 }
 
 // The model as given with what is accepted, its values open.

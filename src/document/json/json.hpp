@@ -41,6 +41,11 @@ using Json = nlohmann::ordered_json;
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+template <class Value>
+[[nodiscard]] Json or_null(const std::optional<Value>& value) {
+    return value ? Json(*value) : Json(nullptr);
+}
+
 /// Six significant digits of what was fitted or measured, where more would be rounding noise; null for what
 /// is not finite.
 [[nodiscard]] Json six_digits(double value);

@@ -138,7 +138,7 @@ class Builder : public nlohmann::json_sax<Json> {
 };
 
 // "table.json:3:17", of the last character before `at`.
-std::string place_of(std::string_view text, std::size_t at, const std::string& source) {
+std::string place_in_text(std::string_view text, std::size_t at, const std::string& source) {
     const std::string_view before = text.substr(0, at == 0 ? 0 : at - 1);
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
@@ -169,14 +169,14 @@ Json read_json(std::string_view text, const std::string& source, std::string_vie
     const Watched begin(text.data(), &seen), end(text.data() + text.size(), &seen);
     if (Json::sax_parse(begin, end, &builder)) return std::move(builder.document);
     const auto at = static_cast<std::size_t>(seen - text.data());
-    const std::string place = place_of(text, at, source);
+    const std::string place = place_in_text(text, at, source);
     if (!builder.refused.empty())
         raise<DataError>("{}: read {}, which no command writes; make the file again", place, builder.refused);
     if (!builder.number.empty()) {
         // A number is known to have ended one character behind it.
         raise<DataError>("{}: read {}, expected a number from -{} to {}; correct it or make the file again",
-                         place_of(text, at - std::min(at, builder.number.size()), source), builder.number,
-                         largest_json_number, largest_json_number);
+                         place_in_text(text, at - std::min(at, builder.number.size()), source),
+                         builder.number, largest_json_number, largest_json_number);
     }
     raise<DataError>("{}: read {}, expected {}", place, opening_of(text, at), wanted);
 }

@@ -41,7 +41,7 @@ std::string words(Fields& fields, std::string_view name) {
 }
 
 // null is a nan: a break, an empty cell.
-std::vector<double> numbers_of(Fields& fields, std::string_view name) {
+std::vector<double> numbers_or_nan(Fields& fields, std::string_view name) {
     const Json& array = fields.at(name);
     if (!array.is_array()) raise<DataError>("{}: not a list of numbers", fields.where(name));
     std::vector<double> values;
@@ -55,15 +55,15 @@ std::vector<double> numbers_of(Fields& fields, std::string_view name) {
 
 // {from, to}, null for an edge without end.
 std::pair<double, double> edges_of(Fields& fields, std::string_view name) {
-    const std::vector<double> pair = numbers_of(fields, name);
+    const std::vector<double> pair = numbers_or_nan(fields, name);
     if (pair.size() != 2) raise<DataError>("{}: {} numbers, expected 2", fields.where(name), pair.size());
     const double endless = std::numeric_limits<double>::infinity();
     return {std::isnan(pair[0]) ? -endless : pair[0], std::isnan(pair[1]) ? endless : pair[1]};
 }
 
-class Reader {
+class FigureReader {
   public:
-    explicit Reader(std::string source) : source_(std::move(source)) {}
+    explicit FigureReader(std::string source) : source_(std::move(source)) {}
 
     Panel panel(const Json& json, const std::string& path) const {
         Fields fields(json, source_, path);
@@ -86,12 +86,12 @@ class Reader {
             },
             most_shades);
         each(fields, "ribbons", path, [&](Fields& f) {
-            panel.ribbons.push_back({words(f, "name"), ink_of(f), numbers_of(f, "x"), numbers_of(f, "low"),
-                                     numbers_of(f, "high")});
+            panel.ribbons.push_back({words(f, "name"), ink_of(f), numbers_or_nan(f, "x"),
+                                     numbers_or_nan(f, "low"), numbers_or_nan(f, "high")});
         });
         each(fields, "curves", path, [&](Fields& f) {
             panel.curves.push_back({words(f, "name"), ink_of(f), word_of<CurveStyle>(f, "style", styles),
-                                    numbers_of(f, "x"), numbers_of(f, "y")});
+                                    numbers_or_nan(f, "x"), numbers_or_nan(f, "y")});
         });
         each(fields, "lines", path, [&](Fields& f) {
             panel.lines.push_back({words(f, "name"), word_of<NamedLine::Run>(f, "run", runs),
@@ -126,9 +126,9 @@ class Reader {
                     word_of<PlotScale>(fields, "scale", scales),
                     fields.number("lowest"),
                     fields.number("highest"),
-                    numbers_of(fields, "x_edges"),
-                    numbers_of(fields, "y_edges"),
-                    numbers_of(fields, "cells")};
+                    numbers_or_nan(fields, "x_edges"),
+                    numbers_or_nan(fields, "y_edges"),
+                    numbers_or_nan(fields, "cells")};
         fields.finish();
         return map;
     }
@@ -156,7 +156,7 @@ Figure figure_from_json(std::string_view text, const std::string& source) {
     Figure figure{words(fields, "name"), words(fields, "title"), words(fields, "sentence"), {}};
     figure.columns = static_cast<int>(std::clamp(fields.number("columns"), 1.0, 4.0));
     const Json& panels = fields.list("panels", most_panels);
-    const Reader reader(source);
+    const FigureReader reader(source);
     for (std::size_t i = 0; i < panels.size(); ++i)
         figure.panels.push_back(reader.panel(panels[i], fmt::format("panels[{}]", i)));
     fields.finish();

@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_speeds = 64, most_turn_harmonics = 8, most_orders = 64;
+constexpr std::size_t most_speeds = 64, most_turn_harmonics = 8, most_map_orders = 64;
 
 std::optional<MapFinding> map_finding_of(std::string_view name) {
     for (const MapFinding one : {MapFinding::mapped, MapFinding::nothing, MapFinding::too_little})
@@ -113,7 +113,7 @@ void map_fields(Fields& fields, MapFit& fit) {
         map.temperature_column = fields.text("temperature_column");
     }
     range.finish();
-    for (const double order : rising_at(fields, "orders", 1e-9, 0, most_orders))
+    for (const double order : rising_at(fields, "orders", 1e-9, 0, most_map_orders))
         map.orders.emplace_back(order);
     map.spread_nm = fields.numbers("spread_nm");
     if (map.spread_nm.size() != map.orders.size())

@@ -14,9 +14,9 @@ constexpr std::size_t most_rows = 200000;  // of a table: joints times months
 
 using JointName = std::pair<std::string, std::string>;
 
-class Reader {
+class TrendReader {
   public:
-    explicit Reader(Fields& fields) : fields_(fields) {}
+    explicit TrendReader(Fields& fields) : fields_(fields) {}
 
     [[nodiscard]] Trend read() {
         trend_.joint_months = fields_.number("joint_months");
@@ -92,7 +92,7 @@ class Reader {
 Trend trend_from_json(std::string_view text, const std::string& source) {
     const Json json = parse_document(text, source, "trend");
     Fields fields(json, source, "");
-    return Reader(fields).read();
+    return TrendReader(fields).read();
 }
 
 }  // namespace ripplenotch

@@ -10,11 +10,6 @@
 namespace ripplenotch {
 namespace {
 
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
-
 Json settling_to_json(const MethodFigures& figures) {
     if (!figures.settle_ms) return nullptr;
     Json json = Json::object();

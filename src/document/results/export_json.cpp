@@ -7,7 +7,9 @@
 namespace ripplenotch {
 namespace {
 
-Json or_null(const std::optional<double>& value) { return value ? finite_or_null(*value) : Json(nullptr); }
+Json number_or_null(const std::optional<double>& value) {
+    return value ? finite_or_null(*value) : Json(nullptr);
+}
 
 Json check_to_json(const SectionCheck& check) {
     Json json = Json::object();
@@ -17,12 +19,12 @@ Json check_to_json(const SectionCheck& check) {
     json["section"] = check.section;
     json["order"] = check.order ? Json(check.order->value()) : Json(nullptr);
     json["center_hz"] = check.center.value();
-    json["center_shift_percent"] = or_null(check.shift_percent);
+    json["center_shift_percent"] = number_or_null(check.shift_percent);
     json["q"] = finite_or_null(check.q);
     json["response_depth_db"] = check.is_notch ? finite_or_null(check.response_depth_db) : Json(nullptr);
-    json["depth_db"] = or_null(check.depth_db);
-    json["dc_error_db"] = or_null(check.dc_error_db);
-    json["mean_error_nm"] = or_null(check.mean_error_nm);
+    json["depth_db"] = number_or_null(check.depth_db);
+    json["dc_error_db"] = number_or_null(check.dc_error_db);
+    json["mean_error_nm"] = number_or_null(check.mean_error_nm);
     json["pole_radius"] = finite_or_null(check.pole_radius);
     return json;
 }

@@ -11,8 +11,6 @@
 namespace ripplenotch {
 namespace {
 
-Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
-
 void add_descriptors(const FeatureLine& line, Json& json) {
     Json reasons = Json::object();
     for (const Descriptor& one : line.descriptors) {
@@ -28,7 +26,7 @@ void add_descriptors(const FeatureLine& line, Json& json) {
     json["not_told"] = reasons;
 }
 
-Json line_to_json(const FeatureLine& line) {
+Json feature_line_to_json(const FeatureLine& line) {
     Json json;
     json["schema"] = features_schema;
     json["version"] = line.version;
@@ -41,7 +39,7 @@ Json line_to_json(const FeatureLine& line) {
         json["error_code"] = line.error_code;
         return json;
     }
-    json["date"] = text_or_null(line.date);
+    json["date"] = or_null(line.date);
     json["date_source"] = line.date ? line.date_source : "";
     json["temperature_degc"] = six_digits(line.temperature_degc);
     json["temperature_source"] = line.temperature_degc ? line.temperature_source : "";
@@ -67,7 +65,7 @@ std::string cell_of(const Json& json) {
 // Intervals as two columns; the order of first appearance.
 std::vector<std::pair<std::string, Json>> cells_of(const FeatureLine& line) {
     std::vector<std::pair<std::string, Json>> cells;
-    const Json json = line_to_json(line);
+    const Json json = feature_line_to_json(line);
     for (const auto& [name, value] : json.items()) {
         if (name == "schema" || name == "not_told" || name == "error" || name == "error_code") continue;
         if (value.is_array()) {
@@ -89,7 +87,8 @@ std::vector<std::pair<std::string, Json>> cells_of(const FeatureLine& line) {
 }  // namespace
 
 std::string feature_line_text(const FeatureLine& line) {
-    return visible_json(line_to_json(line).dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
+    return visible_json(feature_line_to_json(line).dump(-1, ' ', false, Json::error_handler_t::replace)) +
+           "\n";
 }
 
 std::string features_csv(std::span<const FeatureLine> lines) {

@@ -14,7 +14,7 @@ Json number_json(double value) {
     return *parse_number(fmt::format("{:.8g}", value));
 }
 
-Json numbers_json(const std::vector<double>& values) {
+Json figure_numbers(const std::vector<double>& values) {
     Json array = Json::array();
     for (const double value : values) array.push_back(number_json(value));
     return array;
@@ -61,9 +61,9 @@ Json map_json(const HeatMap& map) {
             {"scale", scale_name(map.scale)},
             {"lowest", number_json(map.lowest)},
             {"highest", number_json(map.highest)},
-            {"x_edges", numbers_json(map.x_edges)},
-            {"y_edges", numbers_json(map.y_edges)},
-            {"cells", numbers_json(map.cells)}};
+            {"x_edges", figure_numbers(map.x_edges)},
+            {"y_edges", figure_numbers(map.y_edges)},
+            {"cells", figure_numbers(map.cells)}};
 }
 
 Json panel_json(const Panel& panel) {
@@ -88,17 +88,17 @@ Json panel_json(const Panel& panel) {
         list_in(json, "ribbons")
             .push_back({{"name", ribbon.name},
                         {"ink", ink_rgb(ribbon.ink)},
-                        {"x", numbers_json(ribbon.x)},
-                        {"low", numbers_json(ribbon.low)},
-                        {"high", numbers_json(ribbon.high)}});
+                        {"x", figure_numbers(ribbon.x)},
+                        {"low", figure_numbers(ribbon.low)},
+                        {"high", figure_numbers(ribbon.high)}});
     }
     for (const Curve& curve : panel.curves) {
         list_in(json, "curves")
             .push_back({{"name", curve.name},
                         {"ink", ink_rgb(curve.ink)},
                         {"style", style_name(curve.style)},
-                        {"x", numbers_json(curve.x)},
-                        {"y", numbers_json(curve.y)}});
+                        {"x", figure_numbers(curve.x)},
+                        {"y", figure_numbers(curve.y)}});
     }
     for (const NamedLine& line : panel.lines) {
         list_in(json, "lines")

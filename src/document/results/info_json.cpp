@@ -32,7 +32,7 @@ Json columns_json(const Layout& layout) {
     return columns;
 }
 
-Json joint_json(const JointInfo& joint) {
+Json joint_info_json(const JointInfo& joint) {
     Json stretches = Json::array();
     for (const SteadyStretch& stretch : joint.stretches) {
         stretches.push_back({{"from_s", stretch.from_s},
@@ -72,7 +72,7 @@ std::optional<double> best_clock_factor(const std::vector<JointInfo>& joints) {
     return best == nullptr ? std::nullopt : best->clock_factor;
 }
 
-void add_clock(Json& json, const LogInfo& log) {
+void add_clock_of_log(Json& json, const LogInfo& log) {
     const ClockFacts& clock = log.clock;
     const bool timed = clock.nominal_rate.value() > 0.0;
     const auto ms = [timed](Seconds time) { return timed ? Json(1e3 * time.value()) : Json(nullptr); };
@@ -105,7 +105,7 @@ void add_log(Json& json, const LogInfo& log) {
     json["log"] = log.source;
     json["rows"] = log.rows;
     json["duration_s"] = optional_json(log.duration_s);
-    add_clock(json, log);
+    add_clock_of_log(json, log);
     std::size_t held = 0;
     for (const JointInfo& joint : log.joints) held = std::max(held, joint.recording.held.count);
     json["held_samples"] = held;
@@ -116,7 +116,7 @@ void add_log(Json& json, const LogInfo& log) {
     if (!log.layout.contents.empty()) json["contents"] = contents_json(log.layout);
     json["speed_deg_s"] = range_json(widest(log.joints));
     json["joints"] = Json::array();
-    for (const JointInfo& joint : log.joints) list_in(json, "joints").push_back(joint_json(joint));
+    for (const JointInfo& joint : log.joints) list_in(json, "joints").push_back(joint_info_json(joint));
     json["uses"] = Json::array();
     for (const Use& use : log.uses) {
         list_in(json, "uses")

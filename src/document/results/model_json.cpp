@@ -15,7 +15,7 @@ namespace ripplenotch {
 namespace {
 
 template <class Simulated>
-auto nuisance_fields(Simulated& term) {
+auto own_nuisance_fields(Simulated& term) {
     return std::array{std::pair(std::string_view("offset_nm"), &term.offset_nm),
                       std::pair(std::string_view("inertia_kgm2"), &term.inertia_kgm2),
                       std::pair(std::string_view("gravity_cosine_nm"), &term.gravity_cosine_nm),
@@ -56,7 +56,7 @@ Json simulated_json(const SimulatedTerm& term) {
     json["scale"] = term.scale ? Json(*term.scale) : Json(nullptr);
     json["delay_s"] = term.fit_delay ? Json(nullptr) : Json(term.delay_s);
     Json nuisance = Json::object();
-    for (const auto& [name, value] : nuisance_fields(term)) {
+    for (const auto& [name, value] : own_nuisance_fields(term)) {
         if (*value != 0.0) nuisance[std::string(name)] = *value;
     }
     if (!nuisance.empty()) json["nuisance"] = nuisance;
@@ -70,7 +70,7 @@ SimulatedTerm simulated_of(Fields& fields) {
     term.delay_s = fields.number_if_any("delay_s").value_or(0.0);
     if (fields.has("nuisance")) {
         Fields nuisance = fields.object("nuisance");
-        for (const auto& [name, value] : nuisance_fields(term))
+        for (const auto& [name, value] : own_nuisance_fields(term))
             *value = nuisance.number_if_any(name).value_or(0.0);
         nuisance.finish();
     }

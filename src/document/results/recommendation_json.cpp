@@ -8,8 +8,6 @@
 namespace ripplenotch {
 namespace {
 
-Json number_or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
 Json orders_to_json(const std::vector<OrderInLog>& orders) {
     Json json = Json::array();
     for (const OrderInLog& one : orders) {
@@ -21,18 +19,18 @@ Json orders_to_json(const std::vector<OrderInLog>& orders) {
     return json;
 }
 
-Json method_to_json(const JudgedMethod& method) {
+Json judged_method_to_json(const JudgedMethod& method) {
     Json json;
     json["method"] = method.figures.method;
     json["meets"] = method.meets();
     json["error_nm"] = method.error_nm;
-    json["ripple_rms_nm"] = number_or_null(method.figures.ripple_rms_nm);
+    json["ripple_rms_nm"] = or_null(method.figures.ripple_rms_nm);
     json["longest_delay_ms"] = 1e3 * method.delay.value();
     json["longest_delay_at_deg_s"] = method.delay_at.value();
-    json["dc_delay_ms"] = number_or_null(method.figures.dc_delay_ms);
+    json["dc_delay_ms"] = or_null(method.figures.dc_delay_ms);
     json["attenuation_db"] = Json::array();
     for (const OrderAttenuation& entry : method.figures.attenuation)
-        json["attenuation_db"].push_back({{"order", entry.order}, {"db", number_or_null(entry.db)}});
+        json["attenuation_db"].push_back({{"order", entry.order}, {"db", or_null(entry.db)}});
     json["shortfalls"] = method.shortfalls;
     return json;
 }
@@ -47,7 +45,7 @@ std::string recommendation_text(const RecommendationReport& report, const Proven
     json["conclusive"] = report.conclusive;
     json["max_delay_ms"] =
         found.limits.max_delay ? Json(1e3 * found.limits.max_delay->value()) : Json(nullptr);
-    json["min_attenuation_db"] = number_or_null(found.limits.min_attenuation_db);
+    json["min_attenuation_db"] = or_null(found.limits.min_attenuation_db);
     json["target"] = report.target.empty() ? Json(nullptr) : Json(report.target);
     json["gear"] = gear_to_json(report.gear);
     json["split_s"] = report.split_s;
@@ -62,7 +60,7 @@ std::string recommendation_text(const RecommendationReport& report, const Proven
     json["runner_up_commands"] = report.runner_up;
     json["check"] = report.check;
     json["methods"] = Json::array();
-    for (const JudgedMethod& method : found.methods) json["methods"].push_back(method_to_json(method));
+    for (const JudgedMethod& method : found.methods) json["methods"].push_back(judged_method_to_json(method));
     json["assumed"] = report.assumed;
     json["left_out"] = report.left_out;
     return to_fitted_text(std::move(json));

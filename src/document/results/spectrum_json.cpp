@@ -27,7 +27,7 @@ Json hump_to_json(const SpectralHump& hump) {
             {"false_alarm", hump.false_alarm}};
 }
 
-Json line_to_json(const MotionLine& line) {
+Json motion_line_to_json(const MotionLine& line) {
     Json json = Json::object();
     json["kind"] = line_kind_name(line.kind);
     const bool tone = line.kind == LineKind::tone;
@@ -101,7 +101,8 @@ std::string order_spectrum_text(const std::string& joint, const OrderSpectrum& s
     json["resolution_orders"] = spectrum.stack.resolution;
     json["noise_floor_nm"] = median_floor(spectrum.stack.floor_nm);
     json["lines"] = Json::array();
-    for (const MotionLine& line : spectrum.lines.lines) list_in(json, "lines").push_back(line_to_json(line));
+    for (const MotionLine& line : spectrum.lines.lines)
+        list_in(json, "lines").push_back(motion_line_to_json(line));
     return to_fitted_text(std::move(json));
 }
 

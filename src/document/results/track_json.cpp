@@ -14,11 +14,11 @@ Json array_of(const std::vector<double>& values) {
 }
 
 template <class Tag>
-Json or_null(const std::optional<Quantity<Tag>>& value) {
+Json quantity_or_null(const std::optional<Quantity<Tag>>& value) {
     return value ? Json(value->value()) : Json(nullptr);
 }
 
-Json line_to_json(const TrackReport& report, std::size_t i) {
+Json tracked_line_to_json(const TrackReport& report, std::size_t i) {
     const TrackLabel& label = report.labels[i];
     const TrackSummary line = track_summary(report, i);
     const auto of_kind = [&](TrackLabel::Kind kind) {
@@ -50,9 +50,9 @@ std::string track_text(const TrackReport& report, const Provenance& provenance) 
     json["gear"] = gear_to_json(report.gear);
     json["angle"] = report.angle_from_position ? "position" : "integrated velocity";
     json["window_turns"] = report.window_turns ? Json(*report.window_turns) : Json(nullptr);
-    json["window_s"] = or_null(report.window);
-    json["bandwidth_hz"] = or_null(report.bandwidth);
-    json["bandwidth_obtained_hz"] = or_null(report.bandwidth_obtained);
+    json["window_s"] = quantity_or_null(report.window);
+    json["bandwidth_hz"] = quantity_or_null(report.bandwidth);
+    json["bandwidth_obtained_hz"] = quantity_or_null(report.bandwidth_obtained);
     json["poles"] = report.poles ? Json(*report.poles) : Json(nullptr);
     json["speed_step_deg_s"] = report.by_speed ? Json(report.by_speed->step_deg_s) : Json(nullptr);
     json["residual_rms_nm"] = report.tracks.residual_rms_nm;
@@ -62,7 +62,7 @@ std::string track_text(const TrackReport& report, const Provenance& provenance) 
     json["windows_too_few_samples"] = report.tracks.windows_too_few_samples;
     json["lines"] = Json::array();
     for (std::size_t i = 0; i < report.labels.size(); ++i)
-        list_in(json, "lines").push_back(line_to_json(report, i));
+        list_in(json, "lines").push_back(tracked_line_to_json(report, i));
     json["columns"] = Json::object();
     for (const TrackColumn& column : track_columns(report))
         json["columns"][column.name] = array_of(column.values);

@@ -66,7 +66,7 @@ double speed_in(const std::vector<BankRegion>& regions, std::size_t at) {
 }
 
 template <class Real, template <class> class Structure>
-void run(GoldenVector& golden, const std::vector<BankRegion>& regions, const LoadedFilters& filters) {
+void run_bank(GoldenVector& golden, const std::vector<BankRegion>& regions, const LoadedFilters& filters) {
     Bank<Real, Structure> bank(regions, filters);
     for (std::size_t k = 0; k < golden.torque_nm.size(); ++k) {
         golden.expected_nm.push_back(static_cast<double>(
@@ -75,15 +75,15 @@ void run(GoldenVector& golden, const std::vector<BankRegion>& regions, const Loa
 }
 
 template <class Real>
-void run_in(GoldenVector& golden, const std::vector<BankRegion>& regions, const LoadedFilters& filters,
-            Form form) {
+void run_bank_in(GoldenVector& golden, const std::vector<BankRegion>& regions, const LoadedFilters& filters,
+                 Form form) {
     switch (form) {
         case Form::df1:
-            return run<Real, DirectForm1>(golden, regions, filters);
+            return run_bank<Real, DirectForm1>(golden, regions, filters);
         case Form::df2t:
-            return run<Real, TransposedForm2>(golden, regions, filters);
+            return run_bank<Real, TransposedForm2>(golden, regions, filters);
         case Form::svf:
-            return run<Real, StateVariable>(golden, regions, filters);
+            return run_bank<Real, StateVariable>(golden, regions, filters);
     }
 }
 
@@ -122,9 +122,9 @@ GoldenVector golden_vector(const std::vector<BankRegion>& regions, const LoadedF
         }
     }
     if (arithmetic.precision == Precision::float32) {
-        run_in<float>(golden, regions, filters, arithmetic.form);
+        run_bank_in<float>(golden, regions, filters, arithmetic.form);
     } else {
-        run_in<double>(golden, regions, filters, arithmetic.form);
+        run_bank_in<double>(golden, regions, filters, arithmetic.form);
     }
     return golden;
 }

@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double worth_it = 1.05, not_worth_it = 0.01;            // of what is left; of the ripple's energy
+constexpr double keep_factor = 1.05, keep_share = 0.01;           // of what is left; of the ripple's energy
 constexpr double spreads_beyond = 3.0, spreads_beyond_too = 2.0;  // of logs without: one order, others
 constexpr double least_gain = 12.0;                               ///< in squares over the noise
 constexpr double least_warming_degc = 1.0;  ///< less tells nothing of what a degree does
@@ -57,7 +57,7 @@ void turn_blocks(MapData& data, std::mt19937_64& engine) {
 }
 
 /// A form and what it leaves.
-struct Trial {
+struct MapTrial {
     MapForm form;
     std::vector<HeldOut> scores;
     double left = 0.0;  ///< of the orders that have a say
@@ -94,17 +94,17 @@ double total(const std::vector<HeldOut>& scores, const std::vector<std::size_t>&
 }
 
 // The smallest form that leaves next to nothing more than the best one.
-const Trial& smallest_good(const std::vector<Trial>& trials, double energy) {
+const MapTrial& smallest_good(const std::vector<MapTrial>& trials, double energy) {
     const auto best = std::min_element(trials.begin(), trials.end(),
-                                       [](const Trial& a, const Trial& b) { return a.left < b.left; });
-    const double enough = worth_it * best->left + not_worth_it * energy;
+                                       [](const MapTrial& a, const MapTrial& b) { return a.left < b.left; });
+    const double enough = keep_factor * best->left + keep_share * energy;
     return *std::find_if(trials.begin(), trials.end(),
-                         [enough](const Trial& trial) { return trial.left <= enough; });
+                         [enough](const MapTrial& trial) { return trial.left <= enough; });
 }
 
 // By how many of its own deviations each order's gain is beyond that of logs without ripple under the same
 // form.
-std::vector<double> beyond_chance(const MapData& data, const Trial& trial) {
+std::vector<double> beyond_chance(const MapData& data, const MapTrial& trial) {
     std::vector<double> sum(data.orders), squares(data.orders), beyond;
     std::mt19937_64 engine(20);
     const RippleMap frame = frame_of(data, trial.form, 0.0);
@@ -125,13 +125,13 @@ std::vector<double> beyond_chance(const MapData& data, const Trial& trial) {
     return beyond;
 }
 
-std::vector<std::string> notes_on(const std::vector<Trial>& trials, const Trial& chosen, double there) {
-    const auto note = [there](const Trial& trial, std::string_view what) {
+std::vector<std::string> notes_on(const std::vector<MapTrial>& trials, const MapTrial& chosen, double there) {
+    const auto note = [there](const MapTrial& trial, std::string_view what) {
         return fmt::format("{}: {} leaves {:.1f} % of the squares on blocks left out", what,
                            map_form_words(trial.form), there > 0.0 ? 100.0 * trial.left / there : 0.0);
     };
     const auto best = std::min_element(trials.begin(), trials.end(),
-                                       [](const Trial& a, const Trial& b) { return a.left < b.left; });
+                                       [](const MapTrial& a, const MapTrial& b) { return a.left < b.left; });
     return {note(trials.front(), "the simplest form"),
             note(*best, fmt::format("the best of {} forms", trials.size())), note(chosen, "taken")};
 }
@@ -142,14 +142,14 @@ std::vector<std::string> notes_on(const std::vector<Trial>& trials, const Trial&
 MapChoice choose_map(const MapData& data, bool tied) {
     std::vector<std::size_t> orders(data.orders);
     std::iota(orders.begin(), orders.end(), 0U);
-    std::vector<Trial> trials;
+    std::vector<MapTrial> trials;
     for (const MapForm& form : forms_for(data, tied)) trials.push_back({form, held_out(data, form), 0.0});
     for (;;) {
-        for (Trial& trial : trials) trial.left = total(trial.scores, orders, &HeldOut::left);
+        for (MapTrial& trial : trials) trial.left = total(trial.scores, orders, &HeldOut::left);
         const double there = total(trials.front().scores, orders, &HeldOut::there);
         double noise = 0.0;
         for (const std::size_t i : orders) noise += trials.front().scores[i].noise;
-        const Trial& chosen = smallest_good(trials, std::max(there - noise, 0.0));
+        const MapTrial& chosen = smallest_good(trials, std::max(there - noise, 0.0));
         const std::vector<double> beyond = beyond_chance(data, chosen);
         std::vector<std::size_t> ripple;
         const bool any = std::any_of(orders.begin(), orders.end(),

@@ -40,9 +40,10 @@ int speed_bin(double speed_turns_s) {
 }
 
 // Everything that the courses need about one order.
-class Order {
+class OrderCourse {
   public:
-    Order(const std::vector<RippleWindow>& windows, std::size_t order) : windows_(windows), order_(order) {
+    OrderCourse(const std::vector<RippleWindow>& windows, std::size_t order)
+        : windows_(windows), order_(order) {
         by_speed_[0].resize(bins);
         by_speed_[1].resize(bins);
         // Two of a window's neighbours, held out one by one, are as good as a few well-measured windows: no
@@ -175,7 +176,7 @@ std::string_view course_name(Course course) {
 // ripple exactly would leave that background; how much it leaves beyond it is its own error. A window's own
 // amplitude errs by the background.
 CourseScore choose_course(std::vector<RippleWindow>& windows, std::size_t order) {
-    const Order data(windows, order);
+    const OrderCourse data(windows, order);
     double power = 0.0, background = 0.0;
     for (std::size_t i = 0; i < windows.size(); ++i) {
         power += data.weight(i) * std::norm(data.value(i));

@@ -27,7 +27,6 @@ constexpr double way_of_start_deg = 1.0;               // by hand
 constexpr double seen_angles = 1.5;                    // after a reversal, of the lost motion ...
 constexpr std::size_t fewest_in_angle = 8;             // ... in which there are so many samples
 constexpr double far_deviations = 10.0;                // of a residual that is no noise
-constexpr double deviations_of_median = 1.4826;        // standard deviations in a median of sizes, if normal
 constexpr int linear_iterations = 3, iterations = 15;  // by hand
 
 FitOptions fit_options(std::size_t samples, int most_iterations) {

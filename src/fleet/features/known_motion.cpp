@@ -12,11 +12,10 @@ namespace ripplenotch {
 namespace {
 
 constexpr double jump_deviations = 8.0, jump_part = 0.02;  // by hand
-constexpr double usual_per_median = 1.4826;  // standard deviations in a median of sizes, if normal
-constexpr double least_over_noise = 5.0;     // of accelerations, rms
-constexpr double least_change = 1e-3;        // of the speed within a window, or it is rounding
+constexpr double least_over_noise = 5.0;                   // of accelerations, rms
+constexpr double least_change = 1e-3;                      // of the speed within a window, or it is rounding
 
-double squares_of(const std::vector<double>& values) {
+double sum_of_squares(const std::vector<double>& values) {
     double sum = 0.0;
     for (const double value : values) sum += value * value;
     return sum;
@@ -28,15 +27,15 @@ double usual_noise(std::span<const double> values) {
     for (std::size_t k = 4; k < values.size(); ++k)
         fourth.push_back(std::abs(values[k] - 4.0 * values[k - 1] + 6.0 * values[k - 2] -
                                   4.0 * values[k - 3] + values[k - 4]));
-    const double usual = usual_per_median * median_in(fourth) / std::sqrt(70.0);
+    const double usual = deviations_of_median * median_in(fourth) / std::sqrt(70.0);
     return usual > 0.0 ? usual : sample_noise(values);
 }
 
 // Part of `values` that no sum of the columns makes.
 double part_beside(std::vector<double> values, std::vector<std::vector<double>> columns) {
-    const double whole = squares_of(values);
+    const double whole = sum_of_squares(values);
     for (std::size_t c = 0; c < columns.size(); ++c) {
-        const double size = squares_of(columns[c]);
+        const double size = sum_of_squares(columns[c]);
         if (!(size > 0.0)) continue;
         const auto take_out = [&](std::vector<double>& from) {
             double along = 0.0;
@@ -46,7 +45,7 @@ double part_beside(std::vector<double> values, std::vector<std::vector<double>> 
         take_out(values);
         for (std::size_t later = c + 1; later < columns.size(); ++later) take_out(columns[later]);
     }
-    return whole > 0.0 ? squares_of(values) / whole : 0.0;
+    return whole > 0.0 ? sum_of_squares(values) / whole : 0.0;
 }
 
 }  // namespace
@@ -83,10 +82,11 @@ Accelerations accelerations_of(const TraceView& log, const Motion& motion,
     const double noise = usual_noise(log.velocity_deg_s) * log.sample_rate.value() *
                          std::sqrt(75.0 / (samples * samples * samples));
     const auto count = static_cast<double>(std::max<std::size_t>(acceleration.size(), 1));
-    const double whole = squares_of(acceleration) / count;
+    const double whole = sum_of_squares(acceleration) / count;
     const double beside = part_beside(acceleration, {ones, direction, speed});
     const double alone = std::sqrt(whole * beside), along = std::sqrt(whole * (1.0 - beside));
-    const double rounding = least_change * std::sqrt(squares_of(speed) / count) / default_smoothing.value();
+    const double rounding =
+        least_change * std::sqrt(sum_of_squares(speed) / count) / default_smoothing.value();
     // What noise leaves along three columns, of accelerations that are alike for a window.
     const double noise_along = noise * std::sqrt(3.0 * samples / count);
     Accelerations found;

@@ -13,12 +13,11 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t fewest_kin = 5;            // by hand
-constexpr double odd_from = 5.0;                 // robust deviations
-constexpr double least_deviation = 0.01;         // of the kind's median: less apart is no other joint
-constexpr double deviations_of_median = 1.4826;  // standard deviations in a median of sizes, if normal
-constexpr double same_time_s = 30.0 * 86400.0;   // by hand: a month
-constexpr double shared_part = 0.3;              // of a kind, from which a change is none of the joint alone
+constexpr std::size_t fewest_kin = 5;           // by hand
+constexpr double odd_from = 5.0;                // robust deviations
+constexpr double least_deviation = 0.01;        // of the kind's median: less apart is no other joint
+constexpr double same_time_s = 30.0 * 86400.0;  // by hand: a month
+constexpr double shared_part = 0.3;             // of a kind, from which a change is none of the joint alone
 
 using Kind = std::vector<JointTrend*>;
 

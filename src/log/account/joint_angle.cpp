@@ -16,7 +16,7 @@ namespace {
 constexpr double piece_deg = 2.0;         ///< far more than a step of an encoder
 constexpr double longest_piece_s = 10.0;  ///< what takes longer is drift at rest
 // By hand: then, at least, and at most.
-constexpr std::size_t pieces_judged = 16, fewest_pieces = 6, most_pieces = 4096;
+constexpr std::size_t pieces_judged = 16, fewest_pieces = 6, most_pieces_of_angle = 4096;
 constexpr double standing_share = 0.02;  ///< of the other's motion
 constexpr double frozen_share = 1e-5;  ///< the same for a velocity: a motor's position goes 300 times as far
 constexpr double alike_share = 0.6;    ///< of the pieces have to be near the median's ratio ...
@@ -163,7 +163,7 @@ void JointAngle::add(const TraceView& rows, bool begins_run) {
 }
 
 void JointAngle::end_piece() {
-    if (pieces_.size() < most_pieces) pieces_.push_back(piece_);
+    if (pieces_.size() < most_pieces_of_angle) pieces_.push_back(piece_);
     piece_ = {};
     piece_begin_s_ = last_.time_s;
 }

@@ -22,8 +22,6 @@ constexpr double most_rows_a_time = 4.5;
 // By hand: of times of arrival a long step stands alone among short ones so often.
 constexpr double most_lone_gaps = 1.0 / 40.0;
 
-bool within(double a, double b, double factor) { return a <= factor * b && b <= factor * a; }
-
 // Rows a burst, where rows come in bursts; else 0.
 double burst_rows(std::span<const double> time_s, double limit_s) {
     std::size_t alone = 0;
@@ -232,7 +230,7 @@ void Clock::add_long(double time_s, std::size_t at) {
     const Gap here{facts_.rows + at - 1, *last_s_, time_s};
     shortest_s_ = std::min(shortest_s_, step);
     longest_s_ = std::max(longest_s_, step);
-    const bool again = long_step_s_ > 0.0 && within(step, long_step_s_, alike_steps);
+    const bool again = long_step_s_ > 0.0 && within_factor(step, long_step_s_, alike_steps);
     long_step_s_ = step;
     if (again) {
         if (slow_steps_.empty()) {

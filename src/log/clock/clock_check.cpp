@@ -15,10 +15,10 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_pieces = 64;    // many enough for a median, long enough to average noise
-constexpr std::size_t shortest_piece = 4;  // rows
-constexpr double agreement = 0.02;         // a factor within 2 % of 1, or of a named one, is that one
-constexpr double widest_doubt = 0.05;      // a factor less certain than 5 % is not stated
+constexpr std::size_t most_pieces_checked = 64;  // many enough for a median, long enough to average noise
+constexpr std::size_t shortest_piece = 4;        // rows
+constexpr double factor_agreement = 0.02;        // a factor within 2 % of 1, or of a named one, is that one
+constexpr double widest_doubt = 0.05;            // a factor less certain than 5 % is not stated
 
 using Piece = MotionPieces::Piece;
 
@@ -88,7 +88,8 @@ Fit robust_fit(const std::vector<Piece>& pieces) {
                                fit.lag_s * p.velocity_change);
         }
         // Where most pieces fit exactly, rounding alone is left as a deviation.
-        const double deviation = std::max(1.4826 * median_of(left), 1e-9 * std::abs(fit.factor) * usual);
+        const double deviation =
+            std::max(deviations_of_median * median_of(left), 1e-9 * std::abs(fit.factor) * usual);
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             const double far = left[i] / (4.685 * deviation);
             weights[i] = far < 1.0 ? (1.0 - far * far) * (1.0 - far * far) : 0.0;
@@ -166,7 +167,7 @@ std::string factor_in_words(double factor) {
     const std::string start = start_of(factor);
     if (factor < 0.0) return fmt::format("{}: velocity and position have opposite signs", start);
     for (const NamedFactor& named : named_factors) {
-        if (std::abs(factor / named.factor - 1.0) < agreement)
+        if (std::abs(factor / named.factor - 1.0) < factor_agreement)
             return fmt::format("{}; {}", start, named.cause);
     }
     if (factor >= 5.0) {
@@ -183,7 +184,7 @@ std::string factor_in_words(double factor) {
 }
 
 MotionPieces::MotionPieces(std::size_t rows)
-    : rows_(rows), rows_in_piece_(std::max(shortest_piece, rows / most_pieces)) {}
+    : rows_(rows), rows_in_piece_(std::max(shortest_piece, rows / most_pieces_checked)) {}
 
 void MotionPieces::end_piece() {
     if (in_piece_ >= shortest_piece) pieces_.push_back(piece_);
@@ -237,7 +238,7 @@ ClockCheck MotionPieces::check(Hertz sample_rate) {
     if (!std::isfinite(fit.factor) || fit.factor == 0.0 || !(doubt < widest_doubt * std::abs(fit.factor)))
         return {};
     ClockCheck check{fit.factor, {}};
-    if (std::abs(fit.factor - 1.0) > std::max(agreement, 3.0 * doubt))
+    if (std::abs(fit.factor - 1.0) > std::max(factor_agreement, 3.0 * doubt))
         check.warning = explain(fit.factor, sample_rate);
     return check;
 }

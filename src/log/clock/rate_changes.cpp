@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "log/clock/step_sums.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/log/clock.hpp"
 
@@ -14,8 +15,6 @@ namespace {
 constexpr double usual_duration = 0.1;  ///< share by which a window's time differs without a closer look
 constexpr double other_rate = 1.35;     ///< steps longer or shorter by this are of another rate ...
 constexpr std::size_t windows_to_change = 4;  ///< ... when so many windows in a row have them
-
-bool within(double a, double b, double factor) { return a <= factor * b && b <= factor * a; }
 
 double median_step(const std::vector<double>& time_s) {
     std::vector<double> steps;
@@ -44,9 +43,9 @@ void Clock::end_window() {
 }
 
 void Clock::look_closely(double median_s) {
-    if (!(median_s > 0.0) || within(median_s, now_.step_s, other_rate)) {
+    if (!(median_s > 0.0) || within_factor(median_s, now_.step_s, other_rate)) {
         odd_windows_ = 0;
-    } else if (odd_windows_ > 0 && within(median_s, odd_step_s_, other_rate)) {
+    } else if (odd_windows_ > 0 && within_factor(median_s, odd_step_s_, other_rate)) {
         ++odd_windows_;
     } else {
         odd_windows_ = 1;

@@ -27,7 +27,7 @@ struct ClockUnit {
     double epoch_from, epoch_to;  ///< counts since 1970 (since 1601 for ticks) between 1990 and 2090
     std::string_view since;
 };
-constexpr std::array units = {
+constexpr std::array clock_units = {
     ClockUnit{"s", 1.0, 6.3e8, 3.8e9, "seconds since 1970"},
     ClockUnit{"ms", 1e-3, 6.3e11, 3.8e12, "milliseconds since 1970"},
     ClockUnit{"us", 1e-6, 6.3e14, 3.8e15, "microseconds since 1970"},
@@ -59,21 +59,21 @@ double rate_in(const Opening& opening, const ClockUnit& unit) { return 1.0 / (op
 
 // Decimals in a step: the unit is seconds, if that gives a rate at all; so are the least of rates first.
 const ClockUnit* unit_of(const Opening& opening, std::string& reason) {
-    for (const ClockUnit& unit : units) {
+    for (const ClockUnit& unit : clock_units) {
         const bool epoch = opening.first >= unit.epoch_from && opening.first <= unit.epoch_to;
         const double rate = rate_in(opening, unit);
         if (!epoch || rate < least_assumed_hz || rate > 10.0 * highest_rate_hz) continue;
         reason = fmt::format("{:.4g} is a count of {}", opening.first, unit.since);
         return &unit;
     }
-    for (const ClockUnit& unit : units) {
+    for (const ClockUnit& unit : clock_units) {
         const double rate = rate_in(opening, unit);
         if (rate < lowest_rate_hz * 0.999 || rate > highest_rate_hz * 1.001) continue;
         reason = fmt::format("a step of {:.4g} is then {:.4g} Hz", opening.step, rate);
         return &unit;
     }
-    const bool seconds = rate_in(opening, units[0]) >= least_assumed_hz;
-    return seconds ? &units[0] : nullptr;
+    const bool seconds = rate_in(opening, clock_units[0]) >= least_assumed_hz;
+    return seconds ? &clock_units[0] : nullptr;
 }
 
 void set_origin(const ColumnFacts& facts, const Opening& opening, Layout& layout) {

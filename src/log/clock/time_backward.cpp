@@ -24,7 +24,7 @@ constexpr std::array rounds{
 // By hand: a step longer than a hundredth of the round would be a gap of ten minutes in a day.
 constexpr double longest_step_share = 0.01;
 
-std::string shown(double value, std::int64_t origin) {
+std::string shown_time(double value, std::int64_t origin) {
     if (origin == 0 || std::abs(value) > 9e15 || value != std::floor(value)) return shortest(value);
     std::int64_t whole = 0;
     return __builtin_add_overflow(static_cast<std::int64_t>(value), origin, &whole)
@@ -43,8 +43,8 @@ const Round* round_of(const TimeStep& step) {
 }  // namespace
 
 std::string time_backward(const TimeStep& step) {
-    const std::string seen = fmt::format("read the time {} after {}, ", shown(step.read, step.origin),
-                                         shown(step.before, step.origin));
+    const std::string seen = fmt::format("read the time {} after {}, ", shown_time(step.read, step.origin),
+                                         shown_time(step.before, step.origin));
     if (const Round* round = round_of(step)) {
         return seen +
                fmt::format(

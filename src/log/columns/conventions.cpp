@@ -8,14 +8,14 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array all = {
+constexpr std::array all_conventions = {
 #define CONVENTION(family, beside, name, role, unit, side, source) \
     Convention{family, beside, name, Role::role, unit, Shaft::side, source},
 #include "log/columns/conventions.def"
 #undef CONVENTION
 };
 
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool is_decimal_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 // ".joint.states.j1.velocity." of "/joint_states/j1/velocity"
 std::string in_words(std::string_view name) {
@@ -34,7 +34,7 @@ std::string in_words(std::string_view name) {
 bool word_at(std::string_view words, std::size_t at, std::string_view word) {
     if (words.substr(at, word.size()) != word) return false;
     std::size_t end = at + word.size();
-    while (end < words.size() && is_digit(words[end])) ++end;
+    while (end < words.size() && is_decimal_digit(words[end])) ++end;
     return end < words.size() && words[end] == '.';
 }
 
@@ -60,11 +60,11 @@ bool stands_beside(std::string_view pattern, const std::vector<std::string>& nam
 
 }  // namespace
 
-std::span<const Convention> conventions() { return all; }
+std::span<const Convention> conventions() { return all_conventions; }
 
 const Convention* convention_of(std::string_view name, Role role, const std::vector<std::string>& names) {
     const std::string words = in_words(name);
-    for (const Convention& known : all) {
+    for (const Convention& known : all_conventions) {
         if (role != Role::other && known.role != role) continue;
         if (follows(words, known.name) && (known.beside.empty() || stands_beside(known.beside, names)))
             return &known;

@@ -12,7 +12,7 @@ namespace ripplenotch::layout_detail {
 namespace {
 
 constexpr double within_family = 0.5;                         // by hand
-constexpr double agreement = 0.03;                            // scales within 3 % are one
+constexpr double scale_agreement = 0.03;                      // scales within 3 % are one
 constexpr double lowest_ratio = 20.0, highest_ratio = 400.0;  // of gears that a position may tell
 constexpr double fastest_joint_deg_s = 1200.0;                // 200 rpm behind the gear
 // What speaks against a reading; below open_margin alone, it settles nothing.
@@ -135,10 +135,10 @@ class Scoring {
         if (reading.velocity.side == reading.position.side) {
             // Of one family, neither a unit nor a gear makes a small factor: a clock does, or a short log.
             const bool alike = family_of(reading.velocity) == family_of(reading.position);
-            return std::abs(faster - 1.0) < (alike ? within_family : agreement);
+            return std::abs(faster - 1.0) < (alike ? within_family : scale_agreement);
         }
         const double ratio = reading.position.side == Shaft::motor ? faster : 1.0 / faster;
-        if (question_.gear_ratio) return std::abs(ratio / *question_.gear_ratio - 1.0) < agreement;
+        if (question_.gear_ratio) return std::abs(ratio / *question_.gear_ratio - 1.0) < scale_agreement;
         reading.ratio = ratio;
         return ratio >= lowest_ratio && ratio <= highest_ratio;
     }
@@ -158,7 +158,7 @@ class Scoring {
             cost += too_fast;
         if (evidence.wrap && question_.columns.position && reading.position.side == Shaft::joint) {
             const double turn = *evidence.wrap * reading.position.unit_factor;
-            if (std::abs(turn / 360.0 - 1.0) > agreement) cost += against_wrap;
+            if (std::abs(turn / 360.0 - 1.0) > scale_agreement) cost += against_wrap;
         }
         const bool small = evidence.fastest <= usual_rad_s && evidence.farthest <= usual_rad;
         const Family family = question_.columns.velocity ? v.unit.family : q.unit.family;

@@ -107,7 +107,7 @@ std::string lower_without_blanks(std::string_view text) {
     return lower;
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_padding(std::string_view text) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '_')) text.remove_prefix(1);
     while (!text.empty() && (text.back() == ' ' || text.back() == '_')) text.remove_suffix(1);
     return text;
@@ -148,7 +148,7 @@ std::optional<double> role_factor(Role role, std::string_view unit, double nm_pe
 }
 
 std::optional<std::string> usual_unit(std::string_view written, Role role) {
-    const std::string_view text = trimmed(written);
+    const std::string_view text = without_padding(written);
     if (text.empty()) return std::nullopt;
     const std::string lower = lower_without_blanks(text);
     if (role == Role::torque && lower == "nm") return "Nm";
@@ -163,22 +163,22 @@ std::optional<std::string> usual_unit(std::string_view written, Role role) {
 }
 
 NameAndUnit split_unit(std::string_view column_name) {
-    const std::string_view whole = trimmed(column_name);
+    const std::string_view whole = without_padding(column_name);
     for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
         const std::size_t from = whole.rfind(open);
         if (from == std::string_view::npos || from == 0 || whole.empty() || whole.back() != close) continue;
-        const std::string_view inside = trimmed(whole.substr(from + 1, whole.size() - from - 2));
+        const std::string_view inside = without_padding(whole.substr(from + 1, whole.size() - from - 2));
         const bool index = !inside.empty() && std::all_of(inside.begin(), inside.end(), [](unsigned char c) {
             return std::isdigit(c) != 0;
         });
-        if (!index) return {std::string(trimmed(whole.substr(0, from))), std::string(inside), true};
+        if (!index) return {std::string(without_padding(whole.substr(0, from))), std::string(inside), true};
     }
     // The longest unit that follows an underscore or a blank: "_deg_s" before "_s".
     for (std::size_t at = 1; at < whole.size(); ++at) {
         if (whole[at] != '_' && whole[at] != ' ') continue;
         const std::string_view rest = whole.substr(at + 1);
         if (rest == "nm" || rest == "mnm" || usual_unit(rest, Role::other)) {
-            return {std::string(trimmed(whole.substr(0, at))), std::string(rest), false};
+            return {std::string(without_padding(whole.substr(0, at))), std::string(rest), false};
         }
     }
     for (std::size_t at = 1; at < whole.size(); ++at) {
@@ -186,7 +186,7 @@ NameAndUnit split_unit(std::string_view column_name) {
         const std::string_view rest = whole.substr(at + 1);
         const std::string lower = lower_without_blanks(rest);
         if (std::find(unread_units.begin(), unread_units.end(), lower) != unread_units.end())
-            return {std::string(trimmed(whole.substr(0, at))), std::string(rest), true};
+            return {std::string(without_padding(whole.substr(0, at))), std::string(rest), true};
     }
     return {std::string(whole), "", false};
 }

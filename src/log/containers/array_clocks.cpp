@@ -38,9 +38,9 @@ bool same_numbers(const StoredArray& one, const StoredArray& other) {
     return true;
 }
 
-class Clocks {
+class FoundClocks {
   public:
-    explicit Clocks(const std::vector<StoredArray>& arrays) : arrays_(arrays), clock_(arrays.size()) {
+    explicit FoundClocks(const std::vector<StoredArray>& arrays) : arrays_(arrays), clock_(arrays.size()) {
         for (std::size_t a = 0; a < arrays.size(); ++a) {
             if (arrays[a].shape.rows < 2 || !names_time(arrays[a])) continue;
             times_.emplace(Scope{path_around(without_empty_words(arrays[a].path)), arrays[a].shape.rows}, a);
@@ -135,7 +135,7 @@ std::string without_empty_words(const std::string& path) {
 }
 
 std::vector<ArrayGroup> groups_by_clock(const std::vector<StoredArray>& arrays) {
-    return Clocks(arrays).groups();
+    return FoundClocks(arrays).groups();
 }
 
 }  // namespace ripplenotch

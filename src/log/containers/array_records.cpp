@@ -11,10 +11,10 @@
 namespace ripplenotch {
 namespace {
 
-int names_tell(const std::vector<ArrayColumn>& columns) {
+int column_names_tell(const std::vector<ArrayColumn>& columns) {
     std::vector<std::string> names;
     for (const ArrayColumn& column : columns) names.push_back(column.read_as);
-    return ripplenotch::names_tell(names);
+    return names_tell(names);
 }
 
 // What --columns names by path.
@@ -87,7 +87,7 @@ const ArrayGroup* choose_group(const std::vector<ArrayGroup>& groups, PathStyle 
     const ArrayGroup* chosen = nullptr;
     int best = -1;
     for (const ArrayGroup& group : groups) {
-        const int tells = names_tell(columns_of(group, style));
+        const int tells = column_names_tell(columns_of(group, style));
         if (tells < best || (tells == best && group.rows == chosen->rows)) continue;
         best = tells;
         chosen = &group;

@@ -19,9 +19,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t largest_chunk = std::size_t{1} << 28, usual_cache = std::size_t{1} << 22,
+constexpr std::size_t largest_hdf5_chunk = std::size_t{1} << 28, usual_cache = std::size_t{1} << 22,
                       largest_cache = std::size_t{1} << 25;
-constexpr std::size_t most_things = 100000;
+constexpr std::size_t most_hdf5_things = 100000;
 
 std::string text_attribute(hid_t object, const char* name) {
     if (::H5Aexists(object, name) <= 0) return {};
@@ -76,7 +76,7 @@ class Hdf5Walk {
         }
     }
     void take_link(hid_t group, const std::string& name, const H5L_info_t& info) {
-        if (++things_ > most_things)
+        if (++things_ > most_hdf5_things)
             raise<DataError>("{}: read more than 100000 links, expected a log", file_->bytes->name());
         if (matlab_ && name.starts_with('#')) return;  // what cells and objects are made of
         if (info.type == H5L_TYPE_EXTERNAL)
@@ -105,7 +105,7 @@ class Hdf5Walk {
         if (::H5Pget_layout(layout.id()) == H5D_CHUNKED && ::H5Pall_filters_avail(layout.id()) <= 0)
             return add_other(name, words, "packed by a filter that is not here");
         const Hdf5Handle type(::H5Dget_type(plain.id()), ::H5Tclose);
-        if (chunk_bytes(layout.id(), type.id(), dimensions.size()) > largest_chunk)
+        if (chunk_bytes(layout.id(), type.id(), dimensions.size()) > largest_hdf5_chunk)
             return add_other(name, words, "in chunks of more than 256 MiB");
         const auto shape = shape_over_time(dimensions);
         const bool compound = ::H5Tget_class(type.id()) == H5T_COMPOUND;
@@ -190,7 +190,7 @@ class Hdf5Walk {
         std::size_t bytes = ::H5Tget_size(type);
         if (::H5Pget_chunk(layout, static_cast<int>(rank), sides.data()) < 0) return 0;
         for (std::size_t i = 0; i < rank; ++i)
-            bytes = bytes > largest_chunk ? bytes : bytes * static_cast<std::size_t>(sides[i]);
+            bytes = bytes > largest_hdf5_chunk ? bytes : bytes * static_cast<std::size_t>(sides[i]);
         return bytes;
     }
     static std::string unit_of(hid_t dataset) {

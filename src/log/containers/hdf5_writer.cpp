@@ -18,7 +18,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t largest_chunk = 16384;  // rows
+constexpr std::size_t rows_of_a_chunk = 16384;  // rows
 
 class Hdf5TableWriter final : public TableWriter {
   public:
@@ -33,7 +33,7 @@ class Hdf5TableWriter final : public TableWriter {
     void rows(std::span<const std::span<const double>> columns) override {
         for (std::size_t c = 0; c < columns.size(); ++c)
             waiting_[c].insert(waiting_[c].end(), columns[c].begin(), columns[c].end());
-        while (waiting_.front().size() >= largest_chunk) write(largest_chunk);
+        while (waiting_.front().size() >= rows_of_a_chunk) write(rows_of_a_chunk);
     }
     void end() override {
         write(waiting_.front().size());

@@ -17,7 +17,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr double ns_per_s = 1e9, largest_ns = 9.2e18;
-constexpr std::size_t looked_at = 4096;  // rows, of which the usual step is told
+constexpr std::size_t rows_looked_at = 4096;  // rows, of which the usual step is told
 
 // A clock's numbers as whole nanoseconds.
 class NanosecondCursor final : public ColumnCursor {
@@ -73,7 +73,7 @@ StoredArray in_nanoseconds(const std::string& source, const StoredArray& clock) 
 }
 
 double period_ns(const StoredArray& clock_ns) {
-    const std::size_t rows = std::min(looked_at, clock_ns.shape.rows);
+    const std::size_t rows = std::min(rows_looked_at, clock_ns.shape.rows);
     std::vector<std::int64_t> times(rows);
     clock_ns.open(0)->read(rows, reinterpret_cast<char*>(times.data()));
     return (static_cast<double>(times.back()) - static_cast<double>(times.front())) /

@@ -10,17 +10,17 @@
 #include <cstring>
 #include <map>
 
+#include "log/containers/mat_type.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr int deepest = 16;
+constexpr int deepest_nesting = 16;
 constexpr std::uint64_t most_unpacked = std::uint64_t{1} << 33;
-constexpr std::size_t longest_name = 4096, most_fields = 4096, most_things = 100000;
+constexpr std::size_t longest_name = 4096, most_mat_fields = 4096, most_things = 100000;
 
-// Numbers of the format's data types and array classes.
-enum Type : std::uint32_t { uint16 = 4, matrix = 14, compressed = 15, utf16 = 17 };
+// Numbers of the format's array classes.
 enum Class : unsigned {
     cell = 1,
     structure = 2,
@@ -93,13 +93,13 @@ class MatWalk {
             if (element.next > file_->size() && element.data + element.size > file_->size())
                 fail(at, fmt::format("an element of {} bytes, of which {} are there; the file is cut off",
                                      element.size, file_->size() - std::min(file_->size(), element.data)));
-            if (element.type == compressed) {
+            if (element.type == mat_type::compressed) {
                 const auto inside =
                     unpack_part(file_, element.data, element.size, Deflate::wrapped, most_unpacked);
                 read_matrix(inside, element_at(*inside, 0), "", 0);
                 at = element.data + element.size;
             } else {
-                if (element.type == matrix) read_matrix(file_, element, "", 0);
+                if (element.type == mat_type::matrix) read_matrix(file_, element, "", 0);
                 at = element.next;
             }
         }
@@ -131,9 +131,9 @@ class MatWalk {
 
     void read_matrix(const std::shared_ptr<StoredBytes>& bytes, const Element& whole, const std::string& path,
                      int depth) {
-        if (depth > deepest) fail(whole.data, "a struct nested deeper than 16");
+        if (depth > deepest_nesting) fail(whole.data, "a struct nested deeper than 16");
         if (++things_ > most_things) fail(whole.data, "more than 100000 arrays");
-        if (whole.type != matrix)
+        if (whole.type != mat_type::matrix)
             fail(whole.data, fmt::format("an element of type {}, expected an array", whole.type));
         if (whole.size == 0) return;  // an empty field
         const Element flags = element_at(*bytes, whole.data);
@@ -165,7 +165,7 @@ class MatWalk {
         if (!path.ends_with(".Name") && !path.ends_with(".Unit")) return;
         if (characters.size > longest_name) return;
         std::string words;
-        const bool wide = characters.type == uint16 || characters.type == utf16;
+        const bool wide = characters.type == mat_type::uint16 || characters.type == mat_type::utf16;
         for (const char c : bytes.text_at(characters.data, static_cast<std::size_t>(characters.size)))
             if (c != '\0' || !wide) words.push_back(c);
         words_[path] = words;
@@ -201,7 +201,8 @@ class MatWalk {
         for (const std::uint64_t side : dimensions)
             count =
                 side > most_things ? most_things + 1 : std::min<std::uint64_t>(count * side, most_things + 1);
-        if (fields > most_fields || count > most_things) fail(names.data, "a struct with too many fields");
+        if (fields > most_mat_fields || count > most_things)
+            fail(names.data, "a struct with too many fields");
         std::uint64_t next = names.next;
         for (std::uint64_t i = 0; i < count; ++i) {
             for (std::uint64_t f = 0; f < fields; ++f) {

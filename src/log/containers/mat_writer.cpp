@@ -6,17 +6,16 @@
 #include <algorithm>
 #include <cctype>
 
+#include "log/containers/mat_type.hpp"
 #include "log/npy/npy_field.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t text_size = 116, longest_name = 63;
-constexpr std::uint64_t most_rows = (std::uint64_t{1} << 29) - 64;  // of 8 bytes: sizes have 32 bits
+constexpr std::size_t text_size = 116, longest_variable = 63;
+constexpr std::uint64_t most_mat_rows = (std::uint64_t{1} << 29) - 64;  // of 8 bytes: sizes have 32 bits
 
-// Numbers of the format's data types and classes.
-enum Type : std::uint32_t { int8 = 1, int32 = 5, uint32 = 6, float64 = 9, matrix = 14 };
 constexpr std::uint32_t double_class = 6;
 
 void add_word(std::string& bytes, std::uint32_t word) {
@@ -29,7 +28,7 @@ std::string variable_name(const std::string& name) {
     for (char& c : plain)
         if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
     if (plain.empty() || std::isalpha(static_cast<unsigned char>(plain.front())) == 0) plain = "x" + plain;
-    return plain.substr(0, longest_name);
+    return plain.substr(0, longest_variable);
 }
 
 }  // namespace
@@ -58,32 +57,32 @@ void MatTableWriter::rows(std::span<const std::span<const double>> columns) {
 
 void MatTableWriter::write_head(const std::string& name) {
     std::string head;
-    const auto add_tag = [&](Type type, std::uint64_t size) {
+    const auto add_tag = [&](std::uint32_t type, std::uint64_t size) {
         add_word(head, type);
         add_word(head, static_cast<std::uint32_t>(size));
     };
-    add_tag(uint32, 8);
+    add_tag(mat_type::uint32, 8);
     add_word(head, double_class);
     add_word(head, 0);
-    add_tag(int32, 8);
+    add_tag(mat_type::int32, 8);
     add_word(head, static_cast<std::uint32_t>(rows_));
     add_word(head, 1);
-    add_tag(int8, name.size());
+    add_tag(mat_type::int8, name.size());
     head += name;
     head.append((8 - name.size() % 8) % 8, '\0');
-    add_tag(float64, 8 * rows_);
+    add_tag(mat_type::float64, 8 * rows_);
     std::string whole;
-    add_word(whole, matrix);
+    add_word(whole, mat_type::matrix);
     add_word(whole, static_cast<std::uint32_t>(head.size() + 8 * rows_));
     sink_.write(whole + head);
 }
 
 void MatTableWriter::end() {
-    if (rows_ > most_rows) {
+    if (rows_ > most_mat_rows) {
         raise<UsageError>(
             "a MAT file of version 5 holds at most {} rows, and these are {}; write -o NAME.h5 or -o "
             "NAME.npy",
-            most_rows, rows_);
+            most_mat_rows, rows_);
     }
     std::vector<char> piece(std::size_t{1} << 20);
     for (std::size_t c = 0; c < names_.size(); ++c) {

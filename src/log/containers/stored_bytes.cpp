@@ -16,7 +16,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t piece_size = std::size_t{1} << 16;
+constexpr std::size_t stored_piece = std::size_t{1} << 16;
 
 [[noreturn]] void complain_of_end(const std::string& name, std::uint64_t offset, std::uint64_t size) {
     raise<DataError>(
@@ -65,7 +65,7 @@ class FileBytes final : public StoredBytes {
 class KeptBytes final : public StoredBytes {
   public:
     KeptBytes(ByteSource& source, std::string piece) : StoredBytes(source.name()) {
-        for (std::size_t have = piece.size(); have > 0; have = read_on(source, piece, 0, piece_size)) {
+        for (std::size_t have = piece.size(); have > 0; have = read_on(source, piece, 0, stored_piece)) {
             bytes_.put(std::string_view(piece).substr(0, have));
             size_ += have;
         }
@@ -104,10 +104,10 @@ class UnpackedPart final : public StoredBytes {
 
   private:
     void unpack_piece() {
-        if (!room_) room_ = std::make_unique_for_overwrite<char[]>(piece_size);
-        const std::span<char> unpacked(room_.get(), piece_size);
+        if (!room_) room_ = std::make_unique_for_overwrite<char[]>(stored_piece);
+        const std::span<char> unpacked(room_.get(), stored_piece);
         if (left_.empty() && at_ < end_) {
-            piece_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(piece_size, end_ - at_)));
+            piece_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(stored_piece, end_ - at_)));
             packed_->read_at(at_, piece_.data(), piece_.size());
             at_ += piece_.size();
             left_ = piece_;
@@ -143,8 +143,8 @@ class UnpackedPart final : public StoredBytes {
 
 void require_checksum(StoredBytes& bytes, std::uint64_t offset, std::uint64_t size, std::uint32_t checksum) {
     std::optional<std::uint32_t> sum = 0;
-    for (std::uint64_t done = 0; done < size && sum; done += piece_size) {
-        const auto length = static_cast<std::size_t>(std::min<std::uint64_t>(piece_size, size - done));
+    for (std::uint64_t done = 0; done < size && sum; done += stored_piece) {
+        const auto length = static_cast<std::size_t>(std::min<std::uint64_t>(stored_piece, size - done));
         sum = crc32_of(bytes.text_at(offset + done, length), *sum);
     }
     if (sum && *sum != checksum) complain_of_sum(bytes.name(), *sum, checksum);

@@ -17,8 +17,9 @@
 namespace ripplenotch {
 namespace {
 
-constexpr int asked = 1000;                                  // more than any names tell
-constexpr std::uint64_t looked_at = std::uint64_t{1} << 23;  // bytes of messages, before the topic is chosen
+constexpr int asked = 1000;  // more than any names tell
+constexpr std::uint64_t bytes_looked_at = std::uint64_t{1}
+                                          << 23;  // bytes of messages, before the topic is chosen
 
 class TopicChoice {
   public:
@@ -108,7 +109,7 @@ class TopicChoice {
     void look() {
         RecordedMessage message;
         std::uint64_t bytes = 0;
-        while ((bytes < looked_at || !saw_asked()) && source_->next(message)) {
+        while ((bytes < bytes_looked_at || !saw_asked()) && source_->next(message)) {
             topics_.resize(source_->channels().size());
             Topic& topic = topics_[message.channel];
             bytes += message.bytes.size();

@@ -34,9 +34,9 @@ Size size_of(Type type) {
     }
 }
 
-bool is_number(Type type) { return size_of(type) != Size::counted; }
+bool holds_number(Type type) { return size_of(type) != Size::counted; }
 
-FieldNumber whole_number(std::int64_t value) { return {static_cast<double>(value), value, true}; }
+FieldNumber whole(std::int64_t value) { return {static_cast<double>(value), value, true}; }
 
 FieldNumber number_of(Type type, std::uint64_t bits) {
     switch (type) {
@@ -47,21 +47,21 @@ FieldNumber number_of(Type type, std::uint64_t bits) {
         case Type::uint64:
         case Type::fixed64:
             if (bits > static_cast<std::uint64_t>(INT64_MAX)) return {static_cast<double>(bits), 0, false};
-            return whole_number(static_cast<std::int64_t>(bits));
+            return whole(static_cast<std::int64_t>(bits));
         case Type::uint32:
         case Type::fixed32:
-            return whole_number(static_cast<std::uint32_t>(bits));
+            return whole(static_cast<std::uint32_t>(bits));
         case Type::int32:
         case Type::sfixed32:
         case Type::enumeration:
-            return whole_number(static_cast<std::int32_t>(static_cast<std::uint32_t>(bits)));
+            return whole(static_cast<std::int32_t>(static_cast<std::uint32_t>(bits)));
         case Type::sint32:
         case Type::sint64:
-            return whole_number(static_cast<std::int64_t>((bits >> 1) ^ (~(bits & 1) + 1)));
+            return whole(static_cast<std::int64_t>((bits >> 1) ^ (~(bits & 1) + 1)));
         case Type::boolean:
-            return whole_number(bits != 0 ? 1 : 0);
+            return whole(bits != 0 ? 1 : 0);
         default:
-            return whole_number(static_cast<std::int64_t>(bits));
+            return whole(static_cast<std::int64_t>(bits));
     }
 }
 
@@ -90,7 +90,7 @@ class ProtobufWalk final : public FieldWalk {
             visitor.leave();
         }
         for (std::size_t i = 0; i < type.size(); ++i) {
-            if (seen[i] || !type[i].zero_if_absent || !is_number(type[i].type)) continue;
+            if (seen[i] || !type[i].zero_if_absent || !holds_number(type[i].type)) continue;
             visitor.field(type[i].name);
             visitor.number({0.0, 0, true});
             visitor.leave();
@@ -98,7 +98,7 @@ class ProtobufWalk final : public FieldWalk {
     }
     void values(const ProtobufField& field, const WireField& one, FieldVisitor& visitor,
                 std::size_t depth) const {
-        if (field.repeated && is_number(field.type) && one.size == Size::counted) {
+        if (field.repeated && holds_number(field.type) && one.size == Size::counted) {
             for (WireCursor packed(one.bytes); !packed.at_end();) {
                 visitor.element();
                 visitor.number(number_of(field.type, next_of(field.type, packed)));
@@ -113,7 +113,7 @@ class ProtobufWalk final : public FieldWalk {
             record(types_.types[field.inner], one.bytes, visitor, depth + 1);
         else if (field.type == Type::text)
             visitor.text(one.bytes);
-        else if (is_number(field.type))
+        else if (holds_number(field.type))
             visitor.number(number_of(field.type, one.bits));
         if (field.repeated) visitor.leave();
     }

@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr int deepest = 16;
+constexpr int deepest_message = 16;
 constexpr std::size_t longest_array = 100000, most_fields = 10000;
 
 struct Primitive {
@@ -61,8 +61,8 @@ class SchemaParser {
         }
     }
     RosType record(const std::string& name, int depth) {
-        if (depth > deepest)
-            raise<DataError>("the type {} holds itself, or types deeper than {}", name, deepest);
+        if (depth > deepest_message)
+            raise<DataError>("the type {} holds itself, or types deeper than {}", name, deepest_message);
         const auto found = definitions_.find(name);
         if (found == definitions_.end())
             raise<DataError>("the type {} is not defined in the recording", name);
@@ -143,7 +143,7 @@ struct KnownSchema {
 };
 // Recordings before ROS 2 Iron do not carry definitions. These are the fields of common types, in their
 // order.
-constexpr std::string_view header =
+constexpr std::string_view header_schema =
     "\n====\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n";
 constexpr std::array known_schemas = {
     KnownSchema{
@@ -166,7 +166,7 @@ constexpr std::array known_schemas = {
 }  // namespace
 
 RosType parse_ros_schema(std::string_view schema, const std::string& type) {
-    const std::string whole = std::string(schema) + std::string(header);
+    const std::string whole = std::string(schema) + std::string(header_schema);
     return SchemaParser(schema.find("MSG: std_msgs/") != std::string_view::npos ? schema : whole, type)
         .record(plain_name(type), 0);
 }

@@ -13,9 +13,8 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::uint64_t most_signals = 64, fewest_times = 32;  // of an array with one row a signal
-constexpr std::size_t largest_header = std::size_t{1} << 20;
-constexpr std::size_t most_fields = 100000;
-constexpr std::uint64_t most_rows = std::uint64_t{1} << 62;
+constexpr std::size_t most_npy_fields = 100000;
+constexpr std::uint64_t most_npy_rows = std::uint64_t{1} << 62;
 
 // Reads the header's Python dictionary: strings, tuples, lists, numbers, True and False, nothing else.
 class HeaderText {
@@ -90,7 +89,7 @@ class HeaderText {
         std::uint64_t value = 0;
         for (const char c : digits) {
             if (c == 'L') continue;  // Python 2
-            if (std::isdigit(static_cast<unsigned char>(c)) == 0 || value > most_rows / 10)
+            if (std::isdigit(static_cast<unsigned char>(c)) == 0 || value > most_npy_rows / 10)
                 fail(fmt::format("'{}'", digits));
             value = value * 10 + static_cast<std::uint64_t>(c - '0');
         }
@@ -135,7 +134,7 @@ class HeaderText {
                 if (at_ < text_.size() && text_[at_] == '(') {
                     array = true;
                     for (const std::uint64_t size : tuple())
-                        count = std::min<std::uint64_t>(count * size, most_fields + 1);
+                        count = std::min<std::uint64_t>(count * size, most_npy_fields + 1);
                 }
             }
             expect(')');
@@ -149,7 +148,7 @@ class HeaderText {
     }
 
     void add_field(const std::string& name, const std::string& type) {
-        if (header_.fields.size() >= most_fields) fail("too many columns");
+        if (header_.fields.size() >= most_npy_fields) fail("too many columns");
         NpyField field;
         field.name = name;
         field.offset = header_.record_size;
@@ -165,7 +164,7 @@ class HeaderText {
         field.big_endian = type[0] == '>';
         std::size_t size = 0;
         for (std::size_t i = letter + 1; i < type.size(); ++i) {
-            if (std::isdigit(static_cast<unsigned char>(type[i])) == 0 || size > largest_header)
+            if (std::isdigit(static_cast<unsigned char>(type[i])) == 0 || size > largest_npy_header)
                 break;  // "M8[us]"
             size = size * 10 + static_cast<std::size_t>(type[i] - '0');
         }
@@ -186,9 +185,9 @@ class HeaderText {
         if (header_.structured) {
             std::uint64_t rows = 1;
             for (const std::uint64_t size : shape_)
-                rows = size == 0                                             ? 0
-                       : rows > most_rows / std::max<std::uint64_t>(size, 1) ? most_rows
-                                                                             : rows * size;
+                rows = size == 0                                                 ? 0
+                       : rows > most_npy_rows / std::max<std::uint64_t>(size, 1) ? most_npy_rows
+                                                                                 : rows * size;
             header_.rows = rows;
         } else {
             if (shape_.size() > 2 || shape_.empty()) {
@@ -203,7 +202,7 @@ class HeaderText {
                                  shape_[1] >= fewest_times * shape_[0];
             if (header_.transposed) std::swap(shape_[0], shape_[1]);
             const std::uint64_t columns = shape_.size() == 2 ? shape_[1] : 1;
-            if (columns > most_fields) fail("too many columns");
+            if (columns > most_npy_fields) fail("too many columns");
             if (columns == 0) fail("no columns");
             header_.by_columns = fortran_ != header_.transposed && columns > 1 && shape_[0] > 1;
             const NpyField first = header_.fields.front();
@@ -223,8 +222,8 @@ class HeaderText {
                 "type",
                 source_);
         }
-        if (header_.record_size > largest_header) fail("rows of more than 1 MiB");
-        if (header_.rows > most_rows / header_.record_size) fail("more rows than a file can hold");
+        if (header_.record_size > largest_npy_header) fail("rows of more than 1 MiB");
+        if (header_.rows > most_npy_rows / header_.record_size) fail("more rows than a file can hold");
     }
 
     std::string_view text_;
@@ -253,7 +252,7 @@ NpyHeader parse_npy_header(std::string_view bytes, const std::string& source) {
                          source, version);
     }
     const std::size_t size = npy_header_size(bytes);
-    if (size == 0 || size > largest_header || bytes.size() < size) {
+    if (size == 0 || size > largest_npy_header || bytes.size() < size) {
         raise<DataError>("{}: read a NumPy file cut off in its header, expected {}; save the array again",
                          source, size == 0 ? "at least 12 bytes" : fmt::format("{} bytes of it", size));
     }

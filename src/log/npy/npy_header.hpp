@@ -24,6 +24,9 @@ struct NpyHeader {
     bool transposed = false;  ///< the file has one row a signal
 };
 
+inline constexpr std::size_t largest_npy_header = std::size_t{1} << 20;
+/// Of records, that are looked at before columns are chosen.
+inline constexpr std::size_t npy_sample_bytes = std::size_t{1} << 16;
 inline constexpr std::string_view npy_magic = "\x93NUMPY";
 
 /// Bytes that the header occupies, from the first 12 bytes of a file; 0 when they are too few or no header.

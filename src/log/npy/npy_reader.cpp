@@ -16,10 +16,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t piece_size = std::size_t{1} << 18;
-constexpr std::size_t largest_header = std::size_t{1} << 20;
-constexpr std::size_t sample_size = std::size_t{1} << 16;
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t npy_piece = std::size_t{1} << 18;
 
 }  // namespace
 
@@ -33,10 +30,11 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> source, std::string first_bytes
             source_->name(), first_bytes.substr(0, 6));
     }
     const std::size_t header_size = npy_header_size(first_bytes);
-    if (header_size <= largest_header) read_up_to(first_bytes, header_size);
+    if (header_size <= largest_npy_header) read_up_to(first_bytes, header_size);
     header_ = parse_npy_header(first_bytes, source_->name());
     if (header_.by_columns || header_.transposed) read_whole(first_bytes);
-    read_up_to(first_bytes, header_.data_offset + std::min(sample_size, header_.rows * header_.record_size));
+    read_up_to(first_bytes,
+               header_.data_offset + std::min(npy_sample_bytes, header_.rows * header_.record_size));
     head_ = first_bytes.substr(0, header_.data_offset);
     carry_ = first_bytes.substr(header_.data_offset);
     if (header_.rows == 0)
@@ -121,7 +119,7 @@ bool NpyReader::fetch(RowBlock& block) {
     block.joints.resize(1 + layout_.others.size());
     std::string& bytes = block.bytes;
     const std::size_t size = header_.record_size, left = header_.rows - fetched_;
-    const std::size_t wanted = std::min(left, std::max<std::size_t>(1, piece_size / size));
+    const std::size_t wanted = std::min(left, std::max<std::size_t>(1, npy_piece / size));
     std::size_t have = unload(bytes, std::max<std::size_t>(1, wanted * size));
     if (left == 0) {
         if (have == 0) have = read_behind(bytes, have, 1);

@@ -11,12 +11,10 @@
 #include "log/containers/stored_array.hpp"
 #include "log/npy/npy_reader.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
-
-constexpr std::size_t sample_size = std::size_t{1} << 16;
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 // Links to other files, arrays of another length: what the names speak of and the records do not hold.
 std::string left_out_of(const std::vector<ContentEntry>& contents) {
@@ -41,7 +39,7 @@ NpyReader::NpyReader(std::unique_ptr<ByteSource> records, RecordTable table, con
     endless_ = !table_.rows;
     header_.rows = table_.rows.value_or(std::numeric_limits<std::size_t>::max());
     // Whole records: of one that was begun, the rest would not fit any more once columns are left out.
-    const std::size_t sample = std::max<std::size_t>(64, sample_size / header_.record_size);
+    const std::size_t sample = std::max<std::size_t>(64, npy_sample_bytes / header_.record_size);
     read_up_to(carry_, std::min(header_.rows, sample) * header_.record_size);
     if (carry_.size() < header_.record_size) {
         if (!carry_.empty()) complain_of_end(carry_.size());

@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t clock_size = sizeof(std::int64_t), buffered = std::size_t{1} << 18;
+constexpr std::size_t clock_size = sizeof(std::int64_t), joined_buffer = std::size_t{1} << 18;
 constexpr double periods_apart = 3.0, least_ns = 1e6;
 
 std::int64_t clock_of(const char* record) {
@@ -105,7 +105,7 @@ class JoinedRecords final : public RecordSource {
     }
     void refill(std::string& bytes) override {
         std::vector<double> values(sides_.size());
-        while (bytes.size() < buffered && next_base()) {
+        while (bytes.size() < joined_buffer && next_base()) {
             bool all = true;
             for (std::size_t s = 0; s < sides_.size(); ++s) {
                 const auto value = sides_[s].at(clock_of(record_.data()));

@@ -12,20 +12,22 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t largest_record = std::size_t{1} << 16;
+constexpr std::size_t largest_raw_record = std::size_t{1} << 16;
 
-struct Type {
+struct RawType {
     std::string_view name;
     char kind;
     std::size_t size;
 };
 constexpr std::array types = {
-    Type{"f4", 'f', 4},     Type{"f8", 'f', 8},      Type{"i1", 'i', 1},    Type{"i2", 'i', 2},
-    Type{"i4", 'i', 4},     Type{"i8", 'i', 8},      Type{"u1", 'u', 1},    Type{"u2", 'u', 2},
-    Type{"u4", 'u', 4},     Type{"u8", 'u', 8},      Type{"float", 'f', 4}, Type{"float32", 'f', 4},
-    Type{"double", 'f', 8}, Type{"float64", 'f', 8}, Type{"int8", 'i', 1},  Type{"int16", 'i', 2},
-    Type{"int32", 'i', 4},  Type{"int64", 'i', 8},   Type{"uint8", 'u', 1}, Type{"uint16", 'u', 2},
-    Type{"uint32", 'u', 4}, Type{"uint64", 'u', 8},
+    RawType{"f4", 'f', 4},     RawType{"f8", 'f', 8},      RawType{"i1", 'i', 1},
+    RawType{"i2", 'i', 2},     RawType{"i4", 'i', 4},      RawType{"i8", 'i', 8},
+    RawType{"u1", 'u', 1},     RawType{"u2", 'u', 2},      RawType{"u4", 'u', 4},
+    RawType{"u8", 'u', 8},     RawType{"float", 'f', 4},   RawType{"float32", 'f', 4},
+    RawType{"double", 'f', 8}, RawType{"float64", 'f', 8}, RawType{"int8", 'i', 1},
+    RawType{"int16", 'i', 2},  RawType{"int32", 'i', 4},   RawType{"int64", 'i', 8},
+    RawType{"uint8", 'u', 1},  RawType{"uint16", 'u', 2},  RawType{"uint32", 'u', 4},
+    RawType{"uint64", 'u', 8},
 };
 
 [[noreturn]] void complain(std::string_view field, std::string_view why) {
@@ -35,7 +37,7 @@ constexpr std::array types = {
         field, why);
 }
 
-double number_of(std::string_view field, std::string_view text) {
+double number_in(std::string_view field, std::string_view text) {
     const auto number = parse_number(text);
     if (!number) complain(field, fmt::format("'{}' is no number", text));
     return *number;
@@ -53,10 +55,10 @@ void read_scale(std::string_view field, std::string_view text, NpyField& into) {
         }
     }
     const std::string_view scale = text.substr(0, std::min(shift, text.size()));
-    if (!scale.empty()) into.scale = number_of(field, scale.substr(1));
+    if (!scale.empty()) into.scale = number_in(field, scale.substr(1));
     if (shift != std::string_view::npos) {
         const std::string_view number = text.substr(text[shift] == '+' ? shift + 1 : shift);
-        into.shift = number_of(field, number);
+        into.shift = number_in(field, number);
     }
 }
 
@@ -83,14 +85,14 @@ RawLayout parse_raw_layout(const std::string& text) {
         }
         const std::string_view word = rest.substr(0, rest.find_first_of("*+-"));
         if (word.starts_with('x')) {
-            const double bytes = word.size() == 1 ? 1.0 : number_of(whole, word.substr(1));
-            if (!(bytes >= 1.0 && bytes <= static_cast<double>(largest_record)))
+            const double bytes = word.size() == 1 ? 1.0 : number_in(whole, word.substr(1));
+            if (!(bytes >= 1.0 && bytes <= static_cast<double>(largest_raw_record)))
                 complain(whole, "skips no bytes");
             layout.record_size += static_cast<std::size_t>(bytes);
             continue;
         }
         const auto type =
-            std::find_if(types.begin(), types.end(), [&](const Type& one) { return one.name == word; });
+            std::find_if(types.begin(), types.end(), [&](const RawType& one) { return one.name == word; });
         if (type == types.end()) complain(whole, fmt::format("'{}' is no type of numbers", word));
         field.kind = type->kind;
         field.size = type->size;
@@ -99,7 +101,7 @@ RawLayout parse_raw_layout(const std::string& text) {
         field.offset = layout.record_size;
         layout.record_size += field.size;
         layout.fields.push_back(field);
-        if (layout.record_size > largest_record) complain(whole, "a record of more than 64 KiB");
+        if (layout.record_size > largest_raw_record) complain(whole, "a record of more than 64 KiB");
     }
     if (layout.fields.empty()) complain(text, "names no numbers");
     return layout;

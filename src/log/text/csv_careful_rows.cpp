@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-std::string shown(std::string_view text) {
+std::string shown_cell(std::string_view text) {
     return text.size() <= 40 ? std::string(text) : std::string(text.substr(0, 37)) + "...";
 }
 
@@ -88,7 +88,7 @@ double CsvReader::read_cell(std::string_view line, const Cell& cell, const Wante
     }
     complain(cell.begin + 1,
              fmt::format("read {} in {}, expected a {}; {}",
-                         text.empty() ? std::string("nothing") : "'" + shown(text) + "'", name,
+                         text.empty() ? std::string("nothing") : "'" + shown_cell(text) + "'", name,
                          stamp && stamp_.text               ? "time of day or a date and time"
                          : number && std::isfinite(*number) ? "number from -1e30 to 1e30"
                          : number                           ? "finite number"

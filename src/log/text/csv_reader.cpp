@@ -17,9 +17,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t piece_size = std::size_t{1} << 17;
+constexpr std::size_t csv_piece = std::size_t{1} << 17;
 constexpr std::size_t sniff_size = std::size_t{1} << 16;
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 // Reads on until `size` bytes are there; true when the source ended before.
 bool read_up_to(ByteSource& source, std::string& bytes, std::size_t size) {
@@ -85,8 +84,8 @@ ColumnFacts CsvReader::facts_of(std::string& opening) {
 
 // At once. A log that was read whole, to see how it is written, needs no more room.
 std::size_t CsvReader::most_to_come() const {
-    if (ahead_at_ < ahead_.size()) return std::min(piece_size, ahead_.size() - ahead_at_);
-    return source_ended_ ? 0 : piece_size;
+    if (ahead_at_ < ahead_.size()) return std::min(csv_piece, ahead_.size() - ahead_at_);
+    return source_ended_ ? 0 : csv_piece;
 }
 
 // What was read ahead first, then the source.

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "log/text/text_cells.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/reading.hpp"
 
@@ -40,8 +41,6 @@ const char* read_short_decimal(const char* at, const char* end, char decimal_mar
     value = negative ? -magnitude : magnitude;
     return at;
 }
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 // A cell that nobody reads is passed on as it is, but for what no text has.
 bool needs_care(char c) { return c == '"' || is_control(c); }

@@ -4,8 +4,6 @@
 namespace ripplenotch {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
 bool is_delimiter(char c, char delimiter) { return delimiter == ' ' ? is_blank(c) : c == delimiter; }
 
 // Blanks around a cell belong to nobody, unless they are the delimiter.

@@ -16,6 +16,8 @@ struct CellRules {
     char decimal_mark = '.';
 };
 
+[[nodiscard]] inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
 /// Content of a cell, without surrounding blanks and quotes, as offsets into the line.
 struct Cell {
     std::size_t begin = 0, end = 0;

@@ -16,7 +16,7 @@ namespace ripplenotch {
 #if defined(RIPPLENOTCH_BYTE_VECTORS)
 namespace {
 
-constexpr std::size_t first_bytes = 512;
+constexpr std::size_t vector_head_bytes = 512;
 constexpr std::size_t bytes_before = 33;  // of a cell's end that the vectors load
 
 /// One stretch on its way into a block.
@@ -147,7 +147,7 @@ class Stretch {
     const RowParser& parser_;
     ParsedRow parsed_;
     const char* text_ = nullptr;
-    std::size_t begin_ = 0, reach_ = first_bytes;
+    std::size_t begin_ = 0, reach_ = vector_head_bytes;
     bool any_odd_ = false;
     Edges edges_;
     std::array<std::int32_t, stretch_bytes> row_ends_;  ///< offsets from text_

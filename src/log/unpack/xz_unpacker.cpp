@@ -59,15 +59,16 @@ class XzUnpacker final : public Unpacker {
     bool complete_ = false;
 };
 
-constexpr std::string_view magic(
+constexpr std::string_view xz_magic(
     "\xfd"
     "7zXZ\0",
     6);
 
 }  // namespace
 
-const Packing packings::xz{
-    "xz", magic, "xzcat", {}, []() -> std::unique_ptr<Unpacker> { return std::make_unique<XzUnpacker>(); }};
+const Packing packings::xz{"xz", xz_magic, "xzcat", {}, []() -> std::unique_ptr<Unpacker> {
+                               return std::make_unique<XzUnpacker>();
+                           }};
 
 }  // namespace ripplenotch
 #else

@@ -110,7 +110,7 @@ class Outliers {
             std::vector<double> part;
             for (std::size_t k = first; k < std::min(first + block, off.size()); ++k)
                 if (log_.use[k] != 0) part.push_back(std::abs(off[k]));
-            blocks.push_back(1.4826 * median_of(part));
+            blocks.push_back(deviations_of_median * median_of(part));
         }
         std::vector<double> typical(off.size());
         for (std::size_t k = 0; k < off.size(); ++k) {

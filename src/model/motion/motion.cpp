@@ -14,7 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr const MotionKind* const list[] = {
+constexpr const MotionKind* const all_motions[] = {
 #define MOTION(name) &motions::name,
 #include "model/motions/motions.def"
 #undef MOTION
@@ -64,7 +64,7 @@ void sample(const Placed& placed, std::size_t end, Motion& motion) {
 
 }  // namespace
 
-std::span<const MotionKind* const> motion_kinds() { return list; }
+std::span<const MotionKind* const> motion_kinds() { return all_motions; }
 
 const MotionKind& find_motion_kind(std::string_view name) {
     std::vector<std::string> known;

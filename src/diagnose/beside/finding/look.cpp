@@ -19,7 +19,7 @@
 namespace ripplenotch {
 namespace {
 
-Finding finding_of(const Lens& lens, BesideFinding found) {
+Finding finding_beside(const Lens& lens, BesideFinding found) {
     Finding finding;
     finding.term = found.shape.term;
     finding.status = found.status;
@@ -49,7 +49,7 @@ void set_values(Finding& finding, const BesideValues& values) {
 }
 
 // Where its torque acts along the log, and how large that is.
-void measure(Finding& finding, const Lens& lens, const std::vector<double>& torque_nm) {
+void measure_torque(Finding& finding, const Lens& lens, const std::vector<double>& torque_nm) {
     const Case& c = lens.looked_at();
     finding.where = place_of(c, torque_nm, finding.term, lens.rules().place);
     double sum = 0.0, square = 0.0;
@@ -137,7 +137,7 @@ Finding ringing_finding(Look& look, const BesideFinding& found, const BesideValu
     own.price = price_of_ringing(look.sums, names[place], catalogue().size());
     own.decisions.clear();
     own.rival.reset();
-    Finding finding = finding_of(lens, own);
+    Finding finding = finding_beside(lens, own);
     finding.term = *values.ringing;
     finding.values = values.ringing_values;
     if (found.status == FindingStatus::confirmed && is_resonance(lens, found.shape, values)) return finding;
@@ -180,7 +180,7 @@ void adopt_offset(BesideOutcome& outcome, Finding finding, const Look& look, con
     double& value = *finding.term.values.front();
     value += std::exchange(outcome.given_values[place], 0.0);
     finding.values.front().value = value;
-    measure(finding, look.lens, Prediction(beside, look.lens.looked_at().motion).added(finding.term));
+    measure_torque(finding, look.lens, Prediction(beside, look.lens.looked_at().motion).added(finding.term));
     finding.evidence.share_nm = finding.evidence.own_nm;
     outcome.believed.push_back(finding.term);
     outcome.findings.push_back(std::move(finding));
@@ -217,10 +217,10 @@ BesideOutcome outcome_of(Look& look, const GivenCase& log, const Candidate& mode
         const BesideValues values =
             stays ? believed.values[static_cast<std::size_t>(place - believed.place.begin())]
                   : values_beside(look.sums, {found.shape})[0];
-        Finding finding = finding_of(look.lens, found);
+        Finding finding = finding_beside(look.lens, found);
         set_values(finding, values);
         const std::vector<double> torque_nm = torque_of(values, model.stated, motion);
-        measure(finding, look.lens, torque_nm);
+        measure_torque(finding, look.lens, torque_nm);
         if (look.other[i].without_nm > 0.0) {
             finding.validation_before_nm = look.other[i].without_nm;
             finding.validation_after_nm = look.other[i].with_nm;
@@ -234,7 +234,7 @@ BesideOutcome outcome_of(Look& look, const GivenCase& log, const Candidate& mode
         Finding ringing = ringing_finding(look, found, values);
         std::vector<double> more_nm = Prediction(model.stated, motion).added(values.term);
         for (std::size_t k = 0; k < more_nm.size(); ++k) more_nm[k] = torque_nm[k] - more_nm[k];
-        measure(ringing, look.lens, more_nm);
+        measure_torque(ringing, look.lens, more_nm);
         outcome.believed.push_back(ringing.term);
         outcome.findings.push_back(std::move(ringing));
     }
@@ -249,7 +249,7 @@ BesideOutcome outcome_of(Look& look, const GivenCase& log, const Candidate& mode
     outcome.given_values = look.lens.plain_values(explained_nm);
     outcome.given_values.resize(look.lens.columns().stated);
     if (offset) {
-        Finding finding = finding_of(look.lens, offset->finding);
+        Finding finding = finding_beside(look.lens, offset->finding);
         set_values(finding, offset->values);
         adopt_offset(outcome, std::move(finding), look, model.stated);
     }

@@ -26,7 +26,7 @@ double square_of(const std::vector<double>& values) {
 }
 
 // Effects of the sensor that are examined, the delay first: it has no rival when the torque is early.
-std::vector<const Effect*> sensors_of(std::span<const Effect* const> examined) {
+std::vector<const Effect*> sensors_among(std::span<const Effect* const> examined) {
     std::vector<const Effect*> sensors;
     for (const Effect* effect : examined) {
         if (effect->side == Side::sensor && effect->parameters.size() == 1) sensors.push_back(effect);
@@ -152,7 +152,7 @@ double uneven(const Tuned& tuned, const Lens& lens) {
 
 // The other effect of the sensor that might do as well; a torque that is early has none.
 const Effect* rival_of(const Term& sensor, std::span<const Effect* const> examined) {
-    for (const Effect* effect : sensors_of(examined)) {
+    for (const Effect* effect : sensors_among(examined)) {
         if (effect != sensor.effect && *sensor.values[0] > effect->parameters[0].lower) return effect;
     }
     return nullptr;
@@ -210,7 +210,7 @@ Candidate with_sensor(const Candidate& model, const Term& sensor) {
 
 std::optional<Term> suspected_sensor(const Unsensed& plain, std::span<const Effect* const> examined,
                                      std::size_t effects) {
-    const auto sensors = sensors_of(examined);
+    const auto sensors = sensors_among(examined);
     if (sensors.empty() || has_sensors(plain.model.stated)) return std::nullopt;
     const Effect& delay = *sensors.front();
     if (delay.parameters[0].tried.empty() || delay.parameters[0].lower >= 0.0) return std::nullopt;

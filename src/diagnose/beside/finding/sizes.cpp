@@ -179,7 +179,7 @@ void tell_scales(BesideValues& told_values, const Shape& shape, std::size_t plac
     }
 }
 
-void put_in_order(std::vector<FittedValue>& values) {
+void put_values_in_order(std::vector<FittedValue>& values) {
     std::sort(values.begin(), values.end(),
               [](const FittedValue& a, const FittedValue& b) { return a.parameter < b.parameter; });
 }
@@ -220,8 +220,8 @@ std::vector<BesideValues> values_beside(Sums& sums, const std::vector<Shape>& be
             }
         }
         tell_scales(told_values, shape, place, sized, columns);
-        put_in_order(told_values.values);
-        put_in_order(told_values.ringing_values);
+        put_values_in_order(told_values.values);
+        put_values_in_order(told_values.ringing_values);
         told_all.push_back(std::move(told_values));
         size += static_cast<std::size_t>(columns);
     }
