@@ -29,7 +29,7 @@
 namespace ripplenotch {
 namespace {
 
-using Words = std::vector<std::string>;
+using CommandWords = std::vector<std::string>;
 
 ExitCode complain(ExitCode code, std::string_view command, std::string_view message) {
     talk(fmt::format("{}{}{}: {}", tool_name, command.empty() ? "" : " ", command, message));
@@ -60,7 +60,7 @@ ExitCode complain_unknown_command(const std::string& word) {
 
 // CLI11 checks that required arguments are there before it looks at unknown options, and would answer a
 // mistyped option with "LOG is required".
-std::optional<std::string> unknown_option(const CLI::App& command, const Words& words) {
+std::optional<std::string> unknown_option(const CLI::App& command, const CommandWords& words) {
     for (const std::string& word : words) {
         if (word == "--") break;
         const std::string name = word.substr(0, word.find('='));
@@ -98,7 +98,7 @@ struct Declared {
 };
 
 // "help identify" and "version", as people type them elsewhere.
-Words in_our_words(Words words) {
+CommandWords in_our_words(CommandWords words) {
     if (words.empty() || is_command(words.front())) return words;
     if (words.front() == "version") words.front() = "--version";
     if (words.front() != "help") return words;
@@ -108,7 +108,7 @@ Words in_our_words(Words words) {
 }
 
 // "--generate man": what is asked for; it needs the options of all commands.
-std::optional<std::string> kind_to_generate(const Words& words) {
+std::optional<std::string> kind_to_generate(const CommandWords& words) {
     constexpr std::string_view option = "--generate";
     if (words.size() == 2 && words.front() == option) return words.back();
     if (words.size() == 1 && words.front().starts_with(fmt::format("{}=", option)))
@@ -129,7 +129,7 @@ void declare_program(CLI::App& app) {
 }
 
 // The options of all commands, or of those that the words name.
-void declare(CLI::App& app, const Words& words, bool all, std::string& running, Declared& declared) {
+void declare(CLI::App& app, const CommandWords& words, bool all, std::string& running, Declared& declared) {
     const bool named_first = !words.empty() && is_command(words.front());
     for (const Command* command : all_commands()) {
         // Declaring the options of every command takes longer than filtering ten thousand rows.
@@ -158,7 +158,7 @@ void check_environment() {
 }
 
 // Throws what goes wrong, in declaring options too: which names clash depends on the version of the library.
-ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
+ExitCode parse_and_work(CLI::App& app, CommandWords words, std::string& running) {
     words = in_our_words(std::move(words));
     declare_program(app);
     const auto kind = kind_to_generate(words);
@@ -183,7 +183,7 @@ ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
         }
     }
     try {
-        app.parse(Words(words.rbegin(), words.rend()));  // the library wants the last word first
+        app.parse(CommandWords(words.rbegin(), words.rend()));  // the library wants the last word first
     } catch (const CLI::ArgumentMismatch&) {
         const auto twice = named_first ? given_twice(*app.get_subcommand(running)) : std::nullopt;
         if (!twice) throw;
@@ -198,7 +198,7 @@ ExitCode parse_and_work(CLI::App& app, Words words, std::string& running) {
     return declared.work();
 }
 
-ExitCode run(const Words& words) {
+ExitCode run(const CommandWords& words) {
     std::string running;
     try {
         CLI::App app("Torque ripple of harmonic drives in joint logs: find it, filter it, measure the cost.",

@@ -87,7 +87,7 @@ void tell_places(Diagnosis& diagnosis, std::size_t own) {
 }
 
 // Beside a leftover the sandwich's errors are too small by themselves.
-void widen(FittedValue& value, double times) {
+void widen_values(FittedValue& value, double times) {
     if (!value.ci95) return;
     const double middle = 0.5 * (value.ci95->low + value.ci95->high);
     value.ci95->low = middle + times * (value.ci95->low - middle);
@@ -217,7 +217,7 @@ class GivenDiagnosis {
         told_.values = with_errors.values;
         span_fits(told_.values, fitted_beside_frictions(last, bench));
         for (FittedValue& value : told_.values) {
-            widen(value, rules_.beside.interval_factor);
+            widen_values(value, rules_.beside.interval_factor);
             const bool of_friction = value.term < model_.terms.size() &&
                                      model_.terms[value.term].effect->resists && value.parameter == 0;
             if (of_friction && (!is_scale_told(told_.given) || is_bent(told_.values, value.term)))

@@ -86,22 +86,6 @@ std::vector<Log> read_all_joints(LogReader& reader, const ReadOptions& options) 
     return read_all_joints(reader, options, all_rows);
 }
 
-// Each joint by itself, as `read` reads it.
-template <class Read>
-std::vector<Log> joint_by_joint(const Spool& spool, const ReadOptions& options, const Read& read) {
-    const std::vector<std::string> joints = joint_names(spool, options);
-    std::vector<Log> logs;
-    ReadOptions one = options;
-    for (const std::string& joint : joints) {
-        one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
-        logs.push_back(read(one));
-    }
-    if (!logs.empty()) return logs;
-    one.joint.reset();
-    logs.push_back(read(one));
-    return logs;
-}
-
 // By the size of the file and of its first rows. Where it is wrong, the log is read once more.
 bool looks_longer(const Spool& spool, const ReadOptions& options, std::size_t rows) {
     constexpr double margin = 1.2;
@@ -178,12 +162,6 @@ std::vector<std::string> joint_names(const Spool& log, ReadOptions options) {
     return open_log(log.open(), options)->layout().joints;
 }
 
-std::vector<Log> read_joints(const std::string& path, const ReadOptions& options) {
-    const Spool spool(path);
-    return joint_by_joint(spool, options,
-                          [&](const ReadOptions& one) { return read_log(spool.open(), one); });
-}
-
 Log read_log_in_part(const std::string& path, const ReadOptions& options, std::size_t most_rows) {
     return in_part(std::make_shared<const Spool>(path), options, most_rows);
 }
@@ -191,8 +169,16 @@ Log read_log_in_part(const std::string& path, const ReadOptions& options, std::s
 std::vector<Log> read_joints_in_part(const std::string& path, const ReadOptions& options,
                                      std::size_t most_rows) {
     const auto spool = std::make_shared<const Spool>(path);
-    return joint_by_joint(*spool, options,
-                          [&](const ReadOptions& one) { return in_part(spool, one, most_rows); });
+    std::vector<Log> logs;
+    ReadOptions one = options;
+    for (const std::string& joint : joint_names(*spool, options)) {
+        one.joint = joint.empty() ? std::nullopt : std::optional<std::string>(joint);
+        logs.push_back(in_part(spool, one, most_rows));
+    }
+    if (!logs.empty()) return logs;
+    one.joint.reset();
+    logs.push_back(in_part(spool, one, most_rows));
+    return logs;
 }
 
 }  // namespace ripplenotch

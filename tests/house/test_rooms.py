@@ -148,22 +148,49 @@ def names_unnamed_in(text):
     return names
 
 
+def names_declared_in(text):
+    """Types, functions and values that a header declares at the level of a namespace."""
+    for line in text.split("\n"):
+        line = re.sub(r"^(?:\[\[nodiscard\]\] |inline |constexpr |extern |template <.*?> |const )*", "", line)
+        if line.startswith(("template", "namespace", "using namespace")):
+            continue
+        if found := re.match(r"(?:struct|class|enum(?: class)?) (\w+)|using (\w+) =|[\w:][\w:<>,&*\[\] ]*?[ &*](\w+)\(|[\w:<>]+ (\w+)(?:\[\w*\])? ?[={;]", line):
+            yield next(filter(None, found.groups()))
+
+
 class Together(unittest.TestCase):
     """Files of a room are compiled together (docs/decisions/0023-compiling-together.md)."""
 
-    def test_no_two_of_them_have_one_name_for_two_things(self):
-        # The compiler sees most of these; of functions that differ in what they take it would choose one.
+    def setUp(self):
         lists = (SOURCE / "src/CMakeLists.txt").read_text()
         alone = re.findall(r'"(\^[^"]*)"', re.search(r"^set\(alone ([^#]*?)\)\n", lists, re.M)[1])
         self.assertGreater(len(alone), 1)
-        found = {}
+        self.found = {}
         for path in sorted((SOURCE / "src").rglob("*.cpp")):
             name = str(path.relative_to(SOURCE / "src"))
             if not any(re.match(place, name) for place in alone):
                 for one in names_unnamed_in(path.read_text()):
-                    found.setdefault((name.split("/")[0], one), []).append(name)
-        self.assertGreater(len(found), 1500)
-        self.assertEqual({name: files for name, files in found.items() if len(files) > 1}, {})
+                    self.found.setdefault((name.split("/")[0], one), []).append(name)
+        self.assertGreater(len(self.found), 1500)
+
+    def test_no_two_of_them_have_one_name_for_two_things(self):
+        # The compiler sees most of these; of functions that differ in what they take it would choose one.
+        self.assertEqual({name: files for name, files in self.found.items() if len(files) > 1}, {})
+
+    def test_none_hides_from_its_neighbours_what_a_header_that_they_may_include_declares(self):
+        declared = 0
+        for path, of, _ in sources():
+            if path.suffix != ".hpp":
+                continue
+            private = path.is_relative_to(SOURCE / "src")
+            header = str(path.relative_to(SOURCE / "src")) if private else ""
+            for name in names_declared_in(path.read_text()):
+                declared += 1
+                for room in SEES:
+                    sees = of == room or of in SEES[room] and (not private or private_door(header, room))
+                    if sees and (room, name) in self.found:
+                        self.fail(f"{self.found[room, name][0]} hides {name} of {path.relative_to(SOURCE)}")
+        self.assertGreater(declared, 1500)
 
     def test_a_name_is_seen_whatever_it_names(self):
         text = "\nnamespace {\n\nstruct A {\n    int no;\n};\nusing B = A;\nconstexpr double c = 1.0, d = 2.0;\n" \

@@ -31,7 +31,7 @@ std::string rows() {
 TEST_CASE("joints read at once are the joints read one by one", "[log]") {
     const TemporaryPath path;
     std::ofstream(path.string()) << rows();
-    const auto one = read_joints(path.string(), {}), all = read_joints_at_once(path.string(), {});
+    const auto one = read_joints_in_part(path.string(), {}), all = read_joints_at_once(path.string(), {});
     REQUIRE(one.size() == 2);
     REQUIRE(all.size() == 2);
     for (std::size_t j = 0; j < 2; ++j) {

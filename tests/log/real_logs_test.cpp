@@ -55,7 +55,7 @@ TEST_CASE("real: the Panda's clock jitters, its samples are held, and its units 
 TEST_CASE("real: six joints of a KUKA in one wide file, each with a right clock", "[log][real]") {
     for (const std::string name : {"kuka_kr300_trajA_all.csv", "kuka_kr300_trajB_all.csv"}) {
         if (absent(name)) return;
-        const auto logs = read_joints(folder + "/" + name, {});
+        const auto logs = read_joints_in_part(folder + "/" + name, {});
         REQUIRE(logs.size() == 6);
         for (const Log& log : logs) {
             CHECK(log.trace.size() == 2501);
@@ -70,7 +70,7 @@ TEST_CASE("real: six joints of a KUKA in one wide file, each with a right clock"
 TEST_CASE("real: joints with names, effort for torque", "[log][real]") {
     const std::string name = "ur10_unisa_exciting_all.csv";
     if (absent(name)) return;
-    const auto logs = read_joints(folder + "/" + name, {});
+    const auto logs = read_joints_in_part(folder + "/" + name, {});
     REQUIRE(logs.size() == 6);
     CHECK(logs[0].trace.joint == "shoulder_pan_joint");
     CHECK(logs[5].trace.joint == "wrist_3_joint");

@@ -60,9 +60,11 @@ inline constexpr std::size_t fewest_map_windows = 12;
 /// judged on the blocks that were left out of its fit; a richer one is taken where it leaves less there by
 /// more than chance. An order comes into the map where that leaves less than no map by more than chance.
 /// Angles count from `zero_deg`. Logs without a position have none to count from: throws DataError for
-/// several of them. Throws UsageError for no log.
+/// several of them. Throws UsageError for no log. `temperatures_degc`: the joint's temperature at each row of
+/// each log, which enters where it pays; or nothing.
 [[nodiscard]] MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear,
-                                    double zero_deg = 0.0);
+                                    double zero_deg = 0.0,
+                                    std::span<const std::vector<double>> temperatures_degc = {});
 
 /// "by speed (3) and direction, with 2 harmonics of the joint's turn"
 [[nodiscard]] std::string map_form_words(const MapForm& form);

@@ -65,8 +65,8 @@ inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 /// The names of a log's joints: "" for one that has no name.
 [[nodiscard]] std::vector<std::string> joint_names(const Spool& log, ReadOptions options);
 
-/// Reads everything. With options.joint "all" use read_joints. Throws what open_log throws, and DataError
-/// where options.needs_torque and the clock is of no use (ClockFacts::refusal).
+/// Reads everything. With options.joint "all" use read_joints_in_part. Throws what open_log throws, and
+/// DataError where options.needs_torque and the clock is of no use (ClockFacts::refusal).
 [[nodiscard]] Log read_log(const std::string& path, const ReadOptions& options);
 [[nodiscard]] Log read_log(std::unique_ptr<ByteSource> source, const ReadOptions& options);
 [[nodiscard]] Log read_log(LogReader& reader, const ReadOptions& options);
@@ -81,8 +81,5 @@ inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 [[nodiscard]] std::vector<Log> read_joints_at_once_in_part(const std::string& path,
                                                            const ReadOptions& options,
                                                            std::size_t most_rows = most_rows_held);
-
-/// One Log per joint of the file (only those with a velocity or position and a torque).
-[[nodiscard]] std::vector<Log> read_joints(const std::string& path, const ReadOptions& options);
 
 }  // namespace ripplenotch

@@ -50,7 +50,7 @@ std::vector<Witness> witnesses_of(std::span<const Sweep> sweeps, const Stack& an
     return witnesses;
 }
 
-double gain_of(std::span<const Witness> witnesses, double order) {
+double gain_of_comb(std::span<const Witness> witnesses, double order) {
     double most = 0.0, gain = 0.0;
     for (const Witness& witness : witnesses) {
         const double weight = witness.sweep->effective_samples();
@@ -67,12 +67,12 @@ Fold best_between(std::span<const Witness> witnesses, double from, double to, do
     step = std::max(step, (to - from) / most_grid);
     Fold best{0.5 * (from + to), -1e300};
     for (double at = std::max(from, step); at <= to; at += step) {
-        const double gain = gain_of(witnesses, at);
+        const double gain = gain_of_comb(witnesses, at);
         if (gain > best.gain) best = {at, gain};
     }
     for (double reach = step / 2.0; reach > step / 200.0; reach /= 2.0) {
         for (const double at : {best.order_output - reach, best.order_output + reach}) {
-            const double gain = gain_of(witnesses, at);
+            const double gain = gain_of_comb(witnesses, at);
             if (gain > best.gain) best = {at, gain};
         }
     }

@@ -25,7 +25,7 @@ constexpr double reversal_turns = 0.25;  ///< back from the furthest angle by mo
 constexpr std::size_t parts_of_window = 16;     ///< in each of which the speed counts as constant
 constexpr std::size_t most_values_kept = 4096;  ///< values kept for the median
 
-double spread(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
+double peak_to_peak_of(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
 }  // namespace
 
@@ -199,8 +199,8 @@ void RippleMeter::State::measure(std::size_t rows, RippleSums& into) const {
         const Eigen::VectorXd ripple = basis.rightCols(columns - window_trend_terms) *
                                        fitted.col(column).tail(columns - window_trend_terms);
         into.residual_squared[j] += detrended.squaredNorm();
-        into.peak_to_peak[j].add(spread(detrended));
-        into.ripple_peak_to_peak[j] = std::max(into.ripple_peak_to_peak[j], spread(ripple));
+        into.peak_to_peak[j].add(peak_to_peak_of(detrended));
+        into.ripple_peak_to_peak[j] = std::max(into.ripple_peak_to_peak[j], peak_to_peak_of(ripple));
     }
     if (gains) expect_in(rows, into);
     into.turns += turned_by;

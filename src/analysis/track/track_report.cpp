@@ -14,7 +14,7 @@ namespace ripplenotch {
 namespace {
 
 // Six significant digits, and no negative zero: more would be rounding noise of the fit.
-std::vector<double> rounded(std::vector<double> values, double factor) {
+std::vector<double> rounded_to_factor(std::vector<double> values, double factor) {
     for (double& value : values) {
         if (std::isfinite(value)) value = *parse_number(fmt::format("{:.6g}", factor * value)) + 0.0;
     }
@@ -107,25 +107,28 @@ std::vector<TrackColumn> track_columns(const TrackReport& report) {
     const double factor = amplitude_factor(report.kind);
     std::vector<TrackColumn> columns;
     if (report.by_speed) {
-        columns.push_back({"speed_deg_s", rounded(report.by_speed->speed_deg_s, 1.0)});
+        columns.push_back({"speed_deg_s", rounded_to_factor(report.by_speed->speed_deg_s, 1.0)});
         columns.push_back({"rows", as_numbers(report.by_speed->rows)});
     } else {
         columns.push_back({"time_s", report.tracks.time_s});
         // Time may be large: microseconds, not digits.
         for (double& time : columns.back().values) time = std::round(time * 1e6) / 1e6 + 0.0;
-        columns.push_back({"speed_deg_s", rounded(report.tracks.speed_deg_s, 1.0)});
+        columns.push_back({"speed_deg_s", rounded_to_factor(report.tracks.speed_deg_s, 1.0)});
     }
     for (std::size_t i = 0; i < report.labels.size(); ++i) {
         const std::string prefix = report.labels[i].column() + "_";
-        columns.push_back(
-            {prefix + std::string(amplitude_name(report.kind)), rounded(amplitudes(report, i), factor)});
+        columns.push_back({prefix + std::string(amplitude_name(report.kind)),
+                           rounded_to_factor(amplitudes(report, i), factor)});
         if (report.by_speed) {
-            columns.push_back({prefix + "phase_deg", rounded(report.by_speed->lines[i].phase_deg, 1.0)});
-            columns.push_back({prefix + "spread_nm", rounded(report.by_speed->lines[i].spread_nm, factor)});
-        } else {
-            columns.push_back({prefix + "phase_deg", rounded(report.tracks.lines[i].phase_deg, 1.0)});
             columns.push_back(
-                {prefix + "standard_error_nm", rounded(report.tracks.lines[i].standard_error_nm, factor)});
+                {prefix + "phase_deg", rounded_to_factor(report.by_speed->lines[i].phase_deg, 1.0)});
+            columns.push_back(
+                {prefix + "spread_nm", rounded_to_factor(report.by_speed->lines[i].spread_nm, factor)});
+        } else {
+            columns.push_back(
+                {prefix + "phase_deg", rounded_to_factor(report.tracks.lines[i].phase_deg, 1.0)});
+            columns.push_back({prefix + "standard_error_nm",
+                               rounded_to_factor(report.tracks.lines[i].standard_error_nm, factor)});
         }
     }
     return columns;

@@ -57,7 +57,7 @@ std::string form_of(const DesignRequest& request) {
 }
 
 // Limits that the caller set: what breaks them is said, and the table is written all the same.
-std::vector<std::string> violations(const DesignRequest& request, const CandidateTable& table) {
+std::vector<std::string> violations_of(const DesignRequest& request, const CandidateTable& table) {
     std::vector<std::string> sentences;
     if (!request.only_checks()) return sentences;
     for (const Band& band : table.bands()) {
@@ -146,7 +146,7 @@ ExitCode run_design(const DesignRequest& request, const std::string& command_lin
                                              : table_to_text(drawn.table, drawn.note);
     write_text(request.common.output, text, request.common.overwrite());
     draw_plot(request.plot, request.common, provenance, [&] { return table_figure(drawn.table); });
-    const auto broken = violations(request, drawn.table);
+    const auto broken = violations_of(request, drawn.table);
     say_warnings(request.common, broken);
     return broken.empty() ? ExitCode::done : ExitCode::limit_violated;
 }

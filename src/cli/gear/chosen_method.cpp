@@ -29,7 +29,7 @@ auto entry_of(Spec& spec, std::string_view key) {
 
 bool given(Spec& spec, std::string_view key) { return entry_of(spec, key) != spec.values.end(); }
 
-void fill(Spec& spec, const Method& method, std::string_view key, const std::vector<double>& values) {
+void fill_in(Spec& spec, const Method& method, std::string_view key, const std::vector<double>& values) {
     if (values.empty() || !has_key(method, key) || given(spec, key)) return;
     std::string text;
     for (const double value : values) text += (text.empty() ? "" : ":") + shortest(value);
@@ -37,13 +37,13 @@ void fill(Spec& spec, const Method& method, std::string_view key, const std::vec
 }
 
 void fill_gear(Spec& spec, const Method& method, const GearAccount& gear) {
-    fill(spec, method, "gear-ratio", {gear.ratio.value()});
+    fill_in(spec, method, "gear-ratio", {gear.ratio.value()});
     if (given(spec, "orders")) return;  // amplitudes and phases would be those of other orders
     std::vector<double> orders;
     for (const Order order : gear.orders) orders.push_back(order.value());
-    fill(spec, method, "orders", orders);
-    fill(spec, method, "amplitudes", gear.amplitude_nm);
-    fill(spec, method, "phases", gear.phase_deg);
+    fill_in(spec, method, "orders", orders);
+    fill_in(spec, method, "amplitudes", gear.amplitude_nm);
+    fill_in(spec, method, "phases", gear.phase_deg);
 }
 
 void refuse_other_map(const std::string& method, const std::string& path, const std::string& of_map,

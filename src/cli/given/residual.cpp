@@ -21,8 +21,8 @@ ModelWithGiven residual_model(const ResidualOptions& residual, const std::string
     return read_model_with_given(read_all(path), path == "-" ? "standard input" : path);
 }
 
-std::vector<double> predicted_nm(const ResidualOptions& residual, const ModelWithGiven& model,
-                                 const ReadOptions& reading, const GivenLog& log) {
+std::vector<double> predicted_torque(const ResidualOptions& residual, const ModelWithGiven& model,
+                                     const ReadOptions& reading, const GivenLog& log) {
     GivenOptions options;
     if (residual.simulated) options.simulated = with_joint(*residual.simulated, log.log.trace.joint);
     std::vector<GivenTerm> terms;
@@ -62,7 +62,7 @@ void take_residual(const ResidualOptions& residual, ReadOptions reading, std::si
     const ModelWithGiven model = residual_model(residual, log.log.trace.joint);
     if (residual.model && *residual.model != "-")
         provenance.inputs.push_back(input_record(with_joint(*residual.model, log.log.trace.joint)));
-    const std::vector<double> predicted = predicted_nm(residual, model, reading, log);
+    const std::vector<double> predicted = predicted_torque(residual, model, reading, log);
     std::vector<double>& torque_nm = log.log.trace.torque_nm;
     const double before_nm = rms(torque_nm);
     for (std::size_t k = 0; k < torque_nm.size(); ++k) torque_nm[k] -= predicted[k];

@@ -45,7 +45,7 @@ std::string first_sentence(const LogInfo& log) {
 }
 
 // Times are written with so many digits that rounding them looks like jitter.
-double rounded(Seconds jitter, Seconds step) {
+double rounded_jitter(Seconds jitter, Seconds step) {
     return jitter.value() < 1e-5 * step.value() ? 0.0 : jitter.value();
 }
 
@@ -60,7 +60,7 @@ std::string clock_text(const LogInfo& log) {
     text += fmt::format("{:.6g} Hz in the mean; step {} ms in the median, {} to {} ms; jitter {} ms rms; ",
                         mean, figure(1e3 * clock.usual_step.value()),
                         figure(1e3 * clock.shortest_step.value()), figure(1e3 * clock.longest_step.value()),
-                        figure(1e3 * rounded(clock.jitter, clock.usual_step)));
+                        figure(1e3 * rounded_jitter(clock.jitter, clock.usual_step)));
     text += clock.gap_count == 0 ? "no gap" : how_many(clock.gap_count, "gap");
     if (!clock.rate_changes.empty()) {
         text += "; " + how_many(clock.rate_changes.size(), "change of rate", "changes of rate");
@@ -73,7 +73,7 @@ std::string clock_factor_text(const std::optional<double>& factor) {
     return factor ? fmt::format("{:.4f}", *factor) : "-";
 }
 
-std::string joints_table(const LogInfo& log) {
+std::string joints_in_log(const LogInfo& log) {
     std::vector<std::vector<std::string>> rows = {
         {"joint", "speed deg/s", "torque Nm", "turns", "steady", "held", "position/velocity"}};
     for (const JointInfo& joint : log.joints) {
@@ -138,7 +138,7 @@ std::string info_to_text(const LogInfo& log) {
                         log.joints.size() > 1 ? ", and the other joints alike" : "");
     if (log.bad_values_held > 0)
         text += fmt::format("held      {} bad values replaced by the value before\n", log.bad_values_held);
-    text += '\n' + joints_table(log);
+    text += '\n' + joints_in_log(log);
     text += '\n' + columns_table(log);
     if (!log.layout.contents.empty()) text += contents_table(log);
     text += "\ngood for\n";

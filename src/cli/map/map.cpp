@@ -18,7 +18,7 @@
 #include "ripplenotch/chart/map_figure.hpp"
 #include "ripplenotch/core/version.hpp"
 #include "ripplenotch/document/map_json.hpp"
-#include "ripplenotch/filter/warm_map_fit.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/log/log.hpp"
 
 namespace ripplenotch {
@@ -71,7 +71,7 @@ MapFit fitted_map(const Read& read, const OtherReading& reading, const MapReques
     for (const Log& log : read.logs) traces.push_back(read_otherwise(log.trace, reading));
     std::vector<TraceView> views;
     for (const Trace& trace : traces) views.push_back(trace.view());
-    return fit_warm_ripple_map(views, gear, request.zero.value(), read.temperatures_degc);
+    return fit_ripple_map(views, gear, request.zero.value(), read.temperatures_degc);
 }
 
 // A reading under which something turns with the motor is confirmed by that; where two have it, or none of

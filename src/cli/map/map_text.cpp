@@ -17,7 +17,7 @@ namespace {
 
 using MapRows = std::vector<std::vector<std::string>>;
 
-std::string whole(double value) { return fmt::format("{:.0f}", std::round(value) + 0.0); }
+std::string without_decimals(double value) { return fmt::format("{:.0f}", std::round(value) + 0.0); }
 
 std::string decibels(double from_nm, double to_nm) {
     if (!(from_nm > 0.0 && to_nm > 0.0)) return "-";
@@ -29,13 +29,14 @@ MapRows scores_of(const MapFit& fit) {
     for (const MapOrderScore& score : fit.scores) {
         rows.push_back({shortest(score.order), fmt::format("{:.3f}", score.ripple_nm),
                         fmt::format("{:.3f}", score.left_nm), decibels(score.ripple_nm, score.left_nm),
-                        decibels(score.ripple_nm, score.noise_nm), whole(100.0 * score.predicted_share),
+                        decibels(score.ripple_nm, score.noise_nm),
+                        without_decimals(100.0 * score.predicted_share),
                         score.in_map ? "" : "follows no map"});
     }
     return rows;
 }
 
-MapRows values_of(const MapFit& fit) {
+MapRows map_values(const MapFit& fit) {
     MapRows rows = {{"order", "at", "cosine Nm", "+/-", "sine Nm", "+/-", "amplitude Nm", "phase deg"}};
     for (std::size_t i = 0; i < fit.map.orders.size(); ++i) {
         for (std::size_t c = 0; c < fit.map.values[i].size(); ++c) {
@@ -44,7 +45,7 @@ MapRows values_of(const MapFit& fit) {
                             rounded(z.real(), 3), fmt::format("{:.3f}", error.real()), rounded(z.imag(), 3),
                             fmt::format("{:.3f}", error.imag()),
                             fmt::format("{:.3f}", portable::hypot(z.real(), z.imag())),
-                            whole(-portable::arg(z) * degrees_per_radian)});
+                            without_decimals(-portable::arg(z) * degrees_per_radian)});
         }
     }
     return rows;
@@ -54,8 +55,9 @@ MapRows agreement_of(const MapFit& fit, const std::vector<std::string>& logs) {
     MapRows rows = {{"order", "times as large", "+/-", "deg ahead", "+/-", "", "log"}};
     for (const MapAgreement& one : fit.agreement) {
         rows.push_back({shortest(one.order), fmt::format("{:.2f}", one.amplitude_ratio),
-                        fmt::format("{:.2f}", normal_95_errors * one.amplitude_error), whole(one.phase_deg),
-                        whole(std::min(normal_95_errors * one.phase_error_deg, 180.0)),
+                        fmt::format("{:.2f}", normal_95_errors * one.amplitude_error),
+                        without_decimals(one.phase_deg),
+                        without_decimals(std::min(normal_95_errors * one.phase_error_deg, 180.0)),
                         one.agrees ? "" : "disagrees",
                         one.log < logs.size() ? logs[one.log] : fmt::format("log {}", one.log + 1)});
     }
@@ -73,7 +75,7 @@ std::string map_report(const MapFit& fit, const std::vector<std::string>& logs) 
     }
     if (fit.finding == MapFinding::mapped) {
         text += "\nripple = cosine cos(order motor angle) + sine sin(order motor angle), 95 % intervals\n";
-        text += text_table(values_of(fit), "rlrrrrrr");
+        text += text_table(map_values(fit), "rlrrrrrr");
         text += fmt::format(
             "\nseen: {:.3g} to {:.3g} deg/s, joint at {:.4g} to {:.4g} deg; beyond, the edge "
             "holds\n",

@@ -13,7 +13,7 @@
 namespace ripplenotch {
 namespace {
 
-std::string lower(std::string text) {
+std::string lower_case(std::string text) {
     for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     return text;
 }
@@ -31,11 +31,11 @@ ArmLog ArmReading::view() const {
 
 std::size_t ArmReading::find(const Chain& chain, const std::string& joint) const {
     for (std::size_t j = 0; j < names.size(); ++j)
-        if (lower(names[j]) == lower(joint)) return j;
+        if (lower_case(names[j]) == lower_case(joint)) return j;
     std::vector<std::string> known;
     for (std::size_t j = 0; j < chain.size(); ++j) {
         known.push_back(chain.joints[j].name);
-        if (lower(known.back()) == lower(joint)) return j;
+        if (lower_case(known.back()) == lower_case(joint)) return j;
     }
     const auto near = nearest_name(joint, known);
     raise<UsageError>("arm: '{}' is no joint of {}; {}{}", joint, chain.source, joint_list(chain),

@@ -16,15 +16,15 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "ripplenotch/filter/map_keys.hpp"
-#include "ripplenotch/filter/warm_map_fit.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr std::string_view map_file = "map.json";
 constexpr double paper_spacing_hz = 5.0;  ///< of a table's centres, in the lowest order
-constexpr int most_bands = 60;
+constexpr int most_bands_tried = 60;
 constexpr double highest_share = 0.45;  ///< of the sample rate: the highest centre
 constexpr double steady_share = 1.1;    ///< of the median speed: notches that stand still are for one speed
 
@@ -110,7 +110,7 @@ class Maker {
     MapFit fitted() {
         std::vector<std::vector<double>> degc;
         if (request_.temperature) degc.push_back(request_.temperature->train_degc);
-        MapFit fit = fit_warm_ripple_map({&view_, 1}, request_.gear, 0.0, degc);
+        MapFit fit = fit_ripple_map({&view_, 1}, request_.gear, 0.0, degc);
         fit.map.joint = request_.train.trace.joint;
         fit.map.temperature_column = request_.temperature ? request_.temperature->column : "";
         if (request_.temperature && !fit.map.orders.empty() && !fit.map.form.by_temperature)
@@ -159,7 +159,7 @@ class Maker {
         const double highest = highest_share * request_.train.recording.clock.nominal_rate.value() /
                                (request_.gear.orders.back().value() * request_.gear.ratio.value() / 360.0);
         const double top = std::min(fastest_deg_s_, highest);
-        while (top / width > most_bands) width = *parse_number(fmt::format("{:.1e}", 2.0 * width));
+        while (top / width > most_bands_tried) width = *parse_number(fmt::format("{:.1e}", 2.0 * width));
         const double from = width * std::max(1.0, std::floor(slowest_deg_s_ / width));
         const double bands = std::floor(top / width) - from / width + (top < highest ? 1.0 : 0.0);
         if (!(bands >= 1.0)) {

@@ -13,11 +13,11 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t text_width = 110, widest_name = 60;
+constexpr std::size_t report_width = 110, widest_name = 60;
 
 std::string wrapped_sentence(const std::string& sentence) {
     std::string text;
-    for (const std::string& line : wrapped(sentence, text_width)) text += line + "\n";
+    for (const std::string& line : wrapped(sentence, report_width)) text += line + "\n";
     return text;
 }
 
@@ -60,7 +60,7 @@ std::string bulleted(std::string_view head, const std::vector<std::string>& sent
     std::string text = fmt::format("\n{}\n", head);
     for (const std::string& sentence : sentences) {
         std::string lead = "* ";
-        for (const std::string& line : wrapped(sentence, text_width - 2)) {
+        for (const std::string& line : wrapped(sentence, report_width - 2)) {
             text += lead + line + "\n";
             lead = "  ";
         }

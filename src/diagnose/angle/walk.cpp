@@ -17,7 +17,7 @@
 namespace ripplenotch {
 namespace {
 
-Motion moved(Motion motion, double by_deg) {
+Motion moved_by_walk(Motion motion, double by_deg) {
     for (double& position : motion.position_deg) position += by_deg;
     return motion;
 }
@@ -98,8 +98,8 @@ Walk walk_of(const Case& looked_at, const Model& stated, WalkOf of, const Record
     }
     // How the torque changes with the position: so little that it is a slope, and far above rounding.
     constexpr double shift_deg = 1e-4;
-    const auto up = predict_nm(stated, moved(looked_at.motion, shift_deg));
-    const auto down = predict_nm(stated, moved(looked_at.motion, -shift_deg));
+    const auto up = predict_nm(stated, moved_by_walk(looked_at.motion, shift_deg));
+    const auto down = predict_nm(stated, moved_by_walk(looked_at.motion, -shift_deg));
     for (const auto& position : walk.position_deg) {
         std::vector<double> torque(position.size(), 0.0);
         for (std::size_t k = 0; k < torque.size(); ++k) {
@@ -126,7 +126,7 @@ void add_walk_slopes(Walk& walk, const Case& looked_at, const Model& open, const
 
 // `window_s`: of what is quick; 0: of everything.
 double squares_left(const Case& looked_at, const Model& stated, double by_deg, double window_s) {
-    auto left = left_of_stated(looked_at, stated, moved(looked_at.motion, by_deg));
+    auto left = left_of_stated(looked_at, stated, moved_by_walk(looked_at.motion, by_deg));
     if (window_s > 0.0) left = quick_part(left, looked_at.motion.sample_rate.value(), window_s);
     return dot(left.data(), left.data(), left.size());
 }
@@ -180,7 +180,7 @@ void put_in_place(Case& other, const Model& stated, const RecordingRules& rules)
     if (ripple.orders.empty() && !goes_with_output(stated)) return;
     const double turn_deg = 360.0 / ripple.ratio.value();
     const auto settle = [&](double place_deg) {
-        other.motion = moved(std::move(other.motion), place_deg);
+        other.motion = moved_by_walk(std::move(other.motion), place_deg);
         take_out_walk(other, stated, stated, WalkOf::other_log, rules);
     };
     settle(best_place(other, stated, grid_deg(stated), places_a_turn(ripple), rules.angle_window_s));

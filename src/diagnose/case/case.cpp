@@ -23,7 +23,7 @@ std::vector<Value> picked(const std::vector<Value>& values, const std::vector<st
     return some;
 }
 
-std::vector<std::size_t> every(const Case& whole, std::size_t step) {
+std::vector<std::size_t> every_nth_row(const Case& whole, std::size_t step) {
     std::vector<std::size_t> rows;
     for (std::size_t k = 0; k < whole.size(); k += step) rows.push_back(k);
     return rows;
@@ -149,13 +149,13 @@ Case excerpt(const Case& whole, const RecordingRules& rules) {
 
 Case sketch(const Case& whole, std::size_t count) {
     const std::size_t step = std::max<std::size_t>(1, (whole.size() + count - 1) / count);
-    return rows_of(whole, every(whole, step),
+    return rows_of(whole, every_nth_row(whole, step),
                    Hertz(whole.motion.sample_rate.value() / static_cast<double>(step)));
 }
 
 Case blocks(const Case& whole, std::size_t count, const RecordingRules& rules) {
     const std::size_t length = rules.block_samples, all = whole.size();
-    if (all <= count + length) return rows_of(whole, every(whole, 1), whole.motion.sample_rate);
+    if (all <= count + length) return rows_of(whole, every_nth_row(whole, 1), whole.motion.sample_rate);
     const std::size_t number = count / length;
     std::vector<std::size_t> rows;
     for (std::size_t b = 0; b < number; ++b) {

@@ -48,7 +48,7 @@ void add_splines(NoiseColumns& columns, const Case& c, std::size_t count, double
     for (std::vector<double>& column : splines) columns.add(std::move(column));
 }
 
-void add_wave(NoiseColumns& columns, const NoiseWave& wave, const std::vector<double>& size) {
+void add_swelling_wave(NoiseColumns& columns, const NoiseWave& wave, const std::vector<double>& size) {
     columns.add([&](std::size_t k) { return size[k] * wave.cosine[k]; });
     columns.add([&](std::size_t k) { return size[k] * wave.sine[k]; });
 }
@@ -100,7 +100,7 @@ void add_ripple(NoiseColumns& columns, const Case& c, double ratio, const std::v
     }
     const auto swells = swells_of(c, rules);
     for (std::size_t i = 0; i < orders.size(); ++i) {
-        for (const auto& swell : swells) add_wave(columns, own[i], swell);
+        for (const auto& swell : swells) add_swelling_wave(columns, own[i], swell);
         for (const double side : {-2.0, -1.0, 1.0, 2.0}) add_wave(columns, wave(orders[i] * ratio + side));
     }
 }

@@ -98,13 +98,14 @@ std::optional<Size> size_of(const Term& stated, const std::vector<FittedValue>& 
 }
 
 // What speaks against a finding by itself; empty reason when nothing does.
-struct Doubt {
+struct RaisedDoubt {
     FindingStatus status = FindingStatus::confirmed;
     std::string reason;
 };
 
 // A size that its own error covers, unless another number tells that the effect is there.
-Doubt doubt_of_error(const Candidate& model, std::size_t term, const DoubtRules& rules, Hearing& hearing) {
+RaisedDoubt doubt_of_error(const Candidate& model, std::size_t term, const DoubtRules& rules,
+                           Hearing& hearing) {
     const auto size = size_of(model.stated.terms[term], model.values, term, rules.most_error);
     if (size && hearing.asked("doubt.most_error", size->error, !(size->error < rules.most_error)))
         return {FindingStatus::unidentifiable, fmt::format("this log does not tell its {}", size->name)};
@@ -112,8 +113,8 @@ Doubt doubt_of_error(const Candidate& model, std::size_t term, const DoubtRules&
 }
 
 // Too small to matter, or too small to be told.
-Doubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t term,
-                    const Evidence& evidence, Hearing& hearing) {
+RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t term,
+                          const Evidence& evidence, Hearing& hearing) {
     const Term& stated = model.stated.terms[term];
     const DoubtRules& rules = bench.rules().doubt;
     bool slight = hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
@@ -133,8 +134,8 @@ Doubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::size_t
     return doubt_of_error(model, term, rules, hearing);
 }
 
-Doubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::size_t term,
-                    const Evidence& evidence, Hearing& hearing) {
+RaisedDoubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::size_t term,
+                          const Evidence& evidence, Hearing& hearing) {
     const DoubtRules& rules = bench.rules().doubt;
     if (hearing.asked("doubt.least_closed_nm2", evidence.raw_gain,
                       evidence.raw_gain <= rules.least_closed_nm2))
@@ -162,7 +163,7 @@ Doubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::size_t
 
 void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& model, std::size_t term) {
     Hearing hearing(bench.rules(), finding.decisions);
-    Doubt doubt = doubt_of_size(bench, model, term, finding.evidence, hearing);
+    RaisedDoubt doubt = doubt_of_size(bench, model, term, finding.evidence, hearing);
     if (doubt.status == FindingStatus::confirmed)
         doubt = doubt_of_kind(bench, model, term, finding.evidence, hearing);
     finding.status = doubt.status;
@@ -172,7 +173,7 @@ void doubt_alone(Finding& finding, const ModelBench& bench, const Candidate& mod
 bool doubt_told(Finding& finding, const Candidate& told, std::size_t term, const DiagnosisRules& rules) {
     std::vector<Decision> decisions;
     Hearing hearing(rules, decisions);
-    const Doubt doubt = doubt_of_error(told, term, rules.doubt, hearing);
+    const RaisedDoubt doubt = doubt_of_error(told, term, rules.doubt, hearing);
     if (doubt.status == FindingStatus::confirmed) return false;
     finding.status = doubt.status;
     finding.reason = doubt.reason;

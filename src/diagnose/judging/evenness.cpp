@@ -84,8 +84,8 @@ bool only_constant(const Torques& torques) {
 }
 
 // Of the change within places alone; each has the say of how much the torque changes in it.
-double within(const Torques& torques, double telling_deviations, const std::vector<std::size_t>& place,
-              std::size_t count) {
+double share_within(const Torques& torques, double telling_deviations, const std::vector<std::size_t>& place,
+                    std::size_t count) {
     double off = 0.0, all = 0.0, chance = 0.0;
     for (const PlaceSums& sum : sums_of(torques, place, count)) {
         if (sum.samples < 2.0) continue;
@@ -148,7 +148,7 @@ Unevenness unevenness(const ModelBench& bench, const Model& stated, std::size_t 
     compare(between(torques, rules.least_sigma, by_speed(bench, rules.speeds), 2 * rules.speeds),
             "slow and fast, forth and back");
     for (const std::size_t stretches : {rules.short_stretches, rules.long_stretches})
-        compare(within(torques, rules.telling_deviations, by_time(bench, stretches), stretches),
+        compare(share_within(torques, rules.telling_deviations, by_time(bench, stretches), stretches),
                 "within short stretches of the log");
     return worst;
 }

@@ -93,8 +93,8 @@ double squares(const ModelBench& bench, const Model& stated) {
     return sum;
 }
 
-Finding finding_of(const ModelBench& bench, const Candidate& model, const Candidate& fewer, std::size_t term,
-                   const std::vector<double>& torque_nm) {
+Finding judged_finding(const ModelBench& bench, const Candidate& model, const Candidate& fewer,
+                       std::size_t term, const std::vector<double>& torque_nm) {
     Finding finding;
     finding.term = model.stated.terms[term];
     for (const FittedValue& value : model.values) {
@@ -123,7 +123,7 @@ std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std:
     const Candidate model = bench.with_errors(found);
     for (std::size_t term = own_terms; term < model.stated.terms.size(); ++term) {
         const Candidate fewer = without_term(bench, model, term);
-        Finding finding = finding_of(bench, model, fewer, term, bench.torque_of(model.stated, term));
+        Finding finding = judged_finding(bench, model, fewer, term, bench.torque_of(model.stated, term));
         // It was worth its price when it was added; beside later ones it may be worth less.
         const Evidence& evidence = finding.evidence;
         Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);

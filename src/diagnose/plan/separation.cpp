@@ -12,22 +12,22 @@
 namespace ripplenotch {
 namespace {
 
-using Column = std::vector<double>;
+using TermColumn = std::vector<double>;
 
-double square(const Column& column) { return dot(column.data(), column.data(), column.size()); }
+double square(const TermColumn& column) { return dot(column.data(), column.data(), column.size()); }
 
 // Columns made orthogonal to one another, one after the other (Gram and Schmidt, twice for each).
 class Basis {
   public:
     // What is left of the column beside those that are in.
-    [[nodiscard]] Column left(Column column) const {
+    [[nodiscard]] TermColumn left(TermColumn column) const {
         for (int turn = 0; turn < 2; ++turn)
-            for (const Column& one : ortho_)
+            for (const TermColumn& one : ortho_)
                 add_scaled(-dot(one.data(), column.data(), column.size()), one.data(), column.data(),
                            column.size());
         return column;
     }
-    void add(Column column) {
+    void add(TermColumn column) {
         constexpr double next_to_nothing = 1e-14;  // of its square: it is in already
         const double before = square(column);
         column = left(std::move(column));
@@ -39,7 +39,7 @@ class Basis {
     }
 
   private:
-    std::vector<Column> ortho_;
+    std::vector<TermColumn> ortho_;
 };
 
 // How the torque changes with each value of the model that a fit would look for.
@@ -61,7 +61,7 @@ void add_slope_columns(const Prediction& prediction, Basis& basis) {
 
 Basis basis_beside(const AskedTerm& asked, const Prediction& prediction, std::size_t samples) {
     Basis basis;
-    if (asked.term.effect->name != "offset") basis.add(Column(samples, 1.0));
+    if (asked.term.effect->name != "offset") basis.add(TermColumn(samples, 1.0));
     add_slope_columns(prediction, basis);
     return basis;
 }
@@ -69,7 +69,7 @@ Basis basis_beside(const AskedTerm& asked, const Prediction& prediction, std::si
 // Torques of the effect, of a size of 1, at one place of its shape: two where it has a phase.
 struct TriedPlace {
     std::vector<Term> terms;
-    std::vector<Column> columns;
+    std::vector<TermColumn> columns;
 };
 
 std::vector<TriedPlace> tried_places(const Effect& effect, const Prediction& prediction) {
@@ -95,9 +95,9 @@ std::vector<TriedPlace> tried_places(const Effect& effect, const Prediction& pre
 }
 
 // Squares of `target` that the place leaves, all of it beside the basis.
-double left_beside(const Basis& basis, const Column& target, const TriedPlace& place) {
+double left_beside(const Basis& basis, const TermColumn& target, const TriedPlace& place) {
     Basis own;
-    for (const Column& column : place.columns) own.add(basis.left(column));
+    for (const TermColumn& column : place.columns) own.add(basis.left(column));
     return square(own.left(target));
 }
 
@@ -106,7 +106,7 @@ double left_beside(const Basis& basis, const Column& target, const TriedPlace& p
 Separation separation(const AskedTerm& asked, const Motion& motion) {
     const Prediction prediction(asked.rest, motion);
     const Basis basis = basis_beside(asked, prediction, motion.size());
-    Column torque = prediction.added(asked.term);
+    TermColumn torque = prediction.added(asked.term);
     for (double& value : torque) value *= asked.scale;
     torque = basis.left(std::move(torque));
     Separation least{square(torque), {}};
@@ -123,12 +123,12 @@ Separation separation(const AskedTerm& asked, const Motion& motion) {
 bool nearest_rival(const AskedTerm& asked, const Effect& rival, const Motion& motion, Term& found) {
     const Prediction prediction(asked.rest, motion);
     const Basis basis = basis_beside(asked, prediction, motion.size());
-    const Column torque = basis.left(prediction.added(asked.term));
+    const TermColumn torque = basis.left(prediction.added(asked.term));
     double least = square(torque);
     bool any = false;
     for (const TriedPlace& place : tried_places(rival, prediction)) {
         const double left = left_beside(basis, torque, place);
-        const Column one = basis.left(place.columns.front());
+        const TermColumn one = basis.left(place.columns.front());
         if (!(left < least) || !(square(one) > 0.0)) continue;
         least = left;
         any = true;

@@ -14,7 +14,7 @@ void take_off(std::span<const Column> basis, Column& column) {
         add_scaled(-product(other, column), other.data(), column.data(), column.size());
 }
 
-double length_of(const Column& column) { return std::sqrt(product(column, column)); }
+double length_of_column(const Column& column) { return std::sqrt(product(column, column)); }
 
 // A row for each column of `a`, with its products with each of `b`; two by two.
 std::vector<Column> products(std::span<const Column> a, std::span<const Column* const> b) {
@@ -43,12 +43,12 @@ double product(const Column& a, const Column& b) { return dot(a.data(), b.data()
 std::vector<Column> orthonormal(std::span<const Column> columns) {
     std::vector<Column> basis;
     for (const Column& given : columns) {
-        const double length = length_of(given);
+        const double length = length_of_column(given);
         if (!(length > 0.0)) continue;
         Column column = given;
         take_off(basis, column);
-        if (length_of(column) < 0.5 * length) take_off(basis, column);
-        const double left = length_of(column);
+        if (length_of_column(column) < 0.5 * length) take_off(basis, column);
+        const double left = length_of_column(column);
         if (!(left > 1e-7 * length)) continue;
         for (double& value : column) value /= left;
         basis.push_back(std::move(column));

@@ -10,7 +10,7 @@
 namespace ripplenotch {
 namespace {
 
-Json settling_to_json(const MethodFigures& figures) {
+Json settling_of_method(const MethodFigures& figures) {
     if (!figures.settle_ms) return nullptr;
     Json json = Json::object();
     for (std::size_t i = 0; i < settle_bands_percent.size(); ++i) {
@@ -22,7 +22,7 @@ Json settling_to_json(const MethodFigures& figures) {
 Json method_to_json(const MethodFigures& figures) {
     Json json = Json::object();
     json["method"] = figures.method;
-    json["settle_ms"] = settling_to_json(figures);
+    json["settle_ms"] = settling_of_method(figures);
     json["overshoot_percent"] = or_null(figures.overshoot_percent);
     json["ramp_delay_ms"] = or_null(figures.ramp_delay_ms);
     json["dc_delay_ms"] = or_null(figures.dc_delay_ms);

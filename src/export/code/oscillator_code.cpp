@@ -82,7 +82,7 @@ static inline void @name@_bring_back(@name@_state* s) {
 }
 )c";
 
-std::vector<double> values_of(const OscillatorDesign& d) {
+std::vector<double> code_values(const OscillatorDesign& d) {
     std::vector<double> values(Value::count);
     values[Value::noise_nm] = d.noise_nm;
     values[Value::seen_noise] = 1.0 + d.torque_noise;
@@ -151,7 +151,7 @@ std::string oscillator_header(const OscillatorDesign& d, const CodeStyle& style)
         "that of "
         "torque and\n   rate, of rate, and the rate's at the start; deviation that a motor turn adds to an "
         "amplitude; 0.25 / memory in\n   turns, jump, largest slip, 1 / turns of return, 1 / noise */\n";
-    text += style.array("values", values_of(d)) + style.filled(turn_code(style.is_float));
+    text += style.array("values", code_values(d)) + style.filled(turn_code(style.is_float));
     if (d.map) text += "\n/* the map that is taken off before */\n" + MapCode(*d.map, style).definitions();
     text += style.filled(state_code);
     if (d.return_turns > 0.0) text += style.filled(back_code);

@@ -89,8 +89,8 @@ std::optional<XmlTag> joint_tag(std::string_view text, std::string_view joint) {
 }
 
 // The tag's attributes with these values; those that are not there yet follow the tag's name.
-std::string with_values(std::string_view text, const XmlTag& tag,
-                        std::span<const std::pair<std::string_view, std::string>> values) {
+std::string joint_with_values(std::string_view text, const XmlTag& tag,
+                              std::span<const std::pair<std::string_view, std::string>> values) {
     std::string changed(text);
     std::vector<std::pair<XmlAttribute, std::string>> there;
     std::string added;
@@ -140,7 +140,7 @@ std::string write_into_mjcf(const JointMjcf& mjcf, std::string_view text, const 
         {"damping", damping_words(mjcf)},
         {"frictionloss", shortest(mjcf.frictionloss_nm)},
         {"solreffriction", std::string(quick_step)}};
-    changed = with_values(changed, *tag, values);
+    changed = joint_with_values(changed, *tag, values);
     // Before the root, behind a declaration, which has to be first.
     const auto root = first_tag(changed, [](const XmlTag& one) { return one.name == "mujoco"; });
     return changed.insert(root ? root->from : 0, mjcf_comment(mjcf, heading));

@@ -35,7 +35,7 @@ struct RunFigures {
 
 // Load and ripple together, as in use: a float32 sum that keeps the load has fewer digits left for the
 // ripple. Mean and amplitude are the least-squares fit over whole samples, so no period has to fit.
-std::optional<RunFigures> run_section(const LoadedSection& section, Hertz frequency, Hertz sample_rate) {
+std::optional<RunFigures> run_one_section(const LoadedSection& section, Hertz frequency, Hertz sample_rate) {
     const Biquad cascade[] = {section.biquad};
     if (!(pole_radius(section.biquad) < 1.0)) return std::nullopt;
     std::size_t settling = 0;
@@ -107,7 +107,7 @@ std::vector<SectionCheck> verify_export(const FilterSet& filters, const LoadedFi
             check.from = band.from;
             check.to = band.to;
             check.section = static_cast<int>(i) + 1;
-            if (const auto figures = run_section(section, check.center, filters.sample_rate)) {
+            if (const auto figures = run_one_section(section, check.center, filters.sample_rate)) {
                 if (check.is_notch) check.depth_db = depth_of(figures->gain);
                 check.mean_error_nm = figures->mean_nm;
                 check.dc_error_db = as_db(std::abs(1.0 + figures->mean_nm / verify_load_nm));

@@ -46,7 +46,7 @@ MapWindow window_of(const RippleWindow& window, const GearAccount& gear, double 
     return one;
 }
 
-void widen(MapRange& range, double value, bool first) {
+void widen_span(MapRange& range, double value, bool first) {
     range.from = first ? value : std::min(range.from, value);
     range.to = first ? value : std::max(range.to, value);
 }
@@ -97,10 +97,10 @@ MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, doubl
             one.log = l;
             if (warms) one.state.temperature_degc = warmth[i].torque_nm;
             const bool first = data.windows.empty();
-            widen(data.speeds_deg_s, std::abs(one.state.speed_deg_s), first);
-            widen(data.positions_deg, one.state.position_deg, first);
-            widen(data.loads_nm, one.state.load_nm, first);
-            if (warms) widen(data.temperatures_degc, *one.state.temperature_degc, first);
+            widen_span(data.speeds_deg_s, std::abs(one.state.speed_deg_s), first);
+            widen_span(data.positions_deg, one.state.position_deg, first);
+            widen_span(data.loads_nm, one.state.load_nm, first);
+            if (warms) widen_span(data.temperatures_degc, *one.state.temperature_degc, first);
             data.windows.push_back(std::move(one));
         }
     }

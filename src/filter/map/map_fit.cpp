@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/filter/warm_map_fit.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 
 #include <fmt/format.h>
 
@@ -111,12 +111,8 @@ bool all_agree(const MapFit& fit) {
 
 }  // namespace
 
-MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg) {
-    return fit_warm_ripple_map(logs, gear, zero_deg, {});
-}
-
-MapFit fit_warm_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
-                           std::span<const std::vector<double>> temperatures_degc) {
+MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
+                      std::span<const std::vector<double>> temperatures_degc) {
     if (logs.empty()) raise<UsageError>("a map needs a log");
     MapFit fit;
     fit.anchored =

@@ -12,7 +12,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr double sought_turns = 1.0;  ///< of the motor
-constexpr int places = 720;           ///< tried in a turn, before the best is refined
+constexpr int places_tried = 720;     ///< tried in a turn, before the best is refined
 
 std::complex<double> turned(std::complex<double> z, double cycles) {
     const double phase = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
@@ -71,15 +71,15 @@ void MapMean::seek(RippleKalman& filter, const MotorAngle& angle) noexcept {
     }
     double best = misfit(0.0);
     int at = 0;
-    for (int k = 1; k < places; ++k) {
-        const double one = misfit(static_cast<double>(k) / places);
+    for (int k = 1; k < places_tried; ++k) {
+        const double one = misfit(static_cast<double>(k) / places_tried);
         if (one < best) {
             best = one;
             at = k;
         }
     }
     // The bottom of the parabola through the best place and its neighbours.
-    const double step = 1.0 / places, middle = static_cast<double>(at) * step;
+    const double step = 1.0 / places_tried, middle = static_cast<double>(at) * step;
     const double before = misfit(middle - step), after = misfit(middle + step);
     const double bend = before - 2.0 * best + after;
     shift_turns_ = middle + (bend > 0.0 ? 0.5 * step * (before - after) / bend : 0.0);

@@ -26,7 +26,7 @@ std::string list_text(const std::vector<double>& values) {
 
 std::string ends_text(const MapRange& range) { return list_text({range.from, range.to}); }
 
-std::size_t whole(const Settings& settings, std::string_view key) {
+std::size_t whole_value(const Settings& settings, std::string_view key) {
     return static_cast<std::size_t>(settings.number(key));
 }
 
@@ -41,8 +41,8 @@ std::optional<RippleMap> stated_map(std::string_view method, const Settings& set
     if (settings.has("speeds")) form.speeds_deg_s = settings.list("speeds");
     if (!std::is_sorted(form.speeds_deg_s.begin(), form.speeds_deg_s.end(), std::less_equal<>()))
         raise<UsageError>("method {}, speeds: each has to be above the one before", method);
-    form.directions = whole(settings, "directions");
-    form.turn_harmonics = whole(settings, "turn-harmonics");
+    form.directions = whole_value(settings, "directions");
+    form.turn_harmonics = whole_value(settings, "turn-harmonics");
     form.by_load = settings.number("by-load") > 0.0;
     form.by_temperature = settings.number("by-temperature") > 0.0;
     map.speeds_deg_s = {settings.number("slowest"), form.speeds_deg_s.back()};

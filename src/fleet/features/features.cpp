@@ -14,8 +14,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_samples = std::size_t{1} << 14U;  // by hand: bounds the time of a log
-constexpr std::size_t most_orders = 6;                       // by hand: bounds the time of a log
+constexpr std::size_t most_feature_samples = std::size_t{1} << 14U;  // by hand: bounds the time of a log
+constexpr std::size_t most_orders = 6;                               // by hand: bounds the time of a log
 
 Descriptor untold(std::string stem, std::string unit, std::string reason) {
     return {std::move(stem), std::move(unit), {}, {}, std::move(reason)};
@@ -55,7 +55,7 @@ Features features_of(const TraceView& log, const Identification& found,
                      const std::optional<GearAccount>& stated) {
     const Motion whole = motion_along(log);
     const std::vector<unsigned char> known = rows_of_known_motion(log, whole);
-    const FittedSamples samples = thinned(whole, log.torque_nm, known, most_samples);
+    const FittedSamples samples = thinned(whole, log.torque_nm, known, most_feature_samples);
     MotionFacts facts = motion_facts(samples.motion, samples.torque_nm, log.has_position());
     facts.accelerations = accelerations_of(log, whole, known);
     const JointFit joint(samples, facts, gear_of_ripple(found, stated), log.sample_rate);

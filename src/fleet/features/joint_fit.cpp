@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/rows/rms.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -35,12 +36,6 @@ FitOptions fit_options(std::size_t samples, int most_iterations) {
     options.settled = 1e-6;
     options.error_stretch = std::max<std::size_t>(8, samples / stretches);
     return options;
-}
-
-double rms(const std::vector<double>& values) {
-    double squares = 0.0;
-    for (const double value : values) squares += value * value;
-    return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ double at_share(const std::vector<double>& sorted, double share) {
 }
 
 template <class Value>
-std::vector<Value> every(std::span<const Value> values, std::size_t step) {
+std::vector<Value> every_nth(std::span<const Value> values, std::size_t step) {
     std::vector<Value> some;
     for (std::size_t k = 0; k < values.size(); k += step) some.push_back(values[k]);
     return some;
@@ -58,11 +58,12 @@ bool MotionFacts::several_speeds() const {
 FittedSamples thinned(const Motion& motion, std::span<const double> torque_nm,
                       std::span<const unsigned char> use, std::size_t most) {
     const std::size_t step = std::max<std::size_t>((motion.size() + most - 1) / most, 1);
-    return {{Hertz(motion.sample_rate.value() / static_cast<double>(step)),
-             every<double>(motion.time_s, step), every<double>(motion.position_deg, step),
-             every<double>(motion.velocity_deg_s, step), every<double>(motion.acceleration_deg_s2, step)},
-            every(torque_nm, step),
-            every(use, step)};
+    return {
+        {Hertz(motion.sample_rate.value() / static_cast<double>(step)),
+         every_nth<double>(motion.time_s, step), every_nth<double>(motion.position_deg, step),
+         every_nth<double>(motion.velocity_deg_s, step), every_nth<double>(motion.acceleration_deg_s2, step)},
+        every_nth(torque_nm, step),
+        every_nth(use, step)};
 }
 
 MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm, bool has_position) {

@@ -22,8 +22,6 @@ constexpr double comparable = 2.5;          // speeds that differ by more are an
 constexpr double fewest_share = 0.6;        // of the lines have to tell a descriptor
 constexpr std::size_t lines_for_bend = 20;  // by hand
 
-double median_of(std::vector<double> values) { return median_in(values); }
-
 // Logs in which the joint moves at quite another speed say nothing of what changed.
 void leave_out_other_motions(JointHistory& history) {
     std::vector<double> speeds;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double least_left = 0.05;  // of the squares of a column, beside the others
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
+double dot_product(const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
     return sum;
@@ -26,11 +26,11 @@ Regression::Regression(std::span<const double> value, std::span<const double> we
     for (const auto& column : columns) {
         std::vector<double> weighed(column);
         for (std::size_t i = 0; i < weighed.size(); ++i) weighed[i] *= weights_[i];
-        const double before = dot(weighed, weighed);
+        const double before = dot_product(weighed, weighed);
         std::vector<double> left = weighed;
         project(left);
         project(left);  // once more, for what rounding left
-        const double size = std::sqrt(dot(left, left));
+        const double size = std::sqrt(dot_product(left, left));
         if (!(size * size > 1e-6 * before)) continue;
         for (double& number : left) number /= size;
         basis_.push_back(std::move(left));
@@ -48,7 +48,7 @@ Regression::Regression(std::span<const double> value, std::span<const double> we
 
 void Regression::project(std::vector<double>& weighed) const {
     for (const auto& axis : basis_) {
-        const double along = dot(axis, weighed);
+        const double along = dot_product(axis, weighed);
         for (std::size_t i = 0; i < weighed.size(); ++i) weighed[i] -= along * axis[i];
     }
 }
@@ -58,7 +58,7 @@ double Regression::freedom() const {
 }
 
 double Regression::deviation() const {
-    return std::sqrt(dot(residual_, residual_) / std::max(freedom(), 1.0));
+    return std::sqrt(dot_product(residual_, residual_) / std::max(freedom(), 1.0));
 }
 
 std::vector<double> Regression::beside(std::span<const double> column) const {
@@ -74,9 +74,9 @@ std::optional<Extra> Regression::extra(std::span<const double> column) const {
     for (std::size_t i = 0; i < column.size(); ++i)
         whole += (column[i] - mean) * (column[i] - mean) * weights_[i] * weights_[i];
     const std::vector<double> left = beside(column);
-    const double squares = dot(left, left);
+    const double squares = dot_product(left, left);
     if (!(squares > least_left * whole) || !(freedom() > 1.5)) return std::nullopt;
-    const double along = dot(left, residual_), rss = dot(residual_, residual_);
+    const double along = dot_product(left, residual_), rss = dot_product(residual_, residual_);
     const double rest = std::max(rss - along * along / squares, 1e-12 * rss);
     Extra found;
     found.size = along / squares;

@@ -52,7 +52,7 @@ std::string labels(const ColumnFacts& facts, const std::vector<std::size_t>& col
     return fmt::format("{}", fmt::join(texts, " and "));
 }
 
-std::string lower(std::string_view text) {
+std::string lower_case(std::string_view text) {
     std::string out;
     for (const char c : text) out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return out;
@@ -60,7 +60,7 @@ std::string lower(std::string_view text) {
 
 // "header.stamp." of "header.stamp.nanosec", when the name ends in one of the words.
 std::optional<std::string> name_before(const std::string& name, std::span<const std::string_view> words) {
-    const std::string text = lower(name);
+    const std::string text = lower_case(name);
     std::size_t begin = text.size();
     while (begin > 0 && std::isalpha(static_cast<unsigned char>(text[begin - 1])) != 0) --begin;
     if (std::find(words.begin(), words.end(), std::string_view(text).substr(begin)) == words.end())

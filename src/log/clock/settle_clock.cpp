@@ -35,13 +35,13 @@ constexpr std::array clock_units = {
     ClockUnit{"100ns", 1e-7, 1.22e17, 1.55e17, "ticks of 100 ns since 1601 (FILETIME)"},
 };
 
-struct Opening {
+struct ClockOpening {
     double first = 0.0;
     double step = 0.0;  ///< the median of those that advance; 0 when none does
 };
 
-Opening opening_of(const ColumnFacts& facts, std::size_t column) {
-    Opening opening;
+ClockOpening opening_of(const ColumnFacts& facts, std::size_t column) {
+    ClockOpening opening;
     if (column >= facts.sample.size()) return opening;
     std::vector<double> steps;
     double before = std::numeric_limits<double>::quiet_NaN();
@@ -55,10 +55,12 @@ Opening opening_of(const ColumnFacts& facts, std::size_t column) {
     return opening;
 }
 
-double rate_in(const Opening& opening, const ClockUnit& unit) { return 1.0 / (opening.step * unit.seconds); }
+double rate_in(const ClockOpening& opening, const ClockUnit& unit) {
+    return 1.0 / (opening.step * unit.seconds);
+}
 
 // Decimals in a step: the unit is seconds, if that gives a rate at all; so are the least of rates first.
-const ClockUnit* unit_of(const Opening& opening, std::string& reason) {
+const ClockUnit* unit_of(const ClockOpening& opening, std::string& reason) {
     for (const ClockUnit& unit : clock_units) {
         const bool epoch = opening.first >= unit.epoch_from && opening.first <= unit.epoch_to;
         const double rate = rate_in(opening, unit);
@@ -76,7 +78,7 @@ const ClockUnit* unit_of(const Opening& opening, std::string& reason) {
     return seconds ? &clock_units[0] : nullptr;
 }
 
-void set_origin(const ColumnFacts& facts, const Opening& opening, Layout& layout) {
+void set_origin(const ColumnFacts& facts, const ClockOpening& opening, Layout& layout) {
     if (std::abs(opening.first) < long_ago || std::abs(opening.first) > 9.2e18) return;
     const std::size_t column = *layout.chosen.time;
     const std::int64_t exact = column < facts.first_counts.size() ? facts.first_counts[column] : 0;
@@ -88,7 +90,7 @@ void set_origin(const ColumnFacts& facts, const Opening& opening, Layout& layout
 void settle_clock(const ColumnFacts& facts, bool unit_is_stated, Layout& layout) {
     if (!layout.chosen.time) return;
     Column& column = layout.columns[*layout.chosen.time];
-    const Opening opening = opening_of(facts, *layout.chosen.time);
+    const ClockOpening opening = opening_of(facts, *layout.chosen.time);
     layout.time_as_text = !facts.clock_texts.empty() && facts.clock_texts[*layout.chosen.time];
     set_origin(facts, opening, layout);
     const std::string label = column_label(facts.names, *layout.chosen.time);

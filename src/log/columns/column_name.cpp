@@ -129,7 +129,7 @@ std::vector<Word> split_words(std::string_view name) {
 }
 
 // What is left of a name once quantity and unit are gone: "j4", "3", "wrist_1_joint", or nothing.
-std::string joint_of(const std::vector<Word>& left) {
+std::string joint_in_name(const std::vector<Word>& left) {
     std::vector<Word> words;
     for (const Word& word : left) {
         if (!contains(general_words, word.text)) words.push_back(word);
@@ -205,7 +205,7 @@ ColumnName read_column_name(std::string_view name) {
         column.current = false;
     }
     const bool clock = column.role == Role::time;
-    if (!clock) column.joint = joint_of(left);
+    if (!clock) column.joint = joint_in_name(left);
     if (foreign || (clock && !is_clock_name(left))) column.role = Role::other;
     if (column.motor_side && !column.current) column.rank += 2;
     if (filtered) column.rank += 4;

@@ -30,7 +30,7 @@ Hdf5Handle access_of_files() {
     return access;
 }
 
-void write_all(int descriptor, std::string_view bytes) {
+void write_all_to(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t taken = ::write(descriptor, bytes.data(), bytes.size());
         if (taken < 0 && errno == EINTR) continue;
@@ -52,7 +52,7 @@ Hdf5Handle open_hdf5(StoredBytes& bytes) {
         copy.emplace(place_of_copies(), std::nullopt);
         for (std::uint64_t at = 0; at < bytes.size(); at += piece_size) {
             const auto size = std::min(piece_size, bytes.size() - at);
-            write_all(copy->descriptor(), bytes.text_at(at, static_cast<std::size_t>(size)));
+            write_all_to(copy->descriptor(), bytes.text_at(at, static_cast<std::size_t>(size)));
         }
         name = copy->name_for_a_moment(place_of_copies());
     }

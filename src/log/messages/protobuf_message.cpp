@@ -36,7 +36,7 @@ Size size_of(Type type) {
 
 bool holds_number(Type type) { return size_of(type) != Size::counted; }
 
-FieldNumber whole(std::int64_t value) { return {static_cast<double>(value), value, true}; }
+FieldNumber whole_field(std::int64_t value) { return {static_cast<double>(value), value, true}; }
 
 FieldNumber number_of(Type type, std::uint64_t bits) {
     switch (type) {
@@ -47,21 +47,21 @@ FieldNumber number_of(Type type, std::uint64_t bits) {
         case Type::uint64:
         case Type::fixed64:
             if (bits > static_cast<std::uint64_t>(INT64_MAX)) return {static_cast<double>(bits), 0, false};
-            return whole(static_cast<std::int64_t>(bits));
+            return whole_field(static_cast<std::int64_t>(bits));
         case Type::uint32:
         case Type::fixed32:
-            return whole(static_cast<std::uint32_t>(bits));
+            return whole_field(static_cast<std::uint32_t>(bits));
         case Type::int32:
         case Type::sfixed32:
         case Type::enumeration:
-            return whole(static_cast<std::int32_t>(static_cast<std::uint32_t>(bits)));
+            return whole_field(static_cast<std::int32_t>(static_cast<std::uint32_t>(bits)));
         case Type::sint32:
         case Type::sint64:
-            return whole(static_cast<std::int64_t>((bits >> 1) ^ (~(bits & 1) + 1)));
+            return whole_field(static_cast<std::int64_t>((bits >> 1) ^ (~(bits & 1) + 1)));
         case Type::boolean:
-            return whole(bits != 0 ? 1 : 0);
+            return whole_field(bits != 0 ? 1 : 0);
         default:
-            return whole(static_cast<std::int64_t>(bits));
+            return whole_field(static_cast<std::int64_t>(bits));
     }
 }
 

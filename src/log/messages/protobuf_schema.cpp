@@ -24,7 +24,7 @@ namespace message {
 constexpr std::uint32_t name = 1, field = 2, nested = 3;
 }
 namespace field {
-constexpr std::uint32_t name = 1, number = 3, label = 4, type = 5, type_name = 6, oneof = 9, optional = 17;
+constexpr std::uint32_t name = 1, number = 3, label = 4, type = 5, type_named = 6, oneof = 9, optional = 17;
 constexpr std::uint64_t repeated = 3;
 }  // namespace field
 
@@ -103,7 +103,7 @@ class Schema {
                     raise<DataError>("a field of type {}, expected 1 to 18", one.bits);
                 made.type = static_cast<ProtobufField::Type>(one.bits);
             }
-            if (one.number == field::type_name) type_name = one.bytes;
+            if (one.number == field::type_named) type_name = one.bytes;
             if (one.number == field::oneof || one.number == field::optional) explicit_presence = true;
         }
         if (made.type == ProtobufField::Type::message)

@@ -17,8 +17,8 @@ bool is_in_doubt(FindingStatus status) {
     return status == FindingStatus::tentative || status == FindingStatus::not_reproduced;
 }
 
-std::vector<double> torque_of(const std::vector<BesideValues>& values, const Model& beside,
-                              const Motion& motion, std::optional<std::size_t> but) {
+std::vector<double> torque_of_other(const std::vector<BesideValues>& values, const Model& beside,
+                                    const Motion& motion, std::optional<std::size_t> but) {
     std::vector<double> sum(motion.size(), 0.0);
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (but && *but == i) continue;
@@ -61,13 +61,13 @@ class OtherLog {
 
     /// rms that is left with these findings but one; always-on values are those of the log.
     [[nodiscard]] double left_nm(const std::vector<BesideValues>& values, std::optional<std::size_t> but) {
-        const auto here_nm = torque_of(values, model_.stated, lens_.looked_at().motion, but);
+        const auto here_nm = torque_of_other(values, model_.stated, lens_.looked_at().motion, but);
         const std::vector<double> always = lens_.plain_values(here_nm);
         if (columns_.stated > 0) carry(always);
         std::vector<double> left = open_nm_;
         for (std::size_t i = 0; i < columns_.of_model; ++i)
             add_scaled(-always[i], columns_.torque_nm[i].data(), left.data(), left.size());
-        const auto there_nm = torque_of(values, model_.stated, case_.motion, but);
+        const auto there_nm = torque_of_other(values, model_.stated, case_.motion, but);
         add_scaled(-1.0, there_nm.data(), left.data(), left.size());
         return rms_of(left, case_.use);
     }

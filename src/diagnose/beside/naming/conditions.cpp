@@ -145,7 +145,7 @@ void look_at_driving(const Sums& sums, const Names& names, std::vector<BesideFin
 }
 
 // Squares of the whitened log that names explain in the whole fit.
-double explained(const Sums& sums, const Names& names) {
+double explained_share(const Sums& sums, const Names& names) {
     if (names.empty()) return 0.0;
     VectorXd targets = sums.targets(names, 0);
     for (std::size_t fold = 1; fold < sums.folds(); ++fold) targets += sums.targets(names, fold);
@@ -159,7 +159,7 @@ double explained_part(const Sums& sums, const Names& names) {
     for (std::size_t shape = 0; shape < sums.listed(); ++shape) {
         if (sums.is_told(shape)) all.push_back(shape);
     }
-    return explained(sums, names) / std::max(explained(sums, all), 1e-300);
+    return explained_share(sums, names) / std::max(explained_share(sums, all), 1e-300);
 }
 
 // Where much that could be explained is not, the names stand in for what was not tried.
