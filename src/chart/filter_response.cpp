@@ -49,7 +49,7 @@ FilterResponse filter_response(std::span<const Biquad> cascade, Hertz sample_rat
     for (const double hz : result.hz) {
         double magnitude = 1.0, phase_rad = 0.0;
         for (const Biquad& section : cascade) {
-            const std::complex<double> gain = response(section, Hertz(hz), sample_rate);
+            const std::complex<double> gain = response(section, Hertz(hz), SampledAt(sample_rate));
             magnitude *= std::abs(gain);
             // A section turns by less than half a turn below half the sample rate, so its phase is not
             // folded.
@@ -60,8 +60,8 @@ FilterResponse filter_response(std::span<const Biquad> cascade, Hertz sample_rat
         const bool at_null = std::any_of(nulls.begin(), nulls.end(),
                                          [hz](double null) { return std::abs(hz / null - 1.0) < 1e-9; });
         result.phase_deg.push_back(at_null ? not_a_number : phase_rad * degrees_per_radian);
-        result.group_delay_ms.push_back(at_null ? not_a_number
-                                                : 1e3 * group_delay(cascade, Hertz(hz), sample_rate).value());
+        result.group_delay_ms.push_back(
+            at_null ? not_a_number : 1e3 * group_delay(cascade, Hertz(hz), SampledAt(sample_rate)).value());
     }
     return result;
 }

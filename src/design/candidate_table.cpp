@@ -89,7 +89,7 @@ Left largest_left(std::span<const Biquad> cascade, const TableSpec& spec, const 
         double together = 0.0;
         for (std::size_t n = 0; n < lines; ++n) {
             const Hertz at = ripple_frequency(band.notches[n].order, spec.gear_ratio, DegPerSec(speed));
-            const double gain = std::abs(response(cascade, at, spec.sample_rate));
+            const double gain = std::abs(response(cascade, at, SampledAt(spec.sample_rate)));
             left.largest_gain[n] = std::max(left.largest_gain[n], gain);
             if (weighed) {
                 together += portable::pow(spec.amplitude_nm[n] * gain, 2) / all;
@@ -194,7 +194,7 @@ std::vector<std::pair<DegPerSec, DegPerSec>> bands_by_spacing(const SpeedSpan& s
 void measure_band(Band& band, const TableSpec& spec) {
     const Cascade cascade = band.cascade();
     const StepFigures figures = measure_step(cascade, spec.sample_rate, spec.settle_band_percent);
-    band.dc_delay = group_delay(cascade, Hertz(0.0), spec.sample_rate);
+    band.dc_delay = group_delay(cascade, Hertz(0.0), SampledAt(spec.sample_rate));
     band.settle = figures.settle;
     band.settle_band_percent = spec.settle_band_percent;
     band.overshoot_percent = figures.overshoot_percent;

@@ -127,7 +127,7 @@ MethodFigures measure_on_signals(const Contender& contender, Hertz sample_rate, 
     }
     if (ramp_nm_s) figures.ramp_delay_ms = 1e3 * bench.ramp_delay(*ramp_nm_s).value();
     if (const auto frozen = contender.frozen(sample_rate, speed)) {
-        figures.dc_delay_ms = 1e3 * group_delay(frozen->cascade, Hertz(0.0), sample_rate).value();
+        figures.dc_delay_ms = 1e3 * group_delay(frozen->cascade, Hertz(0.0), SampledAt(sample_rate)).value();
         figures.note = frozen->note;
     }
     if (lines != nullptr) {

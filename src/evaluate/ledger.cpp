@@ -35,9 +35,10 @@ LedgerEntry entry_of(const Contender& contender, const Contender& runs, Hertz sa
     LedgerEntry entry{0, from, to, "", Seconds(0.0), {}, {}, {}, {}};
     if (const auto frozen = contender.frozen(sample_rate, speed)) {
         entry.filter = frozen->note;
-        entry.dc_delay = group_delay(frozen->cascade, Hertz(0.0), sample_rate);
+        entry.dc_delay = group_delay(frozen->cascade, Hertz(0.0), SampledAt(sample_rate));
         if (request.crossover) {
-            const CrossoverFigures figures = at_crossover(frozen->cascade, *request.crossover, sample_rate);
+            const CrossoverFigures figures =
+                at_crossover(frozen->cascade, *request.crossover, SampledAt(sample_rate));
             entry.phase_lag_deg = figures.phase_lag_deg;
             entry.crossover_db = figures.gain_db;
         }
@@ -55,21 +56,21 @@ LedgerEntry entry_of(const Contender& contender, const Contender& runs, Hertz sa
 
 double delay_s(const Contender& contender, Hertz sample_rate, double speed_deg_s) {
     const auto frozen = contender.frozen(sample_rate, DegPerSec(speed_deg_s));
-    return frozen ? group_delay(frozen->cascade, Hertz(0.0), sample_rate).value() : 0.0;
+    return frozen ? group_delay(frozen->cascade, Hertz(0.0), SampledAt(sample_rate)).value() : 0.0;
 }
 
 bool follows_gear(const Contender& contender) { return contender.settings.has("gear-ratio"); }
 
 }  // namespace
 
-CrossoverFigures at_crossover(std::span<const Biquad> cascade, Hertz at, Hertz sample_rate) {
-    if (!(at.value() > 0.0) || !(at < 0.5 * sample_rate)) {
+CrossoverFigures at_crossover(std::span<const Biquad> cascade, Hertz at, SampledAt sampled) {
+    if (!(at.value() > 0.0) || !(at < 0.5 * sampled.rate)) {
         raise<UsageError>("a crossover of {} Hz is not between 0 and half the sample rate, {} Hz",
-                          shortest(at.value()), shortest(0.5 * sample_rate.value()));
+                          shortest(at.value()), shortest(0.5 * sampled.rate.value()));
     }
     CrossoverFigures figures;
     for (const Biquad& section : cascade) {
-        const auto gain = response(section, at, sample_rate);
+        const auto gain = response(section, at, sampled);
         figures.phase_lag_deg -= degrees_per_radian * portable::arg(gain);
         // A complete null has no gain in dB; what counts is that nothing is left.
         figures.gain_db +=
@@ -108,7 +109,7 @@ LongestDelay longest_delay(const Contender& contender, Hertz sample_rate, const 
         const double speed = high > 0.0 ? low * portable::pow(high / low, share) : 0.0;
         const auto frozen = contender.frozen(sample_rate, DegPerSec(speed));
         if (!frozen) continue;
-        const Seconds delay = group_delay(frozen->cascade, Hertz(0.0), sample_rate);
+        const Seconds delay = group_delay(frozen->cascade, Hertz(0.0), SampledAt(sample_rate));
         if (i == 0 || delay > longest.delay) longest = {delay, DegPerSec(speed), frozen->note};
     }
     return longest;

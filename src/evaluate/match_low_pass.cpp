@@ -52,7 +52,7 @@ std::optional<double> ripple_gain(std::span<const Biquad> cascade, const GearAcc
         if (!(at.value() > 0.0) || !(at < 0.5 * sample_rate)) continue;
         const double amplitude = lines.amplitude_nm.empty() ? 1.0 : lines.amplitude_nm[i];
         before += amplitude * amplitude;
-        after += amplitude * amplitude * std::norm(response(cascade, at, sample_rate));
+        after += amplitude * amplitude * std::norm(response(cascade, at, SampledAt(sample_rate)));
     }
     if (!(before > 0.0)) return std::nullopt;
     return std::sqrt(after / before);

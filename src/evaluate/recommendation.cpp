@@ -54,7 +54,7 @@ std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sampl
     std::pair<Seconds, DegPerSec> longest{Seconds(0.0), fastest};
     for (const Band& band : contender.table->bands()) {
         if (!(band.from < fastest) || band.to < slowest) continue;
-        const Seconds delay = group_delay(band.cascade(), Hertz(0.0), sample_rate);
+        const Seconds delay = group_delay(band.cascade(), Hertz(0.0), SampledAt(sample_rate));
         if (delay > longest.first) longest = {delay, 0.5 * (band.from + band.to)};
     }
     return longest;

@@ -31,17 +31,17 @@ TEST_CASE("the response of a section is what a sine measures on it") {
             out += y * std::polar(1.0, -phase);
         }
     }
-    CHECK(std::abs(out / in - response(f, Hertz(hz), Hertz(rate))) < 1e-9);
+    CHECK(std::abs(out / in - response(f, Hertz(hz), SampledAt(Hertz(rate)))) < 1e-9);
 }
 
 TEST_CASE("group delay is the negative slope of the phase") {
     const Cascade cascade = {section(0.9, 0.3, 0.5), section(0.7, 0.9, 1.2)};
     for (double hz = 1.0; hz < 450.0; hz += 7.3) {
         const double h = 1e-4;
-        const auto ratio =
-            response(cascade, Hertz(hz + h), 1000_Hz) / response(cascade, Hertz(hz - h), 1000_Hz);
+        const auto ratio = response(cascade, Hertz(hz + h), SampledAt(1000_Hz)) /
+                           response(cascade, Hertz(hz - h), SampledAt(1000_Hz));
         const double slope = -std::arg(ratio) / (2.0 * std::numbers::pi * 2.0 * h);
-        CHECK(group_delay(cascade, Hertz(hz), 1000_Hz).value() == Approx(slope).margin(1e-8));
+        CHECK(group_delay(cascade, Hertz(hz), SampledAt(1000_Hz)).value() == Approx(slope).margin(1e-8));
     }
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("a ramp lags by the group delay at zero frequency") {
     double y = 0.0;
     for (int k = 0; k <= 4000; ++k) y = step(cascade[0], s, 0.01 * k);
     CHECK((0.01 * 4000 - y) / 0.01 / 1000.0 ==
-          Approx(group_delay(cascade, 0_Hz, 1000_Hz).value()).epsilon(1e-9));
+          Approx(group_delay(cascade, 0_Hz, SampledAt(1000_Hz)).value()).epsilon(1e-9));
 }
 
 TEST_CASE("pole radius is right for complex and for real poles") {

@@ -54,14 +54,15 @@ TEST_CASE("a table's figures are those of its own sections") {
     const CandidateTable table = CandidateTable::design(paper_spec());
     for (const Band& band : table.bands()) {
         const Cascade cascade = band.cascade();
-        CHECK(band.dc_delay == group_delay(cascade, 0_Hz, 1000_Hz));
+        CHECK(band.dc_delay == group_delay(cascade, 0_Hz, SampledAt(1000_Hz)));
         CHECK(band.settle == measure_step(cascade, 1000_Hz, 0.5).settle);
         for (std::size_t n = 0; n < 2; ++n) {
             double worst = 1e300;
             for (int k = 0; k <= 10000; ++k) {
                 const double v = band.from.value() + (band.to.value() - band.from.value()) * k / 10000.0;
                 const Hertz at = ripple_frequency(band.notches[n].order, GearRatio(100.0), DegPerSec(v));
-                worst = std::min(worst, -20.0 * std::log10(std::abs(response(cascade, at, 1000_Hz))));
+                worst =
+                    std::min(worst, -20.0 * std::log10(std::abs(response(cascade, at, SampledAt(1000_Hz)))));
             }
             CHECK(band.worst_attenuation_db[n] == Approx(worst).margin(0.001));
             CHECK(band.worst_attenuation_db[n] <= worst + 1e-9);

@@ -44,7 +44,7 @@ double attenuation_db(const Band& band, const TableSpec& spec, double ratio, dou
     double left = 0.0, all = 0.0, largest = 0.0;
     for (std::size_t i = 0; i < spec.orders.size(); ++i) {
         const double hz = spec.orders[i].value() * ratio * speed / 360.0;
-        const double gain = std::abs(response(band.cascade(), Hertz(hz), spec.sample_rate));
+        const double gain = std::abs(response(band.cascade(), Hertz(hz), SampledAt(spec.sample_rate)));
         largest = std::max(largest, gain);
         if (spec.amplitude_nm.empty()) continue;
         left += std::pow(gain * spec.amplitude_nm[i], 2);
@@ -121,7 +121,7 @@ TEST_CASE("a designed table delays no band by more than its budget") {
             if (ms < 20.0) asked.most_bands = 12;  // else as many as are worth it, which takes long to tell
             const auto choice = design_for(spec, asked);
             for (const Band& band : choice.table.bands()) {
-                const Seconds delay = group_delay(band.cascade(), Hertz(0.0), spec.sample_rate);
+                const Seconds delay = group_delay(band.cascade(), Hertz(0.0), SampledAt(spec.sample_rate));
                 CHECK(delay.value() <= 1e-3 * ms * (1.0 + 1e-9));
             }
             CHECK(largest_delay_s(choice.table) > 0.999e-3 * ms);  // and uses it

@@ -22,10 +22,10 @@ TEST_CASE("a low-pass of any order is the Butterworth magnitude, prewarped at it
                 const double ratio =
                     std::tan(std::numbers::pi * hz / 1000.0) / std::tan(std::numbers::pi * cutoff / 1000.0);
                 const double expected = 1.0 / std::sqrt(1.0 + std::pow(ratio, 2.0 * order));
-                REQUIRE(std::abs(response(f, Hertz(hz), 1000_Hz)) ==
+                REQUIRE(std::abs(response(f, Hertz(hz), SampledAt(1000_Hz))) ==
                         Approx(expected).epsilon(1e-7).margin(1e-12));
             }
-            CHECK(std::abs(response(f, Hertz(cutoff), 1000_Hz)) ==
+            CHECK(std::abs(response(f, Hertz(cutoff), SampledAt(1000_Hz))) ==
                   Approx(std::numbers::sqrt2 / 2.0).epsilon(1e-9));
         }
     }
@@ -48,8 +48,8 @@ TEST_CASE("second-order Butterworth baselines: delay and attenuation at 8.33 Hz"
     for (const Case& c : {Case{2.0, 112.5, -24.8, 474.0}, Case{3.0, 75.0, -17.8, 316.0},
                           Case{5.0, 45.0, -9.4, 190.0}, Case{25.0 / 3.0, 27.0, -3.0, 114.0}}) {
         const Cascade f = design_low_pass({Hertz(c.cutoff), 2}, 1000_Hz);
-        CHECK(1e3 * group_delay(f, 0_Hz, 1000_Hz).value() == Approx(c.delay_ms).margin(0.05));
-        CHECK(20.0 * std::log10(std::abs(response(f, Hertz(25.0 / 3.0), 1000_Hz))) ==
+        CHECK(1e3 * group_delay(f, 0_Hz, SampledAt(1000_Hz)).value() == Approx(c.delay_ms).margin(0.05));
+        CHECK(20.0 * std::log10(std::abs(response(f, Hertz(25.0 / 3.0), SampledAt(1000_Hz)))) ==
               Approx(c.gain_db).margin(0.06));
         CHECK(1e3 * measure_step(f, 1000_Hz, 2.0).settle.value() == Approx(c.settle_ms).margin(1.0));
     }

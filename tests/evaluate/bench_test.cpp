@@ -57,7 +57,7 @@ TEST_CASE("the lag measured on a ramp is the group delay at 0 Hz to 1e-4 ms, wha
         const Contender c = contender(text);
         const auto frozen = c.frozen(1000_Hz, 90_deg_s);
         REQUIRE(frozen.has_value());
-        const double delay_ms = 1e3 * group_delay(frozen->cascade, 0_Hz, 1000_Hz).value();
+        const double delay_ms = 1e3 * group_delay(frozen->cascade, 0_Hz, SampledAt(1000_Hz)).value();
         INFO(text);
         CHECK(ramp_ms(c) == Approx(delay_ms).margin(1e-4));
     }
@@ -85,7 +85,8 @@ TEST_CASE("a sine on the bench is attenuated as the response says, to 1e-4 dB") 
         const Contender c = contender(text);
         const Bench bench(c, 1000_Hz, 90_deg_s);
         for (const double hz : {0.7, 8.0, 24.0, 40.0, 77.7, 300.0}) {
-            const double gain = std::abs(response(c.frozen(1000_Hz, 90_deg_s)->cascade, Hertz(hz), 1000_Hz));
+            const double gain =
+                std::abs(response(c.frozen(1000_Hz, 90_deg_s)->cascade, Hertz(hz), SampledAt(1000_Hz)));
             INFO(text << " at " << hz << " Hz");
             CHECK(bench.attenuation_db(Hertz(hz)).value() == Approx(-20.0 * std::log10(gain)).margin(1e-4));
         }

@@ -50,7 +50,8 @@ TEST_CASE("on a log, attenuation per order is what the method's response says at
         REQUIRE(levels.methods[i].attenuation.size() == 2);
         for (const OrderAttenuation& entry : levels.methods[i].attenuation) {
             CHECK(entry.hz == Approx(entry.order * 100.0 * 80.0 / 360.0).epsilon(1e-6));
-            const double expected = -20.0 * std::log10(std::abs(response(cascade, Hertz(entry.hz), 1000_Hz)));
+            const double expected =
+                -20.0 * std::log10(std::abs(response(cascade, Hertz(entry.hz), SampledAt(1000_Hz))));
             // The first window holds the filter's transient.
             CHECK(entry.db.value() == Approx(expected).margin(0.5));
         }

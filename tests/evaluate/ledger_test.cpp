@@ -42,7 +42,7 @@ TEST_CASE("a table's ledger has one entry a band, with the band's own figures") 
         CHECK(ledger[i].dc_delay == band.dc_delay);
         CHECK(ledger[i].step->settle[0].value() == Approx(band.settle.value()).margin(1.1e-3));
         CHECK(ledger[i].step->overshoot_percent == Approx(band.overshoot_percent).margin(1e-6));
-        const auto gain = response(band.cascade(), 12_Hz, 1000_Hz);
+        const auto gain = response(band.cascade(), 12_Hz, SampledAt(1000_Hz));
         CHECK(std::remainder(*ledger[i].phase_lag_deg + degrees_per_radian * std::arg(gain), 360.0) ==
               Approx(0.0).margin(1e-9));
         CHECK(*ledger[i].crossover_db == Approx(20.0 * std::log10(std::abs(gain))).margin(1e-9));
@@ -52,9 +52,9 @@ TEST_CASE("a table's ledger has one entry a band, with the band's own figures") 
 TEST_CASE("far below every centre the phase lag is the delay: 0.36 degrees for each hertz and millisecond") {
     const auto figures = [](const Contender& method, double hz) {
         const auto frozen = method.frozen(1000_Hz, 90_deg_s);
-        const auto at = at_crossover(frozen->cascade, Hertz(hz), 1000_Hz);
+        const auto at = at_crossover(frozen->cascade, Hertz(hz), SampledAt(1000_Hz));
         return at.phase_lag_deg /
-               (0.36 * hz * 1e3 * group_delay(frozen->cascade, Hertz(0.0), 1000_Hz).value());
+               (0.36 * hz * 1e3 * group_delay(frozen->cascade, Hertz(0.0), SampledAt(1000_Hz)).value());
     };
     CHECK(figures(contender("fixed,centers=25Hz:50Hz"), 0.05) == Approx(1.0).epsilon(1e-4));
     CHECK(figures(contender("lowpass,cutoff=13Hz,order=4"), 0.05) == Approx(1.0).epsilon(1e-4));
@@ -71,11 +71,11 @@ TEST_CASE("a long row of notches has the published phase lag, beyond a half turn
                 design_notch({Hertz(f), f * low / (f * f - low * low), 60.0, WidthRule::analog}, 2000_Hz));
         }
     }
-    CHECK(at_crossover(cascade, 1_Hz, 2000_Hz).phase_lag_deg == Approx(11.999).margin(0.01));
-    CHECK(at_crossover(cascade, 10_Hz, 2000_Hz).phase_lag_deg == Approx(122.904).margin(0.01));
-    CHECK(at_crossover(cascade, 16_Hz, 2000_Hz).phase_lag_deg > 180.0);
-    CHECK_THROWS_AS(at_crossover(cascade, 1000_Hz, 2000_Hz), UsageError);
-    CHECK_THROWS_AS(at_crossover(cascade, 0_Hz, 2000_Hz), UsageError);
+    CHECK(at_crossover(cascade, 1_Hz, SampledAt(2000_Hz)).phase_lag_deg == Approx(11.999).margin(0.01));
+    CHECK(at_crossover(cascade, 10_Hz, SampledAt(2000_Hz)).phase_lag_deg == Approx(122.904).margin(0.01));
+    CHECK(at_crossover(cascade, 16_Hz, SampledAt(2000_Hz)).phase_lag_deg > 180.0);
+    CHECK_THROWS_AS(at_crossover(cascade, 1000_Hz, SampledAt(2000_Hz)), UsageError);
+    CHECK_THROWS_AS(at_crossover(cascade, 0_Hz, SampledAt(2000_Hz)), UsageError);
 }
 
 TEST_CASE("the longest delay of a range of speeds is that of the slowest notch in it") {

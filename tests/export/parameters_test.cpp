@@ -50,7 +50,7 @@ FilterSet table(double q, double depth_db, std::vector<double> orders = {1.0, 2.
 double depth_at(const LoadedFilters& filters, Hertz at, Hertz rate) {
     double gain = 1.0;
     for (const LoadedSection& section : filters.bands.front())
-        gain *= std::abs(response(section.biquad, at, rate));
+        gain *= std::abs(response(section.biquad, at, SampledAt(rate)));
     return -20.0 * std::log10(gain);
 }
 

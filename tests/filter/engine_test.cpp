@@ -235,7 +235,7 @@ TEST_CASE("the meter sees raw and filtered torque of every run") {
     const Settings settings("lowpass", parse_spec("lowpass,cutoff=13rad/s"), lowpass.keys);
     const double gain =
         std::abs(response(lowpass.frozen(settings, Hertz(1000.0), nullptr, DegPerSec(90.0)).cascade,
-                          Hertz(25.0), Hertz(1000.0)));
+                          Hertz(25.0), SampledAt(Hertz(1000.0))));
     const RippleLevels levels = meter.levels();
     CHECK(levels.windows == 24);
     CHECK(levels.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(1e-3));

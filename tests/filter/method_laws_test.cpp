@@ -241,7 +241,8 @@ TEST_CASE("every method's frozen filter is stable and passes 0 Hz with gain 1") 
         for (double speed = -200.0; speed <= 300.0; speed += 12.5) {
             const FrozenFilter frozen = method.frozen(settings, Hertz(1000.0), &table, DegPerSec(speed));
             CHECK(pole_radius(frozen.cascade) < 1.0);
-            CHECK(std::abs(response(frozen.cascade, Hertz(0.0), Hertz(1000.0))) == Approx(1.0).margin(1e-9));
+            CHECK(std::abs(response(frozen.cascade, Hertz(0.0), SampledAt(Hertz(1000.0)))) ==
+                  Approx(1.0).margin(1e-9));
             CHECK_FALSE(frozen.note.empty());
         }
     });
@@ -255,7 +256,7 @@ TEST_CASE("at one speed every method does what its frozen filter says, once sett
         const FrozenFilter frozen =
             method.frozen(Settings("method", spec, method.keys), Hertz(1000.0), &table, DegPerSec(speed));
         if (frozen.follows_ripple) return;
-        const auto gain = response(frozen.cascade, Hertz(hz), Hertz(1000.0));
+        const auto gain = response(frozen.cascade, Hertz(hz), SampledAt(Hertz(1000.0)));
         const auto filter = start(text, &table);
         // Narrow filters take their time: a second more and more, until what is left is rounding.
         double worst = 1.0;

@@ -46,7 +46,8 @@ FrozenFilter frozen_at(const std::string& text, double line_hz, Hertz sample_rat
 }
 
 double gain_db(const std::string& text, double line_hz, double at_hz) {
-    const double gain = std::abs(response(frozen_at(text, line_hz).cascade, Hertz(at_hz), Hertz(1000.0)));
+    const double gain =
+        std::abs(response(frozen_at(text, line_hz).cascade, Hertz(at_hz), SampledAt(Hertz(1000.0))));
     return 20.0 * std::log10(std::max(gain, 1e-20));
 }
 
@@ -56,7 +57,7 @@ double lag_deg(const std::string& text, double line_hz, double at_hz) {
     double lag = 0.0;
     std::complex<double> before = 1.0;
     for (int i = 1; i <= 200; ++i) {
-        const auto now = response(cascade, Hertz(at_hz * i / 200.0), Hertz(2000.0));
+        const auto now = response(cascade, Hertz(at_hz * i / 200.0), SampledAt(Hertz(2000.0)));
         lag -= std::arg(now / before) * 180.0 / std::numbers::pi;
         before = now;
     }
@@ -229,7 +230,8 @@ TEST_CASE(
 
 TEST_CASE("max-delay narrows a slow line's notch until its delay is that, and leaves a fast one's as it is") {
     const auto delay_ms = [](const std::string& text, double line_hz) {
-        return 1e3 * group_delay(frozen_at(text, line_hz).cascade, Hertz(0.0), Hertz(1000.0)).value();
+        return 1e3 *
+               group_delay(frozen_at(text, line_hz).cascade, Hertz(0.0), SampledAt(Hertz(1000.0))).value();
     };
     const auto rule = [](double hz, double q) { return 1e3 / (2.0 * std::numbers::pi * hz * q); };
     const std::string one = "tracking,gear-ratio=100,orders=1";

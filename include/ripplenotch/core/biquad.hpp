@@ -35,13 +35,13 @@ inline double step(const Biquad& f, BiquadState& s, double x) noexcept {
 /// Output of a section for a constant input of 1.
 [[nodiscard]] double dc_gain(const Biquad& f) noexcept;
 
-/// Complex gain of a section or cascade at a frequency, 0 <= at <= sample_rate / 2.
-[[nodiscard]] std::complex<double> response(const Biquad& f, Hertz at, Hertz sample_rate);
-[[nodiscard]] std::complex<double> response(std::span<const Biquad> cascade, Hertz at, Hertz sample_rate);
+/// Complex gain of a section or cascade at a frequency, 0 <= at <= sampled.rate / 2.
+[[nodiscard]] std::complex<double> response(const Biquad& f, Hertz at, SampledAt sampled);
+[[nodiscard]] std::complex<double> response(std::span<const Biquad> cascade, Hertz at, SampledAt sampled);
 
 /// -d(phase)/d(omega) in seconds, from the polynomials themselves (no differencing, finite at a notch's own
 /// zero as long as the zero is not exactly on the circle at `at`).
-[[nodiscard]] Seconds group_delay(std::span<const Biquad> cascade, Hertz at, Hertz sample_rate);
+[[nodiscard]] Seconds group_delay(std::span<const Biquad> cascade, Hertz at, SampledAt sampled);
 
 /// Largest pole radius; below 1 means stable.
 [[nodiscard]] double pole_radius(const Biquad& f);

@@ -42,6 +42,12 @@ using NewtonMeters = Quantity<struct NewtonMetersTag>;
 using Order = Quantity<struct OrderTag>;          ///< cycles per motor revolution
 using GearRatio = Quantity<struct GearRatioTag>;  ///< motor revolutions per output revolution
 
+/// A sample rate that stands beside a frequency: bare, the two could be swapped.
+struct SampledAt {
+    explicit constexpr SampledAt(Hertz samples) : rate(samples) {}
+    Hertz rate;
+};
+
 template <class Tag>
 [[nodiscard]] inline Quantity<Tag> abs(Quantity<Tag> q) {
     return Quantity<Tag>(std::abs(q.value()));

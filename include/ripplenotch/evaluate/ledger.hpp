@@ -35,8 +35,8 @@ struct LedgerRequest {
 struct CrossoverFigures {
     double phase_lag_deg = 0.0, gain_db = 0.0;
 };
-/// Throws UsageError unless 0 < at < sample_rate / 2.
-[[nodiscard]] CrossoverFigures at_crossover(std::span<const Biquad> cascade, Hertz at, Hertz sample_rate);
+/// Throws UsageError unless 0 < at < sampled.rate / 2.
+[[nodiscard]] CrossoverFigures at_crossover(std::span<const Biquad> cascade, Hertz at, SampledAt sampled);
 
 /// Of every band of a method's table, each at its middle speed; of a method that follows the gear at 5, 10,
 /// 20, 50, 100 and 200 deg/s; else one entry.

@@ -28,7 +28,8 @@ void add_costs(Comparison& comparison, const CostRequest& request, const Field& 
         MethodFigures& figures = comparison.methods[i];
         const auto frozen = contender.frozen(comparison.sample_rate, comparison.speed);
         if (request.crossover && frozen) {
-            const auto at = at_crossover(frozen->cascade, *request.crossover, comparison.sample_rate);
+            const auto at =
+                at_crossover(frozen->cascade, *request.crossover, SampledAt(comparison.sample_rate));
             figures.phase_lag_deg = at.phase_lag_deg;
             figures.crossover_db = at.gain_db;
         }

@@ -36,7 +36,7 @@ LineGains gains_of(const Contender& method, Hertz sample_rate) {
         const auto frozen = method.frozen(sample_rate, DegPerSec(speed));
         for (std::size_t i = 0; i < gains.size(); ++i) {
             const Hertz at = ripple_frequency(method.gear->orders[i], method.gear->ratio, DegPerSec(speed));
-            gains[i] = frozen ? response(frozen->cascade, at, sample_rate) : 1.0;
+            gains[i] = frozen ? response(frozen->cascade, at, SampledAt(sample_rate)) : 1.0;
         }
     };
 }

@@ -31,7 +31,8 @@ std::vector<std::string> delay_violations(const Gates& gates, const Contender& c
     if (contender.table != nullptr) {
         for (const Band& band : contender.table->bands()) {
             if (!(band.from < fastest) || band.to < slowest) continue;
-            const double delay_ms = 1e3 * group_delay(band.cascade(), Hertz(0.0), sample_rate).value();
+            const double delay_ms =
+                1e3 * group_delay(band.cascade(), Hertz(0.0), SampledAt(sample_rate)).value();
             if (delay_ms <= 1e3 * gates.max_delay->value()) continue;
             sentences.push_back(fmt::format("{}: band {} ({:.6g}-{:.6g} deg/s) {}", contender.text,
                                             band.number, band.from.value(), band.to.value(),

@@ -25,24 +25,24 @@ double polynomial_delay(double c0, double c1, double c2, std::complex<double> z1
 
 double dc_gain(const Biquad& f) noexcept { return (f.b0 + f.b1 + f.b2) / (1.0 + f.a1 + f.a2); }
 
-std::complex<double> response(const Biquad& f, Hertz at, Hertz sample_rate) {
-    const auto z1 = unit_delay(at, sample_rate);
+std::complex<double> response(const Biquad& f, Hertz at, SampledAt sampled) {
+    const auto z1 = unit_delay(at, sampled.rate);
     return (f.b0 + z1 * (f.b1 + z1 * f.b2)) / (1.0 + z1 * (f.a1 + z1 * f.a2));
 }
 
-std::complex<double> response(std::span<const Biquad> cascade, Hertz at, Hertz sample_rate) {
+std::complex<double> response(std::span<const Biquad> cascade, Hertz at, SampledAt sampled) {
     std::complex<double> gain = 1.0;
-    for (const Biquad& f : cascade) gain *= response(f, at, sample_rate);
+    for (const Biquad& f : cascade) gain *= response(f, at, sampled);
     return gain;
 }
 
-Seconds group_delay(std::span<const Biquad> cascade, Hertz at, Hertz sample_rate) {
-    const auto z1 = unit_delay(at, sample_rate);
+Seconds group_delay(std::span<const Biquad> cascade, Hertz at, SampledAt sampled) {
+    const auto z1 = unit_delay(at, sampled.rate);
     double samples = 0.0;
     for (const Biquad& f : cascade) {
         samples += polynomial_delay(f.b0, f.b1, f.b2, z1) - polynomial_delay(1.0, f.a1, f.a2, z1);
     }
-    return Seconds(samples / sample_rate.value());
+    return Seconds(samples / sampled.rate.value());
 }
 
 double pole_radius(const Biquad& f) {

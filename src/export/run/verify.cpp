@@ -83,7 +83,7 @@ SectionCheck check_response(const Biquad& f, const ExportSection& designed, Hert
         check.shift_percent = 100.0 * (center / designed.center - 1.0);
     }
     check.q = poles > 0.0 ? std::sqrt(poles) * (1.0 - f.a1 + f.a2) / (2.0 * (1.0 - f.a2)) : 0.0;
-    check.response_depth_db = depth_of(std::abs(response(f, designed.center, sample_rate)));
+    check.response_depth_db = depth_of(std::abs(response(f, designed.center, SampledAt(sample_rate))));
     check.pole_radius = pole_radius(f);
     return check;
 }

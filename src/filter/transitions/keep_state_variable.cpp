@@ -2,12 +2,10 @@
 // As keep, but the memory is that of the trapezoidal state-variable form: two integrators a section, which
 // mean the same whatever the centre is, as the notch that is retuned at every sample has them.
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "filter/kernels/in_series.hpp"
-#include "filter/run/transition.hpp"
+#include "filter/run/one_cascade.hpp"
 #include "ripplenotch/core/state_variable.hpp"
 
 namespace ripplenotch {
@@ -41,58 +39,30 @@ double advance(const Section& f, BandPassState& s, double x) noexcept {
     return f.high * x + f.band * v1 + f.low * v2;
 }
 
-class KeepStateVariable final : public Transition {
+std::vector<std::vector<Section>> sections_of(const Candidates& candidates) {
+    std::vector<std::vector<Section>> sections;
+    for (const Cascade& cascade : candidates.cascades) {
+        sections.emplace_back();
+        for (const Biquad& f : cascade) sections.back().push_back(section_of(f));
+    }
+    return sections;
+}
+
+class KeepStateVariable final : public OneCascade<Section, BandPassState> {
   public:
-    explicit KeepStateVariable(const Candidates& candidates) : states_(candidates.sections) {
-        for (const Cascade& cascade : candidates.cascades) {
-            sections_.emplace_back();
-            for (const Biquad& f : cascade) sections_.back().push_back(section_of(f));
-        }
-    }
-
-    void start(int candidate, double torque_nm) override {
-        candidate_ = candidate;
-        settle(torque_nm);
-    }
-
-    void run(std::span<const double> torque_nm, std::span<double> out) override {
-        if (candidate_ == no_candidate) {
-            std::copy(torque_nm.begin(), torque_nm.end(), out.begin());
-            return;
-        }
-        run_in_series(std::span<const Section>(sections_[static_cast<std::size_t>(candidate_)]),
-                      std::span(states_), torque_nm, origin_nm_, out,
-                      [](const Section& f, BandPassState& s, double x) { return advance(f, s, x); });
-    }
-
-    Change change(int candidate, double torque_nm) override {
-        auto unchanged_states = states_;
-        const double unchanged =
-            candidate_ == no_candidate ? torque_nm : through(unchanged_states, torque_nm);
-        // While no filter is in force there is no past worth keeping.
-        if (candidate_ == no_candidate) settle(torque_nm);
-        candidate_ = candidate;
-        return {candidate == no_candidate ? torque_nm : through(states_, torque_nm), unchanged};
-    }
+    explicit KeepStateVariable(const Candidates& candidates)
+        : OneCascade(sections_of(candidates), candidates.sections) {}
 
   private:
-    // All signals are relative to the torque at which the cascade was settled; see CascadeFilter.
-    void settle(double torque_nm) {
-        origin_nm_ = torque_nm;
-        std::fill(states_.begin(), states_.end(), BandPassState{});
+    void run_through(std::span<const Section> sections, std::span<BandPassState> states,
+                     std::span<const double> torque_nm, double origin_nm, std::span<double> out) override {
+        run_in_series(sections, states, torque_nm, origin_nm, out,
+                      [](const Section& f, BandPassState& s, double x) { return advance(f, s, x); });
     }
-
-    double through(std::vector<BandPassState>& states, double torque_nm) const {
-        const std::vector<Section>& cascade = sections_[static_cast<std::size_t>(candidate_)];
-        double signal = torque_nm - origin_nm_;
-        for (std::size_t i = 0; i < cascade.size(); ++i) signal = advance(cascade[i], states[i], signal);
-        return origin_nm_ + signal;
+    [[nodiscard]] double one_step(const Section& section, BandPassState& state,
+                                  double signal) const override {
+        return advance(section, state, signal);
     }
-
-    std::vector<std::vector<Section>> sections_;  ///< by candidate
-    std::vector<BandPassState> states_;
-    double origin_nm_ = 0.0;
-    int candidate_ = no_candidate;
 };
 
 std::unique_ptr<Transition> make(Candidates candidates, std::size_t /*blend_samples*/) {
