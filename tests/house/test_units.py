@@ -26,11 +26,6 @@ KNOWN_ORDER = {
     ("core/trace.hpp", "part"): "as std::span::subspan(): from where on, how many",
     ("analysis/sweeps.hpp", "part_of"): "as std::span::subspan(): from where on, how many",
     ("figure/min_max.hpp", "add"): "a point: x, y",
-    # A filter at a frequency, then the rate: some seventy calls, all in this order. Swapped, the frequency lies above half the
-    # rate, which no mask and no golden number survives.
-    ("core/biquad.hpp", "response"): "at a frequency, sampled at a rate",
-    ("core/biquad.hpp", "group_delay"): "at a frequency, sampled at a rate",
-    ("evaluate/ledger.hpp", "at_crossover"): "as response(); it refuses a frequency that is not below half the rate",
 }
 
 
