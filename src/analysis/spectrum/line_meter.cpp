@@ -2,7 +2,6 @@
 #include "analysis/spectrum/line_meter.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "analysis/kernels/piece_kernel.hpp"
 #include "ripplenotch/core/portable_math.hpp"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "log/clock/time_backward.hpp"
 #include "log/read_on.hpp"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "log/clock/time_backward.hpp"
 #include "log/columns/decide_layout.hpp"
