@@ -16,8 +16,9 @@ struct PowerSpectrum {
     double averages = 1.0;
     double bins_per_cell =
         1.5;                ///< bins that carry one independent value (1.5 for a Hann window without padding)
-    std::size_t first = 0;  ///< bins below are not searched and not used
+    std::size_t first = 0;  ///< bins below are not used
     std::span<const double> averages_by_bin = {};  ///< when given, instead of `averages`
+    std::size_t searched = 0;  ///< bins below, if not below `first`, are noise for others, and not searched
 
     [[nodiscard]] double averages_at(std::size_t bin) const {
         return averages_by_bin.empty() ? averages : averages_by_bin[bin];
@@ -37,9 +38,10 @@ struct SignificantPeak {
 
 /// Local maxima whose false_alarm is at most the one asked for, in bin order. Each is compared with the
 /// largest of four floors: 2 to 5, 3 to 12 and 3 to 40 cells away, and the one below it. So the flank of a
-/// broad resonance is no line, and neither is the noise inside a narrow one. The floor is known from few
-/// cells, which the test allows for: the ratio follows an F distribution. Maxima within 5 cells of
-/// either end are not judged.
+/// broad resonance is no line, and neither is the noise inside a narrow one. Near the low end the lower floor
+/// is what lies just outside of the main lobe, so that a spectrum that falls steeply is no line either. The
+/// floor is known from few cells, which the test allows for: the ratio follows an F distribution. Maxima with
+/// less than 4 cells beside them are not tested.
 [[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
                                                              double false_alarm);
 /// The same where noise_floor(spectrum) is at hand.
@@ -47,10 +49,15 @@ struct SignificantPeak {
                                                              std::span<const double> floor,
                                                              double false_alarm);
 
-/// The same for spectra of some ten cells: floor from all that is beyond a line's main lobe, or from its
-/// louder side; maxima within 3.5 cells of either end are not judged.
-[[nodiscard]] std::vector<SignificantPeak> significant_peaks_of_few_cells(const PowerSpectrum& spectrum,
-                                                                          double false_alarm);
+/// The power from which on a maximum at this bin is significant; infinite where none is tested.
+[[nodiscard]] double significant_power(const PowerSpectrum& spectrum, std::size_t bin, double false_alarm);
+
+/// The noise-free power, over the mean noise power, of a line that exceeds `threshold` (a multiple of that
+/// noise) with a probability of 95 %: its power is noncentral chi-square, here by its mean and variance.
+[[nodiscard]] double detectable_ratio(double threshold, double averages);
+
+/// A power over the floor that noise of so many averages exceeds with this chance.
+[[nodiscard]] double ratio_exceeded(double chance, double averages, double cells);
 
 /// Power over a floor, of so many averages; the floor was itself estimated from `cells` independent cells.
 struct PowerOverFloor {

@@ -46,8 +46,9 @@ struct MotionLines {
     std::size_t sweeps = 0, sweeps_left_out = 0;
     double turns = 0.0;  ///< output turns that the sweeps cover
     double resolution_orders = 0.0;
-    double detectable_nm = 0.0;  ///< smallest amplitude that would have been found, median over orders
-    double lowest_order = 0.0, highest_order = 0.0;   ///< searched
+    /// Largest, over the orders searched, of the amplitude that would have been found with 95 % probability.
+    double detectable_nm = 0.0;
+    double lowest_order = 0.0, highest_order = 0.0;   ///< searched; 0 to 0 where no sweep allows a search
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
     bool absolute_angle = false;
     /// Of logs without position whose lines tell it; their angle and their lines are without it.
@@ -55,10 +56,6 @@ struct MotionLines {
     /// Relative error that all orders have in common, because the angle is a sum of velocities.
     double order_share_error = 0.0;
 };
-
-/// For logs too short for the ordinary search: sweeps of 24 samples or more, judged by a test for spectra of
-/// some ten cells. Resolution is coarse and only clear lines are found.
-[[nodiscard]] MotionLinesOptions short_log_options();
 
 /// Takes the clearest line of both axes that does not rest on a single sweep, gives it to the axis that
 /// explains more of it, subtracts it sweep by sweep, and looks again, until noise could have made what is

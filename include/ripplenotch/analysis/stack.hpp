@@ -30,6 +30,7 @@ struct Stack {
     std::vector<double> sweep_weights;  ///< effective samples
     std::vector<std::vector<float>> floors;  ///< per sweep and bin: mean noise power |S|^2; 0 where not used
     std::size_t first = 0;                   ///< lowest bin in use
+    std::size_t searched = 0;                ///< lowest bin at which lines are looked for
 
     [[nodiscard]] PowerSpectrum tested() const;
     /// significant_peaks of `ratio`, the chance corrected for grids finer than the resolution.
@@ -40,15 +41,17 @@ struct Stack {
     };
     /// significant_humps, likewise; most energy first. None where there are few cells.
     [[nodiscard]] std::vector<SpectralHump> humps(const HumpRule& rule) const;
-    bool few_cells = false;     ///< StackRule::few_cells
     double tries_factor = 1.0;  ///< longest over mean length
 };
 
 struct StackRule {
-    double lowest_order = 20.0, highest_order = 2400.0;  ///< by hand, per output turn
-    double lowest_hz = 0.5;                              ///< by hand
-    bool few_cells = false;      ///< sweeps so short that their spectra have some ten cells
-    double fewest_cycles = 4.0;  ///< per sweep: what turns less often in it is not told from the trend
+    /// Per output turn. The lowest is an error once a turn; the highest is order 8 of a ratio of 320, the
+    /// highest in catalogues.
+    double lowest_order = 1.0, highest_order = 2560.0;
+    double lowest_hz = 0.5;  ///< by hand
+    /// A line has so many cycles in a sweep: its main lobe (two cycles to both sides) is then clear of the
+    /// trend, which follows up to trend_cycles.
+    double fewest_cycles = 4.0;
 };
 
 /// A sweep takes part up to half its sample rate at its slower speeds (lower quartile), beyond which lines

@@ -12,13 +12,16 @@
 namespace ripplenotch {
 
 struct SweepRule {
-    double longest_turns = 2.0;       ///< longer sweeps are cut into half-overlapping pieces of this length
+    /// Longer sweeps are cut into half-overlapping pieces of this length: the four cycles that a line once a
+    /// turn needs. The families of both splines, one order apart, are two lines then.
+    double longest_turns = 4.0;
     double longest_s = 20.0;          ///< ... and of at most this duration
-    double shortest_turns = 0.02;     ///< by hand
-    std::size_t fewest_samples = 64;  ///< by hand
+    double shortest_turns = 0.02;  ///< by hand
+    std::size_t fewest_samples = 24;  ///< by hand: a line of four cycles and four cells beside it
     double slowest_share = 0.02;      ///< of the log's highest speed; slower motion belongs to no sweep
-    double trend_terms_per_turn =
-        12.0;  ///< smooth part of the torque taken out: this many terms per output turn
+    /// The smooth part of the torque that is taken out of a sweep: a line, and cosines up to so many cycles in
+    /// the sweep.
+    double trend_cycles = 1.5;
     std::size_t most_samples =
         300000;                     ///< with more, evenly chosen pieces are used, so that the cost is bounded
     std::size_t most_pieces = 100;  ///< the same

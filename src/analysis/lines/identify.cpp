@@ -71,15 +71,11 @@ Hertz mean_sample_rate(std::span<const TraceView> logs) {
     return Hertz(seconds > 0.0 ? samples / seconds : 0.0);
 }
 
-MotionLines motion_lines_of(std::span<const TraceView> logs, const IdentifyOptions& options,
-                            double false_alarm, bool nothing_steady_moves, std::vector<double> known_hz) {
+MotionLines motion_lines_of(std::span<const TraceView> logs,
+                            double false_alarm, std::vector<double> known_hz) {
     MotionLinesOptions motion;
     motion.false_alarm = false_alarm;
     motion.known_hz = std::move(known_hz);
-    MotionLines found = find_motion_lines(logs, motion);
-    if (found.sweeps > 0 || !nothing_steady_moves) return found;
-    motion = short_log_options();
-    motion.false_alarm = options.false_alarm;  // nothing else has been asked yet
     return find_motion_lines(logs, motion);
 }
 
@@ -140,7 +136,7 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
         for (const Reported& one : reported) {
             if (one.line.kind == LineKind::tone) tones.push_back(*one.line.hz);
         }
-        looked.motion = motion_lines_of(logs, options, false_alarm, nothing_steady_moves, std::move(tones));
+        looked.motion = motion_lines_of(logs, false_alarm, std::move(tones));
         if (motion_tells_more(*looked.motion, reported)) {
             add_motion_lines(*looked.motion, options, result.sample_rate, reported);
             result.velocity_error = looked.motion->velocity_error;

@@ -24,14 +24,6 @@ std::vector<MotionLine*> orders_among(std::vector<MotionLine>& lines) {
 
 }  // namespace
 
-MotionLinesOptions short_log_options() {
-    MotionLinesOptions options;
-    options.sweeps.fewest_samples = 24;
-    options.stack.few_cells = true;
-    options.lowest_tone_hz = 3.0;
-    return options;
-}
-
 MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLinesOptions& options) {
     MotionSearch search = search_sweeps(cut_sweeps(logs, options.sweeps), logs, options);
     MotionLines& found = search.found;

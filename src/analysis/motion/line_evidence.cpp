@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 
 #include "analysis/motion/place_error.hpp"
 #include "core/process/two_cores.hpp"
@@ -34,16 +35,55 @@ std::vector<FourierPoint> points_of(std::span<const Sweep> sweeps, const Stack& 
 
 constexpr auto own_value = [](const Sweep& sweep) { return std::span(sweep.value); };
 
-/// Power over noise of one sweep, or of a part of it, at a place; noise scaled from the whole sweep's floor
-/// there.
+/// A sweep, or half of one, in which a line is to be seen again.
 struct SweepPart {
-    double ratio = 0.0, weight = 0.0;
+    std::size_t sweep = 0, first = 0, count = 0;
+    double weight = 0.0;
+    double share = 1.0;  ///< of the whole sweep's power over noise, that a steady line has in it
 };
 
-SweepPart piece_at(const Sweep& part, const Sweep& whole, Axis axis, double noise, double place) {
-    const double scale = part.weight_square_sum / whole.weight_square_sum;
-    const double power = std::norm(fourier_point(places(part, axis), part.value, place).value);
-    return {power / (noise * scale), part.effective_samples()};
+/// The sweeps whose noise at a place is known; where one is most of the log, its halves instead of it.
+std::vector<SweepPart> parts_asked(std::span<const Sweep> sweeps, const Stack& stack, double place) {
+    std::vector<SweepPart> all;
+    double total = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        if (!(noise_at(stack, i, place) > 0.0)) continue;
+        all.push_back({i, 0, sweeps[i].turns.size(), stack.sweep_weights[i], 1.0});
+        total += all.back().weight;
+    }
+    const auto heaviest = std::max_element(
+        all.begin(), all.end(), [](const SweepPart& a, const SweepPart& b) { return a.weight < b.weight; });
+    if (heaviest == all.end() || heaviest->weight <= most_of_log * total) return all;
+    const SweepPart whole = *heaviest;
+    all.erase(heaviest);
+    const std::size_t half = whole.count / 2;
+    all.push_back({whole.sweep, 0, half, 0.5 * whole.weight, 0.5});
+    all.push_back({whole.sweep, half, whole.count - half, 0.5 * whole.weight, 0.5});
+    return all;
+}
+
+/// Without the strongest: averages behind the weighted mean, and what a steady line has of its power there.
+struct Others {
+    double ratio = 0.0, share = 0.0, averages = 0.0;
+};
+
+Others without(const std::vector<SweepPart>& all, std::size_t left_out, const std::vector<double>& ratios) {
+    double sum = 0.0, shares = 0.0, weights = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (i == left_out) continue;
+        sum += ratios.empty() ? 0.0 : all[i].weight * ratios[i];
+        shares += all[i].weight * all[i].share;
+        weights += all[i].weight;
+        squares += all[i].weight * all[i].weight;
+    }
+    if (!(weights > 0.0)) return {};
+    return {sum / weights, shares / weights, weights * weights / squares};
+}
+
+/// Independent cells behind the noise floor of the sweep that has most of them.
+double floor_cells(const Stack& stack) {
+    const double cells = static_cast<double>(stack.ratio.size() - stack.first) * stack.spacing / stack.resolution;
+    return std::min(80.0, cells);  // noise_floor() goes 40 cells to each side
 }
 
 template <class ValueOf>
@@ -82,43 +122,36 @@ double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const 
 }
 
 bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {
-    std::vector<SweepPart> pieces;
+    const std::vector<SweepPart> all = parts_asked(sweeps, stack, place);
+    std::vector<double> ratios;
     std::size_t strongest = 0;
-    double total = 0.0;
-    std::vector<std::size_t> index;
-    for (std::size_t i = 0; i < sweeps.size(); ++i) {
-        const double noise = noise_at(stack, i, place);
-        if (!(noise > 0.0)) continue;
-        pieces.push_back(piece_at(sweeps[i], sweeps[i], stack.axis, noise, place));
-        index.push_back(i);
-        total += pieces.back().weight;
-        const auto says = [&](std::size_t k) { return pieces[k].ratio * pieces[k].weight; };
-        if (says(pieces.size() - 1) > says(strongest)) strongest = pieces.size() - 1;
+    for (const SweepPart& one : all) {
+        const Sweep& whole = sweeps[one.sweep];
+        const bool part = one.count < whole.turns.size();
+        const Sweep piece = part ? part_of(whole, one.first, one.count) : Sweep{};
+        const Sweep& seen = part ? piece : whole;
+        const double noise = noise_at(stack, one.sweep, place) * seen.weight_square_sum / whole.weight_square_sum;
+        const double power = std::norm(fourier_point(places(seen, stack.axis), seen.value, place).value);
+        ratios.push_back(power / noise);
+        if (ratios.back() * one.weight > ratios[strongest] * all[strongest].weight)
+            strongest = ratios.size() - 1;
     }
-    if (pieces.empty()) return false;
-    if (pieces[strongest].weight > most_of_log * total) {
-        const std::size_t i = index[strongest];
-        const std::size_t half = sweeps[i].turns.size() / 2;
-        pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(strongest));
-        for (const auto& [first, count] :
-             {std::pair{std::size_t{0}, half}, std::pair{half, sweeps[i].turns.size() - half}}) {
-            pieces.push_back(piece_at(part_of(sweeps[i], first, count), sweeps[i], stack.axis,
-                                      noise_at(stack, i, place), place));
-        }
-        strongest = pieces.size() - 1;
-        if (pieces[strongest - 1].ratio > pieces[strongest].ratio) --strongest;
-    }
-    pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(strongest));
-    double sum = 0.0, weights = 0.0, squares = 0.0;
-    for (const SweepPart& piece : pieces) {
-        sum += piece.weight * piece.ratio;
-        weights += piece.weight;
-        squares += piece.weight * piece.weight;
-    }
-    if (!(weights > 0.0)) return false;
-    return exceedance(
-               {.ratio = sum / weights, .averages = weights * weights / squares, .cells = floor_cells}) <
-           recurrence_chance;
+    const Others others = without(all, strongest, ratios);
+    return others.averages > 0.0 && exceedance({.ratio = others.ratio,
+                                                .averages = others.averages,
+                                                .cells = floor_cells(stack)}) < recurrence_chance;
+}
+
+double recurring_ratio(std::span<const Sweep> sweeps, const Stack& stack, double place) {
+    const std::vector<SweepPart> all = parts_asked(sweeps, stack, place);
+    if (all.size() < 2) return std::numeric_limits<double>::infinity();
+    const auto heaviest = std::max_element(all.begin(), all.end(), [](const SweepPart& a, const SweepPart& b) {
+        return a.weight * a.share < b.weight * b.share;
+    });
+    const Others others = without(all, static_cast<std::size_t>(heaviest - all.begin()), {});
+    return detectable_ratio(ratio_exceeded(recurrence_chance, others.averages, floor_cells(stack)),
+                            others.averages) /
+           others.share;
 }
 
 double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin) {

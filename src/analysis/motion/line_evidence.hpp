@@ -11,9 +11,6 @@
 
 namespace ripplenotch {
 
-/// Independent cells behind a sweep's own noise floor.
-inline constexpr double floor_cells = 80.0;
-
 /// What one line at each bin explains beyond noise: weighted sum over sweeps of power over noise, less one
 /// each.
 double gain_at(const Stack& stack, std::size_t bin);
@@ -28,6 +25,9 @@ double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const 
 /// True when a line is seen even without the sweep that shows it best: a burst, or another joint's ripple
 /// that passes by, fills one sweep. Where one sweep is most of the log, its halves count as two.
 bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place);
+
+/// The power over noise, alike in all sweeps, from which on a line recurs in 95 of 100 logs.
+double recurring_ratio(std::span<const Sweep> sweeps, const Stack& stack, double place);
 
 /// Place of the maximum of the summed power near a bin, all sweeps together, by Newton steps.
 double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin);

@@ -40,8 +40,7 @@ std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& st
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
     for (const Candidate& candidate : candidates) {
-        // Half a sweep of some ten cells has five: there is nothing to recur in.
-        if (stack.few_cells || recurs(sweeps, stack, static_cast<double>(candidate.peak.bin) * stack.spacing))
+        if (recurs(sweeps, stack, static_cast<double>(candidate.peak.bin) * stack.spacing))
             return candidate;
     }
     return std::nullopt;
@@ -73,19 +72,25 @@ double least_amplitude_of(std::span<const TraceView> logs, double share) {
     return std::max(share * range, 1e-9 * largest);
 }
 
-/// Amplitude at which a line of median floor reaches the false-alarm rate.
-double detectable(const Stack& stack, double false_alarm) {
-    std::vector<double> floors(
-        stack.floor_nm.begin() + static_cast<std::ptrdiff_t>(std::min(stack.first, stack.floor_nm.size())),
-        stack.floor_nm.end());
-    if (floors.empty()) return 0.0;
-    const double averages = stack.averages[(stack.first + stack.averages.size()) / 2];
-    const double tries = static_cast<double>(floors.size()) * stack.spacing / stack.resolution;
-    double ratio = 1.0;
-    while (ratio < 1e3 &&
-           exceedance({.ratio = ratio, .averages = averages, .cells = floor_cells}) * tries > false_alarm)
-        ratio *= 1.05;
-    return median_in(floors) * std::sqrt(ratio - 1.0);
+/// The largest amplitude, over the orders searched, that a line needs to be found in 95 of 100 logs: it has to
+/// be significant, and to recur. Bins near found lines are theirs.
+double detectable(std::span<const Sweep> sweeps, const Stack& stack, double false_alarm,
+                  std::span<const double> taken) {
+    constexpr std::size_t most_asked = 512;  // by hand: the floor varies slowly along the bins
+    const PowerSpectrum spectrum = stack.tested();
+    const double chance = false_alarm / stack.tries_factor;
+    const std::size_t end = stack.ratio.size(), from = std::min(stack.searched, end);
+    const std::size_t stride = std::max<std::size_t>(1, (end - from) / most_asked);
+    double largest = 0.0;
+    for (std::size_t k = from; k < end; k += stride) {
+        if (near_any(taken, static_cast<double>(k) * stack.spacing, line_cells * stack.resolution)) continue;
+        const double threshold = significant_power(spectrum, k, chance);
+        if (!std::isfinite(threshold)) continue;
+        const double ratio = std::max(detectable_ratio(threshold, stack.averages[k]),
+                                      recurring_ratio(sweeps, stack, static_cast<double>(k) * stack.spacing));
+        largest = std::max(largest, stack.floor_nm[k] * std::sqrt(ratio));
+    }
+    return largest;
 }
 
 struct SpeedRange {
@@ -204,10 +209,14 @@ void complete(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Riva
         folds_of(sweeps, stacks.angle, {.seen = line.order_seen, .highest = options.stack.highest_order});
 }
 
-void state_resolution(const Stack& angle, double least_amplitude, double false_alarm, MotionLines& found) {
+/// What was searched, and what would have been found there; nothing where no order was.
+void state_search(std::span<const Sweep> sweeps, const Stack& angle, double least_amplitude,
+                  double false_alarm, std::span<const double> taken, MotionLines& found) {
     found.resolution_orders = angle.resolution;
-    found.lowest_order = static_cast<double>(angle.first) * angle.spacing;
-    found.detectable_nm = std::max(least_amplitude, detectable(angle, 0.5 * false_alarm));
+    const double detectable_nm = detectable(sweeps, angle, 0.5 * false_alarm, taken);
+    if (!(detectable_nm > 0.0)) return;
+    found.detectable_nm = std::max(least_amplitude, detectable_nm);
+    found.lowest_order = static_cast<double>(angle.searched) * angle.spacing;
     found.highest_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
 }
 
@@ -239,7 +248,6 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     }
     const double least_amplitude = least_amplitude_of(logs, options.least_share);
     Stacks stacks = stacked(sweeps, options);
-    if (options.most_lines > 0) state_resolution(stacks.angle, least_amplitude, options.false_alarm, found);
     for (std::size_t round = 0; round < 2 * options.most_lines && found.lines.size() < options.most_lines;
          ++round) {
         auto sought = seek(sweeps, stacks, range, taken_orders, taken_hz, options);
@@ -264,6 +272,7 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
         found.lines.push_back(std::move(line));
         if (found.lines.size() < options.most_lines) stacks = stacked(sweeps, options);
     }
+    state_search(sweeps, stacks.angle, least_amplitude, options.false_alarm, taken_orders, found);
     found.humps = stacks.time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
     search.angle = std::move(stacks.angle);
     for (std::size_t i = 0; i < values.size(); ++i) sweeps[i].value = std::move(values[i]);

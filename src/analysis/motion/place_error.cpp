@@ -123,10 +123,7 @@ double place_error(std::span<const Sweep> sweeps, const Stack& stack, double pla
             add_parts(sweeps[asked[i]], stack.axis, noise_at(stack, asked[i], place), place, parts);
     }
     if (!(curve < 0.0) || !(variance > 0.0)) return stack.resolution;
-    double error = std::sqrt(variance) / -curve;
-    // A floor known from some five cells (Student's t for their number), and an amplitude that changes along
-    // the one short sweep, which no other sweep contradicts, and moves a line by about a tenth of its width.
-    if (stack.few_cells) error = portable::hypot(1.3 * error, 0.1 * stack.resolution);
+    const double error = std::sqrt(variance) / -curve;
     return std::min(error * std::max(disagreement(whole), disagreement(parts)), stack.resolution);
 }
 

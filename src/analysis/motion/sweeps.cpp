@@ -135,8 +135,7 @@ Sweep make_sweep(const TraceView& log, const SampleRun& span, std::span<const do
     sweep.slow_deg_s = shares.quantile(0.25 * sweep.weight_sum);
     sweep.quick_deg_s = shares.quantile(0.75 * sweep.weight_sum);
     sweep.measured_nm = log.torque_nm.subspan(span.first, n);
-    const auto cosines = std::lround(rule.trend_terms_per_turn * sweep.length_turns);
-    sweep.trend_terms = static_cast<std::size_t>(std::max(cosines, 3L)) + 2;
+    sweep.trend_terms = static_cast<std::size_t>(std::lround(2.0 * rule.trend_cycles)) + 2;
     fit_out(sweep, {});
     return sweep;
 }

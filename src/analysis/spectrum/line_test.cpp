@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "analysis/shared_limits.hpp"
 #include "analysis/spectrum/running_median.hpp"
@@ -13,6 +14,7 @@
 namespace ripplenotch {
 namespace {
 
+constexpr double lobe_cells = 4.0 / 3.0;  // half of a Hann line's main lobe: two cycles
 constexpr double guard_cells = 3.0;       // the main lobe of a Hann line and its first side lobe
 constexpr double near_cells = 12.0;       // by hand: from a line, for a floor that slopes
 constexpr double far_cells = 40.0;        // by hand: for a median that is known better
@@ -51,38 +53,36 @@ double incomplete_beta(double x, double a, double b) {
     return 1.0 - front * beta_fraction(1.0 - x, b, a) / b;
 }
 
-/// Near an end of the spectrum both sides of a window shrink alike: one flank of a steep floor would stand
-/// for too little or too much.
-std::size_t room_around(const PowerSpectrum& s, std::size_t bin) {
-    return std::min(bin - s.first, s.power.size() - 1 - bin);
+std::size_t bins_of(const PowerSpectrum& s, double cells) {
+    return static_cast<std::size_t>(std::ceil(cells * s.bins_per_cell));
 }
 
-/// Bins of the ring between `guard` and `reach` to both sides of `bin`, as far as there is room.
-void gather(const PowerSpectrum& s, std::size_t bin, double guard, double reach, std::vector<double>& into) {
-    into.clear();
-    const auto inner = static_cast<std::size_t>(std::ceil(guard));
-    const std::size_t outer = std::min(static_cast<std::size_t>(std::ceil(reach)), room_around(s, bin));
-    for (std::size_t d = inner; d <= outer; ++d) {
-        into.push_back(s.power[bin - d]);
-        if (d > 0) into.push_back(s.power[bin + d]);
-    }
+/// How far from a bin its floor is measured, `outer` bins at most. Both sides shrink alike near an end of the
+/// spectrum, since one flank of a steep floor would stand for too little or too much; but one side has to hold
+/// the fewest cells that a floor can be known from.
+std::size_t outer_of(const PowerSpectrum& s, std::size_t bin, std::size_t outer) {
+    const std::size_t room = std::min(bin - s.first, s.power.size() - 1 - bin);
+    return std::min(outer, std::max(room, bins_of(s, guard_cells + fewest_cells)));
 }
 
-/// The ring's lower side alone, as far as there are bins: spectra of motion fall steeply from their low end.
-void gather_below(const PowerSpectrum& s, std::size_t bin, double guard, double reach,
-                  std::vector<double>& into) {
-    into.clear();
-    const auto inner = static_cast<std::size_t>(std::ceil(guard));
-    const std::size_t outer = std::min(static_cast<std::size_t>(std::ceil(reach)), bin - s.first);
-    for (std::size_t d = inner; d <= outer; ++d) into.push_back(s.power[bin - d]);
+/// Bins from `inner` to `outer` away from `bin`, on each side as far as there are bins.
+void gather(const PowerSpectrum& s, std::size_t bin, std::size_t inner, std::size_t outer,
+            std::vector<double>& into) {
+    outer = outer_of(s, bin, outer);
+    const std::size_t below = bin - s.first, above = s.power.size() - 1 - bin;
+    for (std::size_t d = inner; d <= std::min(outer, below); ++d) into.push_back(s.power[bin - d]);
+    for (std::size_t d = inner; d <= std::min(outer, above); ++d) into.push_back(s.power[bin + d]);
 }
 
-/// Cells of the ring between `guard_cells` and `reach_cells`.
+/// Cells between `guard_cells` and `reach_cells` on both sides, as far as there are bins.
 double cells_around(const PowerSpectrum& s, std::size_t bin, double reach_cells) {
-    const auto inner = static_cast<std::size_t>(std::ceil(guard_cells * s.bins_per_cell));
-    const std::size_t outer =
-        std::min(static_cast<std::size_t>(std::ceil(reach_cells * s.bins_per_cell)), room_around(s, bin));
-    return outer < inner ? 0.0 : 2.0 * static_cast<double>(outer - inner + 1) / s.bins_per_cell;
+    const std::size_t inner = bins_of(s, guard_cells), outer = outer_of(s, bin, bins_of(s, reach_cells));
+    double bins = 0.0;
+    for (const std::size_t room : {bin - s.first, s.power.size() - 1 - bin}) {
+        const std::size_t end = std::min(outer, room);
+        if (end >= inner) bins += static_cast<double>(end - inner + 1);
+    }
+    return bins / s.bins_per_cell;
 }
 
 /// The four floors about a bin, the cheapest first, until their largest is above `most`.
@@ -90,15 +90,22 @@ double floor_at(const PowerSpectrum& s, std::size_t bin, double most, std::vecto
     const double to_mean = median_over_mean(s.averages_at(bin));
     double local = 0.0;
     const auto raised = [&] {
-        local = std::max(local, median_in(scratch) / to_mean);
+        if (!scratch.empty()) local = std::max(local, median_in(scratch) / to_mean);
+        scratch.clear();
         return local > most;
     };
-    gather(s, bin, inner_from_cells * s.bins_per_cell, inner_to_cells * s.bins_per_cell, scratch);
+    gather(s, bin, bins_of(s, inner_from_cells), bins_of(s, inner_to_cells), scratch);
     if (raised()) return local;
-    gather_below(s, bin, guard_cells * s.bins_per_cell, near_cells * s.bins_per_cell, scratch);
+    // The lower side alone, since spectra of motion fall steeply from their low end. Near that end what is
+    // just outside of the main lobe has to do: a line stands above it, a slope does not.
+    const std::size_t below = bin - s.first;
+    std::size_t inner = bins_of(s, guard_cells);
+    if (below < inner + bins_of(s, 1.0)) inner = bins_of(s, lobe_cells);
+    for (std::size_t d = inner; d <= std::min(bins_of(s, near_cells), below); ++d)
+        scratch.push_back(s.power[bin - d]);
     if (raised()) return local;
     for (const double reach_cells : {near_cells, far_cells}) {
-        gather(s, bin, guard_cells * s.bins_per_cell, reach_cells * s.bins_per_cell, scratch);
+        gather(s, bin, bins_of(s, guard_cells), bins_of(s, reach_cells), scratch);
         if (raised()) return local;
     }
     return local;
@@ -139,6 +146,12 @@ class LeastRatio {
     double chance_, averages_ = -1.0, cells_ = -1.0, ratio_ = 0.0;
 };
 
+/// Independent tries among the bins that are searched.
+double tries_of(const PowerSpectrum& s) {
+    const std::size_t from = std::min(std::max(s.first, s.searched), s.power.size());
+    return std::max(1.0, tries_per_cell * static_cast<double>(s.power.size() - from) / s.bins_per_cell);
+}
+
 }  // namespace
 
 double median_over_mean(double averages) {
@@ -168,7 +181,8 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
         const std::size_t inside =
             std::clamp(bin, std::min(spectrum.first + stride, n - 1), n - 1 - std::min(stride, n - 1));
         const std::size_t middle = std::max(inside, spectrum.first);
-        const std::size_t half = std::min(reach, room_around(spectrum, middle));
+        // Both sides alike: one flank of a steep floor would stand for too little or too much.
+        const std::size_t half = std::min({reach, middle - spectrum.first, n - 1 - middle});
         return std::max(
             median_around.at(middle - half, 2 * half + 1) / median_over_mean(spectrum.averages_at(bin)),
             1e-300);
@@ -200,11 +214,10 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
     std::vector<SignificantPeak> peaks;
     const auto& power = spectrum.power;
     if (power.size() < spectrum.first + 8) return peaks;
-    const double tries =
-        tries_per_cell * static_cast<double>(power.size() - spectrum.first) / spectrum.bins_per_cell;
+    const double tries = tries_of(spectrum);
     std::vector<double> scratch;
     LeastRatio worth_a_look(1.0 / tries), significant(false_alarm / tries);
-    for (std::size_t k = spectrum.first + 1; k + 1 < power.size(); ++k) {
+    for (std::size_t k = std::max(spectrum.first + 1, spectrum.searched); k + 1 < power.size(); ++k) {
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
         // A cheap sieve with a wide margin: the floors below are seldom less than a quarter of the running
         // one.
@@ -222,6 +235,39 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         if (chance <= false_alarm) peaks.push_back({k, local, chance});
     }
     return peaks;
+}
+
+double ratio_exceeded(double chance, double averages, double cells) {
+    const auto is_below = [&](double ratio) {
+        return exceedance({.ratio = ratio, .averages = averages, .cells = cells}) > chance;
+    };
+    double high = 1.0;
+    while (is_below(high) && high < 1e100) high *= 2.0;
+    double low = 0.5 * high;
+    for (int halving = 0; halving < 20; ++halving) {
+        const double middle = 0.5 * (low + high);
+        (is_below(middle) ? low : high) = middle;
+    }
+    return high;
+}
+
+double significant_power(const PowerSpectrum& spectrum, std::size_t bin, double false_alarm) {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    if (bin <= spectrum.first || bin < spectrum.searched || bin + 1 >= spectrum.power.size()) return none;
+    if (cells_around(spectrum, bin, near_cells) < fewest_cells) return none;
+    std::vector<double> scratch;
+    return floor_at(spectrum, bin, none, scratch) *
+           ratio_exceeded(false_alarm / tries_of(spectrum), spectrum.averages_at(bin),
+                          cells_around(spectrum, bin, far_cells));
+}
+
+double detectable_ratio(double threshold, double averages) {
+    // 1 + r - z sqrt((1 + 2 r) / averages) = threshold, of which the larger root: with u = sqrt(1 + 2 r),
+    // u^2 - 2 z u / sqrt(averages) + 1 = 2 threshold.
+    constexpr double one_sided_95 = 1.645;
+    const double half = one_sided_95 / std::sqrt(averages);
+    const double u = half + std::sqrt(half * half + std::max(0.0, 2.0 * threshold - 1.0));
+    return std::max(0.0, 0.5 * (u * u - 1.0));
 }
 
 }  // namespace ripplenotch

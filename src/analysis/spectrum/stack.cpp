@@ -16,18 +16,19 @@ double length_of(const Sweep& sweep, Axis axis) {
     return axis == Axis::angle ? sweep.length_turns : sweep.duration_s;
 }
 
-PowerSpectrum Stack::tested() const { return {ratio, 1.0, resolution / spacing, first, averages}; }
+PowerSpectrum Stack::tested() const {
+    return {ratio, 1.0, resolution / spacing, first, averages, searched};
+}
 
 std::vector<SignificantPeak> Stack::peaks(double false_alarm) const {
-    auto found = few_cells ? significant_peaks_of_few_cells(tested(), false_alarm / tries_factor)
-                           : significant_peaks(tested(), false_alarm / tries_factor);
+    auto found = significant_peaks(tested(), false_alarm / tries_factor);
     for (SignificantPeak& peak : found) peak.false_alarm = std::min(1.0, peak.false_alarm * tries_factor);
     return found;
 }
 
 std::vector<SpectralHump> Stack::humps(const HumpRule& rule) const {
     std::vector<SpectralHump> humps;
-    if (few_cells || ratio.size() <= first) return humps;
+    if (ratio.size() <= first) return humps;
     // Not over the running floor, which a hump as wide as its window would raise to its own height.
     std::vector<double> power(ratio.size());
     for (std::size_t k = 0; k < power.size(); ++k) power[k] = ratio[k] * floor_nm[k] * floor_nm[k];

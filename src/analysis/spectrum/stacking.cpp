@@ -16,28 +16,29 @@ constexpr double overlap_correlation =
     1.06;  // half-overlapping Hann pieces count a little less than independent ones
 
 constexpr double smeared_cells = 20.0;  // by hand
+constexpr double folds_searched = 2.5;  // by hand: of the sample rate at the highest speed
+constexpr double used_cycles = 2.5;     // in a sweep: a cycle beyond what the trend follows
+constexpr double fewest_sweep_cells = 6.0;  // of a sweep's spectrum: a line's main lobe and four beside it
 
 struct Reach {
     std::size_t first = 0, end = 0;  // bins
 };
 
-/// Highest order that a sweep can vouch for. At one speed, lines above half the sample rate fold onto others
-/// exactly; when the speed changes so much that a folded line smears over many resolutions, what stays sharp
-/// is not folded. Not so near the sample rate itself, where the whole motion, far stronger than any line,
-/// folds to.
+/// Highest order that a sweep shows. At one speed, lines above half the sample rate fold onto others exactly.
+/// When the speed changes so much that a folded line smears over many resolutions, the sum over the measured
+/// angle gathers a line at its own order alone, whatever the sample rate.
 double highest_order(const Sweep& sweep) {
     const double per_turn = sweep.rate_hz * 360.0;
     const double slow = std::max(sweep.slow_deg_s, 1e-9);
     const double smear = per_turn / slow - per_turn / std::max(sweep.quick_deg_s, 1e-9);
     const bool smears = smear > smeared_cells * hann_cell / sweep.length_turns;
-    const double clear_of_motion = 0.8 * per_turn / std::max(sweep.fast_deg_s, 1e-9);
-    return smears ? clear_of_motion : std::min(clear_of_motion, 0.5 * per_turn / slow);
+    return smears ? folds_searched * per_turn / std::max(sweep.fast_deg_s, 1e-9) : 0.5 * per_turn / slow;
 }
 
 Reach reach_of(const Sweep& sweep, Axis axis, double spacing, std::size_t bins, const StackRule& rule) {
     const bool angle = axis == Axis::angle;
-    const double lowest =
-        std::max(angle ? rule.lowest_order : rule.lowest_hz, rule.fewest_cycles / length_of(sweep, axis));
+    // Below the lowest line that is looked for, down to the trend: its noise on that side.
+    const double lowest = used_cycles / length_of(sweep, axis);
     const double highest = angle ? std::min(rule.highest_order, highest_order(sweep)) : 0.5 * sweep.rate_hz;
     const auto end = static_cast<std::size_t>(highest / spacing) + 1;
     return {static_cast<std::size_t>(std::ceil(lowest / spacing)), std::min(end, bins)};
@@ -48,7 +49,6 @@ Reach reach_of(const Sweep& sweep, Axis axis, double spacing, std::size_t bins, 
 Stacking::Stacking(std::span<const Sweep> sweeps, Axis axis, const StackRule& rule)
     : sweeps_(sweeps), rule_(rule) {
     stack_.axis = axis;
-    stack_.few_cells = rule.few_cells;
     double longest = 0.0, weights = 0.0, mean_length = 0.0, half_rate = 0.0;
     for (const Sweep& sweep : sweeps) {
         longest = std::max(longest, length_of(sweep, axis));
@@ -65,6 +65,9 @@ Stacking::Stacking(std::span<const Sweep> sweeps, Axis axis, const StackRule& ru
     stack_.spacing = 0.5 / longest;
     stack_.resolution = hann_cell / mean_length;
     stack_.tries_factor = longest / mean_length;
+    const double lowest = std::max(axis == Axis::angle ? rule.lowest_order : rule.lowest_hz,
+                                   rule.fewest_cycles / mean_length);
+    stack_.searched = static_cast<std::size_t>(std::ceil(lowest / stack_.spacing));
     const double highest = axis == Axis::angle ? rule.highest_order : half_rate;
     bins_ = static_cast<std::size_t>(highest / stack_.spacing) + 1;
     stack_.floors.resize(sweeps.size());
@@ -93,7 +96,7 @@ void Stacking::add(std::size_t number, Part& part) {
     auto& floors = stack_.floors[number];
     floors.assign(bins_, 0.0F);
     const double cell = hann_cell / (length_of(sweep, stack_.axis) * stack_.spacing);
-    if (static_cast<double>(reach.end) < static_cast<double>(reach.first) + 10.0 * cell) return;
+    if (static_cast<double>(reach.end) < static_cast<double>(reach.first) + fewest_sweep_cells * cell) return;
     const auto sums = nonuniform_fourier(places(sweep, stack_.axis), sweep.value, stack_.spacing, reach.end);
     std::vector<double> power(reach.end);
     for (std::size_t k = 0; k < reach.end; ++k) power[k] = std::norm(sums[k]);

@@ -67,7 +67,11 @@ std::size_t Welch::add(std::span<const double> time_s, std::span<const double> t
 PowerSpectrum Welch::tested() const {
     // Half-overlapping Hann pieces: neighbours share a sixth of their power in correlation, (1 + 2/36)^-1.
     const double averages = std::max(1.0, static_cast<double>(pieces_) / (pieces_ > 1 ? 1.0556 : 1.0));
-    return {power_, averages, hann_cell, std::min(trend_bins, power_.size()), {}};
+    // A single spectrum of red noise has maxima near its low end that few cells beside them do not explain.
+    constexpr double unsearched_cells = 5.0;
+    const std::size_t first = std::min(trend_bins, power_.size());
+    return {power_, averages, hann_cell, first, {},
+            first + static_cast<std::size_t>(std::ceil(unsearched_cells * hann_cell))};
 }
 
 std::optional<Welch> Welch::at(Hertz rate) const {
