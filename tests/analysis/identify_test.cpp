@@ -173,18 +173,6 @@ TEST_CASE("the paper's move alone gives the ratio within 0.05 %") {
     CHECK(found.conclusive);
 }
 
-TEST_CASE("the way that was asked for is the way that is used") {
-    const std::vector<Trace> logs{at_speed(60, 2), at_speed(120, 3)};
-    IdentifyOptions options;
-    options.way = IdentifyOptions::Way::order;
-    const Identification by_angle = identify_all(logs, options);
-    CHECK(by_angle.evidence == LineEvidence::sweeps);
-    REQUIRE(by_angle.gear_ratio.value.has_value());
-    CHECK_THAT(*by_angle.gear_ratio.value, WithinAbs(100.0, 0.2));
-    options.way = IdentifyOptions::Way::steady;
-    CHECK(identify_all(logs, options).evidence == LineEvidence::stretches);
-}
-
 TEST_CASE("without position and with a velocity scale wrong by 0.5 %, orders stay and the scale is named") {
     for (const bool steady : {true, false}) {
         std::vector<Trace> logs;

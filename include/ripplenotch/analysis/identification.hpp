@@ -99,6 +99,13 @@ struct Disagreement {
 /// Empty where nothing has this name.
 [[nodiscard]] std::optional<Disagreement::About> about_of(std::string_view name);
 
+/// Output orders that were searched, and the amplitude that a line at any of them would have been found with,
+/// in 95 of 100 logs. Where lines were found it holds for further ones.
+struct SearchedOrders {
+    double lowest_order = 0.0, highest_order = 0.0;  ///< cycles per output turn
+    double detectable_nm = 0.0;                      ///< zero to peak
+};
+
 struct Identification {
     std::string joint;
     Hertz sample_rate;
@@ -110,6 +117,7 @@ struct Identification {
     std::vector<ToneFamily> families;
     std::vector<Hum> hums;  ///< most torque first
     std::vector<Disagreement> disagreements;
+    std::optional<SearchedOrders> searched;  ///< empty where the motion allows no search
     RippleFinding finding = RippleFinding::too_little;
     std::vector<Doubt> doubts;
     Grounds grounds;                 ///< not in joint.json
@@ -134,14 +142,9 @@ struct Identification {
 void cast_doubt(Identification& found, Doubt doubt);
 
 struct IdentifyOptions {
-    enum class Way { automatic, steady, order };
-    Way way = Way::automatic;
     std::optional<GearRatio> hint;     ///< checked, not believed
     std::vector<int> hinted_orders;    ///< n at which the strongest line is believed to stand
     double false_alarm = 0.01;         ///< chance that a log of noise gives any line
-    double steady_band_percent = 5.0;  ///< speed stays within this share of its mean ...
-    double steady_band_deg_s = 0.0;    ///< ... or within this, whichever is wider
-    Seconds steady_for{1.0};           ///< for at least this long
     std::vector<Doubt> doubts;         ///< what is known against these logs before they are looked at
 };
 

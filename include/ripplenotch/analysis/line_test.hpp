@@ -49,8 +49,16 @@ struct SignificantPeak {
                                                              std::span<const double> floor,
                                                              double false_alarm);
 
-/// The power from which on a maximum at this bin is significant; infinite where none is tested.
-[[nodiscard]] double significant_power(const PowerSpectrum& spectrum, std::size_t bin, double false_alarm);
+/// Maxima that stand above the running floor alone: candidates, which may be the flank of something broad, or
+/// the noise in it. `floor` is noise_floor(spectrum).
+[[nodiscard]] std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum,
+                                                           std::span<const double> floor,
+                                                           double false_alarm);
+
+/// The power from which on a maximum at this bin is significant; infinite where none is tested. `floor` is
+/// noise_floor(spectrum).
+[[nodiscard]] double significant_power(const PowerSpectrum& spectrum, std::span<const double> floor,
+                                       std::size_t bin, double false_alarm);
 
 /// The noise-free power, over the mean noise power, of a line that exceeds `threshold` (a multiple of that
 /// noise) with a probability of 95 %: its power is noncentral chi-square, here by its mean and variance.

@@ -36,19 +36,17 @@ struct MotionLinesOptions {
     double least_share = 1e-4;     ///< of the torque's range: smaller lines are not reported
     double lowest_tone_hz = 10.0;  ///< slower tones are those of the motion itself
     std::size_t most_lines = 12;   ///< by hand: each costs a further look at all sweeps
-    std::vector<double> known_hz =
-        {};  ///< tones that are known already: taken out before lines are looked for
 };
 
 struct MotionLines {
     std::vector<MotionLine> lines;    ///< in the order found: clearest first
     std::vector<SpectralHump> humps;  ///< against frequency, of what the lines leave
-    std::size_t sweeps = 0, sweeps_left_out = 0;
+    std::size_t sweeps = 0, rests = 0;  ///< pieces of motion and of standstill that were used
+    std::size_t sweeps_left_out = 0;
     double turns = 0.0;  ///< output turns that the sweeps cover
     double resolution_orders = 0.0;
-    /// Largest, over the orders searched, of the amplitude that would have been found with 95 % probability.
-    double detectable_nm = 0.0;
-    double lowest_order = 0.0, highest_order = 0.0;   ///< searched; 0 to 0 where no sweep allows a search
+    std::optional<SearchedOrders> searched;  ///< empty where no sweep allows a search
+    double highest_spectrum_order = 0.0;     ///< lines above the searched orders are found up to here
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< mean |speed| of the sweeps
     bool absolute_angle = false;
     /// Of logs without position whose lines tell it; their angle and their lines are without it.

@@ -21,22 +21,25 @@ struct SweepRule {
     double slowest_share = 0.02;      ///< of the log's highest speed; slower motion belongs to no sweep
     /// The smooth part of the torque that is taken out of a sweep: a line, and cosines up to so many cycles in
     /// the sweep.
-    double trend_cycles = 1.5;
+    double trend_cycles = 2.5;
     std::size_t most_samples =
         300000;                     ///< with more, evenly chosen pieces are used, so that the cost is bounded
     std::size_t most_pieces = 100;  ///< the same
 };
 
-/// One piece of motion. The vectors have the same length.
+/// One piece of motion, or of standstill, which has no length in angle and is seen over time alone. The
+/// vectors have the same length.
 struct Sweep {
     std::size_t log = 0, first = 0;       ///< where its first sample stands
     std::vector<double> turns;            ///< output angle in turns; absolute where the log has a position
     std::vector<double> time_s;           ///< from the piece's middle
     std::span<const double> measured_nm;  ///< as the log has it, and as long as the log is there
     std::vector<double> torque_nm;        ///< trend removed
+    std::vector<double> speed_deg_s;      ///< signed, smoothed
     std::vector<double> value;            ///< torque_nm * weight, in Nm turns
-    std::vector<double> weight;           ///< Hann window in angle times the angle that the sample stands for
-    std::vector<double> share_turns;      ///< angle that a sample stands for
+    /// Hann window in angle times the angle that the sample stands for; at standstill in time.
+    std::vector<double> weight;
+    std::vector<double> share_turns;      ///< angle that a sample stands for; at standstill seconds
     std::size_t trend_terms = 0;          ///< of the smooth part taken out
     double weight_sum = 0.0, weight_square_sum = 0.0;
     double length_turns = 0.0;
@@ -48,6 +51,12 @@ struct Sweep {
 
     /// How many samples of equal weight would know as much: (sum w)^2 / sum w^2.
     [[nodiscard]] double effective_samples() const { return weight_sum * weight_sum / weight_square_sum; }
+    [[nodiscard]] bool rest() const { return !(length_turns > 0.0); }
+    /// From 0 to 1 along the piece, in angle, or in time at standstill.
+    [[nodiscard]] double progress(std::size_t k) const {
+        return rest() ? (time_s[k] - time_s.front()) / duration_s
+                      : std::abs(turns[k] - turns.front()) / length_turns;
+    }
 };
 
 struct Sweeps {

@@ -22,7 +22,7 @@ enum class RippleFinding {
     ratio,       ///< ripple that turns with the joint, and the gear ratio
     orders,      ///< ripple that turns with the joint; its gear ratio stays open
     one_speed,   ///< lines, all at one speed, where an order and a fixed tone look alike
-    nothing,     ///< surely no ripple above Grounds::detectable_nm
+    nothing,     ///< surely no ripple above SearchedOrders::detectable_nm in that range
     too_little,  ///< the joint is at rest, or moves too little to say anything
 };
 [[nodiscard]] std::string_view finding_name(RippleFinding finding);
@@ -56,10 +56,7 @@ struct Grounds {
     double sweep_turns = 0.0;  ///< output turns that the sweeps cover
     bool from_sweeps = false;  ///< speeds are those of the sweeps, not of the stretches
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;
-    double detectable_nm = 0.0;  ///< smallest amplitude that would have been found, roughly
     double false_alarm = 0.0;
-    Seconds steady_for;         ///< shortest stretch that counts as steady
-    double needed_turns = 0.0;  ///< output turns before "nothing" means anything
 };
 
 }  // namespace ripplenotch

@@ -137,11 +137,6 @@ FoldAnswer answer_fold(const FoldQuestion& question, std::optional<GearRatio> hi
         if (fold.gain > best - decisive) likely.push_back(fold);
     }
     const bool seen_itself = question.gain_seen > best - decisive;
-    const bool as_tone = question.gain_time > best - decisive;
-    if (likely.size() == 1 && !seen_itself && !as_tone) {
-        answer.order_output = likely.front().order_output;
-        return answer;
-    }
     for (const Fold& fold : likely) answer.could_be.push_back(fold.order_output);
     std::sort(answer.could_be.begin(), answer.could_be.end());
     if (!hint || question.gain_time > best + decisive) return answer;

@@ -2,22 +2,13 @@
 #pragma once
 // Internal to the analysis room: what was looked at, and what comes of it.
 
-#include <optional>
-
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
-#include "ripplenotch/analysis/steady_lines.hpp"
 
 namespace ripplenotch {
 
-struct Looked {
-    std::optional<SteadyLines> steady;
-    std::optional<MotionLines> motion;
-    bool without_position = false;  ///< a log at least
-};
-
 /// Writes finding, grounds, notes, conclusive and verdict from the lines and the ratio already in `result`.
-void conclude(const Looked& looked, const IdentifyOptions& options, Identification& result);
+void conclude(const MotionLines& motion, const IdentifyOptions& options, Identification& result);
 
 /// Finding, conclusive and verdict once more, after something was added.
 void settle(Identification& result);

@@ -8,27 +8,6 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_hums = 3;  // by hand: a list that a person reads
-constexpr double near_share = 0.05;   // of a line's frequency: a hump so near is the line, smeared
-constexpr int harmonics = 2;          // multiples of a line that are taken as its own, too
-constexpr double smeared_share =
-    0.2;  // by hand: of its frequency; a speed that is steady smears no line so far
-
-/// Where a line runs while the joint goes at a speed.
-double hz_of(const Line& line, double speed_deg_s) {
-    if (line.order_output && speed_deg_s != 0.0) return *line.order_output * std::abs(speed_deg_s) / 360.0;
-    return line.hz.value_or(0.0);
-}
-
-bool of_a_line(const SpectralHump& hump, const std::vector<Line>& lines, double speed_deg_s) {
-    if (hump.to_hz - hump.from_hz > smeared_share * hump.peak_hz) return false;
-    return std::any_of(lines.begin(), lines.end(), [&](const Line& line) {
-        for (int n = 1; n <= harmonics; ++n) {
-            const double hz = n * hz_of(line, speed_deg_s);
-            if (std::abs(hz - hump.peak_hz) <= near_share * hz) return true;
-        }
-        return false;
-    });
-}
 
 /// Of humps that overlap, the one with most torque.
 void add(const SpectralHump& hump, std::vector<Hum>& hums) {
@@ -45,24 +24,14 @@ void add(const SpectralHump& hump, std::vector<Hum>& hums) {
 
 }  // namespace
 
-std::vector<Hum> hums_beside(const Looked& looked, const std::vector<Line>& lines) {
+std::vector<Hum> hums_beside(const MotionLines& motion, const std::vector<Line>& lines) {
     double ripple_nm = 0.0;
     for (const Line& line : lines) {
         if (line.kind != LineKind::tone) ripple_nm = std::max(ripple_nm, line.amplitude_nm);
     }
     std::vector<Hum> hums;
-    if (looked.steady) {
-        for (const StretchLines& one : looked.steady->stretches) {
-            const double speed = one.stretch.rest ? 0.0 : one.stretch.speed.value();
-            for (const SpectralHump& hump : one.humps) {
-                if (!of_a_line(hump, lines, speed)) add(hump, hums);
-            }
-        }
-    }
-    if (looked.motion) {
-        // What lines leave of a sweep has no one speed: humps of theirs are smaller than the lines.
-        for (const SpectralHump& hump : looked.motion->humps) add(hump, hums);
-    }
+    // What lines leave of a sweep has no one speed: humps of theirs are smaller than the lines.
+    for (const SpectralHump& hump : motion.humps) add(hump, hums);
     // A sine of this amplitude has as much torque in it.
     std::erase_if(hums, [&](const Hum& hum) { return std::sqrt(2.0) * hum.rms_nm <= ripple_nm; });
     std::stable_sort(hums.begin(), hums.end(),

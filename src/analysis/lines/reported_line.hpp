@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the analysis room: lines as identify reports them, from what steady stretches or motion show.
+// Internal to the analysis room: lines as identify reports them, from what the motion shows.
 
 #include <cstddef>
 #include <optional>
@@ -9,7 +9,6 @@
 #include "ripplenotch/analysis/gear_ratio.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
-#include "ripplenotch/analysis/steady_lines.hpp"
 
 namespace ripplenotch {
 
@@ -19,9 +18,6 @@ struct Reported {
     std::optional<OrderLine> order = {};
     double hz_error = 0.0;  ///< of line.hz
 };
-
-[[nodiscard]] Reported from_steady(std::span<const TraceView> logs, const SteadyLines& steady,
-                                   const SteadyLine& found, const IdentifyOptions& options);
 
 /// Line number `source` of a motion; folds are told with the rate of the samples.
 [[nodiscard]] Reported from_motion(const MotionLines& motion, std::size_t source,

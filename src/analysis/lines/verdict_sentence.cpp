@@ -205,9 +205,11 @@ std::string one_speed(const Identification& found) {
 
 std::string nothing(const Identification& found) {
     return fmt::format(
-        "No ripple: no line above {:.2g} Nm turns with the joint, in {} ({:.2g} % false alarms){}{}.",
-        found.grounds.detectable_nm, basis(found.grounds), 100.0 * found.grounds.false_alarm, at_rest(found),
-        besides(found));
+        "No ripple: no line above {:.2g} Nm at {:.3g} to {:.4g} cycles per output turn, in {} ({:.2g} % "
+        "false "
+        "alarms){}{}.",
+        found.searched->detectable_nm, found.searched->lowest_order, found.searched->highest_order,
+        basis(found.grounds), 100.0 * found.grounds.false_alarm, at_rest(found), besides(found));
 }
 
 std::string too_little(const Identification& found) {
@@ -215,9 +217,7 @@ std::string too_little(const Identification& found) {
     return fmt::format(
         "Cannot tell: {}{}{}.", still ? "the joint is at rest" : "the joint moves too little or too briefly",
         at_rest(found),
-        still ? ""
-              : fmt::format("; needed are {:.2g} s at one speed, or {:.1f} output turns in all",
-                            found.grounds.steady_for.value(), found.grounds.needed_turns));
+        still ? "" : std::string("; needed is motion of one direction that shows a line four times or more"));
 }
 
 std::string frequencies(const Line& line) {

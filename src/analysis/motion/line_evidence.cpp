@@ -82,7 +82,8 @@ Others without(const std::vector<SweepPart>& all, std::size_t left_out, const st
 
 /// Independent cells behind the noise floor of the sweep that has most of them.
 double floor_cells(const Stack& stack) {
-    const double cells = static_cast<double>(stack.ratio.size() - stack.first) * stack.spacing / stack.resolution;
+    const double cells =
+        static_cast<double>(stack.ratio.size() - stack.first) * stack.spacing / stack.resolution;
     return std::min(80.0, cells);  // noise_floor() goes 40 cells to each side
 }
 
@@ -130,28 +131,107 @@ bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {
         const bool part = one.count < whole.turns.size();
         const Sweep piece = part ? part_of(whole, one.first, one.count) : Sweep{};
         const Sweep& seen = part ? piece : whole;
-        const double noise = noise_at(stack, one.sweep, place) * seen.weight_square_sum / whole.weight_square_sum;
+        const double noise =
+            noise_at(stack, one.sweep, place) * seen.weight_square_sum / whole.weight_square_sum;
         const double power = std::norm(fourier_point(places(seen, stack.axis), seen.value, place).value);
         ratios.push_back(power / noise);
         if (ratios.back() * one.weight > ratios[strongest] * all[strongest].weight)
             strongest = ratios.size() - 1;
     }
     const Others others = without(all, strongest, ratios);
-    return others.averages > 0.0 && exceedance({.ratio = others.ratio,
-                                                .averages = others.averages,
-                                                .cells = floor_cells(stack)}) < recurrence_chance;
+    return others.averages > 0.0 &&
+           exceedance({.ratio = others.ratio, .averages = others.averages, .cells = floor_cells(stack)}) <
+               recurrence_chance;
 }
 
 double recurring_ratio(std::span<const Sweep> sweeps, const Stack& stack, double place) {
     const std::vector<SweepPart> all = parts_asked(sweeps, stack, place);
     if (all.size() < 2) return std::numeric_limits<double>::infinity();
-    const auto heaviest = std::max_element(all.begin(), all.end(), [](const SweepPart& a, const SweepPart& b) {
-        return a.weight * a.share < b.weight * b.share;
-    });
+    const auto heaviest = std::max_element(
+        all.begin(), all.end(),
+        [](const SweepPart& a, const SweepPart& b) { return a.weight * a.share < b.weight * b.share; });
     const Others others = without(all, static_cast<std::size_t>(heaviest - all.begin()), {});
     return detectable_ratio(ratio_exceeded(recurrence_chance, others.averages, floor_cells(stack)),
                             others.averages) /
            others.share;
+}
+
+bool shown_throughout(std::span<const Sweep> sweeps, const Stack& stack, double place) {
+    constexpr double least_power = 0.1, least_weight = 0.8;  // by hand
+    double gain = 0.0, weights = 0.0, shown = 0.0;
+    std::vector<std::pair<double, double>> each;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        const double noise = noise_at(stack, i, place);
+        if (!(noise > 0.0)) continue;
+        const double power =
+            std::norm(fourier_point(places(sweeps[i], stack.axis), sweeps[i].value, place).value);
+        each.emplace_back(power / noise - 1.0, stack.sweep_weights[i]);
+        gain += each.back().first * each.back().second;
+        weights += each.back().second;
+    }
+    for (const auto& [power, weight] : each) {
+        if (power > least_power * gain / weights) shown += weight;
+    }
+    return shown >= least_weight * weights;
+}
+
+bool at_two_speeds(std::span<const Sweep> sweeps, const Stack& time, double hz) {
+    double speed = 0.0, weights = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        if (sweeps[i].rest() || !(noise_at(time, i, hz) > 0.0)) continue;
+        speed += time.sweep_weights[i] * std::abs(sweeps[i].mean_deg_s);
+        weights += time.sweep_weights[i];
+    }
+    const double middle = weights > 0.0 ? speed / weights : 0.0;
+    struct Part {
+        double power = 0.0, weight = 0.0, square = 0.0, speed = 0.0, speed_weight = 0.0;
+        void add(double ratio, double averages) {
+            power += averages * ratio;
+            weight += averages;
+            square += averages * averages;
+        }
+        [[nodiscard]] bool shows(double cells) const {
+            if (!(weight > 0.0)) return false;
+            return exceedance(
+                       {.ratio = power / weight, .averages = weight * weight / square, .cells = cells}) <
+                   recurrence_chance;
+        }
+        [[nodiscard]] double mean_speed() const { return speed_weight > 0.0 ? speed / speed_weight : 0.0; }
+    };
+    Part rest, slow, fast;
+    std::vector<double> value;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        const Sweep& sweep = sweeps[i];
+        const double noise = noise_at(time, i, hz);
+        if (!(noise > 0.0)) continue;
+        if (sweep.rest()) {
+            rest.add(std::norm(fourier_point(places(sweep, Axis::time), sweep.value, hz).value) / noise,
+                     time.sweep_weights[i]);
+            continue;
+        }
+        for (Part* part : {&slow, &fast}) {
+            value.assign(sweep.value.size(), 0.0);
+            double squares = 0.0;
+            for (std::size_t k = 0; k < value.size(); ++k) {
+                const double here = std::abs(sweep.speed_deg_s[k]);
+                if ((here < middle) != (part == &slow)) continue;
+                value[k] = sweep.value[k];
+                squares += sweep.weight[k] * sweep.weight[k];
+                part->speed += sweep.weight[k] * here;
+                part->speed_weight += sweep.weight[k];
+            }
+            const double share = squares / sweep.weight_square_sum;
+            constexpr double least_share = 0.05;  // by hand: less is a corner of the sweep
+            if (share < least_share) continue;
+            part->add(std::norm(fourier_point(places(sweep, Axis::time), value, hz).value) / (noise * share),
+                      share * time.sweep_weights[i]);
+        }
+    }
+    const double cells = floor_cells(time);
+    if (rest.shows(cells)) return true;
+    const bool apart = slow.speed_weight > 0.0 && fast.speed_weight > 0.0 &&
+                       hz * (fast.mean_speed() - slow.mean_speed()) > time.resolution * fast.mean_speed();
+    return apart && slow.shows(cells) && fast.shows(cells);
 }
 
 double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin) {

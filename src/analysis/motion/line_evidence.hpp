@@ -29,6 +29,15 @@ bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place);
 /// The power over noise, alike in all sweeps, from which on a line recurs in 95 of 100 logs.
 double recurring_ratio(std::span<const Sweep> sweeps, const Stack& stack, double place);
 
+/// True when most of the motion shows a line as strong as the whole does, within a factor of ten in power:
+/// images of unrelated lines meet at an order by chance, in some sweeps, and leave the others empty.
+bool shown_throughout(std::span<const Sweep> sweeps, const Stack& stack, double place);
+
+/// True when a frequency is seen at standstill, or in the slower half of the motion as well as in the faster
+/// one, where those differ by more than the line is wide: at one speed an order looks the same as a tone, as
+/// what is left of an order does at the speed that the motion lingers at.
+bool at_two_speeds(std::span<const Sweep> sweeps, const Stack& time, double hz);
+
 /// Place of the maximum of the summed power near a bin, all sweeps together, by Newton steps.
 double refined(std::span<const Sweep> sweeps, const Stack& stack, std::size_t bin);
 

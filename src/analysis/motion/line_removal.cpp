@@ -29,7 +29,7 @@ class Rows {
         const std::size_t n = sweep.turns.size();
         place_.resize((n + length - 1) / length * length);
         for (std::size_t k = 0; k < n; ++k)
-            place_[k] = std::abs(sweep.turns[k] - sweep.turns.front()) / sweep.length_turns;
+            place_[k] = sweep.progress(k);
         cosine_.resize(place_.size());
         for (std::size_t k = 0; k < place_.size(); ++k) cosine_[k] = std::numbers::pi * place_[k];
         portable::cos(cosine_, cosine_);

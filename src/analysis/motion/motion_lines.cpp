@@ -27,6 +27,15 @@ bool near_any(std::span<const double> lines, double place, double within) {
                        [&](double line) { return std::abs(place - line) < within; });
 }
 
+/// The lowest order that is above half the sample rate all the time.
+double half_rate_order(std::span<const Sweep> sweeps) {
+    double order = 0.0;
+    for (const Sweep& sweep : sweeps) {
+        if (!sweep.rest()) order = std::max(order, 180.0 * sweep.rate_hz / std::max(sweep.slow_deg_s, 1e-9));
+    }
+    return order;
+}
+
 /// The significant, recurring peak that explains most, apart from lines already found.
 std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& stack,
                                   std::span<const SignificantPeak> peaks, std::span<const double> taken,
@@ -40,8 +49,10 @@ std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& st
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
     for (const Candidate& candidate : candidates) {
-        if (recurs(sweeps, stack, static_cast<double>(candidate.peak.bin) * stack.spacing))
-            return candidate;
+        const double place = static_cast<double>(candidate.peak.bin) * stack.spacing;
+        const bool folded = stack.axis == Axis::angle && place > half_rate_order(sweeps);
+        if (folded && !shown_throughout(sweeps, stack, place)) continue;
+        if (recurs(sweeps, stack, place)) return candidate;
     }
     return std::nullopt;
 }
@@ -72,25 +83,53 @@ double least_amplitude_of(std::span<const TraceView> logs, double share) {
     return std::max(share * range, 1e-9 * largest);
 }
 
-/// The largest amplitude, over the orders searched, that a line needs to be found in 95 of 100 logs: it has to
-/// be significant, and to recur. Bins near found lines are theirs.
-double detectable(std::span<const Sweep> sweeps, const Stack& stack, double false_alarm,
-                  std::span<const double> taken) {
-    constexpr std::size_t most_asked = 512;  // by hand: the floor varies slowly along the bins
-    const PowerSpectrum spectrum = stack.tested();
-    const double chance = false_alarm / stack.tries_factor;
-    const std::size_t end = stack.ratio.size(), from = std::min(stack.searched, end);
-    const std::size_t stride = std::max<std::size_t>(1, (end - from) / most_asked);
-    double largest = 0.0;
-    for (std::size_t k = from; k < end; k += stride) {
-        if (near_any(taken, static_cast<double>(k) * stack.spacing, line_cells * stack.resolution)) continue;
-        const double threshold = significant_power(spectrum, k, chance);
-        if (!std::isfinite(threshold)) continue;
-        const double ratio = std::max(detectable_ratio(threshold, stack.averages[k]),
-                                      recurring_ratio(sweeps, stack, static_cast<double>(k) * stack.spacing));
-        largest = std::max(largest, stack.floor_nm[k] * std::sqrt(ratio));
+/// The order at half the sample rate in the sweeps that know most: the lower median over their weights, at
+/// the upper quartile of their speeds.
+double half_rate_of_most(std::span<const Sweep> sweeps, const Stack& stack) {
+    std::vector<std::pair<double, double>> orders;
+    double total = 0.0, below = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        if (sweeps[i].rest()) continue;
+        orders.emplace_back(180.0 * sweeps[i].rate_hz / std::max(sweeps[i].quick_deg_s, 1e-9),
+                            stack.sweep_weights[i]);
+        total += stack.sweep_weights[i];
     }
-    return largest;
+    std::sort(orders.begin(), orders.end());
+    for (const auto& [order, weight] : orders) {
+        below += weight;
+        if (below >= 0.5 * total) return order;
+    }
+    return 0.0;
+}
+
+/// The orders at which a line would have been found, and the largest amplitude that it needs there, to be
+/// found in 95 of 100 logs: it has to be significant, and to recur. Bins near found lines are theirs.
+std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, const Stack& stack,
+                                              double false_alarm, std::span<const double> taken) {
+    constexpr double step = 1.1;  // by hand: the floor varies slowly along the orders
+    const PowerSpectrum spectrum = stack.tested();
+    const std::vector<double> floor = noise_floor(spectrum);
+    const double chance = false_alarm / stack.tries_factor, highest = half_rate_of_most(sweeps, stack);
+    SearchedOrders searched;
+    for (std::size_t k = std::max<std::size_t>(stack.searched, 1); k < stack.ratio.size();
+         k = std::max(k + 1, static_cast<std::size_t>(step * static_cast<double>(k)))) {
+        const double place = static_cast<double>(k) * stack.spacing;
+        if (place > highest) break;
+        if (near_any(taken, place, line_cells * stack.resolution)) continue;
+        const double threshold = significant_power(spectrum, floor, k, chance);
+        if (!std::isfinite(threshold)) {
+            if (searched.detectable_nm > 0.0) break;
+            continue;
+        }
+        const double ratio =
+            std::max(detectable_ratio(threshold, stack.averages[k]), recurring_ratio(sweeps, stack, place));
+        if (!std::isfinite(ratio)) continue;
+        if (!(searched.detectable_nm > 0.0)) searched.lowest_order = place;
+        searched.highest_order = place;
+        searched.detectable_nm = std::max(searched.detectable_nm, stack.floor_nm[k] * std::sqrt(ratio));
+    }
+    if (!(searched.detectable_nm > 0.0)) return std::nullopt;
+    return searched;
 }
 
 struct SpeedRange {
@@ -100,15 +139,17 @@ struct SpeedRange {
 SpeedRange speed_range(std::span<const Sweep> sweeps) {
     SpeedRange range{1e300, 0.0};
     for (const Sweep& sweep : sweeps) {
+        if (sweep.rest()) continue;
         range.slow = std::min(range.slow, sweep.slow_deg_s);
         range.fast = std::max(range.fast, sweep.fast_deg_s);
     }
-    return range;
+    return range.fast > 0.0 ? range : SpeedRange{};
 }
 
 /// Output order of a frequency at the mean speed of the heaviest sweep.
 double order_at(std::span<const Sweep> sweeps, const Stack& stack, double hz) {
     const auto heaviest = std::max_element(stack.sweep_weights.begin(), stack.sweep_weights.end());
+    if (heaviest == stack.sweep_weights.end()) return 0.0;
     const Sweep& sweep = sweeps[static_cast<std::size_t>(heaviest - stack.sweep_weights.begin())];
     return 360.0 * hz / std::max(std::abs(sweep.mean_deg_s), 1e-9);
 }
@@ -179,9 +220,10 @@ std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stack
     } else {
         hz_bin = tone->peak.bin;
         sought.seen_at = static_cast<double>(hz_bin) * time.spacing;
-        order_bin = best_place_between(angle, sought.seen_at * 360.0 / range.fast,
-                                       sought.seen_at * 360.0 / range.slow)
-                        .peak.bin;
+        if (range.fast > 0.0)
+            order_bin = best_place_between(angle, sought.seen_at * 360.0 / range.fast,
+                                           sought.seen_at * 360.0 / range.slow)
+                            .peak.bin;
         sought.line.false_alarm = tone->peak.false_alarm;
     }
     Rivals& rivals = sought.rivals;
@@ -194,6 +236,8 @@ std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stack
     sought.line.gain_angle = rivals.gain_angle;
     sought.line.gain_time = rivals.gain_time;
     sought.line.kind = judged(sweeps, stacks, rivals, sought.by_angle);
+    if (sought.line.kind == LineKind::tone && !at_two_speeds(sweeps, stacks.time, rivals.hz))
+        sought.line.kind = LineKind::unknown;
     return sought;
 }
 
@@ -209,16 +253,143 @@ void complete(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Riva
         folds_of(sweeps, stacks.angle, {.seen = line.order_seen, .highest = options.stack.highest_order});
 }
 
-/// What was searched, and what would have been found there; nothing where no order was.
-void state_search(std::span<const Sweep> sweeps, const Stack& angle, double least_amplitude,
-                  double false_alarm, std::span<const double> taken, MotionLines& found) {
-    found.resolution_orders = angle.resolution;
-    const double detectable_nm = detectable(sweeps, angle, 0.5 * false_alarm, taken);
-    if (!(detectable_nm > 0.0)) return;
-    found.detectable_nm = std::max(least_amplitude, detectable_nm);
-    found.lowest_order = static_cast<double>(angle.searched) * angle.spacing;
-    found.highest_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
-}
+/// The search under way: sweeps without what has been found, their spectra, and what is not looked at again.
+class LineSearch {
+  public:
+    LineSearch(std::vector<Sweep>& sweeps, std::span<const TraceView> logs, bool absolute_angle,
+               const MotionLinesOptions& options)
+        : sweeps_(sweeps),
+          options_(options),
+          absolute_angle_(absolute_angle),
+          range_(speed_range(sweeps)),
+          least_amplitude_(least_amplitude_of(logs, options.least_share)),
+          stacks_(stacked(sweeps, options)) {}
+
+    /// One more line; false when there is none.
+    bool next() {
+        if (auto sought = seek(sweeps_, stacks_, range_, taken_orders_, taken_hz_, options_)) {
+            consider(std::move(*sought));
+            return true;
+        }
+        return confirm_prominent();
+    }
+
+    std::vector<MotionLine> lines;
+
+    [[nodiscard]] Stacks& stacks() { return stacks_; }
+    [[nodiscard]] const SpeedRange& range() const { return range_; }
+    [[nodiscard]] const std::vector<double>& taken_orders() const { return taken_orders_; }
+    [[nodiscard]] double least_amplitude() const { return least_amplitude_; }
+
+  private:
+    /// A line that was taken out of the sweeps before it is known to be one.
+    struct Tentative {
+        MotionLine line;
+        KnownLine known;
+        std::size_t bin = 0;
+        double ratio = 0.0, floor_nm = 0.0;  ///< of the bin, before it was taken out
+    };
+
+    [[nodiscard]] const Stack& stack_of(Axis axis) const {
+        return axis == Axis::angle ? stacks_.angle : stacks_.time;
+    }
+
+    /// Measures what was found and marks its place; empty where it is no line to be reported.
+    std::optional<Tentative> measured(Sought sought) {
+        MotionLine& line = sought.line;
+        const Rivals& rivals = sought.rivals;
+        const bool as_order =
+            line.kind == LineKind::order || (line.kind == LineKind::unknown && rivals.has_order);
+        const Stack& stack = as_order ? stacks_.angle : stacks_.time;
+        auto& taken = as_order ? taken_orders_ : taken_hz_;
+        const double place = as_order ? rivals.order : rivals.hz;
+        // What a line leaves beside itself, because its amplitude changes within a sweep, is no line.
+        const bool rest_of_known = near_any(taken, place, line_cells * stack.resolution);
+        measure(sweeps_, stack, place, line);
+        if (!absolute_angle_) line.phase_deg.reset();
+        (sought.by_angle ? taken_orders_ : taken_hz_).push_back(sought.seen_at);
+        const bool of_the_motion = !as_order && place < options_.lowest_tone_hz;
+        if (rest_of_known || of_the_motion || line.amplitude_nm < least_amplitude_) return std::nullopt;
+        taken.push_back(place);
+        complete(sweeps_, stacks_, rivals, as_order, options_, line);
+        const auto bin =
+            std::min(static_cast<std::size_t>(std::lround(place / stack.spacing)), stack.ratio.size() - 1);
+        return Tentative{std::move(line), {stack.axis, place}, bin, stack.ratio[bin], stack.floor_nm[bin]};
+    }
+
+    bool consider(Sought sought) {
+        auto one = measured(std::move(sought));
+        if (!one) return false;
+        take_out(one->known);
+        lines.push_back(std::move(one->line));
+        return true;
+    }
+
+    void take_out(const KnownLine& line) {
+        out_.push_back(line);
+        take_out_last(sweeps_, out_);
+        stacks_ = stacked(sweeps_, options_);
+    }
+
+    /// Lines near each other, or near the low end, hide in what each adds to the noise measured beside the
+    /// other. A few that are prominent are taken out one after the other; those stay that are significant
+    /// above what remains when all of them are out.
+    bool confirm_prominent() {
+        constexpr std::size_t most_tentative = 3;  // by hand: each costs a further look at all sweeps
+        std::vector<Tentative> tentative;
+        const auto restore_all = [&] {
+            for (Sweep& sweep : sweeps_) fit_out(sweep, out_);
+            stacks_ = stacked(sweeps_, options_);
+        };
+        for (int looks = 0; looks < 6 && tentative.size() < most_tentative; ++looks) {
+            Stacks prominent = stacks_;
+            for (auto [stack, peaks] : {std::pair{&prominent.angle, &prominent.angle_peaks},
+                                        std::pair{&prominent.time, &prominent.time_peaks}}) {
+                const PowerSpectrum spectrum = stack->tested();
+                *peaks = prominent_peaks(spectrum, noise_floor(spectrum), 0.5 * options_.false_alarm);
+            }
+            auto sought = seek(sweeps_, prominent, range_, taken_orders_, taken_hz_, options_);
+            if (!sought) break;
+            auto one = measured(std::move(*sought));
+            if (!one) continue;
+            take_out(one->known);
+            tentative.push_back(std::move(*one));
+            std::vector<bool> confirmed;
+            for (const Tentative& each : tentative) confirmed.push_back(is_significant(each));
+            if (std::find(confirmed.begin(), confirmed.end(), true) == confirmed.end()) continue;
+            out_.resize(out_.size() - tentative.size());
+            for (std::size_t i = 0; i < tentative.size(); ++i) {
+                if (!confirmed[i]) continue;
+                out_.push_back(tentative[i].known);
+                lines.push_back(std::move(tentative[i].line));
+            }
+            restore_all();
+            return true;
+        }
+        if (tentative.empty()) return false;
+        out_.resize(out_.size() - tentative.size());
+        restore_all();
+        return false;
+    }
+
+    [[nodiscard]] bool is_significant(const Tentative& one) const {
+        const Stack& stack = stack_of(one.known.axis);
+        if (one.bin >= stack.ratio.size() || !(stack.floor_nm[one.bin] > 0.0)) return false;
+        const PowerSpectrum spectrum = stack.tested();
+        const double grown = one.floor_nm / stack.floor_nm[one.bin];
+        return one.ratio * grown * grown > significant_power(spectrum, noise_floor(spectrum), one.bin,
+                                                             0.5 * options_.false_alarm / stack.tries_factor);
+    }
+
+    std::vector<Sweep>& sweeps_;
+    const MotionLinesOptions& options_;
+    bool absolute_angle_;
+    SpeedRange range_;
+    double least_amplitude_;
+    Stacks stacks_;
+    std::vector<double> taken_orders_, taken_hz_;
+    std::vector<KnownLine> out_;
+};
 
 }  // namespace
 
@@ -226,55 +397,32 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     MotionSearch search;
     MotionLines& found = search.found;
     std::vector<Sweep>& sweeps = cut.pieces;
-    found.sweeps = sweeps.size();
+    for (const Sweep& sweep : sweeps) (sweep.rest() ? found.rests : found.sweeps) += 1;
     found.sweeps_left_out = cut.pieces_left_out;
     found.absolute_angle = cut.absolute_angle;
     if (sweeps.empty()) return search;
-    const SpeedRange range = speed_range(sweeps);
-    found.slowest_deg_s = range.slow;
-    found.fastest_deg_s = range.fast;
     for (const Sweep& sweep : sweeps) found.turns += sweep.length_turns;
-
-    std::vector<double> taken_orders, taken_hz = options.known_hz;
-    std::vector<KnownLine> out;
-    const auto take_out = [&](Axis axis, double place) {
-        out.push_back({axis, place});
-        take_out_last(sweeps, out);
-    };
-    for (const double hz : options.known_hz) take_out(Axis::time, hz);
     std::vector<std::vector<double>> values;  // as they were before lines were taken out
     for (const Sweep& sweep : sweeps) {
         if (!cut.absolute_angle) values.push_back(sweep.value);
     }
-    const double least_amplitude = least_amplitude_of(logs, options.least_share);
-    Stacks stacks = stacked(sweeps, options);
-    for (std::size_t round = 0; round < 2 * options.most_lines && found.lines.size() < options.most_lines;
+    LineSearch lines(sweeps, logs, cut.absolute_angle, options);
+    found.slowest_deg_s = lines.range().slow;
+    found.fastest_deg_s = lines.range().fast;
+    for (std::size_t round = 0; round < 2 * options.most_lines && lines.lines.size() < options.most_lines;
          ++round) {
-        auto sought = seek(sweeps, stacks, range, taken_orders, taken_hz, options);
-        if (!sought) break;
-        MotionLine& line = sought->line;
-        const Rivals& rivals = sought->rivals;
-        const bool as_order =
-            line.kind == LineKind::order || (line.kind == LineKind::unknown && rivals.has_order);
-        const Stack& stack = as_order ? stacks.angle : stacks.time;
-        auto& taken = as_order ? taken_orders : taken_hz;
-        const double place = as_order ? rivals.order : rivals.hz;
-        // What a line leaves beside itself, because its amplitude changes within a sweep, is no line.
-        const bool rest_of_known = near_any(taken, place, line_cells * stack.resolution);
-        measure(sweeps, stack, place, line);
-        if (!cut.absolute_angle) line.phase_deg.reset();
-        (sought->by_angle ? taken_orders : taken_hz).push_back(sought->seen_at);
-        const bool of_the_motion = !as_order && place < options.lowest_tone_hz;
-        if (rest_of_known || of_the_motion || line.amplitude_nm < least_amplitude) continue;
-        taken.push_back(place);
-        complete(sweeps, stacks, rivals, as_order, options, line);
-        take_out(stack.axis, place);
-        found.lines.push_back(std::move(line));
-        if (found.lines.size() < options.most_lines) stacks = stacked(sweeps, options);
+        if (!lines.next()) break;
     }
-    state_search(sweeps, stacks.angle, least_amplitude, options.false_alarm, taken_orders, found);
-    found.humps = stacks.time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
-    search.angle = std::move(stacks.angle);
+    const Stack& angle = lines.stacks().angle;
+    found.resolution_orders = angle.resolution;
+    found.highest_spectrum_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
+    found.searched = searched_orders(sweeps, angle, 0.5 * options.false_alarm, lines.taken_orders());
+    if (found.searched)
+        found.searched->detectable_nm = std::max(found.searched->detectable_nm, lines.least_amplitude());
+    found.humps =
+        lines.stacks().time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
+    found.lines = std::move(lines.lines);
+    search.angle = std::move(lines.stacks().angle);
     for (std::size_t i = 0; i < values.size(); ++i) sweeps[i].value = std::move(values[i]);
     if (!cut.absolute_angle) search.sweeps = std::move(sweeps);
     return search;

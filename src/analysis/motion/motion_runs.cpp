@@ -50,7 +50,7 @@ std::vector<SampleRun> directed_runs(std::span<const double> speed_deg_s,
                                      std::span<const std::size_t> run_starts, const RunRule& rule) {
     double fastest = 0.0;
     for (const double v : speed_deg_s) fastest = std::max(fastest, std::abs(v));
-    const double slowest = rule.slowest_share * fastest;
+    const double slowest = std::max(rule.slowest_share * fastest, rule.standstill_deg_s);
     std::vector<SampleRun> runs;
     auto start = run_starts.begin();
     int direction = 0;

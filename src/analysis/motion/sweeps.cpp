@@ -10,11 +10,13 @@
 #include "core/functions/many_numbers.hpp"
 #include "core/process/two_cores.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
+#include "ripplenotch/analysis/steady.hpp"
 
 namespace ripplenotch {
 namespace {
 
-/// Pieces of at most rule.longest_turns and about rule.longest_s, half overlapping, of equal length in angle.
+/// Half-overlapping pieces of equal length in angle that cover the run: of about rule.longest_turns and
+/// rule.longest_s where it is longer, by half as much again at most.
 std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std::span<const double> turns,
                                  const SweepRule& rule) {
     const double start = turns[run.first];
@@ -22,18 +24,18 @@ std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std
     if (length < rule.shortest_turns) return {};
     const double duration = log.time_s[run.end - 1] - log.time_s[run.first];
     const double longest = std::min(rule.longest_turns, length * rule.longest_s / std::max(duration, 1e-9));
-    if (length <= longest) return {run};
     // No more pieces than samples, however far apart those are.
     const auto count = static_cast<std::size_t>(
         std::clamp(std::floor(2.0 * length / longest) - 1.0, 1.0, static_cast<double>(run.size())));
-    const double hop = count > 1 ? (length - longest) / static_cast<double>(count - 1) : 0.0;
+    if (count == 1) return {run};
+    const double hop = length / static_cast<double>(count + 1);
     std::vector<SampleRun> pieces;
     std::size_t from = run.first;
     for (std::size_t i = 0; i < count; ++i) {
         const double begin = hop * static_cast<double>(i);
         while (from < run.end && std::abs(turns[from] - start) < begin) ++from;
         std::size_t to = from;
-        while (to < run.end && std::abs(turns[to] - start) <= begin + longest) ++to;
+        while (to < run.end && std::abs(turns[to] - start) <= begin + 2.0 * hop) ++to;
         pieces.push_back({from, to});
     }
     return pieces;
@@ -88,14 +90,13 @@ class SpeedShares {
 
 /// Hann window over the sweep's own length, times the angle that each sample stands for.
 void weigh_sweep(Sweep& sweep) {
-    sweep.length_turns = std::abs(sweep.turns.back() - sweep.turns.front());
+    const bool at_rest = sweep.rest();
+    sweep.length_turns = at_rest ? 0.0 : std::abs(sweep.turns.back() - sweep.turns.front());
     sweep.duration_s = sweep.time_s.back() - sweep.time_s.front();
     sweep.weight.resize(sweep.turns.size());
     sweep.weight_sum = sweep.weight_square_sum = 0.0;
     for (std::size_t k = 0; k < sweep.turns.size(); ++k) {
-        const double u =
-            std::clamp(std::abs(sweep.turns[k] - sweep.turns.front()) / sweep.length_turns, 0.0, 1.0);
-        sweep.weight[k] = 2.0 * std::numbers::pi * u;
+        sweep.weight[k] = 2.0 * std::numbers::pi * std::clamp(sweep.progress(k), 0.0, 1.0);
     }
     portable::cos(sweep.weight, sweep.weight);
     for (std::size_t k = 0; k < sweep.turns.size(); ++k) {
@@ -105,37 +106,50 @@ void weigh_sweep(Sweep& sweep) {
     }
 }
 
-Sweep make_sweep(const TraceView& log, const SampleRun& span, std::span<const double> all_turns,
+/// Samples of a log that become a piece.
+struct Planned {
+    std::size_t log = 0;
+    SampleRun span;
+    bool rest = false;
+};
+
+Sweep make_sweep(const TraceView& log, const Planned& plan, std::span<const double> all_turns,
                  std::span<const double> all_speed, const SweepRule& rule) {
+    const SampleRun& span = plan.span;
     const std::size_t n = span.end - span.first;
     const double step = 1.0 / log.sample_rate.value();
     const auto turns = all_turns.subspan(span.first, n);
     const auto speed = all_speed.subspan(span.first, n);
     const auto time = log.time_s.subspan(span.first, n);
     Sweep sweep;
+    sweep.log = plan.log;
     sweep.first = span.first;
     sweep.rate_hz = log.sample_rate.value();
     sweep.turns.assign(turns.begin(), turns.end());
+    sweep.speed_deg_s.assign(speed.begin(), speed.end());
     sweep.time_s.resize(n);
     sweep.share_turns.resize(n);
     for (std::size_t k = 0; k < n; ++k) {
         sweep.time_s[k] = time[k] - 0.5 * (time.front() + time.back());
         const double before = k > 0 ? time[k] - time[k - 1] : step;
         const double after = k + 1 < n ? time[k + 1] - time[k] : step;
+        const double seconds = std::clamp(0.5 * (before + after), 0.0, 3.0 * step);
         // The smoothed speed gives each sample its share of angle: differences of a held or coarse position
         // would not.
-        sweep.share_turns[k] =
-            std::abs(speed[k]) * std::clamp(0.5 * (before + after), 0.0, 3.0 * step) / 360.0;
+        sweep.share_turns[k] = plan.rest ? seconds : std::abs(speed[k]) * seconds / 360.0;
         sweep.fast_deg_s = std::max(sweep.fast_deg_s, std::abs(speed[k]));
     }
-    weigh_sweep(sweep);
-    if (!(sweep.weight_sum > 0.0)) return sweep;
-    for (std::size_t k = 0; k < n; ++k) sweep.mean_deg_s += sweep.weight[k] * speed[k] / sweep.weight_sum;
-    const SpeedShares shares(speed, sweep.weight);
-    sweep.slow_deg_s = shares.quantile(0.25 * sweep.weight_sum);
-    sweep.quick_deg_s = shares.quantile(0.75 * sweep.weight_sum);
+    if (!plan.rest) sweep.length_turns = std::abs(turns.back() - turns.front());
     sweep.measured_nm = log.torque_nm.subspan(span.first, n);
     sweep.trend_terms = static_cast<std::size_t>(std::lround(2.0 * rule.trend_cycles)) + 2;
+    weigh_sweep(sweep);
+    if (!(sweep.weight_sum > 0.0)) return sweep;
+    if (!plan.rest) {
+        for (std::size_t k = 0; k < n; ++k) sweep.mean_deg_s += sweep.weight[k] * speed[k] / sweep.weight_sum;
+        const SpeedShares shares(speed, sweep.weight);
+        sweep.slow_deg_s = shares.quantile(0.25 * sweep.weight_sum);
+        sweep.quick_deg_s = shares.quantile(0.75 * sweep.weight_sum);
+    }
     fit_out(sweep, {});
     return sweep;
 }
@@ -150,10 +164,23 @@ void put_right(const TraceView& log, const VelocityError& error, std::vector<dou
     }
 }
 
-struct Planned {
-    std::size_t log = 0;
-    SampleRun span;
-};
+/// What lies between the runs of a log, in pieces of at most rule.longest_s, where the joint stands still.
+std::vector<SampleRun> rests_of(const TraceView& log, std::span<const double> speed, double standstill_deg_s,
+                                const SweepRule& rule) {
+    constexpr double shortest_s = 0.5;  // by hand: five cycles of the slowest tone that is told
+    const auto longest = static_cast<std::size_t>(rule.longest_s * log.sample_rate.value());
+    std::vector<SampleRun> rests;
+    for (const SampleRun& run : whole_runs(log.size(), log.run_starts)) {
+        std::size_t first = run.first;
+        for (std::size_t k = run.first; k <= run.end; ++k) {
+            const bool still = k < run.end && std::abs(speed[k]) <= standstill_deg_s;
+            if (still && k - first < longest) continue;
+            if (k > first && log.time_s[k - 1] - log.time_s[first] >= shortest_s) rests.push_back({first, k});
+            first = still ? k : k + 1;
+        }
+    }
+    return rests;
+}
 
 /// Keeps pieces evenly over all of them until their number and their samples fit.
 std::vector<Planned> within_budget(std::vector<Planned> all, const SweepRule& rule) {
@@ -186,6 +213,7 @@ Sweep part_of(const Sweep& sweep, std::size_t first, std::size_t count) {
     part.measured_nm = sweep.measured_nm.subspan(first, count);
     part.turns = cut(sweep.turns);
     part.time_s = cut(sweep.time_s);
+    part.speed_deg_s = cut(sweep.speed_deg_s);
     part.torque_nm = cut(sweep.torque_nm);
     part.share_turns = cut(sweep.share_turns);
     weigh_sweep(part);
@@ -204,10 +232,15 @@ Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule, const 
         angles.push_back(output_angle(log));
         speeds.push_back(smoothed_speed(log));
         if (!angles.back().absolute) put_right(log, error, angles.back().turns, speeds.back());
-        for (const SampleRun& run : directed_runs(speeds.back(), log.run_starts, {rule.slowest_share})) {
+        const double still_deg_s = standstill_deg_s(log, speeds.back(), {});
+        for (const SampleRun& run :
+             directed_runs(speeds.back(), log.run_starts, {rule.slowest_share, still_deg_s})) {
             for (const SampleRun& piece : pieces_of(run, log, angles.back().turns, rule)) {
-                if (piece.end - piece.first >= rule.fewest_samples) planned.push_back({i, piece});
+                if (piece.end - piece.first >= rule.fewest_samples) planned.push_back({i, piece, false});
             }
+        }
+        for (const SampleRun& rest : rests_of(log, speeds.back(), still_deg_s, rule)) {
+            if (rest.end - rest.first >= rule.fewest_samples) planned.push_back({i, rest, true});
         }
         sweeps.absolute_angle = sweeps.absolute_angle && angles.back().absolute;
     }
@@ -216,9 +249,8 @@ Sweeps cut_sweeps(std::span<const TraceView> logs, const SweepRule& rule, const 
     sweeps.pieces_left_out = all - planned.size();
     sweeps.pieces.resize(planned.size());
     on_two_cores(planned.size(), [&](std::size_t i) {
-        const auto& [log, span] = planned[i];
-        sweeps.pieces[i] = make_sweep(logs[log], span, angles[log].turns, speeds[log], rule);
-        sweeps.pieces[i].log = log;
+        const std::size_t log = planned[i].log;
+        sweeps.pieces[i] = make_sweep(logs[log], planned[i], angles[log].turns, speeds[log], rule);
     });
     std::erase_if(sweeps.pieces, [](const Sweep& sweep) { return !(sweep.weight_sum > 0.0); });
     return sweeps;

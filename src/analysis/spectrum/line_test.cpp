@@ -53,98 +53,81 @@ double incomplete_beta(double x, double a, double b) {
     return 1.0 - front * beta_fraction(1.0 - x, b, a) / b;
 }
 
+/// Independent averages behind a floor that stands above the noise around it. Noise is averaged over sweeps,
+/// but what the motion itself leaves (the torque of an acceleration, a resonance that rings) is the same in
+/// all of them. With the noise 1 and the floor 1 + m, the variance of a mean of `averages` sweeps is
+/// 1 / averages + m^2.
+double averages_of(double averages, double floor_over_noise) {
+    const double common = std::max(0.0, floor_over_noise - 1.0);
+    return (1.0 + common) * (1.0 + common) / (1.0 / averages + common * common);
+}
+
+/// A floor beside a bin, and how well it is known.
+struct Floor {
+    double power = 0.0, cells = 0.0;
+};
+
+/// A line stands above every floor of the first list, and above one of the second where there are any.
+struct Floors {
+    std::vector<Floor> every, either;
+};
+
 std::size_t bins_of(const PowerSpectrum& s, double cells) {
     return static_cast<std::size_t>(std::ceil(cells * s.bins_per_cell));
 }
 
-/// How far from a bin its floor is measured, `outer` bins at most. Both sides shrink alike near an end of the
-/// spectrum, since one flank of a steep floor would stand for too little or too much; but one side has to hold
-/// the fewest cells that a floor can be known from.
-std::size_t outer_of(const PowerSpectrum& s, std::size_t bin, std::size_t outer) {
-    const std::size_t room = std::min(bin - s.first, s.power.size() - 1 - bin);
-    return std::min(outer, std::max(room, bins_of(s, guard_cells + fewest_cells)));
-}
-
-/// Bins from `inner` to `outer` away from `bin`, on each side as far as there are bins.
-void gather(const PowerSpectrum& s, std::size_t bin, std::size_t inner, std::size_t outer,
-            std::vector<double>& into) {
-    outer = outer_of(s, bin, outer);
-    const std::size_t below = bin - s.first, above = s.power.size() - 1 - bin;
-    for (std::size_t d = inner; d <= std::min(outer, below); ++d) into.push_back(s.power[bin - d]);
-    for (std::size_t d = inner; d <= std::min(outer, above); ++d) into.push_back(s.power[bin + d]);
-}
-
-/// Cells between `guard_cells` and `reach_cells` on both sides, as far as there are bins.
-double cells_around(const PowerSpectrum& s, std::size_t bin, double reach_cells) {
-    const std::size_t inner = bins_of(s, guard_cells), outer = outer_of(s, bin, bins_of(s, reach_cells));
-    double bins = 0.0;
-    for (const std::size_t room : {bin - s.first, s.power.size() - 1 - bin}) {
-        const std::size_t end = std::min(outer, room);
-        if (end >= inner) bins += static_cast<double>(end - inner + 1);
-    }
-    return bins / s.bins_per_cell;
-}
-
-/// The four floors about a bin, the cheapest first, until their largest is above `most`.
-double floor_at(const PowerSpectrum& s, std::size_t bin, double most, std::vector<double>& scratch) {
+/// The floors about a bin: around it on both sides, near and far, and below it, since spectra of motion fall
+/// steeply from their low end. Both sides shrink alike near an end of the spectrum: one flank of a steep
+/// floor would stand for too little or too much. Near the low end there is no room below. What lies just
+/// outside of the main lobe there is few cells; what lies above says what the noise may be here at most, if
+/// it falls with frequency no steeper than behind a resonance, by the fourth power. Either will do. Empty
+/// where too few cells lie around the bin.
+Floors floors_about(const PowerSpectrum& s, std::size_t bin) {
     const double to_mean = median_over_mean(s.averages_at(bin));
-    double local = 0.0;
-    const auto raised = [&] {
-        if (!scratch.empty()) local = std::max(local, median_in(scratch) / to_mean);
-        scratch.clear();
-        return local > most;
+    const std::size_t below = bin - s.first, above = s.power.size() - 1 - bin;
+    const std::size_t guard = bins_of(s, guard_cells), fewest = guard + bins_of(s, fewest_cells);
+    Floors floors;
+    const auto beyond_guard = [guard](std::size_t room) { return room > guard ? room - guard : 0; };
+    if (beyond_guard(below) + beyond_guard(above) < bins_of(s, fewest_cells)) return floors;
+    std::vector<double> values;
+    const auto floor = [&] {
+        const double cells = static_cast<double>(values.size()) / s.bins_per_cell;
+        return values.empty() ? Floor{} : Floor{median_in(values) / to_mean, cells};
     };
-    gather(s, bin, bins_of(s, inner_from_cells), bins_of(s, inner_to_cells), scratch);
-    if (raised()) return local;
-    // The lower side alone, since spectra of motion fall steeply from their low end. Near that end what is
-    // just outside of the main lobe has to do: a line stands above it, a slope does not.
-    const std::size_t below = bin - s.first;
-    std::size_t inner = bins_of(s, guard_cells);
-    if (below < inner + bins_of(s, 1.0)) inner = bins_of(s, lobe_cells);
-    for (std::size_t d = inner; d <= std::min(bins_of(s, near_cells), below); ++d)
-        scratch.push_back(s.power[bin - d]);
-    if (raised()) return local;
-    for (const double reach_cells : {near_cells, far_cells}) {
-        gather(s, bin, bins_of(s, guard_cells), bins_of(s, reach_cells), scratch);
-        if (raised()) return local;
+    const auto add_below = [&](std::size_t from, std::size_t to) {
+        for (std::size_t d = from; d <= std::min(to, below); ++d) values.push_back(s.power[bin - d]);
+    };
+    const auto add_above = [&](std::size_t from, std::size_t to) {
+        for (std::size_t d = from; d <= std::min(to, above); ++d) values.push_back(s.power[bin + d]);
+    };
+    const bool has_room = below >= fewest;
+    const std::size_t shorter = std::min(below, above), longer = std::max(below, above);
+    const std::size_t reach = shorter >= fewest ? shorter : std::min(bins_of(s, near_cells), longer);
+    for (const auto& [from, to] :
+         {std::pair{inner_from_cells, inner_to_cells}, {guard_cells, near_cells}, {guard_cells, far_cells}}) {
+        values.clear();
+        const std::size_t end = std::min(bins_of(s, to), reach);
+        add_below(bins_of(s, from), end);
+        add_above(bins_of(s, from), end);
+        if (!values.empty()) floors.every.push_back(floor());
     }
-    return local;
+    values.clear();
+    if (has_room) {
+        add_below(guard, bins_of(s, near_cells));
+        floors.every.push_back(floor());
+        return floors;
+    }
+    add_below(bins_of(s, lobe_cells), below);
+    if (!values.empty()) floors.either.push_back(floor());
+    values.clear();
+    for (std::size_t d = guard; d <= std::min(reach, above); ++d) {
+        const double rise = static_cast<double>(bin + d) / static_cast<double>(bin);
+        values.push_back(s.power[bin + d] * rise * rise * rise * rise);
+    }
+    if (!values.empty()) floors.either.push_back(floor());
+    if (floors.either.empty()) floors.every.clear();
+    return floors;
 }
-
-/// A ratio below which noise exceeds it more often than `chance`, and not far below the highest such: most
-/// bins are below it, and are not worth more than a comparison. Neighbouring bins share it; one that nobody
-/// shares is not worth finding, and is 0.
-class LeastRatio {
-  public:
-    explicit LeastRatio(double chance) : chance_(chance) {}
-
-    double at(double averages, double cells) {
-        const bool again = averages == averages_ && cells == cells_;
-        if (again && ratio_ > 0.0) return ratio_;
-        averages_ = averages;
-        cells_ = cells;
-        return ratio_ = again ? found() : 0.0;
-    }
-
-  private:
-    [[nodiscard]] double found() const {
-        const auto is_below = [this](double ratio) {
-            return exceedance({.ratio = ratio * (1.0 + 1e-9), .averages = averages_, .cells = cells_}) >
-                   chance_;
-        };
-        double high = 1.0;
-        while (is_below(high) && high < 1e100) high *= 2.0;
-        double low = 0.5 * high;
-        if (!is_below(low)) return 1e-300;
-        for (int halving = 0; halving < 8; ++halving) {
-            const double middle = 0.5 * (low + high);
-            (is_below(middle) ? low : high) = middle;
-        }
-        return low;
-    }
-
-    double chance_, averages_ = -1.0, cells_ = -1.0, ratio_ = 0.0;
-};
 
 /// Independent tries among the bins that are searched.
 double tries_of(const PowerSpectrum& s) {
@@ -215,24 +198,44 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
     const auto& power = spectrum.power;
     if (power.size() < spectrum.first + 8) return peaks;
     const double tries = tries_of(spectrum);
-    std::vector<double> scratch;
-    LeastRatio worth_a_look(1.0 / tries), significant(false_alarm / tries);
     for (std::size_t k = std::max(spectrum.first + 1, spectrum.searched); k + 1 < power.size(); ++k) {
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
         // A cheap sieve with a wide margin: the floors below are seldom less than a quarter of the running
         // one.
         const double averages = spectrum.averages_at(k), rough = 4.0 * power[k] / floor[k];
-        if (rough < worth_a_look.at(averages, 1e6) ||
-            tries * exceedance({.ratio = rough, .averages = averages, .cells = 1e6}) > 1.0)
+        if (rough < 2.0 || tries * exceedance({.ratio = rough, .averages = averages, .cells = 1e6}) > 1.0)
             continue;
-        if (cells_around(spectrum, k, near_cells) < fewest_cells) continue;
-        const double cells = cells_around(spectrum, k, far_cells);
-        const double most = power[k] / significant.at(averages, cells);  // infinite at 0
-        const double local = floor_at(spectrum, k, most, scratch);
-        if (!(local > 0.0) || local > most) continue;
-        const double chance = std::min(
-            1.0, tries * exceedance({.ratio = power[k] / local, .averages = averages, .cells = cells}));
-        if (chance <= false_alarm) peaks.push_back({k, local, chance});
+        const Floors floors = floors_about(spectrum, k);
+        if (floors.every.empty()) continue;
+        SignificantPeak peak{k, 0.0, 0.0};
+        const auto chance_over = [&](const Floor& beside) {
+            const double known = averages_of(averages, beside.power / floor[k]);
+            return tries *
+                   exceedance({.ratio = power[k] / beside.power, .averages = known, .cells = beside.cells});
+        };
+        for (const Floor& beside : floors.every) {
+            peak.floor = std::max(peak.floor, beside.power);
+            peak.false_alarm = std::max(peak.false_alarm, chance_over(beside));
+        }
+        double least = floors.either.empty() ? 0.0 : 1.0;
+        for (const Floor& beside : floors.either) least = std::min(least, chance_over(beside));
+        peak.false_alarm = std::min(1.0, std::max(peak.false_alarm, least));
+        if (peak.false_alarm <= false_alarm) peaks.push_back(peak);
+    }
+    return peaks;
+}
+
+std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum, std::span<const double> floor,
+                                             double false_alarm) {
+    std::vector<SignificantPeak> peaks;
+    const auto& power = spectrum.power;
+    const double tries = tries_of(spectrum);
+    for (std::size_t k = std::max(spectrum.first + 1, spectrum.searched); k + 1 < power.size(); ++k) {
+        if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
+        const double chance = tries * exceedance({.ratio = power[k] / floor[k],
+                                                  .averages = spectrum.averages_at(k),
+                                                  .cells = 2.0 * far_cells});
+        if (chance <= false_alarm) peaks.push_back({k, floor[k], chance});
     }
     return peaks;
 }
@@ -251,14 +254,20 @@ double ratio_exceeded(double chance, double averages, double cells) {
     return high;
 }
 
-double significant_power(const PowerSpectrum& spectrum, std::size_t bin, double false_alarm) {
+double significant_power(const PowerSpectrum& spectrum, std::span<const double> floor, std::size_t bin,
+                         double false_alarm) {
     constexpr double none = std::numeric_limits<double>::infinity();
     if (bin <= spectrum.first || bin < spectrum.searched || bin + 1 >= spectrum.power.size()) return none;
-    if (cells_around(spectrum, bin, near_cells) < fewest_cells) return none;
-    std::vector<double> scratch;
-    return floor_at(spectrum, bin, none, scratch) *
-           ratio_exceeded(false_alarm / tries_of(spectrum), spectrum.averages_at(bin),
-                          cells_around(spectrum, bin, far_cells));
+    const Floors floors = floors_about(spectrum, bin);
+    if (floors.every.empty()) return none;
+    const auto threshold = [&](const Floor& beside) {
+        const double known = averages_of(spectrum.averages_at(bin), beside.power / floor[bin]);
+        return beside.power * ratio_exceeded(false_alarm / tries_of(spectrum), known, beside.cells);
+    };
+    double highest = 0.0, either = floors.either.empty() ? 0.0 : none;
+    for (const Floor& beside : floors.every) highest = std::max(highest, threshold(beside));
+    for (const Floor& beside : floors.either) either = std::min(either, threshold(beside));
+    return std::max(highest, either);
 }
 
 double detectable_ratio(double threshold, double averages) {

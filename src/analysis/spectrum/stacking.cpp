@@ -15,33 +15,56 @@ constexpr std::size_t most_parts = 3;  // by hand: more did not help two cores; 
 constexpr double overlap_correlation =
     1.06;  // half-overlapping Hann pieces count a little less than independent ones
 
-constexpr double smeared_cells = 20.0;  // by hand
-constexpr double folds_searched = 2.5;  // by hand: of the sample rate at the highest speed
-constexpr double used_cycles = 2.5;     // in a sweep: a cycle beyond what the trend follows
+constexpr double smeared_cells = 20.0;      // by hand
+constexpr double folds_searched = 2.5;      // by hand: of the sample rate at the highest speed
+constexpr double used_cycles = 3.0;         // in a sweep: half a cycle beyond what the trend follows
 constexpr double fewest_sweep_cells = 6.0;  // of a sweep's spectrum: a line's main lobe and four beside it
 
 struct Reach {
     std::size_t first = 0, end = 0;  // bins
 };
 
-/// Highest order that a sweep shows. At one speed, lines above half the sample rate fold onto others exactly.
-/// When the speed changes so much that a folded line smears over many resolutions, the sum over the measured
-/// angle gathers a line at its own order alone, whatever the sample rate.
-double highest_order(const Sweep& sweep) {
-    const double per_turn = sweep.rate_hz * 360.0;
-    const double slow = std::max(sweep.slow_deg_s, 1e-9);
-    const double smear = per_turn / slow - per_turn / std::max(sweep.quick_deg_s, 1e-9);
-    const bool smears = smear > smeared_cells * hann_cell / sweep.length_turns;
-    return smears ? folds_searched * per_turn / std::max(sweep.fast_deg_s, 1e-9) : 0.5 * per_turn / slow;
+/// The speeds of all sweeps: lower and upper quartile of the slowest and of the quickest.
+struct Speeds {
+    double slow_deg_s = 1e300, quick_deg_s = 0.0;
+};
+
+/// The order at which the sample rate stands at the sweep's highest speed, and short of it: the motion, far
+/// stronger than any line, folds to there.
+double clear_of_motion(const Sweep& sweep) {
+    return 0.8 * 360.0 * sweep.rate_hz / std::max(sweep.fast_deg_s, 1e-9);
 }
 
-Reach reach_of(const Sweep& sweep, Axis axis, double spacing, std::size_t bins, const StackRule& rule) {
-    const bool angle = axis == Axis::angle;
+/// Highest order that a sweep shows. At one speed, lines above half the sample rate fold onto others exactly.
+/// When the speed changes so much, within sweeps or from one to another, that a folded line smears over many
+/// resolutions, the sum over the measured angle gathers a line at its own order alone, whatever the sample
+/// rate.
+double highest_order(const Sweep& sweep, const Speeds& speeds) {
+    const double per_turn = sweep.rate_hz * 360.0;
+    const double smear =
+        per_turn / std::max(speeds.slow_deg_s, 1e-9) - per_turn / std::max(speeds.quick_deg_s, 1e-9);
+    const bool smears = smear > smeared_cells * hann_cell / sweep.length_turns;
+    return smears ? folds_searched * per_turn / std::max(speeds.quick_deg_s, 1e-9)
+                  : 0.5 * per_turn / std::max(sweep.slow_deg_s, 1e-9);
+}
+
+struct StackGrid {
+    Axis axis = Axis::angle;
+    double spacing = 0.0;
+    std::size_t bins = 0;
+    Speeds speeds;
+};
+
+Reach reach_of(const Sweep& sweep, const StackGrid& grid, const StackRule& rule) {
+    const double length = length_of(sweep, grid.axis);
+    if (!(length > 0.0)) return {};
     // Below the lowest line that is looked for, down to the trend: its noise on that side.
-    const double lowest = used_cycles / length_of(sweep, axis);
-    const double highest = angle ? std::min(rule.highest_order, highest_order(sweep)) : 0.5 * sweep.rate_hz;
-    const auto end = static_cast<std::size_t>(highest / spacing) + 1;
-    return {static_cast<std::size_t>(std::ceil(lowest / spacing)), std::min(end, bins)};
+    const double lowest = used_cycles / length;
+    const double highest = grid.axis == Axis::angle
+                               ? std::min(rule.highest_order, highest_order(sweep, grid.speeds))
+                               : 0.5 * sweep.rate_hz;
+    const auto end = static_cast<std::size_t>(highest / grid.spacing) + 1;
+    return {static_cast<std::size_t>(std::ceil(lowest / grid.spacing)), std::min(end, grid.bins)};
 }
 
 }  // namespace
@@ -51,11 +74,16 @@ Stacking::Stacking(std::span<const Sweep> sweeps, Axis axis, const StackRule& ru
     stack_.axis = axis;
     double longest = 0.0, weights = 0.0, mean_length = 0.0, half_rate = 0.0;
     for (const Sweep& sweep : sweeps) {
-        longest = std::max(longest, length_of(sweep, axis));
-        weights += sweep.effective_samples();
-        mean_length += sweep.effective_samples() * length_of(sweep, axis);
+        const double length = length_of(sweep, axis);
+        const double weight = length > 0.0 ? sweep.effective_samples() : 0.0;
+        longest = std::max(longest, length);
+        weights += weight;
+        mean_length += weight * length;
         half_rate = std::max(half_rate, 0.5 * sweep.rate_hz);
-        stack_.sweep_weights.push_back(sweep.effective_samples());
+        stack_.sweep_weights.push_back(weight);
+        if (sweep.rest()) continue;
+        slow_deg_s_ = std::min(slow_deg_s_, sweep.slow_deg_s);
+        quick_deg_s_ = std::max(quick_deg_s_, sweep.quick_deg_s);
     }
     if (!(longest > 0.0)) {
         stack_.sweep_weights.clear();
@@ -65,8 +93,8 @@ Stacking::Stacking(std::span<const Sweep> sweeps, Axis axis, const StackRule& ru
     stack_.spacing = 0.5 / longest;
     stack_.resolution = hann_cell / mean_length;
     stack_.tries_factor = longest / mean_length;
-    const double lowest = std::max(axis == Axis::angle ? rule.lowest_order : rule.lowest_hz,
-                                   rule.fewest_cycles / mean_length);
+    const double lowest =
+        std::max(axis == Axis::angle ? rule.lowest_order : rule.lowest_hz, rule.fewest_cycles / mean_length);
     stack_.searched = static_cast<std::size_t>(std::ceil(lowest / stack_.spacing));
     const double highest = axis == Axis::angle ? rule.highest_order : half_rate;
     bins_ = static_cast<std::size_t>(highest / stack_.spacing) + 1;
@@ -92,15 +120,32 @@ void Stacking::run(std::size_t number) {
 
 void Stacking::add(std::size_t number, Part& part) {
     const Sweep& sweep = sweeps_[number];
-    const Reach reach = reach_of(sweep, stack_.axis, stack_.spacing, bins_, rule_);
+    Reach reach = reach_of(sweep, {stack_.axis, stack_.spacing, bins_, {slow_deg_s_, quick_deg_s_}}, rule_);
     auto& floors = stack_.floors[number];
     floors.assign(bins_, 0.0F);
     const double cell = hann_cell / (length_of(sweep, stack_.axis) * stack_.spacing);
-    if (static_cast<double>(reach.end) < static_cast<double>(reach.first) + fewest_sweep_cells * cell) return;
+    const auto too_few = [&] {
+        return static_cast<double>(reach.end) < static_cast<double>(reach.first) + fewest_sweep_cells * cell;
+    };
+    if (too_few()) return;
     const auto sums = nonuniform_fourier(places(sweep, stack_.axis), sweep.value, stack_.spacing, reach.end);
     std::vector<double> power(reach.end);
     for (std::size_t k = 0; k < reach.end; ++k) power[k] = std::norm(sums[k]);
-    const std::vector<double> floor = noise_floor({power, 1.0, cell, reach.first, {}});
+    std::vector<double> floor = noise_floor({power, 1.0, cell, reach.first, {}});
+    const auto clear = static_cast<std::size_t>(clear_of_motion(sweep) / stack_.spacing) + 1;
+    if (stack_.axis == Axis::angle && reach.end > clear) {
+        // What the trend leaves of the motion folds to around the sample rate and smears, at the least, over
+        // smeared_cells there: unseen where it is weak.
+        const std::size_t slow = std::min(reach.end, reach.first + static_cast<std::size_t>(2.0 * cell));
+        const double motion =
+            *std::max_element(power.begin(), power.begin() + static_cast<std::ptrdiff_t>(slow));
+        if (motion > 0.5 * smeared_cells * floor[reach.end / 2]) {
+            reach.end = std::min(reach.end, clear);
+            if (too_few()) return;
+            power.resize(reach.end);
+            floor = noise_floor({power, 1.0, cell, reach.first, {}});
+        }
+    }
     const double weight = stack_.sweep_weights[number];
     const double to_amplitude = 4.0 / (sweep.weight_sum * sweep.weight_sum);
     for (std::size_t k = reach.first; k < reach.end; ++k) {

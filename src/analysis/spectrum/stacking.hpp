@@ -35,6 +35,7 @@ class Stacking {
     const StackRule& rule_;
     Stack stack_;
     std::size_t bins_ = 0;
+    double slow_deg_s_ = 1e300, quick_deg_s_ = 0.0;  ///< quartiles of the slowest and the quickest sweep
     std::vector<Part> parts_;
 };
 

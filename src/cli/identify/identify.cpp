@@ -27,8 +27,6 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::array<std::string_view, 3> evidence_names = {"automatic", "steady", "order"};
-
 constexpr std::size_t fewest_rows_held = most_rows_held / 4;  // of each of many long logs
 
 struct IdentifyRequest {
@@ -36,7 +34,6 @@ struct IdentifyRequest {
     PlotRequest plot;
     LogOptions log;
     std::vector<std::string> logs;
-    std::string evidence = "automatic";
     GearOptions gear;  ///< a ratio to check
     std::vector<double> order_hint;
     IdentifyOptions identify;
@@ -123,9 +120,6 @@ void say_other_ratio(const IdentifyRequest& request, const Identification& found
 }
 
 void check_identify(IdentifyRequest& request) {
-    request.identify.way = request.evidence == "steady"  ? IdentifyOptions::Way::steady
-                           : request.evidence == "order" ? IdentifyOptions::Way::order
-                                                         : IdentifyOptions::Way::automatic;
     check_gear(request.gear);
     if (request.gear.ratio) request.identify.hint = GearRatio(*request.gear.ratio);
     for (const double n : request.order_hint) {
@@ -135,9 +129,6 @@ void check_identify(IdentifyRequest& request) {
     }
     const double rate = request.identify.false_alarm;
     if (!(rate > 0.0) || rate > 0.5) raise<UsageError>("--false-alarm {} is not between 0 and 0.5", rate);
-    if (!(request.identify.steady_for.value() > 0.0)) raise<UsageError>("--steady-for must be above 0 s");
-    if (!(request.identify.steady_band_percent >= 0.0))
-        raise<UsageError>("--steady-band must not be negative");
 }
 
 std::vector<std::string> log_names(const Joint& joint) {
@@ -202,15 +193,8 @@ std::function<ExitCode()> attach_identify(Options& options) {
                  .joint_file = ""});
     options.numbers("--order-hint", request->order_hint, Dimension::none,
                     "which multiple of the motor's turn you believe the strongest line to be, 1 to 16");
-    options.choice("--evidence", request->evidence, evidence_names,
-                   "steady stretches (the paper's way), order spectrum (any motion), or what suffices");
     options.number("--false-alarm", request->identify.false_alarm, Dimension::none,
                    "chance that a log of mere noise gives any line");
-    options.number("--steady-band", request->identify.steady_band_percent, Dimension::none,
-                   "a stretch is steady while its speed stays within this many per cent ...");
-    options.number("--steady-band-speed", request->identify.steady_band_deg_s, Dimension::speed,
-                   "... or within this speed, whichever is wider; none by default");
-    options.quantity("--steady-for", request->identify.steady_for, Dimension::time, "for at least this long");
     options.flag("--require-conclusive", request->require_conclusive,
                  "exit with code 5 when the logs do not settle it");
     attach_residual(options, request->residual);

@@ -155,6 +155,12 @@ Identification identification_from_json(std::string_view text, const std::string
                          found.sample_rate.value());
     }
     found.evidence = fields.named("evidence", evidence_of);
+    if (fields.has("searched")) {
+        Fields searched = fields.object("searched");
+        found.searched = {searched.number("lowest_order"), searched.number("highest_order"),
+                          searched.number("detectable_nm")};
+        searched.finish();
+    }
     Fields ratio = fields.object("gear_ratio");
     found.gear_ratio = ratio_from_json(ratio);
     ratio.finish();

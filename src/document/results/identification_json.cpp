@@ -121,6 +121,12 @@ void add_fields(Json& json, const Identification& identification) {
     json["joint"] = identification.joint;
     json["sample_rate_hz"] = identification.sample_rate.value();
     json["evidence"] = evidence_name(identification.evidence);
+    json["searched"] = nullptr;
+    if (const auto& searched = identification.searched) {
+        json["searched"] = {{"lowest_order", searched->lowest_order},
+                            {"highest_order", searched->highest_order},
+                            {"detectable_nm", searched->detectable_nm}};
+    }
     json["gear_ratio"] = ratio_to_json(identification.gear_ratio);
     json["gear"] = gear_to_json(found_gear(identification));
     json["lines"] = Json::array();
