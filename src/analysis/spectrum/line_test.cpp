@@ -70,7 +70,24 @@ struct Floor {
 /// A line stands above every floor of the first list, and above one of the second where there are any.
 struct Floors {
     std::vector<Floor> every, either;
+    double averages = 1.0;  ///< independent ones behind each value
 };
+
+/// Independent averages behind values of noise, by their scatter: their upper quartile lies 0.6745 standard
+/// deviations above the median, and a mean of n has a standard deviation of 1 / sqrt(n). What a motion leaves
+/// in each of its repetitions scatters as a single one does.
+double averages_by_scatter(std::vector<double> values) {
+    const auto at = [&](double share) {
+        const auto place =
+            values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+        std::nth_element(values.begin(), place, values.end());
+        return *place;
+    };
+    const double upper = at(0.75), middle = at(0.5);
+    if (!(middle > 0.0) || !(upper > middle)) return std::numeric_limits<double>::infinity();
+    const double deviation = (upper / middle - 1.0) / 0.6745;
+    return 1.0 / (deviation * deviation);
+}
 
 std::size_t bins_of(const PowerSpectrum& s, double cells) {
     return static_cast<std::size_t>(std::ceil(cells * s.bins_per_cell));
@@ -109,7 +126,10 @@ Floors floors_about(const PowerSpectrum& s, std::size_t bin) {
         const std::size_t end = std::min(bins_of(s, to), reach);
         add_below(bins_of(s, from), end);
         add_above(bins_of(s, from), end);
-        if (!values.empty()) floors.every.push_back(floor());
+        if (values.empty()) continue;
+        // The last and widest ring.
+        floors.averages = std::clamp(averages_by_scatter(values), 1.0, std::max(1.0, s.averages_at(bin)));
+        floors.every.push_back(floor());
     }
     values.clear();
     if (has_room) {
@@ -209,7 +229,7 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         if (floors.every.empty()) continue;
         SignificantPeak peak{k, 0.0, 0.0};
         const auto chance_over = [&](const Floor& beside) {
-            const double known = averages_of(averages, beside.power / floor[k]);
+            const double known = averages_of(floors.averages, beside.power / floor[k]);
             return tries *
                    exceedance({.ratio = power[k] / beside.power, .averages = known, .cells = beside.cells});
         };
@@ -261,7 +281,7 @@ double significant_power(const PowerSpectrum& spectrum, std::span<const double> 
     const Floors floors = floors_about(spectrum, bin);
     if (floors.every.empty()) return none;
     const auto threshold = [&](const Floor& beside) {
-        const double known = averages_of(spectrum.averages_at(bin), beside.power / floor[bin]);
+        const double known = averages_of(floors.averages, beside.power / floor[bin]);
         return beside.power * ratio_exceeded(false_alarm / tries_of(spectrum), known, beside.cells);
     };
     double highest = 0.0, either = floors.either.empty() ? 0.0 : none;
