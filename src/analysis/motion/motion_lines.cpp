@@ -248,6 +248,7 @@ void complete(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Riva
         line.hz = rivals.hz;
         line.hz_stderr = stacks.time.resolution;
     }
+    if (stacks.angle.ratio.empty()) return;  // at standstill
     line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, stacks.angle, rivals.hz);
     line.folds =
         folds_of(sweeps, stacks.angle, {.seen = line.order_seen, .highest = options.stack.highest_order});
