@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: MIT
+"""What one log says about false lines, the bound of "no line above X", and the gear ratio: one row of a table each."""
+
+import math
+
+import numpy as np
+
+from . import answer, logs
+
+
+def about(log):
+    """What tables are grouped by."""
+    truth = log.truth
+    return {key: truth[key] for key in ("seed", "motion", "rate_hz", "travel_deg", "ratio", "colour", "position", "sweeps",
+                                        "speeds", "rows", "folded", "ripple")}
+
+
+def is_known_tone(line, log):
+    """Whether a line lies at one of the log's tones, within 1 % or three resolutions of the log."""
+    hz = line.get("hz")
+    width = 3.0 / log.truth["duration_s"]
+    return hz is not None and any(abs(hz - tone["hz"]) <= max(width, 0.01 * tone["hz"]) for tone in log.truth["tones"])
+
+
+def outcome_of_noise(log, found):
+    turning = [line for line in found.lines if not is_known_tone(line, log)]
+    if turning:
+        return "false line"
+    if found.lines:
+        return "tone as unknown"
+    if any(not is_known_tone(line, log) for line in found.tones):
+        return "false tone"
+    return "nothing" if found.says_nothing() else "cannot tell"
+
+
+def noise(seed, options):
+    log = logs.draw(seed)
+    row = about(log)
+    try:
+        found = answer.identify(options.program, log.csv())
+    except answer.Failed as failure:
+        return {**row, "outcome": "failed", "why": str(failure)}, log, []
+    row |= {"outcome": outcome_of_noise(log, found), "verdict": found.verdict, "seconds": found.seconds}
+    return row, log, [] if row["outcome"] not in ("false line", "false tone") else [log.csv()]
+
+
+def resolution(log, order):
+    """Half the width in which a line counts as that order: 1.5 cycles per sweep, or 1 %."""
+    return max(1.5 * 360.0 / log.truth["travel_deg"], 0.01 * order)
+
+
+def injection(seed, options):
+    log = logs.draw(seed)
+    row = about(log)
+    try:
+        before = answer.identify(options.program, log.csv())
+    except answer.Failed as failure:
+        return {**row, "outcome": "failed", "why": str(failure)}, log, []
+    bound = before.bound_nm()
+    row |= {"verdict": before.verdict, "seconds": before.seconds, "bound_nm": bound}
+    if not before.says_nothing() or bound is None:
+        return {**row, "outcome": outcome_of_noise(log, before) if not before.says_nothing() else "no bound"}, log, []
+    low, high = before.searched() or logs.expected_range(log)
+    low, high = options.lowest_order or low, options.highest_order or high
+    row |= {"lowest": low, "highest": high}
+    if not low < high:
+        return {**row, "outcome": "no range"}, log, []
+    rng = np.random.default_rng([seed, 484])
+    order = logs.log_uniform(rng, low, high)
+    wave = np.cos(np.radians(order * log.angle) + rng.uniform(0, 2 * math.pi))
+    error = logs.standard_error(log, order)
+    kept = []
+    row |= {"outcome": "tried", "order": order, "cycles_per_sweep": order * log.truth["travel_deg"] / 360.0,
+            "share_of_nyquist": order * log.truth["peak_deg_s"] / 180.0 / log.truth["rate_hz"],
+            "standard_error_nm": error, "bound_in_errors": bound / error}
+    for times in (2, 1):
+        text = log.csv(times * bound * wave)
+        try:
+            after = answer.identify(options.program, text)
+        except answer.Failed as failure:
+            return {**row, "outcome": "failed", "why": str(failure)}, log, [text]
+        row[f"found_{times}x"] = after.has_order(order, resolution(log, order))
+        row[f"nothing_{times}x"] = after.says_nothing()
+        row[f"verdict_{times}x"] = after.verdict
+        if times == 2 and not row["found_2x"]:
+            kept = [text]
+    return row, log, kept
+
+
+def multiple_of(value, ratio):
+    """"right", "multiple" for k times or a k-th of the truth, "other"."""
+    if abs(value / ratio - 1.0) <= 0.01:
+        return "right"
+    for high in range(1, 13):
+        for low in range(1, 13):
+            if abs(value / (ratio * high / low) - 1.0) <= 0.01 / max(high, low) and (low <= 2 or high <= 2):
+                return "multiple"
+    return "other"
+
+
+def ratio(seed, options):
+    log = logs.draw(seed, ripple="two combs" if seed % 2 else "one comb")
+    row = about(log)
+    text = log.csv()
+    strongest = max(log.truth["lines"], key=lambda line: line["nm"])
+    orders = [line["n"] for line in log.truth["lines"] if line["comb"] == "first"]
+    row |= {"identifiable": math.gcd(*orders) == 1 and len(orders) > 1,
+            "strength": strongest["nm"] / logs.standard_error(log, strongest["order"], 12)}
+    try:
+        found = answer.identify(options.program, text)
+    except answer.Failed as failure:
+        return {**row, "outcome": "failed", "why": str(failure)}, log, [text]
+    row |= {"verdict": found.verdict, "seconds": found.seconds, "conclusive": found.conclusive, "value": found.ratio,
+            "lines_found": len(found.lines)}
+    if found.ratio is None:
+        row["outcome"] = "missed" if found.says_nothing() else "cannot tell"
+        return row, log, [text] if row["outcome"] == "missed" and row["strength"] > 10 else []
+    match = multiple_of(found.ratio, log.truth["ratio"])
+    second = multiple_of(found.ratio, log.truth["ratio"] + 1) if row["ripple"] == "two combs" else match
+    row["outcome"] = match if found.conclusive else "cannot tell"
+    row["match"] = match
+    row["second"] = second
+    if found.interval:
+        low, high = found.interval
+        row["covers"] = low <= log.truth["ratio"] <= high
+        row["covers_either"] = row["covers"] or (row["ripple"] == "two combs" and low <= log.truth["ratio"] + 1 <= high)
+    wrong = found.conclusive and match != "right"
+    return row, log, [text] if wrong else []
