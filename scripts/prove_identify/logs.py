@@ -46,7 +46,8 @@ def draw(seed, ripple="none", tones=True):
     rate = float(rng.choice(RATES))
     several = rng.random() < 0.2
     travel = log_uniform(rng, 360, 3600) if several else log_uniform(rng, 20, 360)
-    ratio = float(rng.choice(CATALOGUE)) if rng.random() < 0.5 else log_uniform(rng, 1, 320)
+    # A second comb is that of the other spline of a strain wave gear, whose ratios begin near 30.
+    ratio = float(rng.choice(CATALOGUE)) if rng.random() < 0.5 else log_uniform(rng, 25 if ripple == "two combs" else 1, 320)
     # A motor without gear turns faster than a joint.
     peak = log_uniform(rng, 5, 180) * (10 if ratio < 10 and rng.random() < 0.5 else 1)
     sweeps = int(round(log_uniform(rng, 1, 20)))
@@ -65,7 +66,6 @@ def draw(seed, ripple="none", tones=True):
     torque, parts = noise.body_torque(rng, sigma, angle, speed, acceleration)
     torque = torque + sigma * values(rng, speed)
     fastest = float(np.max(np.abs(speed)))
-    # What the bulk of the rows in motion reaches: orders turn below half the sample rate up to here.
     tone_list = []
     if tones and rng.random() < 0.3:
         mains = float(rng.choice([50.0, 60.0]))
@@ -83,21 +83,19 @@ def draw(seed, ripple="none", tones=True):
             slope = rng.uniform(-0.5, 0.5) if by_speed else 0.0
             size = line["nm"] * (1.0 + slope * (np.abs(speed) / fastest - 0.5))
             torque += size * np.cos(np.radians(line["order"] * angle) + line["phase"])
-        strongest = max(lines, key=lambda line: line["nm"])
-        half = strongest["order"] * fastest / 360.0 > rate / 2
     bits = int(rng.integers(14, 25))
     step = 360.0 / 2**bits
     with_position = rng.random() < 0.7
-    velocity = speed.copy()
-    if rng.random() < 0.5:
-        velocity += fastest * log_uniform(rng, 1e-4, 1e-2) * rng.standard_normal(len(time))
+    velocity_noise = fastest * log_uniform(rng, 1e-4, 1e-2) if rng.random() < 0.5 else 0.0
+    velocity = speed + velocity_noise * rng.standard_normal(len(time))
     resolution = fastest * log_uniform(rng, 1e-6, 1e-3)
     velocity = np.round(velocity / resolution) * resolution
     truth = {
         "seed": seed, "motion": kind, "rate_hz": rate, "travel_deg": travelled, "ratio": ratio, "peak_deg_s": fastest,
         "sweeps": sweeps, "speeds": speeds, "rows": len(time), "duration_s": float(len(time) / rate), "sigma_nm": sigma,
         "colour": colour, "colour_about": about, "body_nm": parts, "tones": tone_list, "ripple": ripple, "lines": lines,
-        "folded": bool(lines) and bool(half), "position": bool(with_position), "encoder_deg": step,
+        "folded": any(line["order"] * fastest / 180.0 > rate for line in lines),
+        "position": bool(with_position), "encoder_deg": step, "velocity_noise_deg_s": velocity_noise,
     }
     return Log(truth, time, velocity, np.round(angle / step) * step if with_position else None, torque, angle, speed,
                lambda generator: sigma * values(generator, speed))
@@ -118,6 +116,11 @@ def draw_ripple(rng, ripple, ratio, sigma):
     if ripple == "two combs":
         comb(ratio + 1, choice[rng.integers(len(choice))], "second")
     return lines
+
+
+def walk_deg(log):
+    """Error of the angle at the end of a log without position: the sum of the noise of its velocity."""
+    return 0.0 if log.truth["position"] else log.truth["velocity_noise_deg_s"] * math.sqrt(log.truth["duration_s"] / log.truth["rate_hz"])
 
 
 def expected_range(log):

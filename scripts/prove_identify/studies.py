@@ -72,7 +72,7 @@ def injection(seed, options):
     kept = []
     row |= {"outcome": "tried", "order": order, "cycles_per_sweep": order * log.truth["travel_deg"] / 360.0,
             "share_of_nyquist": order * log.truth["peak_deg_s"] / 180.0 / log.truth["rate_hz"],
-            "standard_error_nm": error, "bound_in_errors": bound / error}
+            "angle_error_cycles": order * logs.walk_deg(log) / 360.0, "standard_error_nm": error, "bound_in_errors": bound / error}
     for times in (2, 1):
         text = log.csv(times * bound * wave)
         try:
@@ -98,31 +98,47 @@ def multiple_of(value, ratio):
     return "other"
 
 
+def lines_of(log, found):
+    """One row for each true line, and how many reported ones lie at none (None where lines fold at half the sample rate)."""
+    truth, made = log.truth, []
+    for line in truth["lines"]:
+        order, width = line["order"], resolution(log, line["order"])
+        near = [seen for seen in found.lines if seen["order_output"] and abs(seen["order_output"] - order) <= width]
+        apart = min([abs(other["order"] - order) for other in truth["lines"] if other is not line], default=math.inf)
+        made.append({"strength": line["nm"] / logs.standard_error(log, order, 12), "found": found.has_order(order, width),
+                     "cycles_per_sweep": order * truth["travel_deg"] / 360.0, "second": line["comb"] == "second",
+                     "alone": apart > 3 * 360.0 / truth["travel_deg"],
+                     "size": near[0]["amplitude_nm"] / line["nm"] if len(near) == 1 and near[0]["amplitude_nm"] else None})
+    if truth["folded"]:
+        return made, None
+    return made, sum(not is_known_tone(seen, log) and seen["order_output"] is not None and
+                     not any(abs(seen["order_output"] - line["order"]) <= resolution(log, line["order"]) for line in truth["lines"])
+                     for seen in found.lines)
+
+
 def ratio(seed, options):
     log = logs.draw(seed, ripple="two combs" if seed % 2 else "one comb")
-    row = about(log)
-    text = log.csv()
-    strongest = max(log.truth["lines"], key=lambda line: line["nm"])
-    orders = [line["n"] for line in log.truth["lines"] if line["comb"] == "first"]
-    row |= {"identifiable": math.gcd(*orders) == 1 and len(orders) > 1,
-            "strength": strongest["nm"] / logs.standard_error(log, strongest["order"], 12)}
+    row, truth, text = about(log), log.truth, log.csv()
+    orders = [line["n"] for line in truth["lines"] if line["comb"] == "first"]
     try:
         found = answer.identify(options.program, text)
     except answer.Failed as failure:
         return {**row, "outcome": "failed", "why": str(failure)}, log, [text]
+    true_lines, false_lines = lines_of(log, found)
+    # What least squares sees ten times over, in 4 cycles per sweep or more and below half the sample rate, should be found.
+    visible = [line for line in true_lines if line["strength"] > 10 and line["cycles_per_sweep"] >= 4]
     row |= {"verdict": found.verdict, "seconds": found.seconds, "conclusive": found.conclusive, "value": found.ratio,
-            "lines_found": len(found.lines)}
+            "interval": found.interval, "lines": true_lines, "false_lines": false_lines, "visible": len(visible),
+            "strength": max(line["strength"] for line in true_lines),
+            "identifiable": math.gcd(*orders) == 1 and len(orders) > 1 and len(visible) == len(true_lines)}
     if found.ratio is None:
         row["outcome"] = "missed" if found.says_nothing() else "cannot tell"
-        return row, log, [text] if row["outcome"] == "missed" and row["strength"] > 10 else []
-    match = multiple_of(found.ratio, log.truth["ratio"])
-    second = multiple_of(found.ratio, log.truth["ratio"] + 1) if row["ripple"] == "two combs" else match
-    row["outcome"] = match if found.conclusive else "cannot tell"
-    row["match"] = match
-    row["second"] = second
+        return row, log, [text] if row["outcome"] == "missed" and visible and not truth["folded"] else []
+    match = multiple_of(found.ratio, truth["ratio"])
+    row |= {"outcome": match if found.conclusive else "cannot tell", "match": match}
     if found.interval:
         low, high = found.interval
-        row["covers"] = low <= log.truth["ratio"] <= high
-        row["covers_either"] = row["covers"] or (row["ripple"] == "two combs" and low <= log.truth["ratio"] + 1 <= high)
-    wrong = found.conclusive and match != "right"
-    return row, log, [text] if wrong else []
+        row["covers"] = low <= truth["ratio"] <= high
+        row["covers_either"] = row["covers"] or (row["ripple"] == "two combs" and low <= truth["ratio"] + 1 <= high)
+    wrong = found.conclusive and match != "right" or match == "right" and not row.get("covers")
+    return row, log, [text] if wrong or false_lines else []

@@ -39,7 +39,10 @@ CLASSES = {
     "ripple": lambda row: (0, row["ripple"] + (", folded" if row["folded"] else "")),
     "strength": lambda row: "strength" in row and (rank(STRENGTH)(row["strength"]),
                                                    banded(STRENGTH, " standard errors")(row["strength"])),
-    "multiples": lambda row: "identifiable" in row and (0, "n without common divisor" if row["identifiable"] else "n all even, or one n"),
+    "multiples": lambda row: "identifiable" in row and (0, "n without common divisor, all visible" if row["identifiable"]
+                                                        else "n all even, one n, or lines too weak"),
+    "visible lines": lambda row: "visible" in row and (row["visible"] > 0, f"{min(2, row['visible'])}{' or more' if row['visible'] > 1 else ''}"),
+    "angle": lambda row: "angle_error_cycles" in row and (0, "known" if row["angle_error_cycles"] < 0.1 else "lost in the noise of the velocity"),
 }
 
 
@@ -90,7 +93,7 @@ def tenth(values):
 def injection(rows):
     tried = [row for row in rows if row["outcome"] == "tried"]
     body = []
-    for name, of in grouped(tried, ("travel", "cycles per sweep", "half the sample rate", "sample rate", "motion", "noise", "position")):
+    for name, of in grouped(tried, ("travel", "cycles per sweep", "half the sample rate", "sample rate", "motion", "noise", "position", "angle")):
         body.append([name, str(len(of)), share(sum(row["found_2x"] for row in of), len(of)), share(sum(row["nothing_2x"] for row in of), len(of)),
                      share(sum(row["found_1x"] for row in of), len(of)), median([row["bound_in_errors"] for row in of]),
                      tenth([row["bound_in_errors"] for row in of])])
@@ -104,16 +107,31 @@ def injection(rows):
 
 def ratio(rows):
     body = []
-    for name, of in grouped(rows, ("ripple", "strength", "multiples", "travel", "ratio", "sample rate", "motion", "position")):
+    for name, of in grouped(rows, ("ripple", "visible lines", "multiples", "travel", "ratio", "sample rate", "motion", "position")):
         def count(outcome):
             return share(sum(row["outcome"] == outcome for row in of), len(of))
         given = [row for row in of if "covers" in row]
         right = [row for row in given if row["match"] == "right"]
-        body.append([name, str(len(of)), count("right"), count("multiple"), count("other"), count("cannot tell"), count("missed"),
+        body.append([name, str(len(of)), count("right"), count("multiple"), count("other"), count("cannot tell"), count("missed"), count("failed"),
                      f"{share(sum(row['covers'] for row in right), len(right))} of {len(right)}",
                      f"{share(sum(row['covers_either'] for row in given), len(given))} of {len(given)}"])
-    return markdown(["logs with ripple", "logs", "right", "wrong multiple", "wrong", "cannot tell", "\"no line\"", "right: interval covers",
-                     "all: covers either comb"], body)
+    return markdown(["logs with ripple", "logs", "right", "wrong multiple", "wrong", "cannot tell", "\"no line\"", "failed", "right: interval covers",
+                     "all: covers either comb"], body) + "\n" + lines(rows)
+
+
+def lines(rows):
+    """Of the same logs: lines that were found, how large they were told, and lines that are none."""
+    made = [{**row, **line} for row in rows for line in row.get("lines", []) if not row["folded"]]
+    body = []
+    for name, of in grouped(made, ("strength", "cycles per sweep", "motion")):
+        seen = [row for row in of if row["strength"] > 10 and row["cycles_per_sweep"] >= 4]
+        sizes = [row["size"] for row in seen if row["size"] and row["alone"] and row["strength"] > 30]
+        body.append([name, str(len(of)), share(sum(row["found"] for row in of), len(of)), share(sum(row["found"] for row in seen), len(seen)),
+                     median(sizes), share(sum(abs(size - 1) < 0.1 for size in sizes), len(sizes))])
+    counted = [row for row in rows if row.get("false_lines") is not None]
+    some = sum(row["false_lines"] > 0 for row in counted)
+    return markdown(["true lines", "lines", "found", "found, of 10 standard errors and 4 cycles", "amplitude / truth, median", "within 10 %"], body) + \
+        f"\nLines at no true order: in {share(some, len(counted))} of {len(counted)} logs.\n"
 
 
 TABLES = {"noise": noise, "injection": injection, "ratio": ratio}
