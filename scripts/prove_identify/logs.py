@@ -80,8 +80,8 @@ def draw(seed, ripple="none", tones=True):
         lines = draw_ripple(rng, ripple, ratio, sigma)
         by_speed = rng.random() < 0.3
         for line in lines:
-            slope = rng.uniform(-0.5, 0.5) if by_speed else 0.0
-            size = line["nm"] * (1.0 + slope * (np.abs(speed) / fastest - 0.5))
+            line["slope"] = rng.uniform(-0.5, 0.5) if by_speed else 0.0
+            size = line["nm"] * (1.0 + line["slope"] * (np.abs(speed) / fastest - 0.5))
             torque += size * np.cos(np.radians(line["order"] * angle) + line["phase"])
     bits = int(rng.integers(14, 25))
     step = 360.0 / 2**bits

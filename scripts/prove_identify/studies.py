@@ -107,7 +107,7 @@ def lines_of(log, found):
         apart = min([abs(other["order"] - order) for other in truth["lines"] if other is not line], default=math.inf)
         made.append({"strength": line["nm"] / logs.standard_error(log, order, 12), "found": found.has_order(order, width),
                      "cycles_per_sweep": order * truth["travel_deg"] / 360.0, "second": line["comb"] == "second",
-                     "alone": apart > 3 * 360.0 / truth["travel_deg"],
+                     "alone": apart > 3 * 360.0 / truth["travel_deg"] and not line["slope"],
                      "size": near[0]["amplitude_nm"] / line["nm"] if len(near) == 1 and near[0]["amplitude_nm"] else None})
     if truth["folded"]:
         return made, None

@@ -75,9 +75,14 @@ def outcomes(rows, names, classes):
     return body
 
 
+def measured(asked, count, total):
+    return f"Asked: {asked}. Measured: {share(count, total)} ({count} of {total}).\n\n"
+
+
 def noise(rows):
     names = ("false line", "false tone", "tone as unknown", "nothing", "cannot tell", "failed")
-    return markdown(["logs without ripple", "logs", *names], outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")))
+    asked = measured("lines of an order in at most 1 % of logs", sum(row["outcome"] == "false line" for row in rows), len(rows))
+    return asked + markdown(["logs without ripple", "logs", *names], outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")))
 
 
 def median(values):
@@ -101,7 +106,8 @@ def injection(rows):
     for row in rows:
         left[row["outcome"]] = left.get(row["outcome"], 0) + 1
     what = ", ".join(f"{count} {name}" for name, count in sorted(left.items()))
-    return markdown(["logs that answer \"no line above X\"", "logs", "2X found", "2X: \"no line\"", "X found", "X / standard error",
+    asked = measured("a sinusoid of 2X found in at least 99 %", sum(row["found_2x"] for row in tried), len(tried))
+    return asked + markdown(["logs that answer \"no line above X\"", "logs", "2X found", "2X: \"no line\"", "X found", "X / standard error",
                      "10 to 90 %"], body) + f"\nOf {len(rows)} logs: {what}.\n"
 
 
@@ -115,7 +121,11 @@ def ratio(rows):
         body.append([name, str(len(of)), count("right"), count("multiple"), count("other"), count("cannot tell"), count("missed"), count("failed"),
                      f"{share(sum(row['covers'] for row in right), len(right))} of {len(right)}",
                      f"{share(sum(row['covers_either'] for row in given), len(given))} of {len(given)}"])
-    return markdown(["logs with ripple", "logs", "right", "wrong multiple", "wrong", "cannot tell", "\"no line\"", "failed", "right: interval covers",
+    wrong = sum(row["outcome"] in ("multiple", "other") for row in rows)
+    given = [row for row in rows if row.get("match") == "right" and "covers" in row]
+    asked = measured("no conclusive ratio that is wrong", wrong, len(rows)) + \
+        measured("intervals of right ratios hold the truth in 90 to 98 %", sum(row["covers"] for row in given), len(given))
+    return asked + markdown(["logs with ripple", "logs", "right", "wrong multiple", "wrong", "cannot tell", "\"no line\"", "failed", "right: interval covers",
                      "all: covers either comb"], body) + "\n" + lines(rows)
 
 

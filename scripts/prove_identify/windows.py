@@ -118,4 +118,6 @@ def table(options):
     body = [[f"{log}, {'whole' if length is None else f'{length:g} s'}", *map(str, n[:5]), f"{n[5]} of {n[6]}", *map(str, n[7:])]
             for (log, length), n in [(("all", length), n) for length, n in sums.items()] + body]
     heads = ["log", "windows", "right", "wrong multiple", "wrong", "cannot tell", "covers data sheet", "\"no line\"", "exceeded", "false lines", "failed"]
-    return tables.markdown(heads, body) + "".join(f"\n* {note}" for note in notes) + "\n"
+    if not options.page:
+        print("".join(f"* {note}\n" for note in notes))
+    return tables.markdown(heads, body)
