@@ -129,12 +129,15 @@ def expected_range(log):
     return lowest, 0.5 * log.truth["rate_hz"] * 360.0 / log.truth["peak_deg_s"]
 
 
-def standard_error(log, order, draws=24):
-    """Standard deviation of the amplitude that least squares finds at an order, of this log's noise alone."""
+def standard_errors(log, orders, draws=16):
+    """Standard deviation of the amplitude that least squares finds at each order, of this log's noise alone."""
     moving = np.abs(log.speed) > 0.02 * log.truth["peak_deg_s"]
-    angle = np.radians(order * log.angle[moving])
-    basis = np.column_stack([np.cos(angle), np.sin(angle), np.ones(len(angle))])
-    solve = np.linalg.pinv(basis)[:2]
+    angle = np.radians(log.angle[moving])
     rng = np.random.default_rng([log.truth["seed"], 4848])
-    found = np.array([solve @ log.noise(rng)[moving] for _ in range(draws)])
-    return float(np.sqrt(np.mean(found**2)))
+    noise = np.column_stack([log.noise(rng)[moving] for _ in range(draws)])
+    made = []
+    for order in orders:
+        basis = np.column_stack([np.cos(order * angle), np.sin(order * angle), np.ones(len(angle))])
+        found = np.linalg.lstsq(basis, noise, rcond=None)[0][:2]
+        made.append(float(np.sqrt(np.mean(found**2))))
+    return made

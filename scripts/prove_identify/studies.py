@@ -68,11 +68,13 @@ def injection(seed, options):
     rng = np.random.default_rng([seed, 484])
     order = logs.log_uniform(rng, low, high)
     wave = np.cos(np.radians(order * log.angle) + rng.uniform(0, 2 * math.pi))
-    error = logs.standard_error(log, order)
+    # One bound is stated for all orders: it cannot be below what the worst of them allows.
+    error, *others = logs.standard_errors(log, [order, *np.geomspace(low, high, 8)])
     kept = []
     row |= {"outcome": "tried", "order": order, "cycles_per_sweep": order * log.truth["travel_deg"] / 360.0,
             "share_of_nyquist": order * log.truth["peak_deg_s"] / 180.0 / log.truth["rate_hz"],
-            "angle_error_cycles": order * logs.walk_deg(log) / 360.0, "standard_error_nm": error, "bound_in_errors": bound / error}
+            "angle_error_cycles": order * logs.walk_deg(log) / 360.0, "standard_error_nm": error, "bound_in_errors": bound / error,
+            "bound_in_largest": bound / max(error, *others)}
     for times in (2, 1):
         text = log.csv(times * bound * wave)
         try:
@@ -81,7 +83,7 @@ def injection(seed, options):
             return {**row, "outcome": "failed", "why": str(failure)}, log, [text]
         row[f"found_{times}x"] = after.has_order(order, resolution(log, order))
         row[f"nothing_{times}x"] = after.says_nothing()
-        row[f"verdict_{times}x"] = after.verdict
+        row[f"bound_{times}x"], row[f"verdict_{times}x"] = after.bound_nm(), after.verdict
         if times == 2 and not row["found_2x"]:
             kept = [text]
     return row, log, kept
@@ -101,11 +103,12 @@ def multiple_of(value, ratio):
 def lines_of(log, found):
     """One row for each true line, and how many reported ones lie at none (None where lines fold at half the sample rate)."""
     truth, made = log.truth, []
-    for line in truth["lines"]:
+    errors = logs.standard_errors(log, [line["order"] for line in truth["lines"]])
+    for line, error in zip(truth["lines"], errors):
         order, width = line["order"], resolution(log, line["order"])
         near = [seen for seen in found.lines if seen["order_output"] and abs(seen["order_output"] - order) <= width]
         apart = min([abs(other["order"] - order) for other in truth["lines"] if other is not line], default=math.inf)
-        made.append({"strength": line["nm"] / logs.standard_error(log, order, 12), "found": found.has_order(order, width),
+        made.append({"strength": line["nm"] / error, "found": found.has_order(order, width),
                      "cycles_per_sweep": order * truth["travel_deg"] / 360.0, "second": line["comb"] == "second",
                      "alone": apart > 3 * 360.0 / truth["travel_deg"] and not line["slope"],
                      "size": near[0]["amplitude_nm"] / line["nm"] if len(near) == 1 and near[0]["amplitude_nm"] else None})

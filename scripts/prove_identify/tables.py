@@ -100,15 +100,16 @@ def injection(rows):
     body = []
     for name, of in grouped(tried, ("travel", "cycles per sweep", "half the sample rate", "sample rate", "motion", "noise", "position", "angle")):
         body.append([name, str(len(of)), share(sum(row["found_2x"] for row in of), len(of)), share(sum(row["nothing_2x"] for row in of), len(of)),
-                     share(sum(row["found_1x"] for row in of), len(of)), median([row["bound_in_errors"] for row in of]),
-                     tenth([row["bound_in_errors"] for row in of])])
+                     share(sum(row["nothing_2x"] and (row["bound_2x"] or 0) < 2 * row["bound_nm"] for row in of), len(of)),
+                     share(sum(row["found_1x"] for row in of), len(of)), median([row["bound_in_largest"] for row in of]),
+                     tenth([row["bound_in_largest"] for row in of]), median([row["bound_in_errors"] for row in of])])
     left = {}
     for row in rows:
         left[row["outcome"]] = left.get(row["outcome"], 0) + 1
     what = ", ".join(f"{count} {name}" for name, count in sorted(left.items()))
     asked = measured("a sinusoid of 2X found in at least 99 %", sum(row["found_2x"] for row in tried), len(tried))
-    return asked + markdown(["logs that answer \"no line above X\"", "logs", "2X found", "2X: \"no line\"", "X found", "X / standard error",
-                     "10 to 90 %"], body) + f"\nOf {len(rows)} logs: {what}.\n"
+    return asked + markdown(["logs that answer \"no line above X\"", "logs", "2X found", "2X: \"no line\"", "... above less than 2X", "X found",
+                              "X / largest standard error", "10 to 90 %", "X / that of the order"], body) + f"\nOf {len(rows)} logs: {what}.\n"
 
 
 def ratio(rows):
