@@ -119,14 +119,14 @@ def ratio(rows):
             return share(sum(row["outcome"] == outcome for row in of), len(of))
         given = [row for row in of if "covers" in row]
         right = [row for row in given if row["match"] == "right"]
-        body.append([name, str(len(of)), count("right"), count("multiple"), count("other"), count("cannot tell"), count("missed"), count("failed"),
+        body.append([name, str(len(of)), count("right"), count("multiple"), count("other"), count("other comb"), count("cannot tell"), count("missed"), count("failed"),
                      f"{share(sum(row['covers'] for row in right), len(right))} of {len(right)}",
                      f"{share(sum(row['covers_either'] for row in given), len(given))} of {len(given)}"])
-    wrong = sum(row["outcome"] in ("multiple", "other") for row in rows)
+    wrong = sum(row["outcome"] in ("multiple", "other", "other comb") for row in rows)
     given = [row for row in rows if row.get("match") == "right" and "covers" in row]
     asked = measured("no conclusive ratio that is wrong", wrong, len(rows)) + \
         measured("intervals of right ratios hold the truth in 90 to 98 %", sum(row["covers"] for row in given), len(given))
-    return asked + markdown(["logs with ripple", "logs", "right", "wrong multiple", "wrong", "cannot tell", "\"no line\"", "failed", "right: interval covers",
+    return asked + markdown(["logs with ripple", "logs", "right", "wrong multiple", "wrong", "ratio of the other comb", "cannot tell", "\"no line\"", "failed", "right: interval covers",
                      "all: covers either comb"], body) + "\n" + lines(rows)
 
 
