@@ -62,7 +62,7 @@ def draw(seed, ripple="none", tones=True):
 
     sigma = log_uniform(rng, 0.005, 1.0)
     colour = str(rng.choice(noise.COLOURS))
-    values, about = noise.draw_colour(rng, colour, rate)
+    values, about = noise.draw_colour(rng, colour, rate, len(time) / rate)
     torque, parts = noise.body_torque(rng, sigma, angle, speed, acceleration)
     torque = torque + sigma * values(rng, speed)
     fastest = float(np.max(np.abs(speed)))

@@ -16,11 +16,13 @@ def shaped(rng, count, rate, gain_at):
     return values
 
 
-def draw_colour(rng, kind, rate):
+def draw_colour(rng, kind, rate, duration):
     """Parameters of a kind of noise: (function of (rng, speed) to values of about unit standard deviation, their description)."""
     corner = math.exp(rng.uniform(math.log(0.5), math.log(rate / 4)))
     centre = math.exp(rng.uniform(math.log(min(3.0, rate / 10)), math.log(0.4 * rate)))
     quality, height = math.exp(rng.uniform(math.log(2.0), math.log(20.0))), rng.uniform(1.0, 10.0)
+    # Ten resolutions of the log wide at least: a narrower band is a line, whoever looks at it.
+    quality = min(quality, centre * duration / 10.0)
     growth, beneath = rng.uniform(0.5, 4.0), rng.choice(["white", "first order"])
     gains = {
         "white": lambda hz: np.ones_like(hz),
