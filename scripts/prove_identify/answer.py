@@ -27,19 +27,18 @@ class Answer:
     def says_nothing(self):
         return self.finding == "nothing" and self.conclusive and not self.lines
 
-    def bound_nm(self):
-        """X of "no line above X Nm"; None where the answer gives none."""
-        if self.json.get("detectable_nm") is not None:
-            return self.json["detectable_nm"]
-        stated = re.search(r"no line above ([0-9.e+-]+) Nm", self.verdict)
-        return float(stated[1]) if stated else None
-
     def searched(self):
         """The lowest and the highest order searched; None where the answer does not say."""
         stated = self.json.get("searched")
-        if not stated or stated.get("lowest_order") is None:
-            return None
-        return stated["lowest_order"], stated["highest_order"]
+        return (stated["lowest_order"], stated["highest_order"]) if stated and stated["lowest_order"] is not None else None
+
+    def bound_nm(self):
+        """X of "no line above X Nm"; None where the answer gives none. From the verdict where the JSON has no range yet."""
+        stated = self.json.get("searched")
+        if stated and stated.get("detectable_nm") is not None:
+            return stated["detectable_nm"]
+        found = re.search(r"no line above ([0-9.e+-]+) Nm", self.verdict)
+        return float(found[1]) if found else None
 
     def has_order(self, order, tolerance):
         def near(value):

@@ -138,7 +138,8 @@ def ratio(seed, options):
         row["outcome"] = "missed" if found.says_nothing() else "cannot tell"
         return row, log, [text] if row["outcome"] == "missed" and visible and not truth["folded"] else []
     match = multiple_of(found.ratio, truth["ratio"])
-    if match != "right" and row["ripple"] == "two combs" and multiple_of(found.ratio, truth["ratio"] + 1) == "right":
+    nearer = abs(found.ratio - truth["ratio"] - 1) < abs(found.ratio - truth["ratio"])
+    if row["ripple"] == "two combs" and nearer and multiple_of(found.ratio, truth["ratio"] + 1) == "right":
         match = "other comb"
     row |= {"outcome": match if found.conclusive else "cannot tell", "match": match}
     if found.interval:
