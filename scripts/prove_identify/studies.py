@@ -22,10 +22,15 @@ def is_known_tone(line, log):
     return hz is not None and any(abs(hz - tone["hz"]) <= max(width, 0.01 * tone["hz"]) for tone in log.truth["tones"])
 
 
+def is_gravity(line, log):
+    """Gravity is a line of order 1 where the joint turns several times."""
+    return line["order_output"] is not None and abs(line["order_output"] - 1.0) <= resolution(log, 1.0) and log.truth["travel_deg"] > 720
+
+
 def outcome_of_noise(log, found):
     turning = [line for line in found.lines if not is_known_tone(line, log)]
     if turning:
-        return "false line"
+        return "gravity" if all(is_gravity(line, log) for line in turning) else "false line"
     if found.lines:
         return "tone as unknown"
     if any(not is_known_tone(line, log) for line in found.tones):
@@ -114,7 +119,7 @@ def lines_of(log, found):
                      "size": near[0]["amplitude_nm"] / line["nm"] if len(near) == 1 and near[0]["amplitude_nm"] else None})
     if truth["folded"]:
         return made, None
-    return made, sum(not is_known_tone(seen, log) and seen["order_output"] is not None and
+    return made, sum(not is_known_tone(seen, log) and not is_gravity(seen, log) and seen["order_output"] is not None and
                      not any(abs(seen["order_output"] - line["order"]) <= resolution(log, line["order"]) for line in truth["lines"])
                      for seen in found.lines)
 

@@ -80,7 +80,7 @@ def measured(asked, count, total):
 
 
 def noise(rows):
-    names = ("false line", "false tone", "tone as unknown", "nothing", "cannot tell", "failed")
+    names = ("false line", "false tone", "tone as unknown", "gravity", "nothing", "cannot tell", "failed")
     asked = measured("lines of an order in at most 1 % of logs", sum(row["outcome"] == "false line" for row in rows), len(rows))
     return asked + markdown(["logs without ripple", "logs", *names], outcomes(rows, names, ("travel", "ratio", "sample rate", "motion", "noise", "position")))
 
