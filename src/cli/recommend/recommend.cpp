@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "cli/command.hpp"
@@ -123,14 +124,17 @@ std::optional<GearOptions> found_gear_options(const Log& train, Recommendation& 
     return std::nullopt;
 }
 
+std::vector<RippleEstimate> ripple_of(const Trace& trace, const GearAccount& gear) {
+    const TraceView view = trace.view();
+    return estimate_ripple({&view, 1}, gear.ratio, gear.orders);
+}
+
 // A reading under which something turns with the motor is confirmed by that, unless another one has it, too.
 void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation& found) {
     const auto shows = [&](const OtherReading& reading) {
-        const Trace trace = read_otherwise(parts.judge.trace, reading);
-        ComparedLog log{trace.view()};
-        log.trace.sample_rate = Hertz(parts.judge.recording.clock.nominal_rate.value() / reading.time_factor);
-        const auto orders = orders_in_log(log, gear);
-        return std::any_of(orders.begin(), orders.end(), [](const OrderInLog& one) { return one.shows; });
+        const Trace trace = read_otherwise(parts.whole.trace, reading);
+        const auto orders = ripple_of(trace, gear);
+        return std::any_of(orders.begin(), orders.end(), std::mem_fn(&RippleEstimate::present));
     };
     std::string others;
     for (const OtherReading& reading : open_readings({&parts.whole, 1})) {
@@ -170,7 +174,7 @@ Recommendation judged_at(const std::vector<Contender>& contenders, const Parts& 
         log.temperatures_degc.push_back(follows_temperature(contender)
                                             ? std::span<const double>(parts.temperature->judge_degc)
                                             : std::span<const double>());
-    return recommend(contenders, log, gear, limits);
+    return recommend(contenders, log, gear, limits, ripple_of(parts.whole.trace, gear));
 }
 
 // A map that does not reach as far as the judged part of the log moves is refused there; the others are
