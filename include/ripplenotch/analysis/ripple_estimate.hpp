@@ -42,8 +42,8 @@ struct RippleEstimate {
 /// holds four periods of and a trend are fitted at once, so that neighbours do not leak into each other,
 /// under a Hann window in angle. The trend is a line and cosines in angle: 12 terms per output turn, but no
 /// more than one for two periods of the lowest order, and never fewer than three. The noise is the median
-/// power of the residual 1.5 to 6.5 periods per window beside the order, so that noise of any colour counts as it is. One estimate per order
-/// asked for. Throws UsageError for a ratio or an order that is not above 0. Cost O(n (trend + 2 orders)^2).
+/// power of the residual 1.5 to 6.5 periods per window beside the order, so that noise of any colour counts as it is; a
+/// ripple smaller than 1e-4 of the torque's range does not count. One estimate per order asked for. Throws UsageError for a ratio or an order that is not above 0. Cost O(n (trend + 2 orders)^2).
 [[nodiscard]] std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, GearRatio ratio,
                                                           std::span<const Order> orders);
 

@@ -32,11 +32,14 @@ constexpr double trend_terms_per_turn = 12.0;
 constexpr double periods_per_trend_term = 2.0;
 constexpr double fewest_cosines = 3.0;
 constexpr std::size_t most_estimate_samples = 300'000;  // by hand: bounds the cost; segments are left out evenly
+constexpr double least_range_share = 1e-4;  // as MotionLinesOptions::least_share
 constexpr double largest_inflation = 10.0;  // of the variance by neighbouring orders and the trend, by hand
 constexpr double agreeing_share = 0.5;      // of the power that segments have in common, for a phase
 constexpr double normal_99 = 2.3263478740408408;  // one-sided quantile of 0.99
 // A bin 1.5 resolutions away has 3 % of a Hann line's power; bins are independent every 1.5 resolutions.
 constexpr double nearest_probe = 1.5, independent_spacing = 1.5;
+// Averages that know a mean as well as one value of a median of them does, as in exceedance().
+constexpr double median_knowledge_of_mean = 0.48;
 constexpr std::size_t probes_a_side = 6;
 // Of the noise in neighbouring Hann windows that overlap by half (Welch 1967).
 constexpr double window_correlation = 1.0 / 6.0;
@@ -246,13 +249,16 @@ std::vector<Segment> cut_segments(std::span<const Moving> logs, double limit_deg
     return kept;
 }
 
-/// Mean power beside an order, seen as the segments see the order, and of how many independent bins.
+/// Mean power beside an order, as large as the fit of the order sees it, and of how many independent bins.
 struct NoisePower {
     double power = 0.0, bins = 0.0;
+    /// Of the side that has more, where both can be measured: on a steep slope what leaks from there is no
+    /// line.
+    double larger_side = 0.0;
 };
 
 NoisePower noise_power(const OrderSegments& order, double averages) {
-    std::vector<double> powers;
+    std::vector<double> powers, sides[2];
     for (std::size_t p = 0; p < 2 * probes_a_side; ++p) {
         double sum = 0.0, weight = 0.0;
         for (const SegmentAmplitude& one : order.segments) {
@@ -260,11 +266,35 @@ NoisePower noise_power(const OrderSegments& order, double averages) {
             sum += one.weight * one.inflation * one.noise[p];
             weight += one.weight;
         }
-        if (weight > 0.0) powers.push_back(sum / weight);
+        if (!(weight > 0.0)) continue;
+        powers.push_back(sum / weight);
+        sides[p % 2].push_back(sum / weight);
     }
     if (powers.empty()) return {};
-    const double bins = static_cast<double>(powers.size()) / independent_spacing;
-    return {median_in(powers) / median_over_mean(averages), bins};
+    NoisePower noise{median_in(powers) / median_over_mean(averages),
+                     static_cast<double>(powers.size()) / independent_spacing};
+    for (std::vector<double>& side : sides) {
+        const double power = side.empty() ? 0.0 : median_in(side) / median_over_mean(averages);
+        noise.larger_side = std::max({noise.larger_side, noise.power, power});
+    }
+    return noise;
+}
+
+/// How many segments of equal noise power would know as much: slow ones often hold far more than others.
+double effective_averages(const OrderSegments& order) {
+    double sum = 0.0, squares = 0.0;
+    for (const SegmentAmplitude& one : order.segments) {
+        double power = 0.0, count = 0.0;
+        for (const double noise : one.noise) {
+            if (!std::isfinite(noise)) continue;
+            power += noise;
+            count += 1.0;
+        }
+        const double share = count > 0.0 ? one.weight * one.inflation * power / count : 0.0;
+        sum += share;
+        squares += share * share;
+    }
+    return squares > 0.0 ? sum * sum / squares : 1.0;
 }
 
 /// The power over the noise that noise alone exceeds with a probability.
@@ -281,22 +311,21 @@ double threshold(double averages, double bins, double false_alarm) {
     return high;
 }
 
-RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t orders) {
+RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t orders, double least_nm) {
     RippleEstimate found;
     found.order = value;
     found.segments = order.segments.size();
     found.cycles = order.cycles;
     found.slowest_deg_s = order.slowest_deg_s;
     found.fastest_deg_s = order.fastest_deg_s;
-    double weight = 0.0, squared_weight = 0.0, power = 0.0;
+    double weight = 0.0, power = 0.0;
     std::complex<double> sum;
     for (const SegmentAmplitude& one : order.segments) {
         weight += one.weight;
-        squared_weight += one.weight * one.weight;
         power += one.weight * std::norm(one.value);
         sum += one.weight * one.value;
     }
-    const double averages = weight * weight / squared_weight;
+    const double averages = effective_averages(order);
     power /= weight;
     sum /= weight;
     const NoisePower noise = noise_power(order, averages);
@@ -309,6 +338,7 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
         const double apart = one.weight / weight * (std::norm(one.value) - power);
         scatter += apart * apart;
     }
+    scatter *= 1.0 + 2.0 * window_correlation;
     if (averages > 1.5) scatter *= averages / (averages - 1.0);
     const double square = std::max(power - noise.power, 0.0);
     const double variance =
@@ -321,16 +351,21 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     const double tries = static_cast<double>(orders);
     found.false_alarm =
         noise.power > 0.0
-            ? std::min(1.0, tries * exceedance({.ratio = power / noise.power,
+            ? std::min(1.0, tries * exceedance({.ratio = power / noise.larger_side,
                                                 .averages = averages,
                                                 .cells = noise.bins}))
             : (power > 0.0 ? 0.0 : 1.0);
-    // Power of line and noise is about normal, of variance (2 A^2 N + N^2) / averages: the A^2 at which its
-    // lower percentile is the threshold solves a quadratic.
-    const double above = threshold(averages, noise.bins, ripple_false_alarm / tries) - 1.0;
+    // Power of line and noise is about normal, of variance (2 A^2 N + N^2) / averages, and so is the
+    // logarithm of the noise, known from the bins to one side, here and in the log it is said of: the A^2 at
+    // which the lower percentile of the power is the threshold solves a quadratic.
+    const double level = threshold(averages, noise.bins, ripple_false_alarm / tries), above = level - 1.0;
+    const double known = 0.5 * median_knowledge_of_mean * noise.bins * averages;
     const double spread = normal_99 * normal_99 / averages;
-    const double least = above + spread + std::sqrt(2.0 * above * spread + spread * spread + spread);
-    found.detectable_nm = std::sqrt(noise.power * least);
+    const double doubt = portable::pow(level * (portable::exp(normal_99 * std::sqrt(2.0 / known)) - 1.0), 2);
+    const double least =
+        above + spread + std::sqrt(2.0 * above * spread + spread * spread + spread + doubt);
+    found.detectable_nm = std::max(std::sqrt(noise.larger_side * least), least_nm);
+    if (found.amplitude_nm < least_nm) found.false_alarm = 1.0;
     const double common = std::norm(sum);
     if (order.absolute_angle && common > agreeing_share * power && square > 0.0) {
         const double apart = std::max(noise.power, power - common);
@@ -339,6 +374,18 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
             std::sqrt(apart / (2.0 * averages * common)) * degrees_per_radian;
     }
     return found;
+}
+
+/// What rounding, and the curve of a torque of this range between its samples, may look like.
+double least_amplitude_nm(std::span<const TraceView> logs) {
+    double range = 0.0, largest = 0.0;
+    for (const TraceView& log : logs) {
+        const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
+        if (low == log.torque_nm.end()) continue;
+        range = std::max(range, *high - *low);
+        largest = std::max({largest, std::abs(*low), std::abs(*high)});
+    }
+    return std::max(least_range_share * range, 1e-9 * largest);
 }
 
 }  // namespace
@@ -399,7 +446,7 @@ std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, Gea
         const auto at = static_cast<std::size_t>(
             std::lower_bound(sorted.begin(), sorted.end(), order.value()) - sorted.begin());
         if (!gathered[at].segments.empty()) {
-            found.push_back(estimate_of(order.value(), gathered[at], sorted.size()));
+            found.push_back(estimate_of(order.value(), gathered[at], sorted.size(), least_amplitude_nm(logs)));
             continue;
         }
         found.emplace_back().order = order.value();
