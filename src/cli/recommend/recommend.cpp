@@ -96,13 +96,15 @@ void read_temperature(const RecommendRequest& request, const std::optional<GearA
     require_beside(parts.temperature->judge_degc, parts.judge.trace, request.log, *request.temperature);
 }
 
-// The gear that the first part of the log shows; empty, with the reason told, where it shows none.
-std::optional<GearOptions> found_gear_options(const Log& train, Recommendation& found) {
-    if (train.trace.size() < fewest_identify_samples) {
-        found.why = fmt::format("{} rows are too few to look for ripple in", train.trace.size());
+// The gear that the first part of the log shows; empty, with the reason, where it shows none. That there is
+// no ripple is claimed of the whole log alone.
+std::optional<GearOptions> found_gear_options(const Parts& parts, Recommendation& found) {
+    if (parts.train.trace.size() < fewest_identify_samples) {
+        found.why = fmt::format("{} rows are too few to look for ripple in", parts.train.trace.size());
         return std::nullopt;
     }
-    const Identification identified = identify_readings({&train, 1}, {});
+    Identification identified = identify_readings({&parts.train, 1}, {});
+    const bool nothing = identified.conclusive && identified.finding == RippleFinding::nothing;
     const auto gear = found_gear(identified);
     if (gear && !gear->orders.empty()) {
         GearOptions options;
@@ -110,6 +112,7 @@ std::optional<GearOptions> found_gear_options(const Log& train, Recommendation& 
         for (const Order order : gear->orders) options.orders.push_back(order.value());
         return options;
     }
+    if (nothing) identified = identify_readings({&parts.whole, 1}, {});
     std::string verdict = identified.verdict;
     while (!verdict.empty() && verdict.back() == '.') verdict.pop_back();
     if (identified.conclusive && identified.finding == RippleFinding::nothing) {
@@ -117,9 +120,8 @@ std::optional<GearOptions> found_gear_options(const Log& train, Recommendation& 
         found.why = verdict;
     } else {
         found.why = fmt::format(
-            "nobody states the gear, and identify says of the log's first part: {}; give "
-            "--gear-ratio and --orders",
-            verdict);
+            "no gear is stated, and identify says of {}: {}; give --gear-ratio and --orders",
+            nothing ? "the log, whose first part shows none" : "the log's first part", verdict);
     }
     return std::nullopt;
 }
@@ -203,7 +205,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db};
     if (!stated.of()) {
-        const auto found = found_gear_options(parts.train, report.found);
+        const auto found = found_gear_options(parts, report.found);
         report.conclusive = report.found.finding == RecommendationFinding::no_ripple;
         if (!found) return report;
         gear_options = *found;

@@ -40,9 +40,13 @@ struct SpectrumRequest {
     PlotRequest plot;
     bool peaks = false;
 
+    /// Frequencies of all of the log are the same however the joint moves.
+    [[nodiscard]] bool needs_motion() const {
+        return stretch || map.map || residual.any() || domain != "frequency";
+    }
     /// Half-overlapping pieces of all of the log, which need no more of it at a time.
     [[nodiscard]] bool in_pieces() const {
-        return segment && !stretch && !map.map && !residual.any() && domain == "frequency";
+        return segment && !needs_motion();
     }
 };
 
@@ -157,7 +161,9 @@ using Made = std::pair<Result, Provenance>;
 
 /// The log goes by and is not held.
 Made piecewise_result(const SpectrumRequest& request, const std::string& command_line) {
-    LogPasses log(request.path, request.log.resolve());
+    ReadOptions reading = request.log.resolve();
+    reading.needs_velocity = false;
+    LogPasses log(request.path, reading);
     const StretchSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
         say_layout(request.common, log.layout());
         say_warnings(request.common, log.recording().warnings);
@@ -190,7 +196,8 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
     LogOptions words = request.log;
     take_joint_of(request.residual, words.joint);
-    const ReadOptions reading = read_options(words, lines.gear);
+    ReadOptions reading = read_options(words, lines.gear);
+    reading.needs_velocity = request.needs_motion();
     require_memory_for_spectrum(request, reading);
     Log log = read_log(request.path, reading);
     say_layout(request.common, log.layout);
