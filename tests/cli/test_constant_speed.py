@@ -26,8 +26,8 @@ class TorqueOnly(Case):
     def test_frequencies_and_filters_of_one_design_need_no_motion(self):
         for words in [], ["--segment", "2s"]:
             spectrum = self.json_of("spectrum", "bench.csv", *words)["spectra"][0]
-            self.assertAlmostEqual(spectrum["lines"][0]["hz"], 100 / 6, delta=0.02)
-            self.assertIsNone(spectrum["stretch"]["speed_deg_s"])
+            self.assertAlmostEqual(spectrum["peaks"][0]["hz"], 100 / 6, delta=0.02)
+            self.assertIsNone(spectrum["speed_deg_s"])
         for method in "lowpass,cutoff=10Hz", "fixed,centers=16.67Hz", "none":
             self.good("filter", "bench.csv", "--method", method, "-o", "out.csv", "--force")
         header, first = (self.folder / "out.csv").read_text().split("\n")[:2]
