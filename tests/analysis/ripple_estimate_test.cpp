@@ -43,8 +43,8 @@ Trace planted_trace(const PlantedLog& plant) {
         noise = plant.memory * noise + std::sqrt(1.0 - plant.memory * plant.memory) * normal(engine);
         double torque = plant.trend(t) + plant.noise_nm * noise;
         for (const PlantedRipple& one : plant.ripple)
-            torque += one.amplitude_nm *
-                      std::cos((one.order * plant.ratio * angle_deg + one.phase_deg) * std::numbers::pi / 180.0);
+            torque += one.amplitude_nm * std::cos((one.order * plant.ratio * angle_deg + one.phase_deg) *
+                                                  std::numbers::pi / 180.0);
         trace.time_s.push_back(t);
         trace.velocity_deg_s.push_back(v);
         trace.position_deg.push_back(angle_deg);
@@ -53,7 +53,8 @@ Trace planted_trace(const PlantedLog& plant) {
     return trace;
 }
 
-std::vector<RippleEstimate> estimate_of_planted(const PlantedLog& plant, std::span<const Order> at = two_orders) {
+std::vector<RippleEstimate> estimate_of_planted(const PlantedLog& plant,
+                                                std::span<const Order> at = two_orders) {
     const Trace trace = planted_trace(plant);
     const TraceView view = trace.view();
     return estimate_ripple({&view, 1}, GearRatio(plant.ratio), at);

@@ -58,7 +58,7 @@ TEST_CASE("the rate of a torque is that of its ramp, whatever ripple is on it") 
     CHECK(torque_rate_nm_s(TraceView{}, gear.ratio) == 0.0);
 }
 
-TEST_CASE("without a ripple that is present nothing is recommended, with the bound; a short log is not judged") {
+TEST_CASE("without a ripple that is present nothing is recommended, and a short log is not judged") {
     const Recommendation nothing = recommended(log_of(0.0, 0.0));
     CHECK(nothing.finding == RecommendationFinding::no_ripple);
     CHECK_THAT(recommendation_verdict(nothing), Catch::Contains("order 1: no ripple above 0.00"));

@@ -52,7 +52,7 @@ struct WindowRule {
     /// Of a window in turns that takes longer, the middle half is fitted, since the trend is no cubic for
     /// longer; it is left out where that half takes four times as long.
     Seconds longest{2.0};
-    double hop = 0.25;  ///< windows start so much of a length apart, or a little closer
+    double hop = 0.25;        ///< windows start so much of a length apart, or a little closer
     int envelope_degree = 2;  ///< amplitude within a window: 0 constant, 1 or 2 polynomial in time
 };
 

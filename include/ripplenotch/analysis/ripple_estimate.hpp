@@ -19,16 +19,16 @@ inline constexpr double ripple_false_alarm = 0.01;
 
 /// The ripple at one order.
 struct RippleEstimate {
-    double order = 0.0;              ///< cycles per motor turn
-    double amplitude_nm = 0.0;       ///< zero to peak, rms over the segments, noise power subtracted
-    double standard_error_nm = 0.0;  ///< from the noise beside the order and the scatter over the segments
+    double order = 0.0;               ///< cycles per motor turn
+    double amplitude_nm = 0.0;        ///< zero to peak, rms over the segments, noise power subtracted
+    double standard_error_nm = 0.0;   ///< from the noise beside the order and the scatter over the segments
     std::optional<double> phase_deg;  ///< of cos(order * motor angle + phase); empty without an absolute
                                       ///< angle, and where the segments do not agree on it
     double phase_standard_error_deg = 0.0;
     double detectable_nm = 0.0;  ///< a ripple of this amplitude would be present in 99 of 100 such logs
     double false_alarm = 1.0;    ///< probability that noise alone shows as much at any of the orders
     std::size_t segments = 0;
-    double cycles = 0.0;  ///< periods in all segments, which overlap by half
+    double cycles = 0.0;                              ///< periods in all segments, which overlap by half
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;  ///< |speed| in the segments
     std::string insufficient;  ///< why the log does not show the order, one clause; empty: it was searched
 
@@ -42,8 +42,9 @@ struct RippleEstimate {
 /// holds four periods of and a trend are fitted at once, so that neighbours do not leak into each other,
 /// under a Hann window in angle. The trend is a line and cosines in angle: 12 terms per output turn, but no
 /// more than one for two periods of the lowest order, and never fewer than three. The noise is the median
-/// power of the residual 1.5 to 6.5 periods per window beside the order, so that noise of any colour counts as it is; a
-/// ripple smaller than 1e-4 of the torque's range does not count. One estimate per order asked for. Throws UsageError for a ratio or an order that is not above 0. Cost O(n (trend + 2 orders)^2).
+/// power of the residual 1.5 to 6.5 periods per window beside the order, so that noise of any colour counts
+/// as it is; a ripple smaller than 1e-4 of the torque's range does not count. One estimate per order asked
+/// for. Throws UsageError for a ratio or an order that is not above 0. Cost O(n (trend + 2 orders)^2).
 [[nodiscard]] std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, GearRatio ratio,
                                                           std::span<const Order> orders);
 

@@ -46,8 +46,8 @@ struct Recommendation {
     std::string why;  ///< of no_ripple and cannot_tell: a sentence
     RecommendationLimits limits;
     std::vector<RippleEstimate> orders;  ///< of the whole log; empty where its reading is in doubt
-    std::size_t windows = 0;         ///< that the methods were measured in
-    double torque_rate_nm_s = 0.0;   ///< at which the log's torque moves from motor turn to motor turn, rms
+    std::size_t windows = 0;             ///< that the methods were measured in
+    double torque_rate_nm_s = 0.0;  ///< at which the log's torque moves from motor turn to motor turn, rms
     std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
 
     /// The one to take, or the nearest; null without methods.

@@ -110,7 +110,7 @@ struct Layout {
     std::optional<std::size_t> time_fraction;  ///< beside chosen.time: nanoseconds to be added to its seconds
     std::int64_t time_origin = 0;  ///< in the column's own unit: taken off stamps that count from long ago
     bool time_as_text = false;     ///< stamps like 12:30:00.5 or 2024-05-01T12:30:00.5Z
-    bool velocity_from_position = false;  ///< no velocity is logged: it is the slope of the position
+    bool velocity_from_position = false;      ///< no velocity is logged: it is the slope of the position
     std::optional<DegPerSec> constant_speed;  ///< no motion is logged: it was stated (--constant-speed)
     bool motor_units = false;             ///< motion is the motor's, and no ratio was known to divide it by
     std::optional<Hertz> stated_rate;     ///< from --sample-rate, or from the head of a file without a clock

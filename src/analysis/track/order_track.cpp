@@ -176,9 +176,8 @@ OrderTracks track_orders(const TrackedSignal& signal, const WindowRule& rule) {
             const auto lasts_longer = [&](const SampleRun& window, double seconds) {
                 return !by_time && signal.time_s[window.end - 1] - signal.time_s[window.first] > seconds;
             };
-            const SampleRun window = lasts_longer(whole, rule.longest.value())
-                                         ? middle_of(whole, place, 0.5 * length)
-                                         : whole;
+            const SampleRun window =
+                lasts_longer(whole, rule.longest.value()) ? middle_of(whole, place, 0.5 * length) : whole;
             if (lasts_longer(window, slowest_halves * rule.longest.value())) {
                 ++tracks.windows_too_slow;
             } else if (window.size() < 2 * static_cast<std::size_t>(fit.unknowns())) {

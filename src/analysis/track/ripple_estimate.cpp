@@ -24,14 +24,15 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double fewest_periods = 4.0;       // per segment: fewer are not distinguished from the trend
+constexpr double fewest_periods = 4.0;  // per segment: fewer are not distinguished from the trend
 // Of the motor, as RippleMeter measures: a resolution at which the families of both splines, Kg and Kg + 1
 // times per output turn, are one line.
 constexpr double longest_turns = 8.0;
 constexpr double trend_terms_per_turn = 12.0;
 constexpr double periods_per_trend_term = 2.0;
 constexpr double fewest_cosines = 3.0;
-constexpr std::size_t most_estimate_samples = 300'000;  // by hand: bounds the cost; segments are left out evenly
+constexpr std::size_t most_estimate_samples =
+    300'000;                                // by hand: bounds the cost; segments are left out evenly
 constexpr double least_range_share = 1e-4;  // as MotionLinesOptions::least_share
 constexpr double largest_inflation = 10.0;  // of the variance by neighbouring orders and the trend, by hand
 constexpr double agreeing_share = 0.5;      // of the power that segments have in common, for a phase
@@ -69,7 +70,7 @@ struct SegmentAmplitude {
 struct OrderSegments {
     std::vector<SegmentAmplitude> segments;
     double cycles = 0.0, slowest_deg_s = std::numeric_limits<double>::max(), fastest_deg_s = 0.0;
-    bool collinear = false;       ///< in a segment that holds enough periods
+    bool collinear = false;  ///< in a segment that holds enough periods
     bool absolute_angle = true;
 };
 
@@ -82,8 +83,8 @@ class SegmentFit {
           length_(std::abs(turns_.back() - turns_.front())),
           orders_(orders) {
         const double output_turns = length_ / ratio.value();
-        const double most = std::min(trend_terms_per_turn * output_turns,
-                                     orders.front() * length_ / periods_per_trend_term);
+        const double most =
+            std::min(trend_terms_per_turn * output_turns, orders.front() * length_ / periods_per_trend_term);
         cosines_ = static_cast<std::size_t>(std::max(fewest_cosines, std::round(most)));
         root_weight_.resize(samples());
         for (std::size_t k = 0; k < samples(); ++k) {
@@ -346,15 +347,13 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
             averages +
         noise.power * noise.power / (averages * noise.bins);
     found.amplitude_nm = std::sqrt(square);
-    found.standard_error_nm =
-        std::sqrt(square + std::sqrt(std::max(variance, scatter))) - found.amplitude_nm;
+    found.standard_error_nm = std::sqrt(square + std::sqrt(std::max(variance, scatter))) - found.amplitude_nm;
     const double tries = static_cast<double>(orders);
-    found.false_alarm =
-        noise.power > 0.0
-            ? std::min(1.0, tries * exceedance({.ratio = power / noise.larger_side,
-                                                .averages = averages,
-                                                .cells = noise.bins}))
-            : (power > 0.0 ? 0.0 : 1.0);
+    found.false_alarm = noise.power > 0.0
+                            ? std::min(1.0, tries * exceedance({.ratio = power / noise.larger_side,
+                                                                .averages = averages,
+                                                                .cells = noise.bins}))
+                            : (power > 0.0 ? 0.0 : 1.0);
     // Power of line and noise is about normal, of variance (2 A^2 N + N^2) / averages, and so is the
     // logarithm of the noise, known from the bins to one side, here and in the log it is said of: the A^2 at
     // which the lower percentile of the power is the threshold solves a quadratic.
@@ -362,16 +361,14 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     const double known = 0.5 * median_knowledge_of_mean * noise.bins * averages;
     const double spread = normal_99 * normal_99 / averages;
     const double doubt = portable::pow(level * (portable::exp(normal_99 * std::sqrt(2.0 / known)) - 1.0), 2);
-    const double least =
-        above + spread + std::sqrt(2.0 * above * spread + spread * spread + spread + doubt);
+    const double least = above + spread + std::sqrt(2.0 * above * spread + spread * spread + spread + doubt);
     found.detectable_nm = std::max(std::sqrt(noise.larger_side * least), least_nm);
     if (found.amplitude_nm < least_nm) found.false_alarm = 1.0;
     const double common = std::norm(sum);
     if (order.absolute_angle && common > agreeing_share * power && square > 0.0) {
         const double apart = std::max(noise.power, power - common);
         found.phase_deg = portable::atan2(sum.imag(), sum.real()) * degrees_per_radian;
-        found.phase_standard_error_deg =
-            std::sqrt(apart / (2.0 * averages * common)) * degrees_per_radian;
+        found.phase_standard_error_deg = std::sqrt(apart / (2.0 * averages * common)) * degrees_per_radian;
     }
     return found;
 }
@@ -446,7 +443,8 @@ std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, Gea
         const auto at = static_cast<std::size_t>(
             std::lower_bound(sorted.begin(), sorted.end(), order.value()) - sorted.begin());
         if (!gathered[at].segments.empty()) {
-            found.push_back(estimate_of(order.value(), gathered[at], sorted.size(), least_amplitude_nm(logs)));
+            found.push_back(
+                estimate_of(order.value(), gathered[at], sorted.size(), least_amplitude_nm(logs)));
             continue;
         }
         found.emplace_back().order = order.value();
@@ -454,9 +452,10 @@ std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, Gea
             gathered[at].collinear
                 ? "the joint nowhere turns far enough in one direction to separate it from its neighbours"
             : limit_of(order.value()) < fastest
-                ? fmt::format("below {:.3g} deg/s, where it lies under half the sample rate, the joint "
-                              "nowhere turns four periods of it in one direction",
-                              limit_of(order.value()))
+                ? fmt::format(
+                      "below {:.3g} deg/s, where it lies under half the sample rate, the joint "
+                      "nowhere turns four periods of it in one direction",
+                      limit_of(order.value()))
                 : "the joint nowhere turns four periods of it in one direction";
     }
     return found;
@@ -471,9 +470,8 @@ std::string ripple_text(std::span<const RippleEstimate> estimates) {
             text += one.insufficient;
             continue;
         }
-        text += one.present()
-                    ? fmt::format("{:.3g} +/- {:.1g} Nm", one.amplitude_nm, one.standard_error_nm)
-                    : fmt::format("no ripple above {:.2g} Nm", one.detectable_nm);
+        text += one.present() ? fmt::format("{:.3g} +/- {:.1g} Nm", one.amplitude_nm, one.standard_error_nm)
+                              : fmt::format("no ripple above {:.2g} Nm", one.detectable_nm);
         text += fmt::format(" at {:.3g} to {:.3g} deg/s", one.slowest_deg_s, one.fastest_deg_s);
     }
     return text;

@@ -119,9 +119,9 @@ std::optional<GearOptions> found_gear_options(const Parts& parts, Recommendation
         found.finding = RecommendationFinding::no_ripple;
         found.why = verdict;
     } else {
-        found.why = fmt::format(
-            "no gear is stated, and identify says of {}: {}; give --gear-ratio and --orders",
-            nothing ? "the log, whose first part shows none" : "the log's first part", verdict);
+        found.why =
+            fmt::format("no gear is stated, and identify says of {}: {}; give --gear-ratio and --orders",
+                        nothing ? "the log, whose first part shows none" : "the log's first part", verdict);
     }
     return std::nullopt;
 }

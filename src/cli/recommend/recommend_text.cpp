@@ -33,7 +33,7 @@ std::string orders_text(const Recommendation& found) {
         const auto cell = [&](double nm) { return one.searched() ? fmt::format("{:.3f}", nm) : "-"; };
         rows.push_back({shortest(one.order), cell(one.amplitude_nm), cell(one.standard_error_nm),
                         cell(one.detectable_nm),
-                        !one.searched()  ? one.insufficient
+                        !one.searched() ? one.insufficient
                         : one.present() ? ""
                                         : "not above the noise"});
     }

@@ -45,9 +45,7 @@ struct SpectrumRequest {
         return stretch || map.map || residual.any() || domain != "frequency";
     }
     /// Half-overlapping pieces of all of the log, which need no more of it at a time.
-    [[nodiscard]] bool in_pieces() const {
-        return segment && !needs_motion();
-    }
+    [[nodiscard]] bool in_pieces() const { return segment && !needs_motion(); }
 };
 
 /// The parts of the log that are asked for: all of it, every steady stretch, or one of them by number.

@@ -178,13 +178,14 @@ Figure figure_of(const TrackRequest& request, const TrackReport& report) {
 }
 
 /// All lines that turn are estimated together, as they are tracked.
-std::vector<std::optional<RippleEstimate>> ripple_of(const TrackRequest& request, const Prepared& prepared,
-                                                     const TraceView& trace) {
+std::vector<std::optional<RippleEstimate>> ripple_of_lines(const TrackRequest& request,
+                                                           const Prepared& prepared, const TraceView& trace) {
     const GearRatio ratio = request.gear ? request.gear->ratio : GearRatio(1.0);
     std::vector<Order> orders;
     for (const double order : prepared.reference_orders) orders.emplace_back(order);
     std::vector<std::optional<RippleEstimate>> found;
-    for (RippleEstimate& one : estimate_ripple({&trace, 1}, ratio, orders)) found.emplace_back(std::move(one));
+    for (RippleEstimate& one : estimate_ripple({&trace, 1}, ratio, orders))
+        found.emplace_back(std::move(one));
     found.resize(prepared.labels.size());  // tones come last
     return found;
 }
@@ -192,7 +193,7 @@ std::vector<std::optional<RippleEstimate>> ripple_of(const TrackRequest& request
 TrackReport track_report_of(const TrackRequest& request, const Prepared& prepared, const Trace& trace) {
     TrackReport report;
     report.joint = trace.joint;
-    report.ripple = ripple_of(request, prepared, trace.view());
+    report.ripple = ripple_of_lines(request, prepared, trace.view());
     report.method = request.method;
     report.kind = request.amplitude == "rms"            ? AmplitudeKind::rms
                   : request.amplitude == "peak-to-peak" ? AmplitudeKind::peak_to_peak

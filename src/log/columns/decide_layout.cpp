@@ -129,11 +129,12 @@ class Decision {
         if (motor && !options_.gear_ratio)
             raise<UsageError>("--constant-speed of the motor needs --gear-ratio, for example 100");
         layout_.constant_speed = *options_.constant_speed / (motor ? *options_.gear_ratio : 1.0);
-        layout_.inferences.push_back({"velocity",
-                                      fmt::format("{} deg/s throughout", shortest(layout_.constant_speed->value())),
-                                      "no motion is logged, and --constant-speed states it",
-                                      "--columns velocity=NAME",
-                                      {}});
+        layout_.inferences.push_back(
+            {"velocity",
+             fmt::format("{} deg/s throughout", shortest(layout_.constant_speed->value())),
+             "no motion is logged, and --constant-speed states it",
+             "--columns velocity=NAME",
+             {}});
     }
 
     // The slope of a position needs times.
