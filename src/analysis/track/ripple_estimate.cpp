@@ -357,7 +357,8 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     // Power of line and noise is about normal, of variance (2 A^2 N + N^2) / averages, and so is the
     // logarithm of the noise, known from the bins to one side, here and in the log it is said of: the A^2 at
     // which the lower percentile of the power is the threshold solves a quadratic.
-    const double level = threshold(averages, noise.bins, ripple_false_alarm / tries), above = level - 1.0;
+    const double level = threshold(averages, noise.bins, ripple_false_alarm / tries);
+    const double above = level - noise.power / std::max(noise.larger_side, 1e-300);
     const double known = 0.5 * median_knowledge_of_mean * noise.bins * averages;
     const double spread = normal_99 * normal_99 / averages;
     const double doubt = portable::pow(level * (portable::exp(normal_99 * std::sqrt(2.0 / known)) - 1.0), 2);
