@@ -45,8 +45,6 @@ constexpr std::size_t probes_a_side = 6;
 // Of the noise in neighbouring Hann windows that overlap by half (Welch 1967).
 constexpr double window_correlation = 1.0 / 6.0;
 
-double radians(double turns) { return 2.0 * std::numbers::pi * turns; }
-
 /// The motion of one log.
 struct Moving {
     const TraceView* log;
@@ -70,8 +68,18 @@ struct SegmentAmplitude {
 struct OrderSegments {
     std::vector<SegmentAmplitude> segments;
     double cycles = 0.0, slowest_deg_s = std::numeric_limits<double>::max(), fastest_deg_s = 0.0;
-    bool collinear = false;  ///< in a segment that holds enough periods
+    bool collinear = false, few_samples = false;  ///< in a segment that holds enough periods
     bool absolute_angle = true;
+
+    void add(const SegmentAmplitude& amplitude, const Segment& segment, double periods) {
+        segments.push_back(amplitude);
+        cycles += periods;
+        absolute_angle = absolute_angle && segment.moving->absolute_angle;
+        for (std::size_t k = segment.run.first; k < segment.run.end; ++k) {
+            slowest_deg_s = std::min(slowest_deg_s, std::abs(segment.moving->speed_deg_s[k]));
+            fastest_deg_s = std::max(fastest_deg_s, std::abs(segment.moving->speed_deg_s[k]));
+        }
+    }
 };
 
 /// Least squares in one segment.
@@ -126,7 +134,6 @@ class SegmentFit {
             add_scaled(-coefficients_[i], column(i), residual_.data(), samples());
     }
 
-    [[nodiscard]] double length() const { return length_; }
     [[nodiscard]] bool collinear(std::size_t i) const { return !(inflation_[i] < largest_inflation); }
 
     [[nodiscard]] SegmentAmplitude amplitude(std::size_t i) const {
@@ -159,21 +166,18 @@ class SegmentFit {
                 now = next;
             }
         }
-        for (std::size_t i = 0; i < orders_.size(); ++i) {
-            std::vector<double>& cosine = columns_[2 + cosines_ + 2 * i];
-            std::vector<double>& sine = columns_[3 + cosines_ + 2 * i];
-            fill_wave(orders_[i], cosine, sine);
-            for (std::size_t k = 0; k < samples(); ++k) {
-                cosine[k] *= root_weight_[k];
-                sine[k] *= root_weight_[k];
-            }
-        }
+        for (std::size_t i = 0; i < orders_.size(); ++i)
+            fill_wave(orders_[i], columns_[2 + cosines_ + 2 * i], columns_[3 + cosines_ + 2 * i]);
     }
 
     void fill_wave(double order, std::vector<double>& cosine, std::vector<double>& sine) const {
         std::vector<double> angle(samples());
-        for (std::size_t k = 0; k < samples(); ++k) angle[k] = radians(order * turns_[k]);
+        for (std::size_t k = 0; k < samples(); ++k) angle[k] = 2.0 * std::numbers::pi * order * turns_[k];
         portable::phasors(angle, cosine, sine);
+        for (std::size_t k = 0; k < samples(); ++k) {
+            cosine[k] *= root_weight_[k];
+            sine[k] *= root_weight_[k];
+        }
     }
 
     /// Squared amplitude of the residual at an order; nan next to the trend and to other orders, whose fit
@@ -185,10 +189,6 @@ class SegmentFit {
         if (taken) return not_a_number;
         std::vector<double> cosine(samples()), sine(samples());
         fill_wave(order, cosine, sine);
-        for (std::size_t k = 0; k < samples(); ++k) {
-            cosine[k] *= root_weight_[k];
-            sine[k] *= root_weight_[k];
-        }
         const double c = dot(cosine.data(), residual_.data(), samples());
         const double s = dot(sine.data(), residual_.data(), samples());
         return 4.0 * (c * c + s * s) / (weight_ * weight_);
@@ -386,6 +386,68 @@ double least_amplitude_nm(std::span<const TraceView> logs) {
     return std::max(least_range_share * range, 1e-9 * largest);
 }
 
+/// Speeds of the logs, and those at which an order reaches half the sample rate.
+struct Limits {
+    double fastest_deg_s = 0.0, rate_turns_deg_s = std::numeric_limits<double>::max();
+
+    [[nodiscard]] double deg_s(double order) const { return 0.5 * rate_turns_deg_s / order; }
+    [[nodiscard]] bool passed(double order) const { return deg_s(order) <= fastest_deg_s; }
+};
+
+Limits limits_of(std::span<const Moving> logs, GearRatio ratio) {
+    Limits limits;
+    for (const Moving& one : logs) {
+        const double turns_deg_s = 360.0 * one.log->sample_rate.value() / ratio.value();
+        limits.rate_turns_deg_s = std::min(limits.rate_turns_deg_s, turns_deg_s);
+        for (const double speed : one.speed_deg_s)
+            limits.fastest_deg_s = std::max(limits.fastest_deg_s, std::abs(speed));
+    }
+    return limits;
+}
+
+/// Orders that stay below half the sample rate share their segments; each other one has its own.
+std::vector<OrderSegments> gather_segments(std::span<const Moving> logs, GearRatio ratio,
+                                           const Limits& limits, std::span<const double> sorted) {
+    std::vector<OrderSegments> gathered(sorted.size());
+    for (std::size_t last = sorted.size(); last-- > 0;) {
+        const bool shared = !limits.passed(sorted[last]);
+        const auto fitted = sorted.first(last + 1);
+        const double slower = shared ? 2.0 * limits.fastest_deg_s : limits.deg_s(sorted[last]);
+        const double longest = std::max(longest_turns, separating_window_turns(sorted));
+        for (const Segment& segment : cut_segments(logs, slower, longest, fewest_periods / sorted[last])) {
+            const std::vector<double>& turns = segment.moving->turns;
+            const double length = std::abs(turns[segment.run.end - 1] - turns[segment.run.first]);
+            const auto first = std::lower_bound(fitted.begin(), fitted.end(), fewest_periods / length);
+            if (first == fitted.end()) continue;
+            const auto skipped = static_cast<std::size_t>(first - fitted.begin());
+            SegmentFit fit(segment, ratio, fitted.subspan(skipped));
+            const bool enough = fit.has_enough_samples();
+            if (enough) fit.solve();
+            for (std::size_t i = shared ? skipped : last; i <= last; ++i) {
+                if (!enough)
+                    gathered[i].few_samples = true;
+                else if (fit.collinear(i - skipped))
+                    gathered[i].collinear = true;
+                else
+                    gathered[i].add(fit.amplitude(i - skipped), segment, sorted[i] * length);
+            }
+        }
+        if (shared) break;
+    }
+    return gathered;
+}
+
+std::string why_none(const OrderSegments& segments, double order, const Limits& limits) {
+    if (segments.few_samples) return "too few samples per motor turn for so many orders";
+    if (segments.collinear)
+        return "the joint nowhere turns far enough in one direction to separate it from its neighbours";
+    const std::string where =
+        limits.passed(order) ? fmt::format("below {:.3g} deg/s, where it lies under half the sample rate, ",
+                                           limits.deg_s(order))
+                             : "";
+    return where + "the joint nowhere turns four periods of it in one direction";
+}
+
 }  // namespace
 
 std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, GearRatio ratio,
@@ -399,65 +461,19 @@ std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, Gea
     std::sort(sorted.begin(), sorted.end());
     sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
     const std::vector<Moving> moving = moving_of(logs, ratio);
-    double fastest = 0.0, rate = std::numeric_limits<double>::max();
-    for (const Moving& one : moving) {
-        rate = std::min(rate, one.log->sample_rate.value());
-        for (const double speed : one.speed_deg_s) fastest = std::max(fastest, std::abs(speed));
-    }
-    // Orders that stay below half the sample rate share their segments; each other one has its own.
-    const auto limit_of = [&](double order) { return 180.0 * rate / (order * ratio.value()); };
-    std::vector<OrderSegments> gathered(sorted.size());
-    for (std::size_t last = sorted.size(); last-- > 0;) {
-        const bool shared = limit_of(sorted[last]) > fastest;
-        const std::span<const double> fitted(sorted.data(), last + 1);
-        const double longest = std::max(longest_turns, separating_window_turns(sorted));
-        for (const Segment& segment : cut_segments(moving, shared ? 2.0 * fastest : limit_of(sorted[last]),
-                                                   longest, fewest_periods / sorted[last])) {
-            const std::vector<double>& turns = segment.moving->turns;
-            const double length = std::abs(turns[segment.run.end - 1] - turns[segment.run.first]);
-            const auto first = std::lower_bound(fitted.begin(), fitted.end(), fewest_periods / length);
-            if (first == fitted.end()) continue;
-            const auto skipped = static_cast<std::size_t>(first - fitted.begin());
-            SegmentFit fit(segment, ratio, fitted.subspan(skipped));
-            if (!fit.has_enough_samples()) continue;
-            fit.solve();
-            for (std::size_t i = shared ? skipped : last; i <= last; ++i) {
-                OrderSegments& order = gathered[i];
-                order.absolute_angle = order.absolute_angle && segment.moving->absolute_angle;
-                if (fit.collinear(i - skipped)) {
-                    order.collinear = true;
-                    continue;
-                }
-                order.segments.push_back(fit.amplitude(i - skipped));
-                order.cycles += sorted[i] * length;
-                for (std::size_t k = segment.run.first; k < segment.run.end; ++k) {
-                    const double speed = std::abs(segment.moving->speed_deg_s[k]);
-                    order.slowest_deg_s = std::min(order.slowest_deg_s, speed);
-                    order.fastest_deg_s = std::max(order.fastest_deg_s, speed);
-                }
-            }
-        }
-        if (shared) break;
-    }
+    const Limits limits = limits_of(moving, ratio);
+    const std::vector<OrderSegments> gathered = gather_segments(moving, ratio, limits, sorted);
+    const double least_nm = least_amplitude_nm(logs);
     std::vector<RippleEstimate> found;
     for (const Order order : orders) {
-        const auto at = static_cast<std::size_t>(
-            std::lower_bound(sorted.begin(), sorted.end(), order.value()) - sorted.begin());
-        if (!gathered[at].segments.empty()) {
-            found.push_back(
-                estimate_of(order.value(), gathered[at], sorted.size(), least_amplitude_nm(logs)));
+        const auto at = std::lower_bound(sorted.begin(), sorted.end(), order.value()) - sorted.begin();
+        const OrderSegments& segments = gathered[static_cast<std::size_t>(at)];
+        if (!segments.segments.empty()) {
+            found.push_back(estimate_of(order.value(), segments, sorted.size(), least_nm));
             continue;
         }
         found.emplace_back().order = order.value();
-        found.back().insufficient =
-            gathered[at].collinear
-                ? "the joint nowhere turns far enough in one direction to separate it from its neighbours"
-            : limit_of(order.value()) < fastest
-                ? fmt::format(
-                      "below {:.3g} deg/s, where it lies under half the sample rate, the joint "
-                      "nowhere turns four periods of it in one direction",
-                      limit_of(order.value()))
-                : "the joint nowhere turns four periods of it in one direction";
+        found.back().insufficient = why_none(segments, order.value(), limits);
     }
     return found;
 }
