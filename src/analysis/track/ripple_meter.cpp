@@ -23,9 +23,9 @@ constexpr double longest_window_s = 2.0;     ///< beyond, a window ends as soon 
 constexpr double slowest_turns_per_s = 0.5;  ///< ... unless the motor turns slower
 constexpr double fewest_samples_a_period = 3.0;  // by hand: the sampling theorem asks for two
 constexpr double reversal_turns = 0.25;  ///< back from the furthest angle by more: the joint has turned round
-constexpr std::size_t parts_of_window = 16;  ///< in each of which the speed counts as constant
+constexpr std::size_t parts_of_window = 16;         ///< in each of which the speed counts as constant
 constexpr std::size_t most_rows_of_window = 65536;  ///< bounds the memory
-constexpr std::size_t most_values_kept = 4096;  ///< values kept for the median
+constexpr std::size_t most_values_kept = 4096;      ///< values kept for the median
 
 double peak_to_peak_of(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
