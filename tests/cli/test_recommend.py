@@ -159,6 +159,11 @@ class Honest(Case):
         self.assertEqual((told["finding"], told["take"], told["conclusive"]), ("no-ripple", None, True))
         self.assertRegex(told["verdict"], "^No filter recommended: order 1: no ripple above 0.0[0-9]+ Nm at [0-9.]+ to [0-9.]+ deg/s")
 
+    def test_where_the_stated_orders_are_not_there_and_others_are_it_names_those(self):
+        told = self.recommended(gear=["--gear-ratio", "100", "--orders", "3"])
+        self.assertEqual((told["finding"], told["take"], told["conclusive"]), ("cannot-tell", None, False))
+        self.assertRegex(told["verdict"], r"order 3: no ripple above .*; but identify finds 0\.[78][0-9]* Nm at order 1, 0\.[45][0-9]* Nm at order 2: --orders")
+
     def test_a_short_log_is_no_ground(self):
         """Fewer windows than it takes are no ground to judge methods by; the ripple of the log is there all the same."""
         for seconds, windows in (1.2, 1), (2.4, 2):

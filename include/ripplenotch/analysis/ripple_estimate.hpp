@@ -16,6 +16,8 @@ namespace ripplenotch {
 
 /// Probability that noise alone makes any of the orders asked for count as present.
 inline constexpr double ripple_false_alarm = 0.01;
+/// Motor orders within which lines are one line, under a Hann window of eight motor turns.
+inline constexpr double ripple_resolution_orders = 1.5 / 8.0;
 
 /// The ripple at one order.
 struct RippleEstimate {

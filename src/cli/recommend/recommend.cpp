@@ -2,6 +2,7 @@
 // ripplenotch recommend: which method to take for a log, within what it may cost.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,8 @@
 
 namespace ripplenotch {
 namespace {
+
+constexpr std::size_t most_named_lines = 3;  // by hand: of a sentence
 
 struct RecommendRequest {
     CommonOptions common;
@@ -151,6 +154,27 @@ void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation&
     found.orders.clear();  // of the one reading alone
 }
 
+// Where the orders that were stated are not there, and others are, nothing is settled.
+void name_other_lines(const Parts& parts, const GearAccount& gear, Recommendation& found) {
+    if (found.finding != RecommendationFinding::no_ripple) return;
+    IdentifyOptions options;
+    options.hint = gear.ratio;
+    std::vector<std::string> others;
+    for (const Line& line : identify_readings({&parts.whole, 1}, options).lines) {
+        if (line.kind != LineKind::order || !line.order_output) continue;
+        const double order = *line.order_output / gear.ratio.value();
+        const bool asked = std::any_of(gear.orders.begin(), gear.orders.end(), [order](Order one) {
+            return std::abs(one.value() - order) < ripple_resolution_orders;
+        });
+        if (!asked && others.size() < most_named_lines)
+            others.push_back(fmt::format("{:.3g} Nm at order {:.3g}", line.amplitude_nm, order));
+    }
+    if (others.empty()) return;
+    found.finding = RecommendationFinding::cannot_tell;
+    found.why +=
+        fmt::format("; but identify finds {}: --orders states which to take out", fmt::join(others, ", "));
+}
+
 std::vector<std::string> assumptions(const RecommendRequest& request, const Parts& parts,
                                      const GearAccount& gear, bool stated) {
     std::vector<std::string> all;
@@ -218,6 +242,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
         candidates_for({parts.train, shell_quoted(request.log) + log_words(parts.train_options), choice,
                         *report.gear, request.offline, target, parts.temperature});
     report.found = judged_methods(candidates, parts, *report.gear, report.found.limits);
+    name_other_lines(parts, *report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
     report.assumed = assumptions(request, parts, *report.gear, stated.of().has_value());
     report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;
