@@ -253,9 +253,8 @@ std::vector<Segment> cut_segments(std::span<const Moving> logs, double limit_deg
 /// Mean power beside an order, as large as the fit of the order sees it, and of how many independent bins.
 struct NoisePower {
     double power = 0.0, bins = 0.0;
-    /// Of the side that has more, where both can be measured: on a steep slope what leaks from there is no
-    /// line.
-    double larger_side = 0.0;
+    /// Between both sides along the slope of the spectrum, where that is more.
+    double along_slope = 0.0;
 };
 
 NoisePower noise_power(const OrderSegments& order, double averages) {
@@ -274,9 +273,10 @@ NoisePower noise_power(const OrderSegments& order, double averages) {
     if (powers.empty()) return {};
     NoisePower noise{median_in(powers) / median_over_mean(averages),
                      static_cast<double>(powers.size()) / independent_spacing};
-    for (std::vector<double>& side : sides) {
-        const double power = side.empty() ? 0.0 : median_in(side) / median_over_mean(averages);
-        noise.larger_side = std::max({noise.larger_side, noise.power, power});
+    noise.along_slope = noise.power;
+    if (!sides[0].empty() && !sides[1].empty()) {
+        const double between = std::sqrt(median_in(sides[0]) * median_in(sides[1]));
+        noise.along_slope = std::max(noise.power, between / median_over_mean(averages));
     }
     return noise;
 }
@@ -350,7 +350,7 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     found.standard_error_nm = std::sqrt(square + std::sqrt(std::max(variance, scatter))) - found.amplitude_nm;
     const double tries = static_cast<double>(orders);
     found.false_alarm = noise.power > 0.0
-                            ? std::min(1.0, tries * exceedance({.ratio = power / noise.larger_side,
+                            ? std::min(1.0, tries * exceedance({.ratio = power / noise.along_slope,
                                                                 .averages = averages,
                                                                 .cells = noise.bins}))
                             : (power > 0.0 ? 0.0 : 1.0);
@@ -358,12 +358,12 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     // logarithm of the noise, known from the bins to one side, here and in the log it is said of: the A^2 at
     // which the lower percentile of the power is the threshold solves a quadratic.
     const double level = threshold(averages, noise.bins, ripple_false_alarm / tries);
-    const double above = level - noise.power / std::max(noise.larger_side, 1e-300);
+    const double above = level - noise.power / std::max(noise.along_slope, 1e-300);
     const double known = 0.5 * median_knowledge_of_mean * noise.bins * averages;
     const double spread = normal_99 * normal_99 / averages;
     const double doubt = portable::pow(level * (portable::exp(normal_99 * std::sqrt(2.0 / known)) - 1.0), 2);
     const double least = above + spread + std::sqrt(2.0 * above * spread + spread * spread + spread + doubt);
-    found.detectable_nm = std::max(std::sqrt(noise.larger_side * least), least_nm);
+    found.detectable_nm = std::max(std::sqrt(noise.along_slope * least), least_nm);
     if (found.amplitude_nm < least_nm) found.false_alarm = 1.0;
     const double common = std::norm(sum);
     if (order.absolute_angle && common > agreeing_share * power && square > 0.0) {
