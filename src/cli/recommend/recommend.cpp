@@ -26,7 +26,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_named_lines = 3;  // by hand: of a sentence
+constexpr std::size_t most_other_lines = 3;  // by hand: of a sentence
 
 struct RecommendRequest {
     CommonOptions common;
@@ -166,7 +166,7 @@ void name_other_lines(const Parts& parts, const GearAccount& gear, Recommendatio
         const bool asked = std::any_of(gear.orders.begin(), gear.orders.end(), [order](Order one) {
             return std::abs(one.value() - order) < ripple_resolution_orders;
         });
-        if (!asked && others.size() < most_named_lines)
+        if (!asked && others.size() < most_other_lines)
             others.push_back(fmt::format("{:.3g} Nm at order {:.3g}", line.amplitude_nm, order));
     }
     if (others.empty()) return;
