@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 #include "ripplenotch/core/number.hpp"
@@ -16,34 +17,6 @@ namespace ripplenotch {
 namespace {
 
 constexpr double slow_turn_s = 0.5;  // by hand
-constexpr double stands_out = 2.0;   // by hand
-
-// What passes a torque unchanged, to measure the log itself by.
-const Contender& control() {
-    static const Contender none = make_contender(parse_spec("none"));
-    return none;
-}
-
-double amplitude_nm(const ComparedLog& log, GearAccount lines, std::vector<Order> orders) {
-    if (orders.empty()) return 0.0;
-    const auto count = static_cast<double>(orders.size());
-    lines.orders = std::move(orders);
-    const LogLevels levels = measure_on_log({&control(), 1}, log, lines);
-    return std::sqrt(2.0 / count) * levels.methods.front().ripple_rms_nm.value_or(0.0);
-}
-
-// Half an order to both sides of one, unless another order is there.
-std::vector<Order> beside(Order order, const GearAccount& lines) {
-    std::vector<Order> found;
-    for (const double side : {-0.5, 0.5}) {
-        const Order at(order.value() + side);
-        const bool taken = std::any_of(lines.orders.begin(), lines.orders.end(), [at](Order other) {
-            return std::abs(other.value() - at.value()) < 0.25;
-        });
-        if (at.value() > 0.0 && !taken) found.push_back(at);
-    }
-    return found;
-}
 
 std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sample_rate, DegPerSec slowest,
                                          DegPerSec fastest) {
@@ -61,22 +34,22 @@ std::pair<Seconds, DegPerSec> longest_of(const Contender& contender, Hertz sampl
 }
 
 std::optional<OrderAttenuation> weakest_of(const MethodFigures& figures,
-                                           const std::vector<OrderInLog>& orders) {
+                                           const std::vector<RippleEstimate>& orders) {
     std::optional<OrderAttenuation> weakest;
     for (std::size_t i = 0; i < figures.attenuation.size(); ++i) {
         const OrderAttenuation& entry = figures.attenuation[i];
-        if (!orders[i].shows || !entry.db) continue;
+        if (!orders[i].present() || !entry.db) continue;
         if (!weakest || *entry.db < *weakest->db) weakest = entry;
     }
     return weakest;
 }
 
 void hold_to(JudgedMethod& method, const RecommendationLimits& limits,
-             const std::vector<OrderInLog>& orders) {
+             const std::vector<RippleEstimate>& orders) {
     for (std::size_t i = 0; limits.min_attenuation_db && i < method.figures.attenuation.size(); ++i) {
         const OrderAttenuation& entry = method.figures.attenuation[i];
         const double limit = *limits.min_attenuation_db, db = entry.db.value_or(0.0);
-        if (!orders[i].shows || db >= limit) continue;
+        if (!orders[i].present() || db >= limit) continue;
         method.shortfalls.push_back(fmt::format("{:.1f} dB off order {:g}, {:.1f} dB less than {:g} dB", db,
                                                 entry.order, limit - db, limit));
         method.excess += (limit - db) / std::max(limit, 1.0);
@@ -173,22 +146,19 @@ double torque_rate_nm_s(const TraceView& trace, GearRatio ratio) {
     return lasted_s > 0.0 ? std::sqrt(squares / lasted_s) : 0.0;
 }
 
-std::vector<OrderInLog> orders_in_log(const ComparedLog& log, const GearAccount& lines) {
-    std::vector<OrderInLog> found;
-    if (measure_on_log({&control(), 1}, log, lines).windows == 0) return found;
-    for (const Order order : lines.orders) {
-        OrderInLog one{order.value(), amplitude_nm(log, lines, {order}),
-                       amplitude_nm(log, lines, beside(order, lines)), false};
-        one.shows = one.ripple_nm > stands_out * one.beside_nm;
-        found.push_back(one);
-    }
-    return found;
-}
-
 Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
-                         const GearAccount& lines, const RecommendationLimits& limits) {
+                         const GearAccount& lines, const RecommendationLimits& limits,
+                         std::vector<RippleEstimate> ripple) {
     Recommendation found;
     found.limits = limits;
+    found.orders = std::move(ripple);
+    if (std::none_of(found.orders.begin(), found.orders.end(), std::mem_fn(&RippleEstimate::present))) {
+        const bool searched =
+            std::all_of(found.orders.begin(), found.orders.end(), std::mem_fn(&RippleEstimate::searched));
+        if (searched) found.finding = RecommendationFinding::no_ripple;
+        found.why = ripple_text(found.orders);
+        return found;
+    }
     LogLevels levels = measure_on_log(contenders, log, lines);
     found.windows = levels.windows;
     if (levels.windows < fewest_judged_windows) {
@@ -198,13 +168,6 @@ Recommendation recommend(std::span<const Contender> contenders, const ComparedLo
                               "the part of the log to judge by is too short: {} window{} of eight motor "
                               "turns, and {} are needed",
                               levels.windows, levels.windows == 1 ? "" : "s", fewest_judged_windows);
-        return found;
-    }
-    found.orders = orders_in_log(log, lines);
-    if (std::none_of(found.orders.begin(), found.orders.end(),
-                     [](const OrderInLog& one) { return one.shows; })) {
-        found.finding = RecommendationFinding::no_ripple;
-        found.why = "no order stands out from what is beside it: there is nothing to take out";
         return found;
     }
     found.torque_rate_nm_s = torque_rate_nm_s(log.trace, lines.ratio);

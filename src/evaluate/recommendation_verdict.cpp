@@ -10,10 +10,10 @@ namespace ripplenotch {
 namespace {
 
 // "16.0 dB off order 1 and 24.3 dB off order 2"
-std::string taken_off(const JudgedMethod& method, const std::vector<OrderInLog>& orders) {
+std::string taken_off(const JudgedMethod& method, const std::vector<RippleEstimate>& orders) {
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < orders.size(); ++i) {
-        if (!orders[i].shows || i >= method.figures.attenuation.size()) continue;
+        if (!orders[i].present() || i >= method.figures.attenuation.size()) continue;
         const OrderAttenuation& entry = method.figures.attenuation[i];
         if (entry.db) parts.push_back(fmt::format("{:.1f} dB off order {:g}", *entry.db, entry.order));
     }
@@ -57,7 +57,7 @@ std::string recommendation_verdict(const Recommendation& found) {
     if (found.finding == RecommendationFinding::cannot_tell)
         return fmt::format("Cannot tell: {}.", found.why);
     if (found.finding == RecommendationFinding::no_ripple)
-        return fmt::format("Nothing to take: {}.", found.why);
+        return fmt::format("No filter recommended: {}.", found.why);
     if (taken == nullptr) return "No method was tried.";
     const JudgedMethod* const other = found.runner_up();
     if (found.finding == RecommendationFinding::out_of_reach) {

@@ -82,7 +82,12 @@ std::unique_ptr<LogReader> open_log(std::unique_ptr<ByteSource> source, const Re
     require_built(format, source->name());
     auto reader = options.range.given() ? open_cut(format, std::move(source), std::move(first_bytes), options)
                                         : format.open(std::move(source), std::move(first_bytes), options);
-    if (reader->layout().velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
+    const Layout& layout = reader->layout();
+    if (layout.velocity_from_position) return std::make_unique<DerivedVelocity>(std::move(reader));
+    if (layout.constant_speed) {
+        const DegPerSec speed = *layout.constant_speed;
+        return std::make_unique<ConstantVelocity>(std::move(reader), speed);
+    }
     return reader;
 }
 

@@ -171,9 +171,11 @@ void state_uses(LogInfo& info) {
                          [](const JointInfo& a, const JointInfo& b) { return a.turns < b.turns; });
     const JointInfo none;
     const JointInfo& joint = most == info.joints.end() ? none : *most;
-    const std::string missing = !joint.torque_nm     ? "no torque column; --columns torque=NAME names one"
-                                : !joint.speed_deg_s ? "no velocity column; --columns velocity=NAME names one"
-                                                     : info.clock.refusal;
+    const std::string missing = !joint.torque_nm ? "no torque column; --columns torque=NAME names one"
+                                : !joint.speed_deg_s
+                                    ? "no velocity column; --columns velocity=NAME names one, "
+                                      "--constant-speed 60rpm states it"
+                                    : info.clock.refusal;
     const std::string speeds = speeds_text(joint.stretches);
     const std::string of_joint = info.joints.size() > 1 ? fmt::format("joint {}: ", joint.joint) : "";
 

@@ -154,8 +154,14 @@ TEST_CASE("lines that never part within a window are left out, not invented") {
 TEST_CASE("rest, gaps and turning back end a run, and too slow windows are counted") {
     auto signal = tests::shaft(tests::straight(0.0, 0.0, 3000), 1000.0);
     CHECK(track_orders(signal.tracked({1.0}), {}).time_s.empty());
-    // 3 s at 2 turns a second: eight turns take 4 s, half of that is too long as well.
+    // Eight turns at 2 turns a second take 4 s: four of them are the window.
     signal = tests::shaft(tests::straight(2.0, 2.0, 9000), 1000.0);
+    tests::add_line(signal, {1.0, 0.5, 0.4});
+    const OrderTracks half = track_orders(signal.tracked({1.0}), {});
+    REQUIRE(half.time_s.size() > 3);
+    CHECK_THAT(half.lines[0].amplitude_nm[1], WithinRel(0.5, 1e-6));
+    // At 0.4 turns a second four take 10 s.
+    signal = tests::shaft(tests::straight(0.4, 0.4, 25000), 1000.0);
     const OrderTracks slow = track_orders(signal.tracked({1.0}), {});
     CHECK(slow.time_s.empty());
     CHECK(slow.windows_too_slow > 0);

@@ -138,6 +138,10 @@ TEST_CASE("what cannot be measured is dropped and counted: too slow, too few sam
     CHECK(still.windows == 0);
     CHECK(still.windows_too_slow == 0);
     CHECK(still.measured_share == 0.0);
+    // Eight turns take 6.4 s: a window ends with four of them.
+    const RippleLevels slower = measure([](double) { return 4.5; }, 20.0, {}, true);
+    CHECK(slower.windows == 6);
+    CHECK(slower.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(0.01));
     const RippleLevels slow = measure([](double) { return 1.5; }, 20.0, {}, true);  // 8 turns take 19 s
     CHECK(slow.windows == 0);
     CHECK(slow.windows_too_slow > 0);

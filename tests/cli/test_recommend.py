@@ -157,25 +157,32 @@ class Honest(Case):
         write_log(self.folder / "none.csv", ripple=0.0)
         told = self.recommended(log="none.csv")
         self.assertEqual((told["finding"], told["take"], told["conclusive"]), ("no-ripple", None, True))
-        self.assertIn("Nothing to take", told["verdict"])
+        self.assertRegex(told["verdict"], "^No filter recommended: order 1: no ripple above 0.0[0-9]+ Nm at [0-9.]+ to [0-9.]+ deg/s")
+
+    def test_where_the_stated_orders_are_not_there_and_others_are_it_names_those(self):
+        told = self.recommended(gear=["--gear-ratio", "100", "--orders", "3"])
+        self.assertEqual((told["finding"], told["take"], told["conclusive"]), ("cannot-tell", None, False))
+        self.assertRegex(told["verdict"], r"order 3: no ripple above .*; but identify finds 0\.[78][0-9]* Nm at order 1, 0\.[45][0-9]* Nm at order 2\b.*: --orders")
 
     def test_a_short_log_is_no_ground(self):
-        """Fewer windows than it takes are no ground, and what they say of orders and methods is no table, either."""
+        """Fewer windows than it takes are no ground to judge methods by; the ripple of the log is there all the same."""
         for seconds, windows in (1.2, 1), (2.4, 2):
             write_log(self.folder / "short.csv", seconds=seconds)
             told = self.recommended(log="short.csv")
             self.assertEqual((told["finding"], told["windows"]), ("cannot-tell", windows))
-            self.assertEqual((told["orders"], told["methods"], told["left_out"]), ([], [], []))
+            self.assertEqual(([order["present"] for order in told["orders"]], told["methods"], told["left_out"]), ([True, True], [], []))
             self.recommended("--require-conclusive", log="short.csv", code=5)
             text = self.run_tool("recommend", "short.csv", *GEAR).stdout
             self.assertTrue(text.startswith("Cannot tell: "), text)
-            self.assertEqual([part.split("\n")[0] for part in text.split("\n\n")[1:]], ["Assumed:"])
+            self.assertEqual([part.split("  ")[0] for part in text.split("\n\n")[1:]][0], "order")
+            self.assertEqual([part.split("\n")[0] for part in text.split("\n\n")[2:]], ["Assumed:"])
 
     def test_a_joint_at_rest_is_no_ground(self):
         write_log(self.folder / "rest.csv", seconds=5, speed=0.0)
         told = self.recommended(log="rest.csv")
-        self.assertEqual((told["finding"], told["windows"], told["orders"], told["left_out"]), ("cannot-tell", 0, [], []))
-        self.assertRegex(told["verdict"], "^Cannot tell: nothing can be judged on this log")
+        self.assertEqual((told["finding"], told["windows"], told["left_out"]), ("cannot-tell", 0, []))
+        self.assertEqual([order["present"] for order in told["orders"]], [None, None])
+        self.assertRegex(told["verdict"], "^Cannot tell: order 1: the joint nowhere turns four periods of it")
 
     def test_a_gear_that_nobody_states_is_found_in_the_first_part(self):
         told = self.recommended(gear=[])

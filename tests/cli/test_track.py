@@ -116,7 +116,10 @@ class Json(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         result = json.loads(done.stdout)
         self.assertEqual(result["schema"], "ripplenotch/track/1")
-        self.assertIn("order 1: 0.8 Nm zero to peak", result["verdict"])
+        self.assertIn("order 1: 0.8 +/- 0.002 Nm zero to peak", result["verdict"])
+        ripple = result["lines"][0]["ripple"]
+        self.assertTrue(ripple["present"])
+        self.assertLess(abs(result["lines"][0]["median_nm"] - ripple["amplitude_nm"]), 3 * ripple["standard_error_nm"])
         # A run of 3 s is six times 1/bandwidth: the middle has the bandwidth asked for within a few per cent.
         self.assertAlmostEqual(result["bandwidth_obtained_hz"], 2.0, delta=0.06)
         measured = [x for x in result["columns"]["order_1_amplitude_nm"] if x is not None]

@@ -41,6 +41,15 @@ std::vector<Contender> tried() {
     return all;
 }
 
+std::vector<RippleEstimate> ripple_of(const Trace& trace) {
+    const TraceView view = trace.view();
+    return estimate_ripple({&view, 1}, gear.ratio, gear.orders);
+}
+
+Recommendation recommended(const Trace& trace, const RecommendationLimits& limits = {}) {
+    return recommend(tried(), {trace.view()}, gear, limits, ripple_of(trace));
+}
+
 }  // namespace
 
 TEST_CASE("the rate of a torque is that of its ramp, whatever ripple is on it") {
@@ -49,21 +58,17 @@ TEST_CASE("the rate of a torque is that of its ramp, whatever ripple is on it") 
     CHECK(torque_rate_nm_s(TraceView{}, gear.ratio) == 0.0);
 }
 
-TEST_CASE("an order shows where it stands out from what is beside it") {
-    const Trace with = log_of(1.0, 0.0), without = log_of(0.0, 0.0);
-    const auto orders = orders_in_log({with.view()}, gear);
-    REQUIRE(orders.size() == 2);
-    CHECK(orders[0].ripple_nm == Approx(0.8).epsilon(0.02));
-    CHECK(orders[0].shows);
-    CHECK_FALSE(orders[1].shows);
-    CHECK(recommend(tried(), {without.view()}, gear, {}).finding == RecommendationFinding::no_ripple);
-    const Trace short_one = log_of(1.0, 0.0, 0.5);
-    CHECK(recommend(tried(), {short_one.view()}, gear, {}).finding == RecommendationFinding::cannot_tell);
+TEST_CASE("without a ripple that is present nothing is recommended, and a short log is not judged") {
+    const Recommendation nothing = recommended(log_of(0.0, 0.0));
+    CHECK(nothing.finding == RecommendationFinding::no_ripple);
+    CHECK_THAT(recommendation_verdict(nothing), Catch::Contains("order 1: no ripple above 0.00"));
+    CHECK_THAT(recommendation_verdict(nothing), Catch::Contains("at 90 to 90 deg/s"));
+    CHECK(recommended(log_of(1.0, 0.0, 0.5)).finding == RecommendationFinding::cannot_tell);
 }
 
 TEST_CASE("what is off is the ripple left and the way of the torque within the delay") {
     const Trace trace = log_of(1.0, 20.0);
-    const Recommendation found = recommend(tried(), {trace.view()}, gear, {});
+    const Recommendation found = recommended(trace);
     REQUIRE(found.finding == RecommendationFinding::recommended);
     for (const JudgedMethod& method : found.methods) {
         const double lag = 1e-3 * *method.figures.dc_delay_ms * found.torque_rate_nm_s;
@@ -79,7 +84,7 @@ TEST_CASE("the longest delay of a table is that of the slowest band that the log
     for (std::size_t k = 0; k < 2000; ++k) trace.velocity_deg_s[k] = 60.0;
     const auto table = testing::paper_table();
     const std::vector<Contender> switching = {testing::contender("switching,table=paper.json", table)};
-    const Recommendation found = recommend(switching, {trace.view()}, gear, {});
+    const Recommendation found = recommend(switching, {trace.view()}, gear, {}, ripple_of(trace));
     REQUIRE(found.methods.size() == 1);
     CHECK(found.methods[0].delay == table->bands()[2].dc_delay);
     CHECK(found.methods[0].delay_at == DegPerSec(63.0));
@@ -91,7 +96,7 @@ TEST_CASE("looser limits give the same or a better answer, and every answer is w
         double before = 1e9;
         for (const double ms : {0.0, 2.0, 6.0, 20.0, 80.0}) {
             RecommendationLimits limits{Seconds(1e-3 * ms), db};
-            const Recommendation found = recommend(tried(), {trace.view()}, gear, limits);
+            const Recommendation found = recommended(trace, limits);
             const JudgedMethod& first = *found.taken();
             if (!first.meets()) {
                 CHECK(found.finding == RecommendationFinding::out_of_reach);

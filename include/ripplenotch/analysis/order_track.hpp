@@ -49,9 +49,10 @@ struct OrderTracks {
 struct WindowRule {
     double turns = 8.0;    ///< length in turns of the reference shaft, unless `seconds` is above 0
     Seconds seconds{0.0};  ///< length in time
-    Seconds longest{
-        2.0};           ///< a window in turns that takes longer is left out: the trend is no cubic for longer
-    double hop = 0.25;  ///< windows start so much of a length apart, or a little closer
+    /// Of a window in turns that takes longer, the middle half is fitted, since the trend is no cubic for
+    /// longer; it is left out where that half takes four times as long.
+    Seconds longest{2.0};
+    double hop = 0.25;        ///< windows start so much of a length apart, or a little closer
     int envelope_degree = 2;  ///< amplitude within a window: 0 constant, 1 or 2 polynomial in time
 };
 

@@ -29,7 +29,7 @@ struct RippleLevels {
     std::vector<double> ripple_peak_to_peak_nm;    ///< per signal: of the fitted orders alone, largest window
     std::size_t windows = 0;                       ///< how many windows of usable motion were measured
     std::size_t windows_too_few_samples = 0;       ///< dropped: highest order with under 3 samples a period
-    std::size_t windows_too_slow = 0;              ///< dropped: not four turns within 2 s
+    std::size_t windows_too_slow = 0;              ///< dropped: slower than half a motor turn per second
     double measured_share = 0.0;                   ///< samples in windows / samples seen
 };
 
@@ -40,7 +40,8 @@ using LineGains = std::function<void(double speed_deg_s, std::span<std::complex<
 /// Feed rows in order; ask at the end. Signals are measured on the same windows, so that ratios are
 /// attenuations.
 ///
-/// A window is eight motor turns in one direction (at least four where a run ends or turns back). In each,
+/// A window is eight motor turns in one direction (at least four where a run ends or turns back, or where
+/// 2 s have passed). In each,
 /// every signal is fitted by c0 + c1 s + c2 s^2 + c3 s^3 + sum of a_n cos(n theta) + b_n sin(n theta), s
 /// being rows and theta the motor angle. Motor angle: gear ratio times the joint's position where there is
 /// one, since its error does not grow along a window, whereas a velocity that is 1 % off detunes order 2 by a

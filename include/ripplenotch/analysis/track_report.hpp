@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/analysis/track_by_speed.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 
@@ -42,6 +43,8 @@ struct TrackReport {
     std::optional<Hertz> bandwidth, bandwidth_obtained;  ///< vold-kalman
     std::optional<int> poles;                            ///< vold-kalman
     std::vector<TrackLabel> labels;
+    /// Of each label over the whole log, whatever the method; empty for tones.
+    std::vector<std::optional<RippleEstimate>> ripple;
     OrderTracks tracks;
     std::optional<SpeedTrack> by_speed;  ///< when the rows go by speed
 };
@@ -72,7 +75,8 @@ struct TrackSummary {
 /// `line` counts from 0, as `labels` do.
 [[nodiscard]] TrackSummary track_summary(const TrackReport& report, std::size_t line);
 
-/// One sentence a line: its median, least and greatest amplitude and where they are.
+/// One sentence a line: its amplitude over the log (of a tone the median), and the least and the greatest
+/// along it and where they are.
 [[nodiscard]] std::string track_verdict(const TrackReport& report);
 
 }  // namespace ripplenotch

@@ -8,21 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 
 namespace ripplenotch {
 
 struct RecommendationLimits {
     std::optional<Seconds> max_delay;          ///< DC delay at any speed of the log
-    std::optional<double> min_attenuation_db;  ///< of every order that shows
-};
-
-/// An order in the log, before any filter.
-struct OrderInLog {
-    double order = 0.0;
-    double ripple_nm = 0.0;  ///< zero to peak, rms over the windows of compare
-    double beside_nm = 0.0;  ///< the same half an order to its sides, where no ripple is
-    bool shows = false;      ///< it stands out from beside it by twice
+    std::optional<double> min_attenuation_db;  ///< of every order that is present
 };
 
 /// One method on the log.
@@ -30,7 +23,7 @@ struct JudgedMethod {
     MethodFigures figures;
     Seconds delay;                            ///< longest DC delay at speeds of the log ...
     DegPerSec delay_at;                       ///< ... and where
-    std::optional<OrderAttenuation> weakest;  ///< of the orders that show
+    std::optional<OrderAttenuation> weakest;  ///< of the orders that are present
     /// What its output is off by: the ripple it leaves and, for its DC delay at the log's median speed, the
     /// way that the log's torque moves in that time; root of the sum of squares.
     double error_nm = 0.0;
@@ -52,9 +45,9 @@ struct Recommendation {
     RecommendationFinding finding = RecommendationFinding::cannot_tell;
     std::string why;  ///< of no_ripple and cannot_tell: a sentence
     RecommendationLimits limits;
-    std::vector<OrderInLog> orders;  ///< empty where nothing can be told
-    std::size_t windows = 0;         ///< that the methods were measured in
-    double torque_rate_nm_s = 0.0;   ///< at which the log's torque moves from motor turn to motor turn, rms
+    std::vector<RippleEstimate> orders;  ///< of the whole log; empty where its reading is in doubt
+    std::size_t windows = 0;             ///< that the methods were measured in
+    double torque_rate_nm_s = 0.0;  ///< at which the log's torque moves from motor turn to motor turn, rms
     std::vector<JudgedMethod> methods;  ///< the one to take first; those within the limits before the others
 
     /// The one to take, or the nearest; null without methods.
@@ -69,13 +62,12 @@ inline constexpr std::size_t fewest_judged_windows = 4;
 /// Rms rate of the mean torque from one motor turn to the next; of half a second where the motor is slower.
 [[nodiscard]] double torque_rate_nm_s(const TraceView& trace, GearRatio ratio);
 
-/// The orders of the log by the windows of compare: empty where there is no window.
-[[nodiscard]] std::vector<OrderInLog> orders_in_log(const ComparedLog& log, const GearAccount& lines);
-
 /// Runs all over the log and sorts them by what their output is off by. The same methods under looser limits
-/// give the same or a better one. The control is among them or not, as given.
+/// give the same or a better one. The control is among them or not, as given. `ripple`: what
+/// estimate_ripple() says of the whole log, of which `log` is the part to judge by, one for each of `lines`.
 [[nodiscard]] Recommendation recommend(std::span<const Contender> contenders, const ComparedLog& log,
-                                       const GearAccount& lines, const RecommendationLimits& limits);
+                                       const GearAccount& lines, const RecommendationLimits& limits,
+                                       std::vector<RippleEstimate> ripple);
 
 /// One sentence, or two, with numbers: what to take, what it does, and what would be next.
 [[nodiscard]] std::string recommendation_verdict(const Recommendation& found);

@@ -61,6 +61,7 @@ struct ReadOptions {
     std::vector<std::string> columns;          ///< "time,velocity,torque" by place, or "torque=tau_J" by name
     std::map<std::string, std::string> units;  ///< role or column name -> unit
     std::optional<Hertz> sample_rate;          ///< for logs without time; overrides the log's own time
+    std::optional<DegPerSec> constant_speed;   ///< of a log that holds no motion (--constant-speed)
     std::optional<char> delimiter;
     std::optional<char> decimal_mark;
     std::optional<bool> header;
@@ -77,6 +78,7 @@ struct ReadOptions {
     std::function<std::optional<double>(const std::string& joint)> gear_ratio_of;
     bool takes_motor_units = false;              ///< motion before a gear of unknown ratio is not refused
     bool needs_torque = true;                    ///< false for info
+    bool needs_velocity = true;                  ///< false: a log without motion has a velocity of nan
     TimeRange range;                             ///< rows outside are as if they were not there
     std::shared_ptr<const RowsOutside> outside;  ///< what open_log left out of the bytes, by `range`
 };
@@ -108,7 +110,8 @@ struct Layout {
     std::optional<std::size_t> time_fraction;  ///< beside chosen.time: nanoseconds to be added to its seconds
     std::int64_t time_origin = 0;  ///< in the column's own unit: taken off stamps that count from long ago
     bool time_as_text = false;     ///< stamps like 12:30:00.5 or 2024-05-01T12:30:00.5Z
-    bool velocity_from_position = false;  ///< no velocity is logged: it is the slope of the position
+    bool velocity_from_position = false;      ///< no velocity is logged: it is the slope of the position
+    std::optional<DegPerSec> constant_speed;  ///< no motion is logged: it was stated (--constant-speed)
     bool motor_units = false;             ///< motion is the motor's, and no ratio was known to divide it by
     std::optional<Hertz> stated_rate;     ///< from --sample-rate, or from the head of a file without a clock
     std::string options;                  ///< the option line that would force this reading

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "analysis/shared_limits.hpp"
+#include "analysis/track/cut_windows.hpp"
 #include "core/matrices/factorisations.hpp"
-#include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/phasor.hpp"
@@ -21,6 +21,9 @@ namespace {
 /// Smallest pivot of the normal equations with unit columns. Below, a line is what the others already say, to
 /// within rounding times the torque's range.
 constexpr double least_pivot = 1e-9;
+
+/// A window of half the turns may last so many times WindowRule::longest, as in RippleMeter.
+constexpr double slowest_halves = 4.0;
 
 void check_signal(const TrackedSignal& signal, const WindowRule& rule) {
     if (signal.lines.empty()) raise<UsageError>("there is no order to track");
@@ -35,26 +38,13 @@ void check_signal(const TrackedSignal& signal, const WindowRule& rule) {
     }
 }
 
-/// Windows of one run, evenly spread from its start to its end in turns or in time.
-std::vector<SampleRun> windows_of(const SampleRun& run, std::span<const double> place, double length,
-                                  double hop_share) {
-    const double start = place[run.first];
-    const double whole = std::abs(place[run.end - 1] - start);
-    if (whole < 0.5 * length) return {};
-    if (whole <= length) return {run};
-    // No more windows than samples, however far apart those are.
-    const double hops =
-        std::min(std::ceil((whole - length) / (hop_share * length)), static_cast<double>(run.size()));
-    std::vector<SampleRun> windows;
-    std::size_t from = run.first, to = run.first;
-    for (double i = 0.0; i <= hops; i += 1.0) {
-        const double begin = (whole - length) * i / hops;
-        while (from < run.end && std::abs(place[from] - start) < begin) ++from;
-        to = std::max(to, from);
-        while (to < run.end && std::abs(place[to] - start) <= begin + length) ++to;
-        windows.push_back({from, to});
-    }
-    return windows;
+/// The middle of a window, of so much of its length.
+SampleRun middle_of(const SampleRun& window, std::span<const double> place, double length) {
+    const double middle = 0.5 * (place[window.first] + place[window.end - 1]);
+    SampleRun part = window;
+    while (part.first + 2 < part.end && std::abs(place[part.first] - middle) > 0.5 * length) ++part.first;
+    while (part.first + 2 < part.end && std::abs(place[part.end - 1] - middle) > 0.5 * length) --part.end;
+    return part;
 }
 
 class WindowFit {
@@ -182,9 +172,13 @@ OrderTracks track_orders(const TrackedSignal& signal, const WindowRule& rule) {
     double squares = 0.0;
     std::size_t samples = 0;
     for (const SampleRun& run : directed_runs(signal.speed_deg_s, signal.run_starts, {})) {
-        for (const SampleRun& window : windows_of(run, place, length, rule.hop)) {
-            const double duration = signal.time_s[window.end - 1] - signal.time_s[window.first];
-            if (!by_time && duration > rule.longest.value()) {
+        for (const SampleRun& whole : cut_windows(run, place, length, 0.5 * length, rule.hop)) {
+            const auto lasts_longer = [&](const SampleRun& window, double seconds) {
+                return !by_time && signal.time_s[window.end - 1] - signal.time_s[window.first] > seconds;
+            };
+            const SampleRun window =
+                lasts_longer(whole, rule.longest.value()) ? middle_of(whole, place, 0.5 * length) : whole;
+            if (lasts_longer(window, slowest_halves * rule.longest.value())) {
                 ++tracks.windows_too_slow;
             } else if (window.size() < 2 * static_cast<std::size_t>(fit.unknowns())) {
                 ++tracks.windows_too_few_samples;

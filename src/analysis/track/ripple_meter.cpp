@@ -17,13 +17,15 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double turns_wanted = 8.0;             // by hand: of the motor, in a window
-constexpr double turns_needed = 4.0;             // by hand: half of what is wanted
-constexpr double longest_window_s = 2.0;         ///< the torque itself is no quadratic for longer
+constexpr double turns_wanted = 8.0;         // by hand: of the motor, in a window
+constexpr double turns_needed = 4.0;         // by hand: half of what is wanted
+constexpr double longest_window_s = 2.0;     ///< beyond, a window ends as soon as it holds what is needed ...
+constexpr double slowest_turns_per_s = 0.5;  ///< ... unless the motor turns slower
 constexpr double fewest_samples_a_period = 3.0;  // by hand: the sampling theorem asks for two
 constexpr double reversal_turns = 0.25;  ///< back from the furthest angle by more: the joint has turned round
-constexpr std::size_t parts_of_window = 16;     ///< in each of which the speed counts as constant
-constexpr std::size_t most_values_kept = 4096;  ///< values kept for the median
+constexpr std::size_t parts_of_window = 16;         ///< in each of which the speed counts as constant
+constexpr std::size_t most_rows_of_window = 65536;  ///< bounds the memory
+constexpr std::size_t most_values_kept = 4096;      ///< values kept for the median
 
 double peak_to_peak_of(const Eigen::VectorXd& values) { return values.maxCoeff() - values.minCoeff(); }
 
@@ -105,7 +107,7 @@ struct RippleMeter::State {
             if (back > reversal_turns) {
                 close(sums);
                 begin(now_s, torque);
-            } else if (turns.size() == most_rows) {
+            } else if (turns.size() >= most_rows && ends_late(now_s)) {
                 // A joint that stands still has no ripple to measure and is not worth a word.
                 if (!close(sums) && std::abs(furthest) > reversal_turns) ++sums.too_slow;
                 begin(now_s, torque);
@@ -124,6 +126,13 @@ struct RippleMeter::State {
         last_velocity = velocity_deg_s;
         last_s = now_s;
         if (position_deg != nullptr) last_position = *position_deg;
+    }
+
+    // A window that has lasted long enough ends where it holds what is needed, or never will.
+    [[nodiscard]] bool ends_late(double now_s) const {
+        return std::abs(furthest) >= turns_needed ||
+               std::abs(furthest) < slowest_turns_per_s * (now_s - time_s.front()) ||
+               turns.size() >= most_rows_of_window;
     }
 
     // A window that ends early still counts up to its last whole turn, if there are enough of them.
@@ -225,8 +234,8 @@ RippleMeter::RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz s
     }
     state_->ratio = ratio.value();
     state_->signals = signals;
-    state_->most_rows =
-        static_cast<std::size_t>(std::clamp(longest_window_s * sample_rate.value(), 64.0, 65536.0));
+    state_->most_rows = static_cast<std::size_t>(
+        std::clamp(longest_window_s * sample_rate.value(), 64.0, static_cast<double>(most_rows_of_window)));
     state_->sums.amplitude_squared.resize(orders.size() * signals);
     state_->sums.expected_squared.resize(orders.size());
     state_->sums.residual_squared.resize(signals);

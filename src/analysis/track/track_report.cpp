@@ -180,7 +180,16 @@ std::string track_verdict(const TrackReport& report) {
             text += ": measured nowhere";
             continue;
         }
-        text += fmt::format(": {:.3g} Nm {}", line.median_nm, amplitude_words(report.kind));
+        const auto& ripple = report.ripple[i];
+        const double factor = amplitude_factor(report.kind);
+        if (ripple && ripple->searched() && !ripple->present())
+            text += fmt::format(": not above the noise, where {:.2g} Nm {} would be seen",
+                                factor * ripple->detectable_nm, amplitude_words(report.kind));
+        else if (ripple && ripple->searched())
+            text += fmt::format(": {:.3g} +/- {:.1g} Nm {}", factor * ripple->amplitude_nm,
+                                factor * ripple->standard_error_nm, amplitude_words(report.kind));
+        else
+            text += fmt::format(": {:.3g} Nm {}", line.median_nm, amplitude_words(report.kind));
         text += line.rows == 1
                     ? fmt::format(" at {:.4g} deg/s", line.least_at_deg_s)
                     : fmt::format(", from {:.3g} at {:.4g} to {:.3g} at {:.4g} deg/s", line.least_nm,

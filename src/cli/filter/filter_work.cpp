@@ -126,6 +126,7 @@ ReadOptions FilterRequest::read_options(const JointMethods& methods) const {
         return own ? std::optional(own->ratio.value()) : std::nullopt;
     };
     if (!options.gear_ratio) options.gear_ratio = gear.ratio;
+    options.needs_velocity = methods.follows_motion();
     options.every_joint = every_joint();
     if (options.every_joint) options.joint.reset();
     return options;

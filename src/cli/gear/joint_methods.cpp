@@ -51,9 +51,14 @@ std::optional<GearAccount> JointMethods::common_gear() const {
     return common_ ? common_->gear : std::nullopt;
 }
 
-bool JointMethods::learns() const {
-    return find_method(std::string_view(request_.method).substr(0, request_.method.find(','))).learner !=
-           nullptr;
+const Method& JointMethods::method() const {
+    return find_method(std::string_view(request_.method).substr(0, request_.method.find(',')));
+}
+
+bool JointMethods::learns() const { return method().learner != nullptr; }
+
+bool JointMethods::follows_motion() const {
+    return method().steady == nullptr && method().part != MethodPart::control;
 }
 
 }  // namespace ripplenotch

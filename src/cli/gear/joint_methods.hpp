@@ -39,8 +39,11 @@ class JointMethods {
     [[nodiscard]] std::optional<GearAccount> common_gear() const;
     /// Whether the method looks at the whole log before it filters.
     [[nodiscard]] bool learns() const;
+    /// Whether what the method does depends on how fast the joint turns.
+    [[nodiscard]] bool follows_motion() const;
 
   private:
+    [[nodiscard]] const Method& method() const;
     [[nodiscard]] std::shared_ptr<const Contender> choose(const std::string& joint) const;
 
     MethodRequest request_;

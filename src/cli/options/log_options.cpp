@@ -36,6 +36,9 @@ void attach_log_columns(Options& options, LogOptions& log) {
                   "unit of a column: velocity=rad/s, torque=mNm, time=ms; repeatable");
     options.text("--side", log.side, "SIDE",
                  "where motion is measured: motor (before the gear) or joint; or by column, velocity=motor");
+    options.quantity("--constant-speed", log.constant_speed, Dimension::speed,
+                     "of the joint (of the motor with --side motor), throughout a log that holds no motion: "
+                     "60rpm");
     options.text("--delimiter", log.delimiter, "CHAR", "between cells of a text log: , ; space or tab");
     options.text("--decimal", log.decimal, "MARK", "decimal mark of a text log: . or ,");
     options.flag("--no-header", log.no_header, "the first row of a text log is data");
@@ -109,6 +112,7 @@ ReadOptions LogOptions::resolve() const {
     if (to) read.range.to = parse_time_point(*to, "--to");
     read.sample_rate = sample_rate;
     if (sample_rate && !(sample_rate->value() > 0.0)) raise<UsageError>("--sample-rate: must be above 0 Hz");
+    read.constant_speed = constant_speed;
     const auto one_character = [](const std::string& text, std::string_view option) {
         if (text == "space") return ' ';
         if (text == "tab" || text == "\\t") return '\t';

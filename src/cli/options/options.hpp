@@ -105,6 +105,7 @@ struct LogOptions {
     int skip_lines = 0, skip_bytes = 0;
     std::optional<std::string> records, clock, join;
     std::optional<Hertz> sample_rate;
+    std::optional<DegPerSec> constant_speed;
     bool no_header = false, hold_bad_values = false;
     [[nodiscard]] ReadOptions resolve() const;
 };

@@ -29,6 +29,7 @@ std::string log_words(const LogOptions& log) {
     add(line, "--columns", log.columns);
     for (const std::string& unit : log.units) add(line, "--unit", unit);
     if (log.sample_rate) add(line, "--sample-rate", shortest(log.sample_rate->value()) + "Hz");
+    if (log.constant_speed) line += " --constant-speed " + shortest(log.constant_speed->value()) + "deg/s";
     add(line, "--side", log.side);
     add(line, "--delimiter", log.delimiter);
     add(line, "--decimal", log.decimal);

@@ -2,9 +2,11 @@
 // ripplenotch recommend: which method to take for a log, within what it may cost.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "cli/command.hpp"
@@ -23,6 +25,8 @@
 
 namespace ripplenotch {
 namespace {
+
+constexpr std::size_t most_other_lines = 3;  // by hand: of a sentence
 
 struct RecommendRequest {
     CommonOptions common;
@@ -95,13 +99,15 @@ void read_temperature(const RecommendRequest& request, const std::optional<GearA
     require_beside(parts.temperature->judge_degc, parts.judge.trace, request.log, *request.temperature);
 }
 
-// The gear that the first part of the log shows; empty, with the reason told, where it shows none.
-std::optional<GearOptions> found_gear_options(const Log& train, Recommendation& found) {
-    if (train.trace.size() < fewest_identify_samples) {
-        found.why = fmt::format("{} rows are too few to look for ripple in", train.trace.size());
+// The gear that the first part of the log shows; empty, with the reason, where it shows none. That there is
+// no ripple is claimed of the whole log alone.
+std::optional<GearOptions> found_gear_options(const Parts& parts, Recommendation& found) {
+    if (parts.train.trace.size() < fewest_identify_samples) {
+        found.why = fmt::format("{} rows are too few to look for ripple in", parts.train.trace.size());
         return std::nullopt;
     }
-    const Identification identified = identify_readings({&train, 1}, {});
+    Identification identified = identify_readings({&parts.train, 1}, {});
+    const bool nothing = identified.conclusive && identified.finding == RippleFinding::nothing;
     const auto gear = found_gear(identified);
     if (gear && !gear->orders.empty()) {
         GearOptions options;
@@ -109,28 +115,31 @@ std::optional<GearOptions> found_gear_options(const Log& train, Recommendation& 
         for (const Order order : gear->orders) options.orders.push_back(order.value());
         return options;
     }
+    if (nothing) identified = identify_readings({&parts.whole, 1}, {});
     std::string verdict = identified.verdict;
     while (!verdict.empty() && verdict.back() == '.') verdict.pop_back();
     if (identified.conclusive && identified.finding == RippleFinding::nothing) {
         found.finding = RecommendationFinding::no_ripple;
         found.why = verdict;
     } else {
-        found.why = fmt::format(
-            "nobody states the gear, and identify says of the log's first part: {}; give "
-            "--gear-ratio and --orders",
-            verdict);
+        found.why =
+            fmt::format("no gear is stated, and identify says of {}: {}; give --gear-ratio and --orders",
+                        nothing ? "the log, whose first part shows none" : "the log's first part", verdict);
     }
     return std::nullopt;
+}
+
+std::vector<RippleEstimate> ripple_of(const Trace& trace, const GearAccount& gear) {
+    const TraceView view = trace.view();
+    return estimate_ripple({&view, 1}, gear.ratio, gear.orders);
 }
 
 // A reading under which something turns with the motor is confirmed by that, unless another one has it, too.
 void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation& found) {
     const auto shows = [&](const OtherReading& reading) {
-        const Trace trace = read_otherwise(parts.judge.trace, reading);
-        ComparedLog log{trace.view()};
-        log.trace.sample_rate = Hertz(parts.judge.recording.clock.nominal_rate.value() / reading.time_factor);
-        const auto orders = orders_in_log(log, gear);
-        return std::any_of(orders.begin(), orders.end(), [](const OrderInLog& one) { return one.shows; });
+        const Trace trace = read_otherwise(parts.whole.trace, reading);
+        const auto orders = ripple_of(trace, gear);
+        return std::any_of(orders.begin(), orders.end(), std::mem_fn(&RippleEstimate::present));
     };
     std::string others;
     for (const OtherReading& reading : open_readings({&parts.whole, 1})) {
@@ -143,6 +152,27 @@ void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation&
         fmt::format("there is ripple {}, too; {} settles it", others, settling_options({&parts.whole, 1}));
     found.methods.clear();
     found.orders.clear();  // of the one reading alone
+}
+
+// Where the orders that were stated are not there, and others are, nothing is settled.
+void name_other_lines(const Parts& parts, const GearAccount& gear, Recommendation& found) {
+    if (found.finding != RecommendationFinding::no_ripple) return;
+    IdentifyOptions options;
+    options.hint = gear.ratio;
+    std::vector<std::string> others;
+    for (const Line& line : identify_readings({&parts.whole, 1}, options).lines) {
+        if (line.kind != LineKind::order || !line.order_output) continue;
+        const double order = *line.order_output / gear.ratio.value();
+        const bool asked = std::any_of(gear.orders.begin(), gear.orders.end(), [order](Order one) {
+            return std::abs(one.value() - order) < ripple_resolution_orders;
+        });
+        if (!asked && others.size() < most_other_lines)
+            others.push_back(fmt::format("{:.3g} Nm at order {:.3g}", line.amplitude_nm, order));
+    }
+    if (others.empty()) return;
+    found.finding = RecommendationFinding::cannot_tell;
+    found.why +=
+        fmt::format("; but identify finds {}: --orders states which to take out", fmt::join(others, ", "));
 }
 
 std::vector<std::string> assumptions(const RecommendRequest& request, const Parts& parts,
@@ -170,7 +200,7 @@ Recommendation judged_at(const std::vector<Contender>& contenders, const Parts& 
         log.temperatures_degc.push_back(follows_temperature(contender)
                                             ? std::span<const double>(parts.temperature->judge_degc)
                                             : std::span<const double>());
-    return recommend(contenders, log, gear, limits);
+    return recommend(contenders, log, gear, limits, ripple_of(parts.whole.trace, gear));
 }
 
 // A map that does not reach as far as the judged part of the log moves is refused there; the others are
@@ -199,7 +229,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
     GearOptions gear_options = request.gear;
     report.found.limits = {request.limits.max_delay, request.limits.min_attenuation_db};
     if (!stated.of()) {
-        const auto found = found_gear_options(parts.train, report.found);
+        const auto found = found_gear_options(parts, report.found);
         report.conclusive = report.found.finding == RecommendationFinding::no_ripple;
         if (!found) return report;
         gear_options = *found;
@@ -212,6 +242,7 @@ RecommendationReport report_of(const RecommendRequest& request, Provenance& prov
         candidates_for({parts.train, shell_quoted(request.log) + log_words(parts.train_options), choice,
                         *report.gear, request.offline, target, parts.temperature});
     report.found = judged_methods(candidates, parts, *report.gear, report.found.limits);
+    name_other_lines(parts, *report.gear, report.found);
     doubt_readings(parts, *report.gear, report.found);
     report.assumed = assumptions(request, parts, *report.gear, stated.of().has_value());
     report.conclusive = report.found.finding != RecommendationFinding::cannot_tell;

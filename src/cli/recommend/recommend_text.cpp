@@ -27,17 +27,22 @@ std::string next_commands(std::string_view head, const std::vector<std::string>&
 }
 
 std::string orders_text(const Recommendation& found) {
-    std::vector<std::vector<std::string>> rows = {{"order", "ripple Nm", "beside it Nm", ""}};
-    for (const OrderInLog& one : found.orders) {
-        rows.push_back({shortest(one.order), fmt::format("{:.3f}", one.ripple_nm),
-                        fmt::format("{:.3f}", one.beside_nm), one.shows ? "" : "does not stand out"});
+    std::vector<std::vector<std::string>> rows = {
+        {"order", "ripple Nm", "standard error Nm", "detectable Nm", ""}};
+    for (const RippleEstimate& one : found.orders) {
+        const auto cell = [&](double nm) { return one.searched() ? fmt::format("{:.3f}", nm) : "-"; };
+        rows.push_back({shortest(one.order), cell(one.amplitude_nm), cell(one.standard_error_nm),
+                        cell(one.detectable_nm),
+                        !one.searched() ? one.insufficient
+                        : one.present() ? ""
+                                        : "not above the noise"});
     }
-    return "\n" + text_table(rows, "rrrl");
+    return "\n" + text_table(rows, "rrrrl");
 }
 
 std::string methods_text(const Recommendation& found) {
     std::vector<std::vector<std::string>> rows = {{"method"}};
-    for (const OrderInLog& one : found.orders)
+    for (const RippleEstimate& one : found.orders)
         rows.front().push_back(fmt::format("order {:g}, dB", one.order));
     for (const char* const title : {"late, ms", "ripple, Nm rms", "off by, Nm", ""})
         rows.front().emplace_back(title);

@@ -40,10 +40,12 @@ struct SpectrumRequest {
     PlotRequest plot;
     bool peaks = false;
 
-    /// Half-overlapping pieces of all of the log, which need no more of it at a time.
-    [[nodiscard]] bool in_pieces() const {
-        return segment && !stretch && !map.map && !residual.any() && domain == "frequency";
+    /// Frequencies of all of the log are the same however the joint moves.
+    [[nodiscard]] bool needs_motion() const {
+        return stretch || map.map || residual.any() || domain != "frequency";
     }
+    /// Half-overlapping pieces of all of the log, which need no more of it at a time.
+    [[nodiscard]] bool in_pieces() const { return segment && !needs_motion(); }
 };
 
 /// The parts of the log that are asked for: all of it, every steady stretch, or one of them by number.
@@ -157,7 +159,9 @@ using Made = std::pair<Result, Provenance>;
 
 /// The log goes by and is not held.
 Made piecewise_result(const SpectrumRequest& request, const std::string& command_line) {
-    LogPasses log(request.path, request.log.resolve());
+    ReadOptions reading = request.log.resolve();
+    reading.needs_velocity = false;
+    LogPasses log(request.path, reading);
     const StretchSpectrum spectrum = streamed_spectrum(log, {request.segment, request.false_alarm}, [&] {
         say_layout(request.common, log.layout());
         say_warnings(request.common, log.recording().warnings);
@@ -190,7 +194,8 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     if (lines.gear) say(request.common, gear_in_words(*lines.gear));
     LogOptions words = request.log;
     take_joint_of(request.residual, words.joint);
-    const ReadOptions reading = read_options(words, lines.gear);
+    ReadOptions reading = read_options(words, lines.gear);
+    reading.needs_velocity = request.needs_motion();
     require_memory_for_spectrum(request, reading);
     Log log = read_log(request.path, reading);
     say_layout(request.common, log.layout);

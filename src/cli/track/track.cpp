@@ -177,9 +177,23 @@ Figure figure_of(const TrackRequest& request, const TrackReport& report) {
     return figure;
 }
 
-TrackReport track_report_of(const TrackRequest& request, const Prepared& prepared, const std::string& joint) {
+/// All lines that turn are estimated together, as they are tracked.
+std::vector<std::optional<RippleEstimate>> ripple_of_lines(const TrackRequest& request,
+                                                           const Prepared& prepared, const TraceView& trace) {
+    const GearRatio ratio = request.gear ? request.gear->ratio : GearRatio(1.0);
+    std::vector<Order> orders;
+    for (const double order : prepared.reference_orders) orders.emplace_back(order);
+    std::vector<std::optional<RippleEstimate>> found;
+    for (RippleEstimate& one : estimate_ripple({&trace, 1}, ratio, orders))
+        found.emplace_back(std::move(one));
+    found.resize(prepared.labels.size());  // tones come last
+    return found;
+}
+
+TrackReport track_report_of(const TrackRequest& request, const Prepared& prepared, const Trace& trace) {
     TrackReport report;
-    report.joint = joint;
+    report.joint = trace.joint;
+    report.ripple = ripple_of_lines(request, prepared, trace.view());
     report.method = request.method;
     report.kind = request.amplitude == "rms"            ? AmplitudeKind::rms
                   : request.amplitude == "peak-to-peak" ? AmplitudeKind::peak_to_peak
@@ -209,7 +223,7 @@ ExitCode run_track(TrackRequest& request, const std::string& command_line) {
     provenance.recordings.push_back({log.recording});
 
     const auto prepared = prepare(request, log.trace.view());
-    TrackReport report = track_report_of(request, *prepared, log.trace.joint);
+    TrackReport report = track_report_of(request, *prepared, log.trace);
     say_warnings(request.common, track_warnings(report));
     if (report.tracks.time_s.empty())
         raise<DataError>("{}: no row could be measured: {}", request.path, why_nothing_tracked(report));

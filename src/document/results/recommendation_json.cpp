@@ -3,19 +3,15 @@
 
 #include "document/fields/document_head.hpp"
 #include "document/fields/gear_fields.hpp"
+#include "document/fields/ripple_fields.hpp"
 #include "document/json/json.hpp"
 
 namespace ripplenotch {
 namespace {
 
-Json orders_to_json(const std::vector<OrderInLog>& orders) {
+Json orders_to_json(const std::vector<RippleEstimate>& orders) {
     Json json = Json::array();
-    for (const OrderInLog& one : orders) {
-        json.push_back({{"order", one.order},
-                        {"ripple_nm", one.ripple_nm},
-                        {"beside_nm", one.beside_nm},
-                        {"shows", one.shows}});
-    }
+    for (const RippleEstimate& one : orders) json.push_back(ripple_to_json(one));
     return json;
 }
 

@@ -3,6 +3,7 @@
 
 #include "document/fields/document_head.hpp"
 #include "document/fields/gear_fields.hpp"
+#include "document/fields/ripple_fields.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -30,6 +31,7 @@ Json tracked_line_to_json(const TrackReport& report, std::size_t i) {
     json["order"] = of_kind(TrackLabel::Kind::order);
     json["order_output"] = of_kind(TrackLabel::Kind::order_output);
     json["hz"] = of_kind(TrackLabel::Kind::tone);
+    json["ripple"] = report.ripple[i] ? ripple_to_json(*report.ripple[i]) : Json(nullptr);
     json["rows_measured"] = line.rows;
     json["median_nm"] = measured(line.median_nm);
     json["least_nm"] = measured(line.least_nm);

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/matrices/normal_errors.hpp"
 #include "fleet/features/joint_fit.hpp"
 #include "fleet/features/known_motion.hpp"
+#include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 
@@ -16,6 +18,7 @@ namespace {
 
 constexpr std::size_t most_feature_samples = std::size_t{1} << 14U;  // by hand: bounds the time of a log
 constexpr std::size_t most_orders = 6;                               // by hand: bounds the time of a log
+constexpr double widest_phase_deg = 45.0;                            // half of its interval
 
 Descriptor untold(std::string stem, std::string unit, std::string reason) {
     return {std::move(stem), std::move(unit), {}, {}, std::move(reason)};
@@ -41,6 +44,32 @@ Descriptor noise_of(const JointFit& joint) {
     return {"noise_floor", "nm", noise_nm, {}, {}};
 }
 
+// Amplitude and phase at one order.
+void add_ripple(const RippleEstimate& one, bool has_position, std::vector<Descriptor>& all) {
+    const std::string stem = "ripple_" + shortest(one.order);
+    Descriptor amplitude = untold(stem + "_amplitude", "nm", one.insufficient);
+    Descriptor phase = untold(stem + "_phase", "deg", one.insufficient);
+    const double half_deg = normal_95_errors * one.phase_standard_error_deg;
+    if (one.present()) {
+        const double half_nm = normal_95_errors * one.standard_error_nm;
+        amplitude.value = one.amplitude_nm;
+        amplitude.ci95 = Interval{std::max(one.amplitude_nm - half_nm, 0.0), one.amplitude_nm + half_nm};
+    } else if (one.searched()) {
+        amplitude.reason = fmt::format("no ripple above {:.2g} Nm", one.detectable_nm);
+    }
+    if (one.searched() && !has_position)
+        phase.reason = "the log has no position, and so no angle to count from";
+    else if (one.searched() && !(one.present() && one.phase_deg && half_deg < widest_phase_deg))
+        phase.reason = one.present() ? "the phase is not the same along the log"
+                                     : "the amplitude is too small for a phase";
+    if (phase.reason.empty()) {
+        phase.value = one.phase_deg;
+        phase.ci95 = Interval{*one.phase_deg - half_deg, *one.phase_deg + half_deg};
+    }
+    all.push_back(std::move(amplitude));
+    all.push_back(std::move(phase));
+}
+
 // Of the ripple: what is stated, else what was found.
 std::optional<GearAccount> gear_of_ripple(const Identification& found,
                                           const std::optional<GearAccount>& stated) {
@@ -58,11 +87,19 @@ Features features_of(const TraceView& log, const Identification& found,
     const FittedSamples samples = thinned(whole, log.torque_nm, known, most_feature_samples);
     MotionFacts facts = motion_facts(samples.motion, samples.torque_nm, log.has_position());
     facts.accelerations = accelerations_of(log, whole, known);
-    const JointFit joint(samples, facts, gear_of_ripple(found, stated), log.sample_rate);
+    std::optional<GearAccount> gear = gear_of_ripple(found, stated);
+    std::vector<RippleEstimate> ripple;
+    if (gear) {
+        ripple = estimate_ripple({&log, 1}, gear->ratio, gear->orders);
+        gear->orders.clear();
+        for (const RippleEstimate& one : ripple)
+            if (one.searched()) gear->orders.emplace_back(one.order);
+    }
+    const JointFit joint(samples, facts, std::move(gear));
     Features features{facts.mix, {}};
     features.mix.load_rms_nm = joint.load_rms_nm();
     features.descriptors.push_back(ratio_of(found));
-    for (Descriptor& one : joint.ripple()) features.descriptors.push_back(std::move(one));
+    for (const RippleEstimate& one : ripple) add_ripple(one, log.has_position(), features.descriptors);
     for (Descriptor& one : joint.torques()) features.descriptors.push_back(std::move(one));
     features.descriptors.push_back(noise_of(joint));
     features.descriptors.push_back(resonance_of(found));

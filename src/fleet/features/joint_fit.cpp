@@ -16,12 +16,10 @@ namespace {
 
 constexpr double least_travel_deg = 20.0;  // less, and the weight of a link is hardly told from a zero error
 constexpr double width_deg_s = 0.5;        // of the step of friction where the joint reverses
-constexpr double samples_a_period = 3.0;   // as in ripple_meter.cpp
 constexpr std::size_t fewest_samples = 200;            // as recording.fewest_samples of a diagnosis
 constexpr std::size_t stretches = 40;                  // of the log, for errors that are not white
 constexpr double widest_of_value = 0.5;                // an interval's half, of the value ...
 constexpr double widest_of_torque = 0.02;              // ... or, in torque, of all torque of the log
-constexpr double widest_phase_deg = 90.0;              // of its interval, from end to end
 constexpr double least_load = 0.1;                     // of inertia and weight, of all torque
 constexpr std::size_t fewest_reversals = 2;            // a way there and back
 constexpr double way_of_start_deg = 1.0;               // by hand
@@ -47,14 +45,12 @@ struct JointFit::Wanted {
     std::size_t turn = 0;  ///< which term of that effect
 };
 
-JointFit::JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear,
-                   Hertz rate)
+JointFit::JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear)
     : motion_(samples.motion),
       torque_nm_(samples.torque_nm),
       known_(samples.use),
       facts_(facts),
-      gear_(std::move(gear)),
-      rate_(rate) {
+      gear_(std::move(gear)) {
     if (motion_.size() < fewest_samples)
         raise<DataError>("the log has {} rows; features need at least {}", motion_.size(), fewest_samples);
     const auto known = static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 1));
@@ -149,17 +145,8 @@ void JointFit::build() {
         add_term(fmt::format("coulomb-friction,width_deg_s={}", width_deg_s));
         if (facts_.several_speeds()) add_term("viscous-friction");
     }
-    if (!gear_ || !moves) return;
-    for (const Order order : gear_->orders)
-        if (too_fast(order).empty()) add_term(fmt::format("ripple,order={}", shortest(order.value())));
-}
-
-std::string JointFit::too_fast(Order order) const {
-    const double hz = order.value() * gear_->ratio.value() * facts_.mix.speed_p50_deg_s / 360.0;
-    if (hz * samples_a_period <= rate_.value()) return {};
-    return fmt::format(
-        "at {:.3g} deg/s this line is at {:.3g} Hz, beyond a third of the {:.4g} Hz of the log",
-        facts_.mix.speed_p50_deg_s, hz, rate_.value());
+    for (const Order order : gear_ ? gear_->orders : std::vector<Order>{})
+        add_term(fmt::format("ripple,order={}", shortest(order.value())));
 }
 
 const FittedValue* JointFit::fitted(const std::string& effect, const std::string& parameter,
@@ -197,35 +184,6 @@ Descriptor JointFit::told(const Wanted& wanted, std::string reason) const {
         }
     }
     return one;
-}
-
-std::vector<Descriptor> JointFit::ripple() const {
-    std::vector<Descriptor> all;
-    if (!gear_) return all;
-    std::size_t turn = 0;
-    for (const Order order : gear_->orders) {
-        const std::string stem = "ripple_" + shortest(order.value());
-        std::string reason = too_fast(order);
-        if (reason.empty() && !(facts_.mix.moving_share > 0.0)) reason = "the joint rests";
-        const std::size_t here = reason.empty() ? turn++ : turn;
-        all.push_back(
-            told({stem + "_amplitude", "nm", "ripple", "amplitude_nm", std::sqrt(0.5), here}, reason));
-        const bool amplitude = all.back().value.has_value();
-        Descriptor phase{stem + "_phase", "deg", {}, {}, reason};
-        const FittedValue* value = fitted("ripple", "phase_deg", here);
-        const bool sharp = amplitude && value != nullptr && value->ci95 &&
-                           value->ci95->high - value->ci95->low < widest_phase_deg;
-        if (reason.empty() && !facts_.has_position)
-            phase.reason = "the log has no position, and so no angle to count from";
-        else if (reason.empty() && !sharp)
-            phase.reason = "the amplitude is too small for a phase";
-        if (phase.reason.empty()) {
-            phase.value = value->value;
-            phase.ci95 = value->ci95;
-        }
-        all.push_back(std::move(phase));
-    }
-    return all;
 }
 
 std::vector<Descriptor> JointFit::torques() const {

@@ -15,12 +15,10 @@ namespace ripplenotch {
 
 class JointFit {
   public:
-    /// All must outlive it. `rate`: of the log, before it was thinned. Throws DataError for too few samples.
-    JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear,
-             Hertz rate);
+    /// All must outlive it. The ripple at the orders of the gear is fitted along and not reported: see
+    /// estimate_ripple(). Throws DataError for too few samples.
+    JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear);
 
-    /// Amplitude and phase of each order of the gear; none where there is no gear.
-    [[nodiscard]] std::vector<Descriptor> ripple() const;
     /// Coulomb, viscous and load friction, lost motion, inertia, gravity, zero of the sensor.
     [[nodiscard]] std::vector<Descriptor> torques() const;
     /// rms torque of inertia and gravity; empty where neither is fitted.
@@ -40,14 +38,12 @@ class JointFit {
     [[nodiscard]] Descriptor lost_motion() const;
     [[nodiscard]] const FittedValue* fitted(const std::string& effect, const std::string& parameter,
                                             std::size_t turn = 0) const;
-    [[nodiscard]] std::string too_fast(Order order) const;
 
     const Motion& motion_;
     const std::vector<double>& torque_nm_;
     const std::vector<unsigned char>& known_;
     const MotionFacts& facts_;
     std::optional<GearAccount> gear_;
-    Hertz rate_;
     std::string no_wind_;  ///< why the angle in which friction turns over is not told; empty: it is
     Model model_;
     Fit fit_;

@@ -16,6 +16,7 @@
 #include "log/columns/stated_units.hpp"
 #include "log/columns/unit_text.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/number.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -50,6 +51,7 @@ class Decision {
                                     layout_detail::motions_of(known(), groups_, stated_, options_, layout_),
                                     layout_);
         layout_detail::state_derived_velocity(layout_, facts_);
+        take_constant_speed();
         layout_detail::state_units(layout_, facts_, options_);
         report_repeated_names();
         layout_detail::check_channel_clocks(source_, facts_, layout_);
@@ -117,9 +119,31 @@ class Decision {
         if (options_.needs_torque) require_torque_and_velocity();
     }
 
+    // At the joint, as all motion is from here on.
+    void take_constant_speed() {
+        if (!options_.constant_speed) return;
+        if (layout_.chosen.velocity || layout_.velocity_from_position)
+            raise<UsageError>("--constant-speed: {} says itself how the joint moves; leave it out", source_);
+        const auto side = options_.sides.find(Role::velocity);
+        const bool motor = side != options_.sides.end() && side->second == Shaft::motor;
+        if (motor && !options_.gear_ratio)
+            raise<UsageError>("--constant-speed of the motor needs --gear-ratio, for example 100");
+        layout_.constant_speed = *options_.constant_speed / (motor ? *options_.gear_ratio : 1.0);
+        layout_.inferences.push_back(
+            {"velocity",
+             fmt::format("{} deg/s throughout", shortest(layout_.constant_speed->value())),
+             "no motion is logged, and --constant-speed states it",
+             "--columns velocity=NAME",
+             {}});
+    }
+
     // The slope of a position needs times.
     bool may_derive(const JointColumns& joint) const {
         return joint.position && (layout_.chosen.time || layout_.stated_rate);
+    }
+
+    bool may_go_without(const JointColumns& joint) const {
+        return may_derive(joint) || options_.constant_speed || !options_.needs_velocity;
     }
 
     layout_detail::KnownColumns known() const { return {source_, facts_, forced_, names_}; }
@@ -145,7 +169,7 @@ class Decision {
         std::vector<const JointGroup*> groups;
         for (const JointGroup& group : groups_) {
             const JointColumns columns = columns_of(group);
-            if (!columns.velocity && !may_derive(columns)) continue;
+            if (!columns.velocity && !may_go_without(columns)) continue;
             if (!columns.torque && options_.torque_of_each) continue;
             groups.push_back(&group);
             (groups.size() == 1 ? layout_.chosen : layout_.others.emplace_back()) = columns;
@@ -183,12 +207,13 @@ class Decision {
                                : fmt::format("{}", fmt::join(facts_.names, ", ")).substr(0, 400);
         for (const auto& [column, role] : {std::pair{layout_.chosen.torque, Role::torque},
                                            std::pair{layout_.chosen.velocity, Role::velocity}}) {
-            if (column || (role == Role::velocity && may_derive(layout_.chosen))) continue;
+            if (column || (role == Role::velocity && may_go_without(layout_.chosen))) continue;
             if (role == Role::torque && options_.every_joint && !options_.torque_of_each) continue;
             raise<DataError>(
-                "{}: read {}{}, expected a {} column; say which it is, with --columns {}=NAME{}", source_,
+                "{}: read {}{}, expected a {} column; say which it is, with --columns {}=NAME{}{}", source_,
                 names, facts_.left_out, role_name(role), role_name(role),
-                facts_.names.empty() ? ", or all by place, with --columns time,velocity,torque" : "");
+                facts_.names.empty() ? ", or all by place, with --columns time,velocity,torque" : "",
+                role == Role::velocity ? "; or how fast the joint turns, with --constant-speed 60rpm" : "");
         }
     }
 

@@ -67,4 +67,10 @@ void DerivedVelocity::derive(RowBlock& block, std::size_t k) {
     before_[k] = point(block, joints_[k], size - 1);
 }
 
+bool ConstantVelocity::next(RowBlock& block) {
+    if (!reader_->next(block)) return false;
+    for (JointRows& rows : block.joints) rows.velocity_deg_s.assign(block.size(), speed_.value());
+    return true;
+}
+
 }  // namespace ripplenotch

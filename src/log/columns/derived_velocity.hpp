@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Velocity for logs that hold only a position.
+// Velocity for logs that hold none: the slope of the position, or one that is stated.
 
 #include <exception>
 #include <memory>
@@ -37,6 +37,22 @@ class DerivedVelocity : public LogReader {
     RowBlock ahead_;                            ///< the block after the one that is passed on
     bool begun_ = false, more_ = false;
     std::exception_ptr failure_;  ///< of the block ahead; for when its turn comes
+};
+
+/// Passes on the rows of another reader, with one velocity for all joints.
+class ConstantVelocity : public LogReader {
+  public:
+    ConstantVelocity(std::unique_ptr<LogReader> reader, DegPerSec speed)
+        : reader_(std::move(reader)), speed_(speed) {}
+
+    [[nodiscard]] const Layout& layout() const override { return reader_->layout(); }
+    [[nodiscard]] std::string_view head() const override { return reader_->head(); }
+    [[nodiscard]] const LogReader& base() const override { return reader_->base(); }
+    bool next(RowBlock& block) override;
+
+  private:
+    std::unique_ptr<LogReader> reader_;
+    DegPerSec speed_;
 };
 
 }  // namespace ripplenotch

@@ -52,6 +52,8 @@ std::string options_line(const Layout& layout, const ColumnFacts& facts, const R
     if (!sides.empty()) words.push_back(fmt::format("--side {}", fmt::join(sides, ",")));
     if (!layout.chosen.joint.empty()) words.push_back("--joint " + quoted(layout.chosen.joint));
     if (layout.stated_rate) words.push_back("--sample-rate " + shortest(layout.stated_rate->value()) + "Hz");
+    if (options.constant_speed)
+        words.push_back("--constant-speed " + shortest(options.constant_speed->value()) + "deg/s");
     if (options.nm_per_ampere) words.push_back("--kt " + shortest(*options.nm_per_ampere));
     if (options.skip_lines > 0) words.push_back(fmt::format("--skip-lines {}", options.skip_lines));
     if (options.hold_bad_values) words.push_back("--hold-bad-values");

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""One answer to how large the ripple is: identify, features, recommend, track and spectrum agree on lines and amplitudes."""
+
+import json
+import math
+import os
+import pathlib
+import unittest
+
+from test_gear_methods import DATA, Case
+
+LOGS = pathlib.Path(os.environ.get("RIPPLENOTCH_LOGS", "/nonexistent"))
+CASES = LOGS.parent / "cases"
+# Where identify names no gear, the law is asked at these ratios: of data sheets, or as the logs were simulated.
+REAL = [("gpl3/panda_gaz_all.csv", f"panda_joint{j}", ratio) for j, ratio in zip(range(1, 7), (120, 120, 120, 120, 80, 80))]
+REAL += [("kuka_kr300_trajA_all.csv", f"j{j}", ratio)
+         for j, ratio in zip(range(1, 7), (256.857, 267.429, 252.333, 221, 239.619, 154.323))]
+REAL += [("ur10_unisa_exciting_all.csv", joint, 101) for joint in ("shoulder_pan_joint", "elbow_joint", "wrist_1_joint")]
+REAL += [("neura_lara8_j3.csv", None, 101)]
+SIMULATED = [("st_kg30_travel60.csv.gz", None, 30), ("st_kg50_travel60.csv.gz", None, 50), ("kg6.csv.gz", None, 6),
+             ("kg16.csv.gz", None, 16)]
+ONE_LINE = 1.5 / 8.0  # motor orders: resolution of the estimate, within which lines of identify are one
+
+
+def is_searched(order_output, travel_turns):
+    """What identify searches: the one place that says so."""
+    return order_output >= 20 and order_output * travel_turns >= 20
+
+
+class Law(Case):
+    def told(self, *words):
+        done = self.run_tool(*words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout.splitlines()[0] if words[0] == "features" else done.stdout)
+
+    def lines_of(self, result, ratio, order):
+        """Amplitude at a motor order and its error: of all lines that the resolution of the estimate does not separate."""
+        near = [line for line in result["lines"] if line.get("order_output") and
+                abs(line["order_output"] / ratio - order) < ONE_LINE]
+        return (math.hypot(*(line["amplitude_nm"] for line in near)),
+                math.hypot(*(line["amplitude_nm"] / line["snr"] for line in near)))
+
+    def agree(self, a, b, what):
+        self.assertLessEqual(abs(a[0] - b[0]), max(3.0 * math.hypot(a[1], b[1]), 0.05 * max(a[0], b[0])), what)
+
+    def check(self, path, joint, ratio):
+        where = [path, *([] if joint is None else ["--joint", joint])]
+        found = self.told("identify", *where, "--gear-ratio", ratio, "--json")
+        gear = found["gear"] or {"ratio": ratio, "orders": [1, 2]}
+        ratio, orders = gear["ratio"], gear["orders"][:6]
+        stated = ["--gear-ratio", ratio, "--orders", ",".join(map(str, orders))]
+        features = self.told("features", *where, *stated)
+        recommended = {one["order"]: one for one in self.told("recommend", *where, *stated, "--json")["orders"]}
+        ripple = self.tracked(where, stated)
+        spectrum = self.run_tool("spectrum", *where, "--domain", "order", "--json")
+        spectrum = json.loads(spectrum.stdout) if spectrum.returncode == 0 else None
+        for order in orders:
+            one = recommended[order]
+            value = features[f"ripple_{order:g}_amplitude_nm"]
+            self.assertEqual(value is not None, bool(one["present"]), order)
+            if not one["cycles"]:
+                continue  # nobody can say
+            if order in ripple:
+                self.agree((ripple[order]["amplitude_nm"], ripple[order]["standard_error_nm"]),
+                           (one["amplitude_nm"], one["standard_error_nm"]), f"track, order {order}")
+                self.assertEqual(ripple[order]["present"], one["present"])
+            if value is not None:
+                low, high = features[f"ripple_{order:g}_amplitude_ci95_nm"]
+                self.agree((value, (high - low) / 3.92), (one["amplitude_nm"], one["standard_error_nm"]), f"features, order {order}")
+            if not is_searched(order * ratio, features["travel_deg"] / 360):
+                continue
+            for command, result in ("identify", found), ("spectrum", spectrum):
+                line = self.lines_of(result, ratio, order)
+                if line[0] > one["detectable_nm"]:
+                    self.assertTrue(one["present"], f"{command} names order {order}")
+                if line[0] > 0.0 and one["present"]:
+                    self.agree(line, (one["amplitude_nm"], one["standard_error_nm"]), f"{command}, order {order}")
+                if found["conclusive"] and found["finding"] == "nothing":
+                    self.assertFalse(one["present"], f"{command} says that there is none")
+
+    def tracked(self, where, stated):
+        done = self.run_tool("track", *where, *stated, "--json")
+        if done.returncode == 3:  # no row could be measured
+            return {}
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ripple = {}
+        for line in json.loads(done.stdout)["lines"]:
+            one = ripple[line["order"]] = line["ripple"]
+            if one["present"]:
+                self.assertLessEqual(line["least_nm"], 1.05 * one["amplitude_nm"])
+                self.assertGreaterEqual(line["greatest_nm"], 0.95 * one["amplitude_nm"])
+        return ripple
+
+    def check_all(self, folder, logs):
+        for name, joint, ratio in logs:
+            with self.subTest(log=name, joint=joint):
+                self.check(folder / name, joint, ratio)
+
+    def test_on_the_logs_of_the_project(self):
+        self.check_all(DATA, [(path.name, None, 100) for path in sorted(DATA.glob("paper_*.csv"))])
+
+    @unittest.skipUnless(LOGS.is_dir(), "no logs of real robots here (RIPPLENOTCH_LOGS)")
+    def test_on_logs_of_real_robots(self):
+        self.check_all(LOGS, REAL)
+
+    @unittest.skipUnless(CASES.is_dir(), "no cases beside the logs of real robots (RIPPLENOTCH_LOGS)")
+    def test_on_short_travel_and_low_ratios(self):
+        self.check_all(CASES, SIMULATED)
+
+
+if __name__ == "__main__":
+    unittest.main()
