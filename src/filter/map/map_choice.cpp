@@ -23,9 +23,15 @@ using Eigen::MatrixXcd, Eigen::MatrixXd;
 constexpr double least_warming_degc = 1.0;  ///< a narrower range does not determine what a degree does
 constexpr std::size_t most_harmonics = 3;   // by hand
 constexpr std::size_t surrogates_an_order = 200;  ///< twice what the smallest level of the test resolves
+// Orders that are compared with: so far to both sides, beyond what the joint's turn modulates. Of ten that are
+// independent, noise at the order is twice the largest once in 66 logs (exponential variables).
+constexpr double nearest_order = 0.1, order_span = 0.3, farthest_start = 0.3;
+constexpr int compared_orders = 15;
+constexpr double above_neighbours = 2.0;
 constexpr std::size_t injections = 20;
 constexpr double injection_step = 1.25;
-constexpr int most_injection_steps = 60;
+constexpr double most_injected = 10.0;  ///< times the rms amplitude: a test that misses this has no power
+constexpr double errors_better = 2.0;   ///< standard errors by which a map has to be better than none
 
 /// How an amplitude depends on the joint's angle.
 struct Angle {
@@ -89,29 +95,64 @@ MatrixXcd random_phasors(std::size_t blocks, std::size_t draws, unsigned seed) {
     return phasors;
 }
 
+double reduction_of(const MapData& data, const MapForm& form, std::size_t order) {
+    return MapRegression(data, frame_of(data, form, 0.0), order).reduction().sum().real();
+}
+
+// Leakage of a torque that repeats with the joint's position has the same phase in all sweeps, and so at every
+// order nearby. A line of the motor has not: the same amplitudes turned by another order's angle cancel.
+bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size_t order) {
+    const double ratio = data.gear_ratio.value();
+    const double start = std::min(nearest_order + data.orders[order].value() / ratio, farthest_start);
+    const double own = reduction_of(data, form, order);
+    for (int k = 0; k < 2 * compared_orders; ++k) {
+        const double aside = (k % 2 == 0 ? 1.0 : -1.0) * (start + order_span * (k / 2) / compared_orders);
+        MapData turned = data;
+        for (MapWindow& window : turned.windows) {
+            const double cycles = aside * ratio * window.state.position_deg / 360.0;
+            window.value[order] *= portable::phasor(2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
+        }
+        if (own < above_neighbours * reduction_of(turned, form, order)) return false;
+    }
+    return true;
+}
+
 /// Rotation test of one order. What is not locked to the motor has in each block of a log a phase of its own:
 /// logs whose blocks are turned at random are draws of the null hypothesis, whatever its noise is. Beyond any
 /// of them counts even with four blocks, since four random phases are hardly alike. The statistic is the
-/// largest reduction of left-out squares of a few forms.
+/// reduction of left-out squares, in deviations of its draws, largest of a few forms.
 class RotationTest {
   public:
     RotationTest(const MapData& data, bool tied, std::size_t draws)
-        : forms_(forms_of(data, {1, 3}, tied ? std::vector<Angle>{{0, 0}, {0, 1}, {0, -1}}
-                                             : std::vector<Angle>{{0, 0}})),
+        : forms_(forms_of(data, {1, 3, 5}, tied ? std::vector<Angle>{{0, 0}, {0, 1}, {0, -1}}
+                                                : std::vector<Angle>{{0, 0}})),
           phasors_(random_phasors(data.blocks, draws + 1, 20)) {
         phasors_.col(0).setOnes();
     }
     /// The false-alarm probability: the share of draws that are as large, the log itself counted. 1 where the
-    /// noise beside the order alone may be as large (chi-square of two degrees of freedom at `level`).
+    /// noise beside the order alone may be as large (chi-square of two degrees of freedom at `level`), or where
+    /// the order is no line among its neighbours.
     [[nodiscard]] double false_alarm(const MapData& data, std::size_t order, double level) const {
         Eigen::ArrayXd largest = Eigen::ArrayXd::Constant(phasors_.cols(), -1e300);
-        for (const MapForm& form : forms_) {
-            const MatrixXcd reduction = MapRegression(data, frame_of(data, form, 0.0), order).reduction();
+        double most = 0.0;
+        std::size_t best = 0;
+        for (std::size_t f = 0; f < forms_.size(); ++f) {
+            const MatrixXcd reduction =
+                MapRegression(data, frame_of(data, forms_[f], 0.0), order).reduction();
             const MatrixXcd turned = phasors_.conjugate().cwiseProduct(reduction * phasors_);
-            largest = largest.max(turned.colwise().sum().real().transpose().array());
+            const Eigen::ArrayXd squares = turned.colwise().sum().real().transpose().array();
+            const Eigen::ArrayXd beyond = squares - squares.mean();
+            const double spread = std::sqrt(beyond.square().mean());
+            most = std::max(most, squares(0));
+            if (!(spread > 0.0)) continue;
+            if (beyond(0) / spread > largest(0)) best = f;
+            largest = largest.max(beyond / spread);
         }
-        if (!(largest(0) > -2.0 * portable::log(level))) return 1.0;
-        return static_cast<double>((largest >= largest(0)).count()) / static_cast<double>(largest.size());
+        if (!(most > -2.0 * portable::log(level))) return 1.0;
+        const double share =
+            static_cast<double>((largest >= largest(0)).count()) / static_cast<double>(largest.size());
+        if (share > map_false_alarm || stands_above_neighbours(data, forms_[best], order)) return share;
+        return 1.0;
     }
 
   private:
@@ -186,13 +227,19 @@ void choose_form(const MapData& data, std::vector<FormTrial> trials, MapChoice& 
         const MapRegression regression(data, frame_of(data, chosen.form, 0.0), i);
         HeldOut held;
         double weights = 0.0;
+        Eigen::ArrayXd better(count);
         for (Eigen::Index b = 0; b < count; ++b) {
             const BlockSquares squares = regression.squares(static_cast<std::size_t>(b));
             held.total += squares.total;
             held.noise += squares.noise;
             weights += squares.weights;
-            held.residual += trials[smallest_good(trials, b)].by_order[i](b, b);
+            const double left = trials[smallest_good(trials, b)].by_order[i](b, b);
+            held.residual += left;
+            better(b) = squares.total - left;
         }
+        const double blocks = static_cast<double>(count), mean = better.mean();
+        const double error = std::sqrt((better - mean).square().sum() / std::max(blocks * (blocks - 1.0), 1.0));
+        choice.better.push_back(mean > errors_better * error);
         if (choice.present[i]) {
             total += held.total;
             residual += held.residual;
@@ -229,8 +276,7 @@ MapChoice choose_map(const MapData& data, bool tied) {
         if (!any) break;
     }
     choose_form(data, std::move(trials), choice);
-    for (std::size_t i = 0; i < orders; ++i)
-        if (choice.held_out[i].residual >= choice.held_out[i].total) choice.present[i] = false;
+    for (std::size_t i = 0; i < orders; ++i) choice.present[i] = choice.present[i] && choice.better[i];
     return choice;
 }
 
@@ -248,13 +294,14 @@ double detectable_amplitude(const MapData& all, std::size_t order, bool tied) {
         summarise(injected);
         return test.false_alarm(injected, 0, level) <= level;
     };
+    const double most_nm = most_injected * std::sqrt(data.energy[0]);
     double amplitude_nm = std::sqrt(data.mean_noise[0] / static_cast<double>(data.windows.size()));
-    Eigen::Index seen = 0;
-    for (int step = 0; step < most_injection_steps && seen < phasors.cols(); ++step) {
-        for (seen = 0; seen < phasors.cols() && found(amplitude_nm, seen); ++seen) continue;
-        if (seen < phasors.cols()) amplitude_nm *= injection_step;
+    for (; amplitude_nm < most_nm; amplitude_nm *= injection_step) {
+        Eigen::Index seen = 0;
+        while (seen < phasors.cols() && found(amplitude_nm, seen)) ++seen;
+        if (seen == phasors.cols()) return amplitude_nm;
     }
-    return seen == phasors.cols() ? amplitude_nm : std::numeric_limits<double>::infinity();
+    return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace ripplenotch

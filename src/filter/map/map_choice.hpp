@@ -20,8 +20,9 @@ struct HeldOut {
 struct MapChoice {
     MapForm form;
     std::vector<HeldOut> held_out;     ///< by order of the data
-    std::vector<bool> present;         ///< by order of the data: ripple, at the family-wise false-alarm rate
-    std::vector<double> false_alarm;   ///< by order of the data: probability of such ripple by chance
+    std::vector<bool> present;        ///< by order of the data: ripple, at the family-wise false-alarm rate
+    std::vector<bool> better;         ///< by order of the data: beyond twice the standard error over the blocks
+    std::vector<double> false_alarm;  ///< by order of the data: probability of such ripple by chance
     std::vector<std::string> notes;
 };
 

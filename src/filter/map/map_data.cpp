@@ -92,6 +92,7 @@ void summarise(MapData& data) {
 MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
                  std::span<const std::vector<double>> temperatures_degc) {
     MapData data;
+    data.gear_ratio = gear.ratio;
     data.orders = gear.orders;
     for (std::size_t l = 0; l < logs.size(); ++l) {
         const bool warms = !temperatures_degc.empty();
@@ -136,6 +137,7 @@ MapData of_log(const MapData& data, std::size_t log, bool is) {
 
 RippleMap frame_of(const MapData& data, const MapForm& form, double zero_deg) {
     RippleMap map;
+    map.gear_ratio = data.gear_ratio;
     map.orders = data.orders;
     map.form = form;
     map.zero_deg = zero_deg;

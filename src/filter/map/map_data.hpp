@@ -26,6 +26,7 @@ struct MapWindow {
 /// Blocks are windows in a row, of one log each.
 struct MapData {
     std::vector<MapWindow> windows;
+    GearRatio gear_ratio;
     std::vector<Order> orders;
     std::size_t blocks = 0;
     std::vector<double> mean_noise, energy;  ///< by order: means over the windows of noise and |value|^2

@@ -17,7 +17,10 @@ namespace ripplenotch {
 namespace {
 
 constexpr double errors_apart = 3.0;       // by hand: three standard errors
-constexpr double ripple_over_noise = 2.0;  ///< squares of an order that is there
+constexpr double ripple_over_noise = 2.0;  ///< squares of an order that an oscillator may follow
+// Squares of an order that is there for certain: the noise of order 1 is measured at 1.5, where a spectrum that
+// falls with the third power of the frequency is 11 times smaller.
+constexpr double certain_over_noise = 11.0;
 constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
 
 MapOrderScore score_of(double order, const HeldOut& held) {
@@ -81,8 +84,8 @@ void hold_logs_together(const MapData& data, const MapChoice& choice, const Gear
     }
 }
 
-bool has_excess(const MapOrderScore& score) {
-    return score.ripple_nm * score.ripple_nm >= ripple_over_noise * score.noise_nm * score.noise_nm;
+bool exceeds_noise(const MapOrderScore& score, double factor) {
+    return score.ripple_nm * score.ripple_nm >= factor * score.noise_nm * score.noise_nm;
 }
 
 // An order whose ripple is there and follows no form stays in the map with no amplitude, for who follows it.
@@ -94,7 +97,7 @@ void fill_map(const MapData& data, const MapChoice& choice, const GearAccount& g
     fit.map.gear_ratio = gear.ratio;
     for (std::size_t i = 0; i < data.orders.size(); ++i) {
         const MapOrderScore& score = fit.scores[i];
-        if (!score.in_map && !has_excess(score)) continue;
+        if (!score.in_map && !exceeds_noise(score, ripple_over_noise)) continue;
         const double noise = score.noise_nm * score.noise_nm;
         const double left = score.in_map ? score.left_nm * score.left_nm : score.ripple_nm * score.ripple_nm;
         const MapRegression regression(data, frame, i);
@@ -141,7 +144,7 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         score.false_alarm = choice.false_alarm[i];
         if (!score.in_map) score.detectable_nm = detectable_amplitude(data, i, fit.anchored);
         any = any || score.in_map;
-        excess = excess || has_excess(score);
+        excess = excess || exceeds_noise(score, certain_over_noise);
         bounded = bounded && std::isfinite(score.detectable_nm);
         fit.notes.push_back(fmt::format("order {}: false-alarm probability {:.2g}", shortest(score.order),
                                         score.false_alarm));
