@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <random>
 
 #include "filter/map/map_regression.hpp"
@@ -31,7 +30,7 @@ constexpr double above_neighbours = 2.0;
 constexpr std::size_t injections = 20;
 constexpr double injection_step = 1.25;
 constexpr double most_injected = 10.0;  ///< times the rms amplitude: a test that misses this has no power
-constexpr double errors_better = 2.0;   ///< standard errors by which a map has to be better than none
+constexpr double least_errors_better = 2.0;  ///< by which a map has to be better than none
 
 /// How an amplitude depends on the joint's angle.
 struct Angle {
@@ -151,7 +150,7 @@ class RotationTest {
         if (!(most > -2.0 * portable::log(level))) return 1.0;
         const double share =
             static_cast<double>((largest >= largest(0)).count()) / static_cast<double>(largest.size());
-        if (share > map_false_alarm || stands_above_neighbours(data, forms_[best], order)) return share;
+        if (share > other_order_false_alarm || stands_above_neighbours(data, forms_[best], order)) return share;
         return 1.0;
     }
 
@@ -160,17 +159,12 @@ class RotationTest {
     MatrixXcd phasors_;
 };
 
-// Holm 1979: keeps the probability of any false order.
-std::vector<bool> holm(const std::vector<double>& false_alarm) {
-    std::vector<std::size_t> by_size(false_alarm.size());
-    std::iota(by_size.begin(), by_size.end(), 0U);
-    std::stable_sort(by_size.begin(), by_size.end(),
-                     [&](std::size_t a, std::size_t b) { return false_alarm[a] < false_alarm[b]; });
-    std::vector<bool> present(false_alarm.size());
-    for (std::size_t k = 0; k < by_size.size(); ++k) {
-        if (false_alarm[by_size[k]] > map_false_alarm / static_cast<double>(by_size.size() - k)) break;
-        present[by_size[k]] = true;
-    }
+// At most 1 % of logs without ripple give a map. Beside an order that is there any other is tested by itself.
+std::vector<bool> present_orders(const std::vector<double>& false_alarm) {
+    const double least = *std::min_element(false_alarm.begin(), false_alarm.end());
+    const bool any = least <= map_false_alarm / static_cast<double>(false_alarm.size());
+    std::vector<bool> present;
+    for (const double one : false_alarm) present.push_back(any && one <= other_order_false_alarm);
     return present;
 }
 
@@ -239,7 +233,7 @@ void choose_form(const MapData& data, std::vector<FormTrial> trials, MapChoice& 
         }
         const double blocks = static_cast<double>(count), mean = better.mean();
         const double error = std::sqrt((better - mean).square().sum() / std::max(blocks * (blocks - 1.0), 1.0));
-        choice.better.push_back(mean > errors_better * error);
+        choice.errors_better.push_back(error > 0.0 ? mean / error : 0.0);
         if (choice.present[i]) {
             total += held.total;
             residual += held.residual;
@@ -268,7 +262,7 @@ MapChoice choose_map(const MapData& data, bool tied) {
     for (std::size_t i = 0; i < orders; ++i)
         choice.false_alarm.push_back(
             test.false_alarm(data, i, map_false_alarm / static_cast<double>(orders)));
-    choice.present = holm(choice.false_alarm);
+    choice.present = present_orders(choice.false_alarm);
     std::vector<FormTrial> trials;
     const bool any = std::find(choice.present.begin(), choice.present.end(), true) != choice.present.end();
     for (const MapForm& form : candidate_forms(data, tied)) {
@@ -276,7 +270,13 @@ MapChoice choose_map(const MapData& data, bool tied) {
         if (!any) break;
     }
     choose_form(data, std::move(trials), choice);
-    for (std::size_t i = 0; i < orders; ++i) choice.present[i] = choice.present[i] && choice.better[i];
+    bool mapped = false;
+    for (std::size_t i = 0; i < orders; ++i) {
+        mapped = mapped || (choice.false_alarm[i] <= map_false_alarm / static_cast<double>(orders) &&
+                            choice.errors_better[i] > least_errors_better);
+    }
+    for (std::size_t i = 0; i < orders; ++i)
+        choice.present[i] = mapped && choice.present[i] && choice.errors_better[i] > 0.0;
     return choice;
 }
 
