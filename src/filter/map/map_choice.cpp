@@ -94,6 +94,9 @@ MatrixXcd random_phasors(std::size_t blocks, std::size_t draws, unsigned seed) {
     return phasors;
 }
 
+// Squares, in variances of each part of the noise, by which one amplitude of noise reduces them at most.
+double least_reduction(double level = map_false_alarm) { return -2.0 * portable::log(level); }
+
 double reduction_of(const MapData& data, const MapForm& form, std::size_t order) {
     return MapRegression(data, frame_of(data, form, 0.0), order).reduction().sum().real();
 }
@@ -147,7 +150,7 @@ class RotationTest {
             if (beyond(0) / spread > largest(0)) best = f;
             largest = largest.max(beyond / spread);
         }
-        if (!(most > -2.0 * portable::log(level))) return 1.0;
+        if (!(most > least_reduction(level))) return 1.0;
         const double share =
             static_cast<double>((largest >= largest(0)).count()) / static_cast<double>(largest.size());
         if (share > other_order_false_alarm || stands_above_neighbours(data, forms_[best], order)) return share;
@@ -175,8 +178,9 @@ struct FormTrial {
     MatrixXd sum;
 };
 
-// One-standard-error rule (Breiman et al. 1984) with paired differences: the smallest form whose squares are
-// within a standard error of those of the best. `left_out` has no say; the number of blocks for none.
+// The smallest form whose squares are those of the best but for what noise alone reduces them by: a form that
+// shrinks where the log determines little costs little, so that a standard error over a few blocks, which differ
+// by their ripple, would be too much. `left_out` has no say; the number of blocks for none.
 std::size_t smallest_good(const std::vector<FormTrial>& trials, Eigen::Index left_out) {
     const Eigen::Index blocks = trials.front().sum.rows();
     const auto row = [&](const FormTrial& trial) -> Eigen::ArrayXd {
@@ -188,14 +192,9 @@ std::size_t smallest_good(const std::vector<FormTrial>& trials, Eigen::Index lef
     std::size_t best = 0;
     for (std::size_t f = 1; f < trials.size(); ++f)
         if (row(trials[f]).sum() < row(trials[best]).sum()) best = f;
-    const double count = static_cast<double>(left_out < blocks ? blocks - 1 : blocks);
-    const Eigen::ArrayXd least = row(trials[best]);
-    for (std::size_t f = 0; f < best; ++f) {
-        const Eigen::ArrayXd more = row(trials[f]) - least;
-        const double sum = more.sum();
-        const double variance = (more.square().sum() - sum * sum / count) * count / std::max(count - 1.0, 1.0);
-        if (sum <= 0.0 || sum * sum <= variance) return f;
-    }
+    const double enough = row(trials[best]).sum() + least_reduction();
+    for (std::size_t f = 0; f < best; ++f)
+        if (row(trials[f]).sum() <= enough) return f;
     return best;
 }
 
