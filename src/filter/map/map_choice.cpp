@@ -97,6 +97,13 @@ MatrixXcd random_phasors(std::size_t blocks, std::size_t draws, unsigned seed) {
 // Squares, in variances of each part of the noise, by which one amplitude of noise reduces them at most.
 double least_reduction(double level = map_false_alarm) { return -2.0 * portable::log(level); }
 
+// The mean over its standard error.
+double in_errors(const Eigen::ArrayXd& by_block) {
+    const double blocks = static_cast<double>(by_block.size()), mean = by_block.mean();
+    const double square = (by_block - mean).square().sum() / std::max(blocks * (blocks - 1.0), 1.0);
+    return square > 0.0 ? mean / std::sqrt(square) : 0.0;
+}
+
 double reduction_of(const MapData& data, const MapForm& form, std::size_t order) {
     return MapRegression(data, frame_of(data, form, 0.0), order).reduction().sum().real();
 }
@@ -230,9 +237,7 @@ void choose_form(const MapData& data, std::vector<FormTrial> trials, MapChoice& 
             held.residual += left;
             better(b) = squares.total - left;
         }
-        const double blocks = static_cast<double>(count), mean = better.mean();
-        const double error = std::sqrt((better - mean).square().sum() / std::max(blocks * (blocks - 1.0), 1.0));
-        choice.errors_better.push_back(error > 0.0 ? mean / error : 0.0);
+        choice.errors_better.push_back(in_errors(better));
         if (choice.present[i]) {
             total += held.total;
             residual += held.residual;
@@ -291,7 +296,11 @@ double detectable_amplitude(const MapData& all, std::size_t order, bool tied) {
             window.value[0] += amplitude_nm * phasors(phasors.rows() - 1, trial);
         }
         summarise(injected);
-        return test.false_alarm(injected, 0, level) <= level;
+        const MapRegression alike(injected, frame_of(injected, {{data.speeds_deg_s.middle()}}, 0.0), 0);
+        Eigen::ArrayXd better = -alike.residuals().diagonal().array();
+        for (std::size_t b = 0; b < data.blocks; ++b)
+            better(static_cast<Eigen::Index>(b)) += alike.squares(b).total;
+        return in_errors(better) > least_errors_better && test.false_alarm(injected, 0, level) <= level;
     };
     const double most_nm = most_injected * std::sqrt(data.energy[0]);
     double amplitude_nm = std::sqrt(data.mean_noise[0] / static_cast<double>(data.windows.size()));
