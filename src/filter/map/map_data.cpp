@@ -60,7 +60,7 @@ void number_blocks(MapData& data) {
     const std::size_t size = std::max(least_block, (windows.size() + most_blocks - 1) / most_blocks);
     for (std::size_t from = 0, to = 0; from < windows.size(); from = to) {
         while (to < windows.size() && windows[to].log == windows[from].log) ++to;
-        const std::size_t count = to - from, blocks = std::max<std::size_t>(count / size, 1);
+        const std::size_t count = to - from, blocks = (count + size - 1) / size;
         for (std::size_t i = from; i < to; ++i) windows[i].block = data.blocks + (i - from) * blocks / count;
         data.blocks += blocks;
     }

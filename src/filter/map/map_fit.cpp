@@ -18,9 +18,9 @@ namespace {
 
 constexpr double errors_apart = 3.0;       // by hand: three standard errors
 constexpr double ripple_over_noise = 2.0;  ///< squares of an order that an oscillator may follow
-// Squares of an order that is there for certain: the noise of order 1 is measured at 1.5, where a spectrum that
-// falls with the third power of the frequency is 11 times smaller.
-constexpr double certain_over_noise = 11.0;
+// Squares of an order that is there for certain. The noise of order 1 is measured at 1.5 alone, where a spectrum
+// that falls with the third power of the frequency is 11 times smaller.
+constexpr double certain_over_noise = 4.0, certain_over_noise_above = 11.0, one_sided_below = 1.1;
 constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
 
 MapOrderScore score_of(double order, const HeldOut& held) {
@@ -144,7 +144,8 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         score.false_alarm = choice.false_alarm[i];
         if (!score.in_map) score.detectable_nm = detectable_amplitude(data, i, fit.anchored);
         any = any || score.in_map;
-        excess = excess || exceeds_noise(score, certain_over_noise);
+        const double certain = score.order < one_sided_below ? certain_over_noise_above : certain_over_noise;
+        excess = excess || exceeds_noise(score, certain);
         bounded = bounded && std::isfinite(score.detectable_nm);
         fit.notes.push_back(fmt::format("order {}: false-alarm probability {:.2g}", shortest(score.order),
                                         score.false_alarm));

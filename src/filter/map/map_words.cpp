@@ -117,13 +117,13 @@ std::string map_verdict(const MapFit& fit) {
                 fit.windows, fewest_map_windows));
             break;
         case MapFinding::nothing:
-            add(fmt::format("No ripple of {} at gear ratio {:.6g} in {} windows: the map is empty.",
+            add(fmt::format("No ripple found of {} at gear ratio {:.6g} in {} windows: the map is empty.",
                             orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
             add(detectable_sentence(fit));
             break;
         case MapFinding::unclear:
-            add(fmt::format("Cannot tell: no regular ripple of {} at gear ratio {:.6g} in {} windows, but "
-                            "amplitudes beyond the noise or too few blocks; the map is empty.",
+            add(fmt::format("Cannot tell: no regular ripple found of {} at gear ratio {:.6g} in {} windows, but "
+                            "amplitudes above the noise, or no bound; the map is empty.",
                             orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
             add(detectable_sentence(fit));
             break;
