@@ -120,7 +120,8 @@ TEST_CASE("the second comb comes through where the whole map is held, and the ot
         for (std::size_t i = 0; i < map.values.size(); ++i) {
             map.values[i].clear();
             for (std::size_t c = 0; c < map.form.columns(); ++c)
-                map.values[i].emplace_back(0.1 * static_cast<double>(c % 7), 0.3 - 0.05 * static_cast<double>(c));
+                map.values[i].emplace_back(0.1 * static_cast<double>(c % 7),
+                                           0.3 - 0.05 * static_cast<double>(c));
         }
         for (const std::string text : {"fourier", "c-header,precision=double"}) {
             INFO(text);

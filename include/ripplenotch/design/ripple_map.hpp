@@ -15,10 +15,10 @@
 namespace ripplenotch {
 
 /// What the amplitudes of a map are functions of. A wave generator turns gear ratio times in an output turn
-/// against one spline and once more or less against the other: an order n of the map has lines at n Kg and, with
-/// a second comb, at n (Kg +/- 1). Each direction has its own columns, in this order: the amplitude at each
-/// speed (linear between them), then the same of the second comb, then a cosine and a sine of one, two, ...
-/// times the joint's angle, then one in proportion to the load, then one in proportion to the temperature
+/// against one spline and once more or less against the other: an order n of the map has lines at n Kg and,
+/// with a second comb, at n (Kg +/- 1). Each direction has its own columns, in this order: the amplitude at
+/// each speed (linear between them), then the same of the second comb, then a cosine and a sine of one, two,
+/// ... times the joint's angle, then one in proportion to the load, then one in proportion to the temperature
 /// above the middle of its range.
 struct MapForm {
     std::vector<double> speeds_deg_s = {0.0};  ///< of |v|, rising; a single one: alike at every speed
@@ -61,8 +61,8 @@ struct MapState {
 };
 
 /// The ripple is the sum over the orders of Re(z exp(-i n theta)) = Re(z) cos(n theta) + Im(z) sin(n theta),
-/// theta being gear ratio times (position - zero), and z the sum of the form's columns times `values`, those of
-/// a second comb s turned by exp(-i s n (position - zero)).
+/// theta being gear ratio times (position - zero), and z the sum of the form's columns times `values`, those
+/// of a second comb s turned by exp(-i s n (position - zero)).
 struct RippleMap {
     std::string joint;  ///< empty for a joint without a name
     GearRatio gear_ratio;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A ripple map from logs of one joint: its form by cross-validation, shrunk where the logs determine little, with
-// the error of each value and the residual on blocks that it was not fitted to.
+// A ripple map from logs of one joint: its form by cross-validation, shrunk where the logs determine little,
+// with the error of each value and the residual on blocks that it was not fitted to.
 
 #include <complex>
 #include <cstddef>

@@ -79,8 +79,9 @@ std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const
                            [order](Order one) { return one.value() == order; });
     };
     if (!asked.empty() && std::none_of(asked.begin(), asked.end(), is_mapped))
-        raise<DataError>("{}: the map holds none of the orders asked for; method {} has no order to filter by it",
-                         path, spec.name);
+        raise<DataError>(
+            "{}: the map holds none of the orders asked for; method {} has no order to filter by it", path,
+            spec.name);
     for (auto& [key, value] : map_as_keys(*map)) {
         if (!given(spec, key)) {
             spec.values.emplace_back(key, std::move(value));

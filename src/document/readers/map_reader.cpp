@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t most_speeds = 64, most_turn_harmonics = 8, most_map_orders = 64;
 
 std::optional<MapFinding> map_finding_of(std::string_view name) {
-    for (const MapFinding one : {MapFinding::mapped, MapFinding::nothing, MapFinding::unclear,
-                                 MapFinding::too_little})
+    for (const MapFinding one :
+         {MapFinding::mapped, MapFinding::nothing, MapFinding::unclear, MapFinding::too_little})
         if (map_finding_name(one) == name) return one;
     return std::nullopt;
 }
@@ -59,7 +59,8 @@ MapForm form_from_json(Fields& fields) {
     form.by_temperature = fields.has("by_temperature") && fields.flag("by_temperature");
     if (fields.has("second_comb")) {
         const double side = fields.number("second_comb");
-        if (std::abs(side) != 1.0) raise<DataError>("{} is {}, expected 1 or -1", fields.where("second_comb"), side);
+        if (std::abs(side) != 1.0)
+            raise<DataError>("{} is {}, expected 1 or -1", fields.where("second_comb"), side);
         form.second_comb = side > 0.0 ? 1 : -1;
     }
     fields.finish();

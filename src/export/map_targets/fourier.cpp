@@ -21,7 +21,8 @@ constexpr std::string_view weights =
     "turn_sine k, "
     "cos and sin of k (position - zero); of load, the torque in Nm";
 constexpr std::string_view of_second_comb =
-    "; of second_comb_deg_s, as of a speed, with n (theta + second_comb (position - zero)) in the place of n theta";
+    "; of second_comb_deg_s, as of a speed, with n (theta + second_comb (position - zero)) in the place of n "
+    "theta";
 constexpr std::string_view of_temperature = "; of temperature, degC beyond the middle of its range";
 
 struct Column {
@@ -64,9 +65,9 @@ std::string rows_of(const RippleMap& map) {
 Written write(const RippleMap& map, const Settings&, std::span<const std::string> heading) {
     std::string text = comment_lines(heading, "# ");
     const auto where = [](bool is, std::string_view clause) { return is ? clause : std::string_view(); };
-    text += fmt::format("# {}\n# {}{}{}\n", explained, weights,
-                        where(map.form.second_comb != 0, of_second_comb),
-                        where(map.form.by_temperature, of_temperature));
+    text +=
+        fmt::format("# {}\n# {}{}{}\n", explained, weights, where(map.form.second_comb != 0, of_second_comb),
+                    where(map.form.by_temperature, of_temperature));
     if (map.form.second_comb != 0) text += fact("second_comb", map.form.second_comb);
     text += fact("gear_ratio", map.gear_ratio.value()) + fact("zero_deg", map.zero_deg);
     text += fact("slowest_deg_s", map.speeds_deg_s.from) + fact("fastest_deg_s", map.speeds_deg_s.to);

@@ -51,7 +51,8 @@ class MapRun {
           z_(2 * with_combs_apart(map).orders.size()),
           other_(z_.size()),
           sum_(2 * orders_.size()) {
-        for (std::size_t i = 0; i < orders_.size(); ++i) orders_[i] = static_cast<Real>(map.orders[i].value());
+        for (std::size_t i = 0; i < orders_.size(); ++i)
+            orders_[i] = static_cast<Real>(map.orders[i].value());
     }
 
     /// Of each order cosine and sine, Nm.

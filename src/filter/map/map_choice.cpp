@@ -19,11 +19,11 @@ namespace {
 
 using Eigen::MatrixXcd, Eigen::MatrixXd;
 
-constexpr double least_warming_degc = 1.0;  ///< a narrower range does not determine what a degree does
-constexpr std::size_t most_harmonics = 3;   // by hand
+constexpr double least_warming_degc = 1.0;        ///< a narrower range does not determine what a degree does
+constexpr std::size_t most_harmonics = 3;         // by hand
 constexpr std::size_t surrogates_an_order = 200;  ///< twice what the smallest level of the test resolves
-// Orders that are compared with: so far to both sides, beyond what the joint's turn modulates. Of ten that are
-// independent, noise at the order is twice the largest once in 66 logs (exponential variables).
+// Orders that are compared with: so far to both sides, beyond what the joint's turn modulates. Of ten that
+// are independent, noise at the order is twice the largest once in 66 logs (exponential variables).
 constexpr double nearest_order = 0.1, order_span = 0.3, farthest_start = 0.3;
 constexpr int compared_orders = 15;
 constexpr double above_neighbours = 2.0;
@@ -108,8 +108,9 @@ double reduction_of(const MapData& data, const MapForm& form, std::size_t order)
     return MapRegression(data, frame_of(data, form, 0.0), order).reduction().sum().real();
 }
 
-// Leakage of a torque that repeats with the joint's position has the same phase in all sweeps, and so at every
-// order nearby. A line of the motor has not: the same amplitudes turned by another order's angle cancel.
+// Leakage of a torque that repeats with the joint's position has the same phase in all sweeps, and so at
+// every order nearby. A line of the motor has not: the same amplitudes turned by another order's angle
+// cancel.
 bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size_t order) {
     const double ratio = data.gear_ratio.value();
     const double start = std::min(nearest_order + data.orders[order].value() / ratio, farthest_start);
@@ -133,14 +134,14 @@ bool stands_above_neighbours(const MapData& data, const MapForm& form, std::size
 class RotationTest {
   public:
     RotationTest(const MapData& data, bool tied, std::size_t draws)
-        : forms_(forms_of(data, {1, 3, 5}, tied ? std::vector<Angle>{{0, 0}, {0, 1}, {0, -1}}
-                                                : std::vector<Angle>{{0, 0}})),
+        : forms_(forms_of(data, {1, 3, 5},
+                          tied ? std::vector<Angle>{{0, 0}, {0, 1}, {0, -1}} : std::vector<Angle>{{0, 0}})),
           phasors_(random_phasors(data.blocks, draws + 1, 20)) {
         phasors_.col(0).setOnes();
     }
     /// The false-alarm probability: the share of draws that are as large, the log itself counted. 1 where the
-    /// noise beside the order alone may be as large (chi-square of two degrees of freedom at `level`), or where
-    /// the order is no line among its neighbours.
+    /// noise beside the order alone may be as large (chi-square of two degrees of freedom at `level`), or
+    /// where the order is no line among its neighbours.
     [[nodiscard]] double false_alarm(const MapData& data, std::size_t order, double level) const {
         Eigen::ArrayXd largest = Eigen::ArrayXd::Constant(phasors_.cols(), -1e300);
         double most = 0.0;
@@ -160,7 +161,8 @@ class RotationTest {
         if (!(most > least_reduction(level))) return 1.0;
         const double share =
             static_cast<double>((largest >= largest(0)).count()) / static_cast<double>(largest.size());
-        if (share > other_order_false_alarm || stands_above_neighbours(data, forms_[best], order)) return share;
+        if (share > other_order_false_alarm || stands_above_neighbours(data, forms_[best], order))
+            return share;
         return 1.0;
     }
 
@@ -186,8 +188,8 @@ struct FormTrial {
 };
 
 // The smallest form whose squares are those of the best but for what noise alone reduces them by: a form that
-// shrinks where the log determines little costs little, so that a standard error over a few blocks, which differ
-// by their ripple, would be too much. `left_out` has no say; the number of blocks for none.
+// shrinks where the log determines little costs little, so that a standard error over a few blocks, which
+// differ by their ripple, would be too much. `left_out` has no say; the number of blocks for none.
 std::size_t smallest_good(const std::vector<FormTrial>& trials, Eigen::Index left_out) {
     const Eigen::Index blocks = trials.front().sum.rows();
     const auto row = [&](const FormTrial& trial) -> Eigen::ArrayXd {
@@ -242,8 +244,7 @@ void choose_form(const MapData& data, std::vector<FormTrial> trials, MapChoice& 
             total += held.total;
             residual += held.residual;
         }
-        if (weights > 0.0)
-            held = {held.total / weights, held.noise / weights, held.residual / weights};
+        if (weights > 0.0) held = {held.total / weights, held.noise / weights, held.residual / weights};
         choice.held_out.push_back(held);
     }
     const auto best = std::min_element(trials.begin(), trials.end(), [](const auto& a, const auto& b) {
@@ -253,8 +254,8 @@ void choose_form(const MapData& data, std::vector<FormTrial> trials, MapChoice& 
                     note_on(*best, total, fmt::format("the best of {} forms", trials.size())),
                     note_on(chosen, total, "taken")};
     if (total > 0.0)
-        choice.notes.push_back(fmt::format("with forms that did not see the block: {:.1f} %",
-                                           100.0 * residual / total));
+        choice.notes.push_back(
+            fmt::format("with forms that did not see the block: {:.1f} %", 100.0 * residual / total));
 }
 
 }  // namespace

@@ -19,14 +19,15 @@ struct HeldOut {
 
 struct MapChoice {
     MapForm form;
-    std::vector<HeldOut> held_out;     ///< by order of the data
-    std::vector<bool> present;        ///< by order of the data: ripple, at the false-alarm rates below
+    std::vector<HeldOut> held_out;      ///< by order of the data
+    std::vector<bool> present;          ///< by order of the data: ripple, at the false-alarm rates below
     std::vector<double> errors_better;  ///< by order of the data: reduction of squares in its standard errors
-    std::vector<double> false_alarm;  ///< by order of the data: probability of such ripple by chance
+    std::vector<double> false_alarm;    ///< by order of the data: probability of such ripple by chance
     std::vector<std::string> notes;
 };
 
-/// The probability that a map has an order although no order is there, and that it has another order beside one.
+/// The probability that a map has an order although no order is there, and that it has another order beside
+/// one.
 inline constexpr double map_false_alarm = 0.01, other_order_false_alarm = 0.05;
 
 /// `tied` states whether the joint's own angle is known, so that columns by that angle mean something.

@@ -53,8 +53,8 @@ void widen_span(MapRange& range, double value, bool first) {
     range.to = first ? value : std::max(range.to, value);
 }
 
-// Blocks of a log are alike in size. Windows half overlap: those at the ends of a block may share samples with
-// the next one.
+// Blocks of a log are alike in size. Windows half overlap: those at the ends of a block may share samples
+// with the next one.
 void number_blocks(MapData& data) {
     std::vector<MapWindow>& windows = data.windows;
     const std::size_t size = std::max(least_block, (windows.size() + most_blocks - 1) / most_blocks);

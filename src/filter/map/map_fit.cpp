@@ -18,10 +18,10 @@ namespace {
 
 constexpr double errors_apart = 3.0;       // by hand: three standard errors
 constexpr double ripple_over_noise = 2.0;  ///< squares of an order that an oscillator may follow
-// Squares of an order that is there for certain. The noise of order 1 is measured at 1.5 alone, where a spectrum
-// that falls with the third power of the frequency is 11 times smaller.
+// Squares of an order that is there for certain. The noise of order 1 is measured at 1.5 alone, where a
+// spectrum that falls with the third power of the frequency is 11 times smaller.
 constexpr double certain_over_noise = 4.0, certain_over_noise_above = 11.0, one_sided_below = 1.1;
-constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
+constexpr double share_apart = 0.15;  ///< less is no reason to doubt a map
 
 MapOrderScore score_of(double order, const HeldOut& held) {
     MapOrderScore score;
@@ -152,9 +152,7 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         fit.scores.push_back(score);
     }
     // Amplitudes beyond the noise that follow no form tried may be a ripple of another form.
-    fit.finding = any                  ? MapFinding::mapped
-                  : excess || !bounded ? MapFinding::unclear
-                                       : MapFinding::nothing;
+    fit.finding = any ? MapFinding::mapped : excess || !bounded ? MapFinding::unclear : MapFinding::nothing;
     if (any) fill_map(data, choice, gear, zero_deg, fit);
     hold_logs_together(data, choice, gear, logs.size(), fit);
     fit.conclusive = fit.anchored && fit.finding != MapFinding::unclear && all_agree(fit);

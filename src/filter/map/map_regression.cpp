@@ -21,8 +21,11 @@ MapRegression::MapRegression(const MapData& data, const RippleMap& frame, std::s
     const auto count = static_cast<Eigen::Index>(data.windows.size());
     const auto columns = static_cast<Eigen::Index>(frame.form.columns());
     columns_ = Matrix::Zero(count, columns);
-    blocks_.assign(data.blocks, {Matrix::Zero(columns, columns), Matrix::Zero(columns, columns),
-                                 Vector::Zero(columns), Vector::Zero(columns), {}});
+    blocks_.assign(data.blocks, {Matrix::Zero(columns, columns),
+                                 Matrix::Zero(columns, columns),
+                                 Vector::Zero(columns),
+                                 Vector::Zero(columns),
+                                 {}});
     gram_ = penalty(frame);
     right_ = Vector::Zero(columns);
     std::vector<double> row(frame.form.columns());
@@ -31,7 +34,8 @@ MapRegression::MapRegression(const MapData& data, const RippleMap& frame, std::s
         map_weights(frame, window.state, row);
         const std::complex<double> second = second_comb_phasor(frame, order, window.state.position_deg);
         for (std::size_t c = 0; c < row.size(); ++c)
-            columns_(i, static_cast<Eigen::Index>(c)) = row[c] * (frame.form.is_second_comb(c) ? second : 1.0);
+            columns_(i, static_cast<Eigen::Index>(c)) =
+                row[c] * (frame.form.is_second_comb(c) ? second : 1.0);
         // Half of the noise is in each part; that of one window is known from a few numbers only.
         const double weight = 4.0 * independent_share / (window.noise[order] + data.mean_noise[order]);
         weight_.push_back(weight);
@@ -123,8 +127,7 @@ std::vector<std::complex<double>> MapRegression::errors() const {
 }
 
 double MapRegression::residual(const Block& block, const Vector& values) {
-    const std::complex<double> explained =
-        values.dot(2.0 * block.scored_right - block.scored_gram * values);
+    const std::complex<double> explained = values.dot(2.0 * block.scored_right - block.scored_gram * values);
     return std::max(block.squares.total - explained.real(), 0.0);
 }
 
@@ -133,7 +136,8 @@ Eigen::MatrixXd MapRegression::residuals() const {
     Eigen::MatrixXd found(count, count);
     for (Eigen::Index a = 0; a < count; ++a) {
         for (Eigen::Index b = a; b < count; ++b) {
-            const Block &one = blocks_[static_cast<std::size_t>(a)], &two = blocks_[static_cast<std::size_t>(b)];
+            const Block &one = blocks_[static_cast<std::size_t>(a)],
+                        &two = blocks_[static_cast<std::size_t>(b)];
             Matrix gram = gram_ - one.gram;
             Vector right = right_ - one.right;
             if (a != b) {

@@ -63,7 +63,8 @@ inline constexpr Key second_comb_key{
     .at_least = -1.0,
     .at_most = 1.0,
     .whole = true,
-    .help = "1 or -1: after those of the speeds, as many of lines at n (gear ratio + 1) or n (gear ratio - 1)"};
+    .help =
+        "1 or -1: after those of the speeds, as many of lines at n (gear ratio + 1) or n (gear ratio - 1)"};
 inline constexpr Key slowest_key{.name = "slowest",
                                  .dimension = Dimension::speed,
                                  .default_text = "0deg/s",

@@ -122,9 +122,10 @@ std::string map_verdict(const MapFit& fit) {
             add(detectable_sentence(fit));
             break;
         case MapFinding::unclear:
-            add(fmt::format("Cannot tell: no regular ripple found of {} at gear ratio {:.6g} in {} windows, but "
-                            "amplitudes above the noise, or no bound; the map is empty.",
-                            orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
+            add(fmt::format(
+                "Cannot tell: no regular ripple found of {} at gear ratio {:.6g} in {} windows, but "
+                "amplitudes above the noise, or no bound; the map is empty.",
+                orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
             add(detectable_sentence(fit));
             break;
         case MapFinding::mapped:
