@@ -15,7 +15,7 @@ namespace {
 
 constexpr int steps = 40;
 
-/// Amplitude and error at one speed, the joint's turn averaged out.
+/// Amplitude and error at one speed, the second comb and the joint's turn averaged out.
 struct At {
     std::complex<double> value;
     double error_nm = 0.0;
@@ -29,7 +29,7 @@ At at_speed(const MapFit& fit, std::size_t order, double speed_deg_s) {
     double square = 0.0;
     for (std::size_t c = 0; c < weights.size(); ++c) {
         const std::size_t within = c % form.columns_a_direction(), speeds = form.speeds_deg_s.size();
-        if (within >= speeds && within < speeds + 2 * form.turn_harmonics) continue;
+        if (within >= speeds && within < form.load_column()) continue;
         found.value += weights[c] * fit.map.values[order][c];
         square += weights[c] * weights[c] * 0.5 * std::norm(fit.errors[order][c]);
     }

@@ -27,14 +27,16 @@ void add_direction(const RippleMap& map, const MapState& state, double share, st
     const double speed = std::clamp(std::abs(state.speed_deg_s), knots.front(), knots.back());
     std::size_t above = 0;
     while (above + 1 < knots.size() && knots[above] < speed) ++above;
-    if (above == 0) {
-        weights[0] += share;
-    } else {
-        const double along = (speed - knots[above - 1]) / (knots[above] - knots[above - 1]);
-        weights[above - 1] += share * (1.0 - along);
-        weights[above] += share * along;
+    for (std::size_t comb = 0; comb < map.form.speed_columns(); comb += knots.size()) {
+        if (above == 0) {
+            weights[comb] += share;
+        } else {
+            const double along = (speed - knots[above - 1]) / (knots[above] - knots[above - 1]);
+            weights[comb + above - 1] += share * (1.0 - along);
+            weights[comb + above] += share * along;
+        }
     }
-    std::size_t at = knots.size();
+    std::size_t at = map.form.speed_columns();
     const double angle_deg = held_position(map.positions_deg, state.position_deg) - map.zero_deg;
     for (std::size_t k = 1; k <= map.form.turn_harmonics; ++k, at += 2) {
         weights[at] += share * portable::cos_degrees(static_cast<double>(k) * angle_deg);
@@ -63,10 +65,25 @@ void map_weights(const RippleMap& map, const MapState& state, std::span<double> 
     if (forward < 1.0) add_direction(map, state, 1.0 - forward, weights.last(half));
 }
 
-std::complex<double> map_amplitude(const RippleMap& map, std::size_t order, std::span<const double> weights) {
-    std::complex<double> sum = 0.0;
-    for (std::size_t c = 0; c < weights.size(); ++c) sum += weights[c] * map.values[order][c];
-    return sum;
+std::complex<double> second_comb_phasor(const RippleMap& map, std::size_t order, double position_deg) {
+    if (map.form.second_comb == 0) return 1.0;
+    const double cycles = map.orders[order].value() * (position_deg - map.zero_deg) / 360.0;
+    return portable::polar(1.0, -map.form.second_comb * radians_of_turns(cycles));
+}
+
+std::complex<double> map_amplitude(const RippleMap& map, std::size_t order, std::span<const double> weights,
+                                   double position_deg) {
+    const std::vector<std::complex<double>>& values = map.values[order];
+    std::complex<double> sum = 0.0, second = 0.0;
+    const std::size_t each = map.form.columns_a_direction(), knots = map.form.speeds_deg_s.size();
+    for (std::size_t d = 0; d < weights.size(); d += each) {
+        const std::size_t combs = d + map.form.speed_columns();
+        for (std::size_t c = d; c < d + knots; ++c) sum += weights[c] * values[c];
+        for (std::size_t c = d + knots; c < combs; ++c) second += weights[c] * values[c];
+        for (std::size_t c = combs; c < d + each; ++c) sum += weights[c] * values[c];
+    }
+    if (map.form.second_comb == 0) return sum;
+    return sum + second_comb_phasor(map, order, position_deg) * second;
 }
 
 double map_torque(const RippleMap& map, const MapState& state) {
@@ -75,7 +92,7 @@ double map_torque(const RippleMap& map, const MapState& state) {
     const double motor_turns = map.gear_ratio.value() * (state.position_deg - map.zero_deg) / 360.0;
     double torque = 0.0;
     for (std::size_t i = 0; i < map.orders.size(); ++i) {
-        const std::complex<double> z = map_amplitude(map, i, weights);
+        const std::complex<double> z = map_amplitude(map, i, weights, state.position_deg);
         const double phase = radians_of_turns(map.orders[i].value() * motor_turns);
         torque += z.real() * portable::cos(phase) + z.imag() * portable::sin(phase);
     }
@@ -87,12 +104,12 @@ RippleMap with_zero(const RippleMap& map, double zero_deg) {
     moved.zero_deg = zero_deg;
     const double by_deg = zero_deg - map.zero_deg;
     const double motor_turns = map.gear_ratio.value() * by_deg / 360.0;
-    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
+    const std::size_t each = map.form.columns_a_direction(), first_turn = map.form.speed_columns();
     for (std::size_t i = 0; i < map.orders.size(); ++i) {
         std::vector<std::complex<double>>& z = moved.values[i];
         for (std::size_t d = 0; d < map.form.directions; ++d) {
             for (std::size_t k = 1; k <= map.form.turn_harmonics; ++k) {
-                const std::size_t at = d * each + speeds + 2 * (k - 1);
+                const std::size_t at = d * each + first_turn + 2 * (k - 1);
                 const double angle = static_cast<double>(k) * by_deg;
                 const double c = portable::cos_degrees(angle), s = portable::sin_degrees(angle);
                 const std::complex<double> cosine = z[at], sine = z[at + 1];
@@ -101,7 +118,8 @@ RippleMap with_zero(const RippleMap& map, double zero_deg) {
             }
         }
         const auto turned = portable::polar(1.0, -radians_of_turns(map.orders[i].value() * motor_turns));
-        for (std::complex<double>& value : z) value *= turned;
+        const std::complex<double> second = turned * second_comb_phasor(map, i, zero_deg);
+        for (std::size_t c = 0; c < z.size(); ++c) z[c] *= map.form.is_second_comb(c) ? second : turned;
     }
     return moved;
 }

@@ -67,8 +67,8 @@ class Maps(Case):
         for one, amplitude, phase in (first, 0.8, 30.0), (second, 0.5, 0.0):
             for part, truth in ("cosine", amplitude * math.cos(math.radians(phase))), ("sine", -amplitude * math.sin(math.radians(phase))):
                 self.assertAlmostEqual(one[f"{part}_nm"], truth, delta=2 * one[f"{part}_ci95_nm"])
-        self.assertIn("On blocks left out the map takes order 1", text)
-        self.assertIn("noise allows", text)
+        self.assertIn("Cross-validated: order 1 falls from", text)
+        self.assertIn("noise limit", text)
 
     def test_the_same_log_gives_the_same_bytes(self):
         write_log(self.log, 1)
@@ -77,14 +77,33 @@ class Maps(Case):
         self.made(self.log)
         self.assertEqual(self.map.read_bytes(), before)
 
-    def test_without_ripple_the_map_is_empty_and_subtracts_nothing(self):
+    def test_without_ripple_the_map_is_empty_with_a_bound_and_no_filter_takes_it(self):
         write_log(self.log, 1, ripple=0.0)
         found, text = self.made(self.log)
-        self.assertEqual((found["finding"], found["orders"], found["coefficients"]), ("nothing", [], []))
-        self.assertIn("the map is empty", text)
+        self.assertEqual((found["finding"], found["conclusive"], found["orders"], found["coefficients"]), ("nothing", True, [], []))
+        self.assertRegex(text, "the map is empty. An amplitude of [0-9.]+ Nm of order 1, [0-9.]+ Nm of order 2 would have been found")
+        for one in found["left_out"]:
+            self.assertLess(one["detectable_nm"], 0.05)
         out = self.folder / "out.csv"
-        self.assertEqual(run("filter", self.log, "--method", f"map,map={self.map}", "-o", out).returncode, 0)
-        self.assertEqual(out.read_text(), self.log.read_text())
+        for method in "map", "oscillator":
+            done = run("filter", self.log, "--method", f"{method},map={self.map}", "-o", out)
+            self.assertEqual(done.returncode, 3, done.stderr)
+            self.assertIn(f"map.json: the map is empty: method {method} has no order to filter by it", done.stderr)
+            self.assertFalse(out.exists())
+
+    def test_a_map_of_other_orders_than_asked_is_an_error(self):
+        write_log(self.log, 1)
+        self.made(self.log)
+        done = run("filter", self.log, "--method", f"oscillator,map={self.map}", "--gear-ratio", "100", "--orders", "4", "-o", self.folder / "out.csv")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("map.json: the map holds none of the orders asked for", done.stderr)
+
+    def test_a_second_of_one_speed_is_enough(self):
+        done = run("simulate", "--gear-ratio", "100", "--ripple", "1:0.8Nm:30deg", "--ripple", "2:0.5Nm", "--motion", "constant,speed=40deg/s,duration=1.5s",
+                   "--sample-rate", "1kHz", "--noise", "0.05Nm", "--seed", "4", "-o", self.log)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found, _ = self.made(self.log)
+        self.assertEqual((found["finding"], found["orders"]), ("mapped", [1, 2]))
 
     def test_a_log_that_does_not_agree_is_named(self):
         logs = [self.folder / f"{i}.csv" for i in range(3)]
@@ -139,7 +158,7 @@ class Maps(Case):
         for joint, amplitude in (("j1", 0.8), ("j3", 0.4)):
             found = json.loads((self.folder / f"{joint}_map.json").read_text())
             self.assertAlmostEqual(found["left_out"][0]["ripple_nm"], amplitude, delta=0.02)
-            self.assertIn(f"{joint}: On blocks left out", done.stdout)
+            self.assertIn(f"{joint}: Cross-validated", done.stdout)
         self.assertFalse((self.folder / "j2_map.json").exists())
         self.assertNotIn("j2: ", done.stdout)
         # The first joint that failed names the code; a file that is missing is another kind of failure.
@@ -164,7 +183,7 @@ class Maps(Case):
             self.assertEqual({**found, "command": ""}, {**alone, "command": ""})
             first = next(one for one in found["coefficients"] if one["order"] == 1)
             self.assertAlmostEqual(first["cosine_nm"], amplitude, delta=0.02)
-            self.assertIn(f"{joint}: On blocks left out", done.stdout)
+            self.assertIn(f"{joint}: Cross-validated", done.stdout)
         filtered = run("filter", wide, "--joint", "all", "--method", f"oscillator,map={self.folder}/{{joint}}_map.json",
                        "-o", self.folder / "clean.csv")
         self.assertEqual(filtered.returncode, 0, filtered.stderr)
@@ -296,7 +315,7 @@ class Compensators(Case):
         page = self.folder / "page.html"
         done = run("report", self.map, "-o", page, "--no-plotly")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("On blocks left out the map takes", page.read_text())
+        self.assertIn("Cross-validated: order 1 falls from", page.read_text())
         self.assertIn("Ripple over speed", page.read_text())
 
 
@@ -332,6 +351,19 @@ class Exports(Case):
 
     @unittest.skipUnless(shutil.which("cc"), "there is no C compiler")
     def test_the_exported_c_is_the_method(self):
+        self.check_exported_c()
+
+    @unittest.skipUnless(shutil.which("cc"), "there is no C compiler")
+    def test_the_exported_c_is_the_method_with_both_combs(self):
+        with open(self.log, "w") as file:
+            file.write("time_s,velocity_deg_s,torque_nm,position_deg\n")
+            for t, v, position, slow, theta, noise in motion(1):
+                second = 2 * (theta + math.radians(position))
+                file.write(f"{t},{v},{slow + 0.8 * math.cos(theta) + 0.4 * math.cos(second) + 0.3 * math.sin(2 * theta) + noise},{position}\n")
+        self.assertEqual(self.made(self.log)[0]["form"]["second_comb"], 1)
+        self.check_exported_c()
+
+    def check_exported_c(self):
         still = self.folder / "still.csv"
         rows = [(k / 1000, 50, 3 + 0.05 * k) for k in range(2000)]
         still.write_text("time_s,velocity_deg_s,torque_nm,position_deg\n" + "".join(f"{t!r},{v},0,{q!r}\n" for t, v, q in rows))

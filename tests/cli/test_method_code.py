@@ -16,6 +16,10 @@ MOST = {"double": 1e-12, "float": 1e-5}
 VALUES = ":".join(f"{0.4 / (1 + k % 8) - 0.03 * (k % 5)}" for k in range(32))
 RICH = (f"oscillator,gear-ratio=100,orders=1:2,cosines={VALUES},sines={VALUES},speeds=10:40:90,directions=2,turn-harmonics=2,by-load=1,"
         "slowest=8deg/s,positions=-60deg:70deg,loads=-4Nm:5Nm,spread=0.1Nm:0.2Nm")
+# Both combs at two speeds and in both directions, orders 1 and 2.
+COMBS = ":".join(f"{0.3 - 0.04 * k}" for k in range(16))
+TWO_COMBS = (f"oscillator,gear-ratio=100,orders=1:2,cosines={COMBS},sines={COMBS},speeds=10:90,directions=2,second-comb=-1,slowest=8deg/s,"
+             "positions=-60deg:70deg,spread=0.1Nm:0.2Nm")
 # method -> what its step is told of the motion
 METHODS = {
     "tracking,gear-ratio=100,orders=1:2": "speed",
@@ -28,6 +32,7 @@ METHODS = {
     "oscillator,gear-ratio=100,orders=1:17": "angle",  # beyond half the sample rate in the middle of the swing
     "oscillator,gear-ratio=100,orders=1:2,cosines=0.5:0.3,sines=-0.2:0.1,return=1.5": "map",
     RICH: "map",
+    TWO_COMBS: "map",
     RICH + ",output=minus-ripple,memory=0.4": "map",
 }
 # One function for each header, all of them in one program, which is told the number of the one to run.

@@ -50,15 +50,33 @@ TEST_CASE("map.json reads back as it was written, byte for byte, empty maps too"
     nothing.map.gear_ratio = GearRatio(100.0);
     nothing.finding = MapFinding::nothing;
     nothing.conclusive = true;
-    nothing.scores = {{1.0, false, 0.1, 0.1, 0.1, 0.0}};
-    for (const MapFit& fit : {example_map(), example_map(true), nothing}) {
+    nothing.scores = {{1.0, false, 0.1, 0.1, 0.1, 0.0, 0.5, 0.125}};
+    MapFit two_combs = example_map();
+    two_combs.map.form.second_comb = -1;
+    for (auto* columns : {&two_combs.map.values, &two_combs.errors})
+        for (auto& order : *columns) order.resize(two_combs.map.form.columns(), {0.5, 0.25});
+    for (const MapFit& fit : {example_map(), example_map(true), two_combs, nothing}) {
         const std::string text = map_text(fit, {});
         const MapFit again = map_from_json(text, "map.json");
         CHECK(map_text(again, {}) == text);
         CHECK(again.map.form.columns() == fit.map.form.columns());
+        CHECK(again.map.form.second_comb == fit.map.form.second_comb);
         CHECK(again.map.temperatures_degc.to == fit.map.temperatures_degc.to);
         CHECK(again.map.temperature_column == fit.map.temperature_column);
     }
+}
+
+TEST_CASE("a file from before there were bounds is read") {
+    std::string text = map_text(example_map(), {});
+    for (const std::string field : {"\"false_alarm\"", "\"detectable_nm\""}) {
+        for (std::size_t at = text.find(field); at != std::string::npos; at = text.find(field)) {
+            const std::size_t from = text.rfind(',', at);
+            text.erase(from, text.find_first_of(",}\n", at) - from);
+        }
+    }
+    const MapFit again = map_from_json(text, "map.json");
+    CHECK(again.scores.size() == 3);
+    CHECK(again.scores[2].detectable_nm == 0.0);
 }
 
 TEST_CASE("a map that cannot be one is refused with its field") {

@@ -113,6 +113,34 @@ TEST_CASE("what holds the whole map loses nothing of it, and what holds harmonic
     }
 }
 
+TEST_CASE("the second comb comes through where the whole map is held, and the others say that it is not") {
+    for (const int side : {1, -1}) {
+        RippleMap map = rich();
+        map.form = {{5.0, 40.0, 100.0}, 2, 1, true, false, side};
+        for (std::size_t i = 0; i < map.values.size(); ++i) {
+            map.values[i].clear();
+            for (std::size_t c = 0; c < map.form.columns(); ++c)
+                map.values[i].emplace_back(0.1 * static_cast<double>(c % 7),
+                                           0.3 - 0.05 * static_cast<double>(c));
+        }
+        for (const std::string text : {"fourier", "c-header,precision=double"}) {
+            INFO(text);
+            const Through whole = through(text, map);
+            CHECK(whole.check.not_held_nm == 0.0);
+            CHECK(whole.check.largest_error_nm < 1e-11);
+            CHECK(whole.written.warnings.empty());
+        }
+        CHECK(through("c-header", map).check.largest_error_nm < 1e-4);
+        for (const std::string text : {"beckhoff-ax8000", "lut", "moteus,kt=0.1", "mjcf"}) {
+            INFO(text);
+            const auto warnings = through(text, map).written.warnings;
+            CHECK(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+                return warning.find("the second comb is left out") != std::string::npos;
+            }));
+        }
+    }
+}
+
 TEST_CASE("a map by temperature comes through where it is held, and the others say that it is not") {
     for (const std::string text : {"fourier", "c-header,precision=double"}) {
         const Through whole = through(text, warm());

@@ -104,6 +104,93 @@ TEST_CASE("where nothing turns with the motor the map is empty and says so, what
     }
 }
 
+TEST_CASE("both combs of a harmonic drive are found, whichever is the stronger one, on either side") {
+    for (const int side : {1, -1}) {
+        RippleMap truth = two_comb_map();
+        truth.form.second_comb = side;
+        const MapFit fit = fit_of(mapped_log(truth, 20.0, 0.05, 4), mapped_gear());
+        INFO(map_verdict(fit));
+        REQUIRE(fit.finding == MapFinding::mapped);
+        CHECK(fit.map.form.second_comb == side);
+        REQUIRE(fit.map.form.columns() == 2);
+        for (std::size_t i = 0; i < 2; ++i) {
+            for (std::size_t c = 0; c < 2; ++c) {
+                const auto off = fit.map.values[i][c] - truth.values[i][c];
+                CHECK(std::abs(off.real()) < 4.0 * fit.errors[i][c].real());
+                CHECK(std::abs(off.imag()) < 4.0 * fit.errors[i][c].imag());
+            }
+            CHECK(fit.scores[i].left_nm < 1.2 * fit.scores[i].noise_nm);
+        }
+        CHECK(worst_difference(fit.map, truth) < 0.05);
+    }
+    // One line per order at n 101 alone is what a map of gear ratio 100 finds, too.
+    RippleMap second = two_comb_map();
+    for (auto& values : second.values) values[0] = 0.0;
+    const MapFit fit = fit_of(mapped_log(second, 20.0, 0.05, 4), mapped_gear());
+    CHECK(fit.map.form.second_comb == 1);
+    for (const MapOrderScore& score : fit.scores) CHECK(score.predicted_share > 0.99);
+}
+
+TEST_CASE("a single line at n (Kg + 1) is at 1 + 1 / Kg times the motor's angle") {
+    RippleMap map = plain_map();
+    map.orders = {Order(2.0)};
+    map.form.second_comb = 1;
+    map.values = {{{0.0, 0.0}, {0.3, 0.2}}};
+    for (const double position : {-400.0, 3.21, 77.7}) {
+        const double phase = 2.0 * (mapped_ratio + 1.0) * position * std::numbers::pi / 180.0;
+        CHECK(map_torque(map, {50.0, position, 0.0}) ==
+              Approx(0.3 * std::cos(phase) + 0.2 * std::sin(phase)).margin(1e-9));
+    }
+}
+
+TEST_CASE("a short run at one speed holds its orders: sixteen windows are enough") {
+    for (unsigned seed = 1; seed <= 6; ++seed) {
+        const MapFit fit = fit_of(mapped_log(plain_map(), 1.25, 0.05, seed), mapped_gear());
+        if (fit.windows < fewest_map_windows) continue;
+        INFO(seed << ": " << fit.windows << ", " << map_verdict(fit));
+        CHECK(fit.map.orders.size() == 2);
+    }
+}
+
+TEST_CASE("an empty map is bounded: a ripple of the bound is found, of twice the bound always") {
+    RippleMap none = plain_map();
+    none.orders = {Order(2.0)};
+    none.values = {{0.0}};
+    none.spread_nm = {0.0};
+    std::size_t at_bound = 0;
+    constexpr unsigned logs = 20;
+    for (unsigned seed = 1; seed <= logs; ++seed) {
+        const MapFit empty = fit_of(mapped_log(none, 6.0, 0.05, seed), mapped_gear({Order(2.0)}));
+        REQUIRE(empty.finding == MapFinding::nothing);
+        CHECK_THAT(map_verdict(empty), Catch::Contains("would have been found"));
+        for (const double factor : {1.0, 2.0}) {
+            RippleMap one = none;
+            one.values[0] = {std::polar(factor * empty.scores[0].detectable_nm, 0.7 * seed)};
+            const MapFit fit = fit_of(mapped_log(one, 6.0, 0.05, 100 + seed), mapped_gear({Order(2.0)}));
+            if (factor > 1.0) CHECK(fit.scores[0].in_map);
+            if (factor == 1.0 && fit.scores[0].in_map) ++at_bound;
+        }
+    }
+    // 19 of 20 are expected; fewer than 16 have a chance of 0.3 %.
+    CHECK(at_bound >= 16);
+}
+
+TEST_CASE("a torque that repeats with the joint's position is no ripple of the motor") {
+    // Smooth bumps every 11 deg of the joint, the same in every sweep: they leak into every order.
+    RippleMap none = plain_map();
+    for (auto& values : none.values) values = {0.0};
+    std::size_t maps = 0;
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+        Trace log = mapped_log(none, 20.0, 0.02, seed);
+        for (std::size_t k = 0; k < log.size(); ++k) {
+            const double along = log.position_deg[k] / 11.0 + 0.3 * std::sin(log.position_deg[k] / 7.0);
+            log.torque_nm[k] += 0.5 * std::exp(4.0 * (std::cos(2.0 * std::numbers::pi * along) - 1.0));
+        }
+        maps += fit_of(log, mapped_gear()).finding == MapFinding::mapped ? 1 : 0;
+    }
+    CHECK(maps == 0);
+}
+
 TEST_CASE("too little motion is told, not mapped") {
     const MapFit fit = fit_of(mapped_log(plain_map(), 0.5, 0.05, 1), mapped_gear());
     CHECK(fit.finding == MapFinding::too_little);

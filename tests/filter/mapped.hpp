@@ -42,6 +42,14 @@ inline RippleMap rich_map() {
     return map;
 }
 
+/// Orders 1 and 2 of both combs, n 100 and n 101 cycles per output turn, alike at every speed.
+inline RippleMap two_comb_map() {
+    RippleMap map = plain_map();
+    map.form.second_comb = 1;
+    map.values = {{{0.1, 0.2}, {0.5, -0.3}}, {{-0.3, 0.4}, {0.1, -0.3}}};
+    return map;
+}
+
 /// A joint that swings at up to 110 deg/s under a slow torque, at 1 kHz, with this ripple and white noise.
 /// The encoder counts `shift_deg` more than the map does.
 inline Trace mapped_log(const RippleMap& map, double seconds, double noise_nm, unsigned seed,

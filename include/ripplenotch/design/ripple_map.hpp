@@ -14,19 +14,30 @@
 
 namespace ripplenotch {
 
-/// What the amplitudes of a map are functions of. Each direction has its own columns, in this order: the
-/// amplitude at each speed (linear between them), then a cosine and a sine of one, two, ... times the joint's
-/// angle, then one in proportion to the load, then one in proportion to how much warmer the joint is than in
-/// the middle of its range.
+/// What the amplitudes of a map are functions of. A wave generator turns gear ratio times in an output turn
+/// against one spline and once more or less against the other: an order n of the map has lines at n Kg and,
+/// with a second comb, at n (Kg +/- 1). Each direction has its own columns, in this order: the amplitude at
+/// each speed (linear between them), then the same of the second comb, then a cosine and a sine of one, two,
+/// ... times the joint's angle, then one in proportion to the load, then one in proportion to the temperature
+/// above the middle of its range.
 struct MapForm {
     std::vector<double> speeds_deg_s = {0.0};  ///< of |v|, rising; a single one: alike at every speed
     std::size_t directions = 1;                ///< 2: forward (v > 0) and backward have their own amplitudes
     std::size_t turn_harmonics = 0;
     bool by_load = false;
     bool by_temperature = false;
+    int second_comb = 0;  ///< 0: none; 1 or -1: at n (Kg + 1) or at n (Kg - 1)
 
-    /// Places of these within a direction, whether or not there are such columns.
-    [[nodiscard]] std::size_t load_column() const { return speeds_deg_s.size() + 2 * turn_harmonics; }
+    /// Columns of a direction that depend on the speed: these come first.
+    [[nodiscard]] std::size_t speed_columns() const {
+        return speeds_deg_s.size() * (second_comb == 0 ? 1 : 2);
+    }
+    [[nodiscard]] bool is_second_comb(std::size_t column) const {
+        const std::size_t within = column % columns_a_direction();
+        return within >= speeds_deg_s.size() && within < speed_columns();
+    }
+    /// Positions of these within a direction, whether or not there are such columns.
+    [[nodiscard]] std::size_t load_column() const { return speed_columns() + 2 * turn_harmonics; }
     [[nodiscard]] std::size_t temperature_column() const { return load_column() + (by_load ? 1 : 0); }
     [[nodiscard]] std::size_t columns_a_direction() const {
         return temperature_column() + (by_temperature ? 1 : 0);
@@ -50,7 +61,8 @@ struct MapState {
 };
 
 /// The ripple is the sum over the orders of Re(z exp(-i n theta)) = Re(z) cos(n theta) + Im(z) sin(n theta),
-/// theta being gear ratio times (position - zero), and z the sum of the form's columns times `values`.
+/// theta being gear ratio times (position - zero), and z the sum of the form's columns times `values`, those
+/// of a second comb s turned by exp(-i s n (position - zero)).
 struct RippleMap {
     std::string joint;  ///< empty for a joint without a name
     GearRatio gear_ratio;
@@ -64,14 +76,18 @@ struct RippleMap {
     std::vector<double> spread_nm;  ///< by order: rms by which amplitudes stray from the map in its logs
 };
 
-/// What each column counts at this state. Beyond the range of the map its edge counts; slower than the
-/// slowest speed seen, the two directions run into each other, half and half at standstill.
+/// The weight of each column at this state. Beyond the range of the map its edge counts; slower than the
+/// slowest speed seen, the two directions are blended, half and half at standstill.
 /// weights.size() = map.form.columns().
 void map_weights(const RippleMap& map, const MapState& state, std::span<double> weights);
 
-/// The amplitude of one order under these weights: its cosine and sine part.
+/// By which the second comb's columns of an order are turned at a joint position; 1 without a second comb.
+[[nodiscard]] std::complex<double> second_comb_phasor(const RippleMap& map, std::size_t order,
+                                                      double position_deg);
+
+/// The amplitude of one order under these weights at a joint position: its cosine and sine part.
 [[nodiscard]] std::complex<double> map_amplitude(const RippleMap& map, std::size_t order,
-                                                 std::span<const double> weights);
+                                                 std::span<const double> weights, double position_deg);
 
 /// The ripple at this state, Nm.
 [[nodiscard]] double map_torque(const RippleMap& map, const MapState& state);

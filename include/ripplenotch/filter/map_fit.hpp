@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A ripple map from logs of one joint: the smallest form that pays on blocks that were left out, shrunk where
-// the logs say little, with the error of each value and what it leaves on what it was not fitted to.
+// A ripple map from logs of one joint: its form by cross-validation, shrunk where the logs determine little,
+// with the error of each value and the residual on blocks that it was not fitted to.
 
 #include <complex>
 #include <cstddef>
@@ -24,6 +24,9 @@ struct MapOrderScore {
     double noise_nm = 0.0;         ///< the same of what stands half an order beside it, where no ripple is
     double left_nm = 0.0;          ///< the same of what is left beside the map
     double predicted_share = 0.0;  ///< of the ripple's energy, that is beyond the noise; 0 to 1
+    double false_alarm = 1.0;      ///< probability that chance is as regular
+    /// Of an order that is not in the map: the amplitude that would have been found in 20 of 20 such logs.
+    double detectable_nm = 0.0;
 };
 
 /// By how much the ripple of one log is that of all the other logs, as a map of these alone has it.
@@ -35,7 +38,7 @@ struct MapAgreement {
     bool agrees = true;                             ///< within three of its errors, or 15 %
 };
 
-enum class MapFinding { mapped, nothing, too_little };
+enum class MapFinding { mapped, nothing, unclear, too_little };
 [[nodiscard]] std::string_view map_finding_name(MapFinding finding);
 
 struct MapFit {
@@ -56,9 +59,9 @@ struct MapFit {
 inline constexpr std::size_t fewest_map_windows = 12;
 
 /// Fits each order in windows of 2.5 motor turns beside a cubic (docs/methods/subtract.md), then the windows'
-/// amplitudes by ridge regression on the columns of the form. Forms are tried from the simplest on, each
-/// judged on the blocks that were left out of its fit; a richer one is taken where it leaves less there by
-/// more than chance. An order comes into the map where that leaves less than no map by more than chance.
+/// amplitudes by ridge regression on the columns of a form. An order comes into the map where a rotation test
+/// finds it, at 1 % for all orders together; the form is the smallest one within a standard error of the best
+/// in cross-validation.
 /// Angles count from `zero_deg`. Logs without a position have none to count from: throws DataError for
 /// several of them. Throws UsageError for no log. `temperatures_degc`: the joint's temperature at each row of
 /// each log, which enters where it pays; or nothing.

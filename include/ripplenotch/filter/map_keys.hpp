@@ -11,7 +11,7 @@
 namespace ripplenotch {
 
 /// gear-ratio, orders, cosines, sines and what else the form needs, in the order of the page; angles count
-/// from position 0 then. An empty map is one of order 1 and 0 Nm.
+/// from position 0 then. The map has an order.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& map);
 
 }  // namespace ripplenotch

@@ -66,12 +66,22 @@ void use_table(Spec& spec, const Method& method, const std::optional<std::string
 
 // map=FILE goes, and the keys that it stands for come; those that are given must be those of the map.
 std::shared_ptr<const RippleMap> use_map(Spec& spec, const Method& method, const MapSource& maps,
-                                         std::vector<std::string>& files) {
+                                         const std::vector<double>& asked, std::vector<std::string>& files) {
     if (!has_key(method, "map") || !given(spec, "map")) return nullptr;
     const auto entry = entry_of(spec, "map");
     const std::string path = entry->second;
     spec.values.erase(entry);
     auto map = std::make_shared<const RippleMap>(maps ? maps(path) : load_map(path).map);
+    if (map->orders.empty())
+        raise<DataError>("{}: the map is empty: method {} has no order to filter by it", path, spec.name);
+    const auto is_mapped = [&map](double order) {
+        return std::any_of(map->orders.begin(), map->orders.end(),
+                           [order](Order one) { return one.value() == order; });
+    };
+    if (!asked.empty() && std::none_of(asked.begin(), asked.end(), is_mapped))
+        raise<DataError>(
+            "{}: the map holds none of the orders asked for; method {} has no order to filter by it", path,
+            spec.name);
     for (auto& [key, value] : map_as_keys(*map)) {
         if (!given(spec, key)) {
             spec.values.emplace_back(key, std::move(value));
@@ -142,7 +152,7 @@ Contender choose_method(const std::string& spec_text, const std::optional<std::s
     use_table(spec, method, table);
     const std::string typed = spec.text();
     std::vector<std::string> maps;
-    const auto map = use_map(spec, method, source, maps);
+    const auto map = use_map(spec, method, source, choice.asked_orders(), maps);
     MethodGear stated = stated_gear(spec, method, choice);
     std::shared_ptr<const CandidateTable> loaded;
     if (method.needs_table && given(spec, "table")) {

@@ -56,6 +56,8 @@ class GearChoice {
     /// Empty when no source states a ratio. Throws DataError when a joint file that is asked has no ratio or
     /// no line that follows the motor.
     [[nodiscard]] std::optional<GearAccount> of(const MethodGear& method = {}) const;
+    /// Of --orders; empty where it is not given.
+    [[nodiscard]] const std::vector<double>& asked_orders() const { return options_.orders; }
     [[nodiscard]] const std::optional<JointFile>& joint() const { return joint_; }
     /// What the joint file says under --gear-ratio, where that is given.
     [[nodiscard]] std::optional<JointFacts> facts() const;

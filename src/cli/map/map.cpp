@@ -206,14 +206,11 @@ const Command commands::map{
     .name = "map",
     .summary = "the ripple by motor angle, speed and direction, for a compensator without delay",
     .description =
-        "Reads logs of one joint and fits the cosine and sine amplitude of each order as a function of "
-        "speed, "
-        "direction,\n"
-        "the joint's own turn, load and temperature: the smallest form that pays on blocks of the logs that "
-        "were left "
-        "out. "
-        "The map is\n"
-        "empty where nothing turns with the motor.\n"
+        "Reads logs of one joint and fits the cosine and sine amplitude of each order, on both combs of a "
+        "harmonic\ndrive, as a function of speed, direction, the joint's own turn, load and temperature; the "
+        "form is chosen by\ncross-validation. The map is empty where no order follows the motor; the "
+        "amplitude "
+        "that would have been found\nis stated.\n"
         "Example: ripplenotch map log.csv --gear-ratio 100 --orders 1,2 -o map.json",
     .attach = attach_map,
 };

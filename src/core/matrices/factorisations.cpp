@@ -3,7 +3,7 @@
 
 namespace ripplenotch {
 
-using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd, Eigen::VectorXcd;
+using Eigen::Index, Eigen::MatrixXd, Eigen::MatrixXcd, Eigen::VectorXd, Eigen::VectorXcd;
 
 SymmetricFactors::SymmetricFactors(const MatrixXd& matrix) : factored_(matrix) {}
 void SymmetricFactors::compute(const MatrixXd& matrix) { factored_.compute(matrix); }
@@ -15,6 +15,9 @@ DefiniteFactors::DefiniteFactors(const MatrixXd& matrix) : factored_(matrix) {}
 MatrixXd DefiniteFactors::lower() const { return factored_.matrixL(); }
 VectorXd DefiniteFactors::solve(const VectorXd& right) const { return factored_.solve(right); }
 MatrixXd DefiniteFactors::solve(const MatrixXd& right) const { return factored_.solve(right); }
+
+HermitianFactors::HermitianFactors(const MatrixXcd& matrix) : factored_(matrix) {}
+MatrixXcd HermitianFactors::solve(const MatrixXcd& right) const { return factored_.solve(right); }
 
 SquareFactors::SquareFactors(const MatrixXd& matrix) : factored_(matrix) {}
 MatrixXd SquareFactors::solve(const MatrixXd& right) const { return factored_.solve(right); }

@@ -36,6 +36,16 @@ class DefiniteFactors {
     Eigen::LLT<Eigen::MatrixXd> factored_;
 };
 
+/// L D L* of a Hermitian matrix, of which the lower half is read; it may be singular.
+class HermitianFactors {
+  public:
+    explicit HermitianFactors(const Eigen::MatrixXcd& matrix);
+    [[nodiscard]] Eigen::MatrixXcd solve(const Eigen::MatrixXcd& right) const;
+
+  private:
+    Eigen::LDLT<Eigen::MatrixXcd> factored_;
+};
+
 /// L U of any square matrix that is not singular.
 class SquareFactors {
   public:

@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t most_speeds = 64, most_turn_harmonics = 8, most_map_orders = 64;
 
 std::optional<MapFinding> map_finding_of(std::string_view name) {
-    for (const MapFinding one : {MapFinding::mapped, MapFinding::nothing, MapFinding::too_little})
+    for (const MapFinding one :
+         {MapFinding::mapped, MapFinding::nothing, MapFinding::unclear, MapFinding::too_little})
         if (map_finding_name(one) == name) return one;
     return std::nullopt;
 }
@@ -56,6 +57,12 @@ MapForm form_from_json(Fields& fields) {
     form.turn_harmonics = at_most(fields, "turn_harmonics", 0, most_turn_harmonics);
     form.by_load = fields.flag("by_load");
     form.by_temperature = fields.has("by_temperature") && fields.flag("by_temperature");
+    if (fields.has("second_comb")) {
+        const double side = fields.number("second_comb");
+        if (std::abs(side) != 1.0)
+            raise<DataError>("{} is {}, expected 1 or -1", fields.where("second_comb"), side);
+        form.second_comb = side > 0.0 ? 1 : -1;
+    }
     fields.finish();
     return form;
 }
@@ -84,7 +91,9 @@ void scores_from_json(Fields& fields, MapFit& fit) {
     fields.each("left_out", [&](Fields& entry) {
         fit.scores.push_back({entry.number("order"), entry.flag("in_map"), entry.number("ripple_nm"),
                               entry.number("noise_nm"), entry.number("left_nm"),
-                              entry.number("predicted_share")});
+                              entry.number("predicted_share"),
+                              entry.has("false_alarm") ? entry.number("false_alarm") : 1.0,
+                              entry.has("detectable_nm") ? entry.number("detectable_nm") : 0.0});
     });
     fields.each("agreement", [&](Fields& entry) {
         fit.agreement.push_back({entry.whole("log"), entry.number("order"), entry.number("amplitude_ratio"),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/map_json.hpp"
 
+#include <cmath>
+
 #include "core/matrices/normal_errors.hpp"
 #include "document/fields/document_head.hpp"
 #include "document/json/json.hpp"
@@ -18,6 +20,7 @@ Json form_to_json(const MapForm& form) {
     json["turn_harmonics"] = form.turn_harmonics;
     json["by_load"] = form.by_load;
     if (form.by_temperature) json["by_temperature"] = true;
+    if (form.second_comb != 0) json["second_comb"] = form.second_comb;
     return json;
 }
 
@@ -45,7 +48,10 @@ Json scores_to_json(const std::vector<MapOrderScore>& scores) {
                         {"ripple_nm", score.ripple_nm},
                         {"noise_nm", score.noise_nm},
                         {"left_nm", score.left_nm},
-                        {"predicted_share", score.predicted_share}});
+                        {"predicted_share", score.predicted_share},
+                        {"false_alarm", score.false_alarm}});
+        if (!score.in_map && std::isfinite(score.detectable_nm))
+            json.back()["detectable_nm"] = score.detectable_nm;
     }
     return json;
 }

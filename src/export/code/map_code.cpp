@@ -55,7 +55,27 @@ std::complex<double> from_middle(const RippleMap& map, const std::vector<std::co
 
 }  // namespace
 
-MapTables::MapTables(const RippleMap& map) : speeds(map.form.speeds_deg_s) {
+RippleMap with_combs_apart(const RippleMap& map) {
+    if (map.form.second_comb == 0) return map;
+    RippleMap apart = map;
+    apart.form.second_comb = 0;
+    apart.orders.insert(apart.orders.end(), map.orders.begin(), map.orders.end());
+    const std::size_t knots = map.form.speeds_deg_s.size();
+    apart.values.assign(apart.orders.size(), {});
+    for (std::size_t i = 0; i < map.orders.size(); ++i) {
+        const std::complex<double> turned = second_comb_phasor(map, i, counted_from_deg(map));
+        for (std::size_t c = 0; c < map.form.columns(); ++c) {
+            if (map.form.is_second_comb(c)) continue;
+            const bool at_speed = c % map.form.columns_a_direction() < knots;
+            apart.values[i].push_back(map.values[i][c]);
+            apart.values[map.orders.size() + i].push_back(at_speed ? turned * map.values[i][c + knots] : 0.0);
+        }
+    }
+    return apart;
+}
+
+MapTables::MapTables(const RippleMap& stated) : speeds(stated.form.speeds_deg_s) {
+    const RippleMap map = with_combs_apart(stated);
     for (std::size_t k = 0; k + 1 < std::max<std::size_t>(speeds.size(), 2); ++k) {
         const double gap = speeds.size() > 1 ? speeds[k + 1] - speeds[k] : 0.0;
         slopes.push_back(gap > 0.0 ? 1.0 / gap : 0.0);
@@ -103,8 +123,7 @@ MapTables::MapTables(TextReader& reader, const RippleMap& map, const CodeStyle& 
       slopes(style.read(reader, "slopes", std::max<std::size_t>(speeds.size(), 2) - 1)),
       offsets(style.read(reader, "offsets", slopes.size())),
       limits(style.read(reader, "limits", 8)),
-      amplitudes(style.read(reader, "amplitudes",
-                            2 * map.orders.size() * map.form.directions * columns_a_direction(map.form))) {}
+      amplitudes(style.read(reader, "amplitudes", MapTables(map).amplitudes.size())) {}
 
 std::string MapCode::arguments(bool with_types, std::string_view torque) const {
     const MapForm& form = map_.form;
@@ -113,7 +132,7 @@ std::string MapCode::arguments(bool with_types, std::string_view torque) const {
         if (is) text += with_types ? fmt::format("@real@ {}, ", name) : fmt::format("{}, ", value);
     };
     add(form.speeds_deg_s.size() > 1 || form.directions > 1, "speed_deg_s", "speed_deg_s");
-    add(form.turn_harmonics > 0, "joint_deg", "joint_deg");
+    add(by_joint(), "joint_deg", "joint_deg");
     add(form.by_load, "torque_nm", torque);
     add(form.by_temperature, "temperature_degc", "temperature_degc");
     return text;
@@ -124,9 +143,9 @@ std::string MapCode::parameters() const { return "@real@ speed_deg_s, @real@ joi
 std::string MapCode::amplitudes_here(std::string_view torque) const {
     std::string text;
     if (map_.form.speeds_deg_s.size() == 1 && map_.form.directions == 1) text += "    (void)speed_deg_s;\n";
-    if (map_.form.turn_harmonics == 0) text += "    (void)joint_deg;\n";
+    if (!by_joint()) text += "    (void)joint_deg;\n";
     if (is_constant()) return text + "    const @real@* const z = @name@_amplitudes;\n";
-    return text + fmt::format("    @real@ z[{}];\n    @name@_at({}z);\n", 2 * map_.orders.size(),
+    return text + fmt::format("    @real@ z[{}];\n    @name@_at({}z);\n", 2 * apart_.orders.size(),
                               arguments(false, torque));
 }
 
@@ -156,8 +175,8 @@ std::string MapCode::factors() const {
 
 // A cosine or sine amplitude, as map_run.hpp adds it up.
 std::string MapCode::sum(std::size_t part) const {
-    const MapForm& form = map_.form;
-    const std::size_t parts = 2 * map_.orders.size(), speeds = form.speeds_deg_s.size();
+    const MapForm& form = apart_.form;
+    const std::size_t parts = 2 * apart_.orders.size(), speeds = form.speeds_deg_s.size();
     Products products;
     if (speeds > 1) products.emplace_back("along", fmt::format("low[{}]", part + parts));
     std::size_t at = (speeds > 1 ? 2 * (speeds - 1) : 1) * parts + part;
@@ -176,13 +195,31 @@ std::string MapCode::sum(std::size_t part) const {
 
 // The amplitudes of one direction, put where `form` says: {0} their place, {1} their value.
 std::string MapCode::side(std::size_t direction, std::string_view indent, std::string_view form) const {
-    const std::size_t parts = 2 * map_.orders.size();
+    const std::size_t parts = 2 * apart_.orders.size();
     std::string text = fmt::format("{}const @real@* const v = @name@_amplitudes + {};\n", indent,
-                                   direction * parts * MapTables::columns_a_direction(map_.form));
+                                   direction * parts * MapTables::columns_a_direction(apart_.form));
     if (map_.form.speeds_deg_s.size() > 1)
         text += fmt::format("{}const @real@* const low = v + {} * at;\n", indent, 2 * parts);
     for (std::size_t i = 0; i < parts; ++i)
         text += fmt::format("{}{}\n", indent, fmt::format(fmt::runtime(form), i, sum(i)));
+    return text;
+}
+
+// The amplitudes of the second comb, turned by the joint's angle, added to those of the first.
+std::string MapCode::combined() const {
+    const std::size_t orders = map_.orders.size();
+    if (map_.form.second_comb == 0) return "";
+    std::string text =
+        "    const @real@ turned = @name@_fma(joint_deg, (@real@)0.002777777777777778, @name@_limits[1]);\n"
+        "    @real@ c, s;\n";
+    for (std::size_t i = 0; i < orders; ++i) {
+        text += fmt::format(
+            "    @name@_on_circle((@real@){0} * turned, &c, &s);\n"
+            "    z[{1}] += @name@_fma(c, z[{3}], {5}s * z[{4}]);\n"
+            "    z[{2}] += @name@_fma(c, z[{4}], {6}s * z[{3}]);\n",
+            map_.orders[i].value(), 2 * i, 2 * i + 1, 2 * (orders + i), 2 * (orders + i) + 1,
+            map_.form.second_comb > 0 ? "" : "-", map_.form.second_comb > 0 ? "-" : "");
+    }
     return text;
 }
 
@@ -211,7 +248,7 @@ std::string MapCode::definitions() const {
                 "        {\n" + side(0, "            ", "z[{0}] = {1};") + "        }\n" +
                 side(1, "        ", "z[{0}] = @name@_fma(share, {1} - z[{0}], z[{0}]);") + "    }\n";
     }
-    return text + style_.filled(code + "}\n");
+    return text + style_.filled(code + combined() + "}\n");
 }
 
 std::string order_angles_code(const std::vector<double>& orders, std::string_view turns) {

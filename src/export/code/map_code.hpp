@@ -35,10 +35,15 @@ class MapTables {
     void add(const RippleMap& map, const Of& of);
 };
 
+/// The same amplitudes with the second comb's columns as orders of their own behind the first comb's, counted
+/// from where the joint's angle is counted in C. The map itself where it has no second comb.
+[[nodiscard]] RippleMap with_combs_apart(const RippleMap& map);
+
 /// The C of one map. Functions take what the form needs, so that a compiler has nothing to warn of.
 class MapCode {
   public:
-    MapCode(const RippleMap& map, const CodeStyle& style) : map_(map), style_(style) {}
+    MapCode(const RippleMap& map, const CodeStyle& style)
+        : map_(map), apart_(with_combs_apart(map)), style_(style) {}
 
     /// Tables, and the function NAME_at where amplitudes are not the same everywhere.
     [[nodiscard]] std::string definitions() const;
@@ -50,12 +55,15 @@ class MapCode {
   private:
     [[nodiscard]] bool is_constant() const { return map_.form.columns() == 1; }
     [[nodiscard]] std::string arguments(bool with_types, std::string_view torque) const;
+    [[nodiscard]] bool by_joint() const { return map_.form.turn_harmonics > 0 || map_.form.second_comb != 0; }
     [[nodiscard]] std::string factors() const;
     [[nodiscard]] std::string sum(std::size_t part) const;
     [[nodiscard]] std::string side(std::size_t direction, std::string_view indent,
                                    std::string_view form) const;
+    [[nodiscard]] std::string combined() const;
 
     const RippleMap& map_;
+    RippleMap apart_;
     const CodeStyle& style_;
 };
 

@@ -126,7 +126,7 @@ LoadedCode loaded_code(TextReader& reader, const OscillatorDesign& d, const Code
     const auto priors = style.read(reader, "priors", 3 * d.orders.size());
     const auto values = style.read(reader, "values", Value::count);
     std::optional<MapRun<Real>> map;
-    if (d.map) map.emplace(d.map->form, d.orders.size(), MapTables(reader, *d.map, style));
+    if (d.map) map.emplace(*d.map, MapTables(reader, *d.map, style));
     auto run = std::make_shared<OscillatorRun<Real>>(orders, priors, values, minus_ripple, std::move(map));
     return {"", [run](const CodeInput& in) { return run->step(in); }};
 }

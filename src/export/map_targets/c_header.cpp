@@ -65,7 +65,7 @@ class TorqueRun {
     TorqueRun(const RippleMap& map, const std::vector<double>& orders, const MapTables& tables)
         : orders_(orders.begin(), orders.end()),
           shows_(2 * orders.size()),
-          map_(map.form, orders.size(), tables),
+          map_(map, tables),
           ratio_(map.gear_ratio.value()),
           zero_deg_(map.zero_deg),
           middle_degc_(map.temperatures_degc.middle()) {}

@@ -40,34 +40,52 @@ void order_angles(const std::vector<Real>& orders, Real turns, std::vector<Real>
 template <class Real>
 class MapRun {
   public:
-    MapRun(const MapForm& form, std::size_t orders, const MapTables& tables)
-        : form_(form),
+    MapRun(const RippleMap& map, const MapTables& tables)
+        : form_(map.form),
+          orders_(map.orders.size()),
           speeds_(tables.speeds.begin(), tables.speeds.end()),
           slopes_(tables.slopes.begin(), tables.slopes.end()),
           offsets_(tables.offsets.begin(), tables.offsets.end()),
           limits_(tables.limits.begin(), tables.limits.end()),
           table_(tables.amplitudes.begin(), tables.amplitudes.end()),
-          z_(2 * orders),
-          other_(2 * orders) {}
+          z_(2 * with_combs_apart(map).orders.size()),
+          other_(z_.size()),
+          sum_(2 * orders_.size()) {
+        for (std::size_t i = 0; i < orders_.size(); ++i)
+            orders_[i] = static_cast<Real>(map.orders[i].value());
+    }
 
     /// Of each order cosine and sine, Nm.
     const std::vector<Real>& at(const CodeInput& in) {
+        find_amplitudes(in);
+        if (form_.second_comb == 0) return z_;
+        const Real turned =
+            static_cast<Real>(in.joint_deg) * static_cast<Real>(0.002777777777777778) + limits_[1];
+        for (std::size_t i = 0; i < orders_.size(); ++i) {
+            const OnCircle<Real> at = on_circle(orders_[i] * turned);
+            const Real s = form_.second_comb > 0 ? at.sine : -at.sine;
+            const Real* const second = z_.data() + 2 * (orders_.size() + i);
+            sum_[2 * i] = z_[2 * i] + (at.cosine * second[0] + s * second[1]);
+            sum_[2 * i + 1] = z_[2 * i + 1] + (at.cosine * second[1] - s * second[0]);
+        }
+        return sum_;
+    }
+
+  private:
+    void find_amplitudes(const CodeInput& in) {
         const Real speed = static_cast<Real>(in.speed_deg_s);
         find_factors(in);
         if (form_.directions == 1) {
             add_up(table_.data(), z_);
-            return z_;
+            return;
         }
         const std::size_t half = table_.size() / 2;
         add_up(table_.data() + (speed <= -limits_[0] ? half : 0), z_);
-        if (speed >= limits_[0] || speed <= -limits_[0]) return z_;
+        if (speed >= limits_[0] || speed <= -limits_[0]) return;
         const Real middle = static_cast<Real>(0.5), share = middle - middle * speed / limits_[0];
         add_up(table_.data() + half, other_);
         for (std::size_t i = 0; i < z_.size(); ++i) z_[i] = share * (other_[i] - z_[i]) + z_[i];
-        return z_;
     }
-
-  private:
     void find_factors(const CodeInput& in) {
         factors_.clear();
         if (speeds_.size() > 1) {
@@ -109,7 +127,7 @@ class MapRun {
     }
 
     MapForm form_;
-    std::vector<Real> speeds_, slopes_, offsets_, limits_, table_, z_, other_, factors_;
+    std::vector<Real> orders_, speeds_, slopes_, offsets_, limits_, table_, z_, other_, sum_, factors_;
     std::size_t at_ = 0;
     Real along_ = 0;
 };

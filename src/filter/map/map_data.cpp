@@ -12,7 +12,7 @@ namespace ripplenotch {
 namespace {
 
 constexpr std::size_t most_blocks = 16;     // by hand: parts that are left out in turn
-constexpr std::size_t least_block = 5;      ///< windows
+constexpr std::size_t least_block = 3;      ///< windows, of which the middle one shares none of its samples
 constexpr double least_noise_share = 1e-8;  ///< of the energy: a simulation without noise has rounding
 
 // Amplitudes and mean of what `torque_nm` holds along the log.
@@ -36,6 +36,8 @@ std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& ge
 MapWindow window_of(const RippleWindow& window, const GearAccount& gear, double zero_deg) {
     const double ratio = gear.ratio.value();
     MapWindow one;
+    one.middle = window.middle;
+    one.length = window.length;
     one.state = {360.0 * window.speed_turns_s / ratio, 360.0 * window.middle_turns / ratio, window.torque_nm};
     for (std::size_t i = 0; i < gear.orders.size(); ++i) {
         const double cycles = gear.orders[i].value() * ratio * zero_deg / 360.0;
@@ -51,42 +53,47 @@ void widen_span(MapRange& range, double value, bool first) {
     range.to = first ? value : std::max(range.to, value);
 }
 
-// Windows half overlap: those at the ends of a block share samples with the next one.
+// Blocks of a log are alike in size. Windows half overlap: those at the ends of a block may share samples
+// with the next one.
 void number_blocks(MapData& data) {
-    const std::size_t size = std::max(least_block, (data.windows.size() + most_blocks - 1) / most_blocks);
-    std::size_t in_block = 0;
-    for (std::size_t i = 0; i < data.windows.size(); ++i, ++in_block) {
-        const bool first = i == 0, other_log = !first && data.windows[i].log != data.windows[i - 1].log;
-        if (other_log || in_block >= size) {
-            ++data.blocks;
-            in_block = 0;
-            if (!other_log) data.windows[i].scored = data.windows[i - 1].scored = false;
-        }
-        data.windows[i].block = data.blocks;
+    std::vector<MapWindow>& windows = data.windows;
+    const std::size_t size = std::max(least_block, (windows.size() + most_blocks - 1) / most_blocks);
+    for (std::size_t from = 0, to = 0; from < windows.size(); from = to) {
+        while (to < windows.size() && windows[to].log == windows[from].log) ++to;
+        const std::size_t count = to - from, blocks = (count + size - 1) / size;
+        for (std::size_t i = from; i < to; ++i) windows[i].block = data.blocks + (i - from) * blocks / count;
+        data.blocks += blocks;
     }
-    if (!data.windows.empty()) ++data.blocks;
-}
-
-void sum_up(MapData& data) {
-    data.mean_noise.assign(data.orders, 0.0);
-    data.energy.assign(data.orders, 0.0);
-    const double each = data.windows.empty() ? 0.0 : 1.0 / static_cast<double>(data.windows.size());
-    for (const MapWindow& window : data.windows) {
-        for (std::size_t i = 0; i < data.orders; ++i) {
-            data.mean_noise[i] += each * window.noise[i];
-            data.energy[i] += each * std::norm(window.value[i]);
-        }
+    for (std::size_t i = 1; i < windows.size(); ++i) {
+        MapWindow &before = windows[i - 1], &after = windows[i];
+        const double apart = after.middle - before.middle, share = 1e-9;
+        const bool overlap = apart < (0.5 - share) * (before.length + after.length);
+        if (after.log == before.log && after.block != before.block && overlap)
+            before.scored = after.scored = false;
     }
-    for (std::size_t i = 0; i < data.orders; ++i)
-        data.mean_noise[i] = std::max(data.mean_noise[i], least_noise_share * data.energy[i]);
 }
 
 }  // namespace
 
+void summarise(MapData& data) {
+    data.mean_noise.assign(data.orders.size(), 0.0);
+    data.energy.assign(data.orders.size(), 0.0);
+    const double each = data.windows.empty() ? 0.0 : 1.0 / static_cast<double>(data.windows.size());
+    for (const MapWindow& window : data.windows) {
+        for (std::size_t i = 0; i < data.orders.size(); ++i) {
+            data.mean_noise[i] += each * window.noise[i];
+            data.energy[i] += each * std::norm(window.value[i]);
+        }
+    }
+    for (std::size_t i = 0; i < data.orders.size(); ++i)
+        data.mean_noise[i] = std::max(data.mean_noise[i], least_noise_share * data.energy[i]);
+}
+
 MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
                  std::span<const std::vector<double>> temperatures_degc) {
     MapData data;
-    data.orders = gear.orders.size();
+    data.gear_ratio = gear.ratio;
+    data.orders = gear.orders;
     for (std::size_t l = 0; l < logs.size(); ++l) {
         const bool warms = !temperatures_degc.empty();
         const auto windows = windows_of(logs[l], gear, logs[l].torque_nm);
@@ -105,8 +112,19 @@ MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, doubl
         }
     }
     number_blocks(data);
-    sum_up(data);
+    summarise(data);
     return data;
+}
+
+MapData of_order(const MapData& data, std::size_t order) {
+    MapData part = data;
+    part.orders = {data.orders[order]};
+    for (MapWindow& window : part.windows) {
+        window.value = {window.value[order]};
+        window.noise = {window.noise[order]};
+    }
+    summarise(part);
+    return part;
 }
 
 MapData of_log(const MapData& data, std::size_t log, bool is) {
@@ -119,6 +137,8 @@ MapData of_log(const MapData& data, std::size_t log, bool is) {
 
 RippleMap frame_of(const MapData& data, const MapForm& form, double zero_deg) {
     RippleMap map;
+    map.gear_ratio = data.gear_ratio;
+    map.orders = data.orders;
     map.form = form;
     map.zero_deg = zero_deg;
     map.speeds_deg_s = data.speeds_deg_s;

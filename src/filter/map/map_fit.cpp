@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "filter/map/map_choice.hpp"
+#include "filter/map/map_regression.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/core/portable_math.hpp"
@@ -17,22 +17,21 @@ namespace ripplenotch {
 namespace {
 
 constexpr double errors_apart = 3.0;       // by hand: three standard errors
-constexpr double ripple_over_noise = 2.0;  ///< squares of an order that is there
-constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
-
-double mean_of(const std::vector<double>& blocks, double unit_nm2) {
-    return unit_nm2 * std::accumulate(blocks.begin(), blocks.end(), 0.0);
-}
+constexpr double ripple_over_noise = 2.0;  ///< squares of an order that an oscillator may follow
+// Squares of an order that is there for certain. The noise of order 1 is measured at 1.5 alone, where a
+// spectrum that falls with the third power of the frequency is 11 times smaller.
+constexpr double certain_over_noise = 4.0, certain_over_noise_above = 11.0, one_sided_below = 1.1;
+constexpr double share_apart = 0.15;  ///< less is no reason to doubt a map
 
 MapOrderScore score_of(double order, const HeldOut& held) {
     MapOrderScore score;
     score.order = order;
-    const double there = mean_of(held.there, held.unit_nm2), left = mean_of(held.left, held.unit_nm2);
-    const double noise = held.unit_nm2 * held.noise;
-    score.ripple_nm = std::sqrt(there);
-    score.noise_nm = std::sqrt(noise);
-    score.left_nm = std::sqrt(left);
-    if (there > noise) score.predicted_share = std::clamp((there - left) / (there - noise), 0.0, 1.0);
+    score.ripple_nm = std::sqrt(held.total);
+    score.noise_nm = std::sqrt(held.noise);
+    score.left_nm = std::sqrt(held.residual);
+    if (held.total > held.noise)
+        score.predicted_share =
+            std::clamp((held.total - held.residual) / (held.total - held.noise), 0.0, 1.0);
     return score;
 }
 
@@ -44,7 +43,7 @@ MapAgreement agreement_of(const MapData& one, const MapData& others, const MapFo
     std::complex<double> alike = 0.0;
     double said = 0.0;
     for (std::size_t i = 0; i < one.windows.size(); ++i) {
-        const std::complex<double> expected = own.foretold(i, values);
+        const std::complex<double> expected = own.predicted(i, values);
         alike += own.weight(i) * std::conj(expected) * one.windows[i].value[order];
         said += own.weight(i) * std::norm(expected);
     }
@@ -53,7 +52,7 @@ MapAgreement agreement_of(const MapData& one, const MapData& others, const MapFo
     const std::complex<double> factor = alike / said;
     std::vector<std::complex<double>> off(one.blocks);
     for (std::size_t i = 0; i < one.windows.size(); ++i) {
-        const std::complex<double> expected = own.foretold(i, values);
+        const std::complex<double> expected = own.predicted(i, values);
         off[one.windows[i].block] +=
             own.weight(i) * std::conj(expected) * (one.windows[i].value[order] - factor * expected);
     }
@@ -75,7 +74,8 @@ void hold_logs_together(const MapData& data, const MapChoice& choice, const Gear
     for (std::size_t l = 0; logs > 1 && l < logs; ++l) {
         const MapData one = of_log(data, l, true), others = of_log(data, l, false);
         if (one.windows.empty() || others.windows.empty()) continue;
-        for (const std::size_t i : choice.in_map) {
+        for (std::size_t i = 0; i < data.orders.size(); ++i) {
+            if (!choice.present[i]) continue;
             MapAgreement found = agreement_of(one, others, choice.form, i);
             found.log = l;
             found.order = gear.orders[i].value();
@@ -84,18 +84,23 @@ void hold_logs_together(const MapData& data, const MapChoice& choice, const Gear
     }
 }
 
+bool exceeds_noise(const MapOrderScore& score, double factor) {
+    return score.ripple_nm * score.ripple_nm >= factor * score.noise_nm * score.noise_nm;
+}
+
 // An order whose ripple is there and follows no form stays in the map with no amplitude, for who follows it.
 void fill_map(const MapData& data, const MapChoice& choice, const GearAccount& gear, double zero_deg,
               MapFit& fit) {
     fit.map = frame_of(data, choice.form, zero_deg);
+    const RippleMap frame = fit.map;
+    fit.map.orders.clear();
     fit.map.gear_ratio = gear.ratio;
-    for (std::size_t i = 0; i < data.orders; ++i) {
-        MapOrderScore& score = fit.scores[i];
-        score.in_map = std::find(choice.in_map.begin(), choice.in_map.end(), i) != choice.in_map.end();
+    for (std::size_t i = 0; i < data.orders.size(); ++i) {
+        const MapOrderScore& score = fit.scores[i];
+        if (!score.in_map && !exceeds_noise(score, ripple_over_noise)) continue;
         const double noise = score.noise_nm * score.noise_nm;
         const double left = score.in_map ? score.left_nm * score.left_nm : score.ripple_nm * score.ripple_nm;
-        if (!score.in_map && left < ripple_over_noise * noise) continue;
-        const MapRegression regression(data, fit.map, i);
+        const MapRegression regression(data, frame, i);
         fit.map.orders.push_back(gear.orders[i]);
         fit.map.spread_nm.push_back(std::sqrt(std::max(left - noise, 0.01 * left)));
         fit.errors.push_back(regression.errors());
@@ -132,16 +137,25 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
     }
     const MapChoice choice = choose_map(data, fit.anchored);
     fit.notes = choice.notes;
-    for (std::size_t i = 0; i < data.orders; ++i)
-        fit.scores.push_back(score_of(gear.orders[i].value(), choice.scores[i]));
-    for (std::size_t i = 0; i < data.orders; ++i) {
-        fit.notes.push_back(fmt::format("order {}: {:.1f} deviations beyond what logs without ripple show",
-                                        shortest(gear.orders[i].value()), choice.beyond[i]));
+    bool any = false, excess = false, bounded = true;
+    for (std::size_t i = 0; i < data.orders.size(); ++i) {
+        MapOrderScore score = score_of(gear.orders[i].value(), choice.held_out[i]);
+        score.in_map = choice.present[i];
+        score.false_alarm = choice.false_alarm[i];
+        if (!score.in_map) score.detectable_nm = detectable_amplitude(data, i, fit.anchored);
+        any = any || score.in_map;
+        const double certain = score.order < one_sided_below ? certain_over_noise_above : certain_over_noise;
+        excess = excess || exceeds_noise(score, certain);
+        bounded = bounded && std::isfinite(score.detectable_nm);
+        fit.notes.push_back(fmt::format("order {}: false-alarm probability {:.2g}", shortest(score.order),
+                                        score.false_alarm));
+        fit.scores.push_back(score);
     }
-    fit.finding = choice.in_map.empty() ? MapFinding::nothing : MapFinding::mapped;
-    if (fit.finding == MapFinding::mapped) fill_map(data, choice, gear, zero_deg, fit);
+    // Amplitudes beyond the noise that follow no form tried may be a ripple of another form.
+    fit.finding = any ? MapFinding::mapped : excess || !bounded ? MapFinding::unclear : MapFinding::nothing;
+    if (any) fill_map(data, choice, gear, zero_deg, fit);
     hold_logs_together(data, choice, gear, logs.size(), fit);
-    fit.conclusive = fit.anchored && all_agree(fit);
+    fit.conclusive = fit.anchored && fit.finding != MapFinding::unclear && all_agree(fit);
     return fit;
 }
 

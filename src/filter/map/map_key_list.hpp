@@ -13,7 +13,7 @@ namespace ripplenotch {
 inline constexpr std::array ripple_map_keys = {
     map_key,         cosines_key,        sines_key,   speeds_key,    directions_key, turn_harmonics_key,
     by_load_key,     by_temperature_key, slowest_key, positions_key, loads_key,      temperatures_key,
-    temperature_key, temperature_of_key, spread_key,  fastest_key,   beyond_key};
+    temperature_key, temperature_of_key, spread_key,  fastest_key,   beyond_key,     second_comb_key};
 
 /// One list of several.
 template <std::size_t... Sizes>

@@ -26,12 +26,18 @@ double largest_amplitude(const RippleMap& map, std::size_t order) {
     double largest = 0.0;
     for (std::size_t d = 0; d < map.form.directions; ++d) {
         double at_speed = 0.0, added = 0.0;
-        for (std::size_t c = 0; c < speeds + 2 * map.form.turn_harmonics; ++c) {
+        double second = 0.0;
+        for (std::size_t c = 0; c < map.form.load_column(); ++c) {
             const std::complex<double> z = map.values[order][d * each + c];
             const double size = portable::hypot(z.real(), z.imag());
-            (c < speeds ? at_speed : added) = c < speeds ? std::max(at_speed, size) : added + size;
+            if (c < speeds)
+                at_speed = std::max(at_speed, size);
+            else if (map.form.is_second_comb(c))
+                second = std::max(second, size);
+            else
+                added += size;
         }
-        largest = std::max(largest, at_speed + added);
+        largest = std::max(largest, at_speed + second + added);
     }
     return largest;
 }

@@ -21,39 +21,54 @@ MapRegression::MapRegression(const MapData& data, const RippleMap& frame, std::s
     const auto count = static_cast<Eigen::Index>(data.windows.size());
     const auto columns = static_cast<Eigen::Index>(frame.form.columns());
     columns_ = Matrix::Zero(count, columns);
-    block_gram_.assign(data.blocks, Matrix::Zero(columns, columns));
-    block_right_.assign(data.blocks, Matrix::Zero(columns, 2));
+    blocks_.assign(data.blocks, {Matrix::Zero(columns, columns),
+                                 Matrix::Zero(columns, columns),
+                                 Vector::Zero(columns),
+                                 Vector::Zero(columns),
+                                 {}});
     gram_ = penalty(frame);
-    right_ = Matrix::Zero(columns, 2);
+    right_ = Vector::Zero(columns);
     std::vector<double> row(frame.form.columns());
     for (Eigen::Index i = 0; i < count; ++i) {
         const MapWindow& window = data.windows[static_cast<std::size_t>(i)];
         map_weights(frame, window.state, row);
-        for (Eigen::Index c = 0; c < columns; ++c) columns_(i, c) = row[static_cast<std::size_t>(c)];
+        const std::complex<double> second = second_comb_phasor(frame, order, window.state.position_deg);
+        for (std::size_t c = 0; c < row.size(); ++c)
+            columns_(i, static_cast<Eigen::Index>(c)) =
+                row[c] * (frame.form.is_second_comb(c) ? second : 1.0);
         // Half of the noise is in each part; that of one window is known from a few numbers only.
-        weight_.push_back(4.0 * independent_share / (window.noise[order] + data.mean_noise[order]));
-        const Eigen::RowVectorXd x = columns_.row(i);
+        const double weight = 4.0 * independent_share / (window.noise[order] + data.mean_noise[order]);
+        weight_.push_back(weight);
         const std::complex<double> value = window.value[order];
-        const Eigen::RowVector2d y(value.real(), value.imag());
-        block_gram_[window.block] += weight_.back() * x.transpose() * x;
-        block_right_[window.block] += weight_.back() * x.transpose() * y;
+        const Vector x = columns_.row(i).adjoint();
+        const Matrix square = weight * x * x.adjoint();
+        Block& block = blocks_[window.block];
+        block.gram += square;
+        block.right += weight * value * x;
+        if (!window.scored) continue;
+        block.scored_gram += square;
+        block.scored_right += weight * value * x;
+        block.squares.total += weight * std::norm(value);
+        block.squares.noise += weight * window.noise[order];
+        block.squares.weights += weight;
     }
-    for (std::size_t b = 0; b < data.blocks; ++b) {
-        gram_ += block_gram_[b];
-        right_ += block_right_[b];
+    for (const Block& block : blocks_) {
+        gram_ += block.gram;
+        right_ += block.right;
     }
 }
 
-MapRegression::Matrix MapRegression::penalty(const RippleMap& frame) const {
+Eigen::MatrixXd MapRegression::penalty(const RippleMap& frame) const {
     const MapForm& form = frame.form;
     const auto columns = static_cast<Eigen::Index>(form.columns());
     const auto each = static_cast<Eigen::Index>(form.columns_a_direction());
-    const auto speeds = static_cast<Eigen::Index>(form.speeds_deg_s.size());
+    const auto knots = static_cast<Eigen::Index>(form.speeds_deg_s.size());
+    const auto speeds = static_cast<Eigen::Index>(form.speed_columns());
     const double noise = data_.mean_noise[order_];
     // Of each part.
     const double energy = 0.5 * std::max(data_.energy[order_] - noise, least_energy_share * noise);
-    Matrix p = Matrix::Zero(columns, columns);
-    if (!(energy > 0.0)) return Matrix::Identity(columns, columns);
+    Eigen::MatrixXd p = Eigen::MatrixXd::Zero(columns, columns);
+    if (!(energy > 0.0)) return Eigen::MatrixXd::Identity(columns, columns);
     const auto alike = [&](Eigen::Index a, Eigen::Index b) {
         p(a, a) += 1.0 / energy;
         p(b, b) += 1.0 / energy;
@@ -71,21 +86,19 @@ MapRegression::Matrix MapRegression::penalty(const RippleMap& frame) const {
         if (form.by_load && within == load_column && load > 0.0) share /= load;
         if (form.by_temperature && within == temperature_column && warmer > 0.0) share /= warmer;
         p(c, c) += 1.0 / (share * share * energy);
-        if (at_speed && within + 1 < speeds) alike(c, c + 1);
+        if (at_speed && (within + 1) % knots != 0) alike(c, c + 1);
         if (at_speed && c < each && columns > each) alike(c, c + each);
     }
     return p;
 }
 
 std::vector<std::complex<double>> MapRegression::values() const {
-    const Matrix z = SymmetricFactors(gram_).solve(right_);
-    std::vector<std::complex<double>> values;
-    for (Eigen::Index c = 0; c < z.rows(); ++c) values.emplace_back(z(c, 0), z(c, 1));
-    return values;
+    const Vector z = HermitianFactors(gram_).solve(right_);
+    return {z.begin(), z.end()};
 }
 
-std::complex<double> MapRegression::foretold(std::size_t window,
-                                             const std::vector<std::complex<double>>& values) const {
+std::complex<double> MapRegression::predicted(std::size_t window,
+                                              const std::vector<std::complex<double>>& values) const {
     std::complex<double> sum = 0.0;
     for (std::size_t c = 0; c < values.size(); ++c)
         sum += columns_(static_cast<Eigen::Index>(window), static_cast<Eigen::Index>(c)) * values[c];
@@ -94,50 +107,66 @@ std::complex<double> MapRegression::foretold(std::size_t window,
 
 // Sandwich over the blocks (Liang and Zeger 1986), each part by itself.
 std::vector<std::complex<double>> MapRegression::errors() const {
-    const auto fit = values();
-    const Matrix inverse =
-        SymmetricFactors(gram_).solve(Matrix(Matrix::Identity(gram_.rows(), gram_.rows())));
-    Matrix variance = Matrix::Zero(gram_.rows(), 2);
-    for (std::size_t b = 0; b < data_.blocks; ++b) {
-        Matrix score = Matrix::Zero(gram_.rows(), 2);
-        for (std::size_t i = 0; i < data_.windows.size(); ++i) {
-            if (data_.windows[i].block != b) continue;
-            const std::complex<double> left = data_.windows[i].value[order_] - foretold(i, fit);
-            score += weight_[i] * columns_.row(static_cast<Eigen::Index>(i)).transpose() *
-                     Eigen::RowVector2d(left.real(), left.imag());
-        }
-        const Matrix moved = inverse * score;
-        variance += moved.cwiseProduct(moved);
+    const Matrix inverse = HermitianFactors(gram_).solve(Matrix::Identity(gram_.rows(), gram_.rows()));
+    const Vector fit = inverse * right_;
+    Eigen::MatrixXd variance = Eigen::MatrixXd::Zero(gram_.rows(), 2);
+    for (const Block& block : blocks_) {
+        const Vector moved = inverse * (block.right - block.gram * fit);
+        variance.col(0) += moved.real().cwiseAbs2();
+        variance.col(1) += moved.imag().cwiseAbs2();
     }
-    const double blocks = static_cast<double>(data_.blocks);
+    const double blocks = static_cast<double>(blocks_.size());
     if (blocks > 1.0) variance *= blocks / (blocks - 1.0);
     std::vector<std::complex<double>> errors;
     for (Eigen::Index c = 0; c < variance.rows(); ++c) {
-        const double by_noise = inverse(c, c);
+        const double by_noise = inverse(c, c).real();
         errors.emplace_back(std::sqrt(std::max(variance(c, 0), by_noise)),
                             std::sqrt(std::max(variance(c, 1), by_noise)));
     }
     return errors;
 }
 
-HeldOut MapRegression::held_out() const {
-    HeldOut found{std::vector<double>(data_.blocks), std::vector<double>(data_.blocks), 0.0, 0.0};
-    double weights = 0.0;
-    for (std::size_t b = 0; b < data_.blocks; ++b) {
-        const Matrix z = SymmetricFactors(gram_ - block_gram_[b]).solve(Matrix(right_ - block_right_[b]));
-        for (std::size_t i = 0; i < data_.windows.size(); ++i) {
-            const MapWindow& window = data_.windows[i];
-            if (window.block != b || !window.scored) continue;
-            const Eigen::RowVectorXd said = columns_.row(static_cast<Eigen::Index>(i)) * z;
-            const std::complex<double> left = window.value[order_] - std::complex<double>(said(0), said(1));
-            found.there[b] += weight_[i] * std::norm(window.value[order_]);
-            found.left[b] += weight_[i] * std::norm(left);
-            found.noise += weight_[i] * window.noise[order_];
-            weights += weight_[i];
+double MapRegression::residual(const Block& block, const Vector& values) {
+    const std::complex<double> explained = values.dot(2.0 * block.scored_right - block.scored_gram * values);
+    return std::max(block.squares.total - explained.real(), 0.0);
+}
+
+Eigen::MatrixXd MapRegression::residuals() const {
+    const auto count = static_cast<Eigen::Index>(blocks_.size());
+    Eigen::MatrixXd found(count, count);
+    for (Eigen::Index a = 0; a < count; ++a) {
+        for (Eigen::Index b = a; b < count; ++b) {
+            const Block &one = blocks_[static_cast<std::size_t>(a)],
+                        &two = blocks_[static_cast<std::size_t>(b)];
+            Matrix gram = gram_ - one.gram;
+            Vector right = right_ - one.right;
+            if (a != b) {
+                gram -= two.gram;
+                right -= two.right;
+            }
+            const Vector fit = HermitianFactors(gram).solve(right);
+            found(a, b) = residual(two, fit);
+            found(b, a) = residual(one, fit);
         }
     }
-    if (weights > 0.0) found.unit_nm2 = 1.0 / weights;
     return found;
+}
+
+Eigen::MatrixXcd MapRegression::reduction() const {
+    const auto count = static_cast<Eigen::Index>(blocks_.size());
+    Matrix rights(gram_.rows(), count), form = Matrix::Zero(count, count);
+    for (Eigen::Index b = 0; b < count; ++b) rights.col(b) = blocks_[static_cast<std::size_t>(b)].right;
+    for (Eigen::Index b = 0; b < count; ++b) {
+        const Block& block = blocks_[static_cast<std::size_t>(b)];
+        Matrix others = rights;
+        others.col(b).setZero();
+        const Matrix fits = HermitianFactors(gram_ - block.gram).solve(others);
+        const Matrix explained = block.scored_right.adjoint() * fits;
+        form.row(b) += explained;
+        form.col(b) += explained.adjoint();
+        form -= fits.adjoint() * block.scored_gram * fits;
+    }
+    return form;
 }
 
 }  // namespace ripplenotch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// One order's amplitudes regressed on the columns of a form, with any block of windows left out.
+// One order's amplitudes regressed on the columns of a form, with any blocks of windows left out.
 
 #include <complex>
 #include <cstddef>
@@ -11,16 +11,16 @@
 
 namespace ripplenotch {
 
-/// Squares by block, each over the noise: of what is there, and of what is left beside the map.
-struct HeldOut {
-    std::vector<double> there, left;
-    double noise = 0.0;     ///< the same of the noise, all blocks
-    double unit_nm2 = 0.0;  ///< what a sum of 1 is in Nm^2, as a mean over the windows
+/// Sums of squares over the scored windows of one block, in units of the noise variance.
+struct BlockSquares {
+    double total = 0.0;    ///< of the amplitudes
+    double noise = 0.0;    ///< expected of noise alone
+    double weights = 0.0;  ///< a sum of 1 is 1 / weights Nm^2, as a mean over the windows
 };
 
-/// Ridge regression: of the amplitudes the prior knows that those of neighbouring speeds and of the two
-/// directions differ by about the order's own amplitude, and that those of the joint's turn, of the load and
-/// of the temperature are half of it.
+/// Ridge regression. Its prior: the amplitudes of neighbouring speeds and of the two directions differ by
+/// about the order's own amplitude; those of the joint's turn, of the load and of the temperature are half of
+/// it.
 class MapRegression {
   public:
     MapRegression(const MapData& data, const RippleMap& frame, std::size_t order);
@@ -29,22 +29,35 @@ class MapRegression {
     [[nodiscard]] std::vector<std::complex<double>> values() const;
     /// Standard errors of both parts: the larger of what noise makes and of what the spread of blocks shows.
     [[nodiscard]] std::vector<std::complex<double>> errors() const;
-    /// Each block foretold from the others.
-    [[nodiscard]] HeldOut held_out() const;
-    [[nodiscard]] std::complex<double> foretold(std::size_t window,
-                                                const std::vector<std::complex<double>>& values) const;
+    [[nodiscard]] BlockSquares squares(std::size_t block) const { return blocks_[block].squares; }
+    /// Residual squares of block `column` when it and block `row` are left out of the fit. The diagonal is
+    /// cross-validation; the other columns of a row choose a form for block `row` without having seen it.
+    [[nodiscard]] Eigen::MatrixXd residuals() const;
+    /// The Hermitian form Q for which u* Q u is the reduction of the squares of left-out blocks, all
+    /// amplitudes of block b turned by the unit phasor u_b.
+    [[nodiscard]] Eigen::MatrixXcd reduction() const;
+    [[nodiscard]] std::complex<double> predicted(std::size_t window,
+                                                 const std::vector<std::complex<double>>& values) const;
     [[nodiscard]] double weight(std::size_t window) const { return weight_[window]; }
 
   private:
-    using Matrix = Eigen::MatrixXd;  ///< a right side has two columns: cosine and sine parts
-    [[nodiscard]] Matrix penalty(const RippleMap& frame) const;
+    using Matrix = Eigen::MatrixXcd;
+    using Vector = Eigen::VectorXcd;
+    struct Block {
+        Matrix gram, scored_gram;
+        Vector right, scored_right;
+        BlockSquares squares;
+    };
+    [[nodiscard]] Eigen::MatrixXd penalty(const RippleMap& frame) const;
+    [[nodiscard]] static double residual(const Block& block, const Vector& values);
 
     const MapData& data_;
     std::size_t order_;
     Matrix columns_;  ///< by window
     std::vector<double> weight_;
-    Matrix gram_, right_;
-    std::vector<Matrix> block_gram_, block_right_;
+    Matrix gram_;
+    Vector right_;
+    std::vector<Block> blocks_;
 };
 
 }  // namespace ripplenotch

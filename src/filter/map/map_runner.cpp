@@ -56,7 +56,8 @@ void MapRunner::warm(double degc) noexcept {
 void MapRunner::at(double speed_deg_s, double motor_turns, double torque_nm) noexcept {
     const double position_deg = 360.0 * motor_turns / map_.gear_ratio.value();
     map_weights(map_, {speed_deg_s, position_deg, torque_nm}, weights_);
-    for (std::size_t i = 0; i < amplitudes_.size(); ++i) amplitudes_[i] = map_amplitude(map_, i, weights_);
+    for (std::size_t i = 0; i < amplitudes_.size(); ++i)
+        amplitudes_[i] = map_amplitude(map_, i, weights_, position_deg);
 }
 
 double MapRunner::ripple(double motor_turns, double step_turns) const noexcept {

@@ -43,6 +43,7 @@ std::optional<RippleMap> stated_map(std::string_view method, const Settings& set
         raise<UsageError>("method {}, speeds: each has to be above the one before", method);
     form.directions = whole_value(settings, "directions");
     form.turn_harmonics = whole_value(settings, "turn-harmonics");
+    form.second_comb = static_cast<int>(settings.number("second-comb"));
     form.by_load = settings.number("by-load") > 0.0;
     form.by_temperature = settings.number("by-temperature") > 0.0;
     map.speeds_deg_s = {settings.number("slowest"), form.speeds_deg_s.back()};
@@ -101,7 +102,6 @@ std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fi
         }
     }
     const std::string ratio = shortest(map.gear_ratio.value());
-    if (orders.empty()) return {{"gear-ratio", ratio}, {"orders", "1"}, {"cosines", "0"}, {"sines", "0"}};
     std::vector<std::pair<std::string, std::string>> keys = {
         {"gear-ratio", ratio},
         {"orders", list_text(orders)},
@@ -119,6 +119,7 @@ std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fi
         keys.emplace_back("by-temperature", "1");
         keys.emplace_back("temperatures", ends_text(map.temperatures_degc));
     }
+    if (map.form.second_comb != 0) keys.emplace_back("second-comb", std::to_string(map.form.second_comb));
     if (map.speeds_deg_s.to > 0.0) keys.emplace_back("fastest", shortest(map.speeds_deg_s.to));
     return keys;
 }

@@ -57,6 +57,14 @@ inline constexpr Key by_temperature_key{
     .at_most = 1.0,
     .whole = true,
     .help = "1: behind it, a value per degC beyond the middle of the temperatures"};
+inline constexpr Key second_comb_key{
+    .name = "second-comb",
+    .default_text = "0",
+    .at_least = -1.0,
+    .at_most = 1.0,
+    .whole = true,
+    .help =
+        "1 or -1: after those of the speeds, as many of lines at n (gear ratio + 1) or n (gear ratio - 1)"};
 inline constexpr Key slowest_key{.name = "slowest",
                                  .dimension = Dimension::speed,
                                  .default_text = "0deg/s",

@@ -35,17 +35,27 @@ std::string disagreements(const MapFit& fit) {
 }
 
 std::string mapped_sentence(const MapFit& fit) {
-    std::string text = "On blocks left out the map takes";
+    std::string text = "Cross-validated:";
     bool first = true;
     for (const MapOrderScore& score : fit.scores) {
         if (!score.in_map) continue;
-        text += fmt::format("{} order {} from {:.3g} to {:.3g} Nm ({:.1f} dB; noise allows {:.1f} dB)",
+        text += fmt::format("{} order {} falls from {:.3g} to {:.3g} Nm ({:.1f} dB; noise limit {:.1f} dB)",
                             first ? "" : ",", shortest(score.order), score.ripple_nm, score.left_nm,
                             decibels_down(score.ripple_nm, score.left_nm),
                             decibels_down(score.ripple_nm, score.noise_nm));
         first = false;
     }
-    return text + fmt::format(": amplitudes {}.", map_form_words(fit.map.form));
+    return text + fmt::format("; amplitudes {}.", map_form_words(fit.map.form));
+}
+
+std::string detectable_sentence(const MapFit& fit) {
+    std::string text;
+    for (const MapOrderScore& score : fit.scores) {
+        if (score.in_map || !std::isfinite(score.detectable_nm) || !(score.detectable_nm > 0.0)) continue;
+        text += fmt::format("{}{:.2g} Nm of order {}", text.empty() ? "" : ", ", score.detectable_nm,
+                            shortest(score.order));
+    }
+    return text.empty() ? text : fmt::format("An amplitude of {} would have been found.", text);
 }
 
 }  // namespace
@@ -56,6 +66,8 @@ std::string_view map_finding_name(MapFinding finding) {
             return "mapped";
         case MapFinding::nothing:
             return "nothing";
+        case MapFinding::unclear:
+            return "unclear";
         case MapFinding::too_little:
             return "too-little";
     }
@@ -67,6 +79,8 @@ std::string map_form_words(const MapForm& form) {
     std::string text = by_speed ? fmt::format("by speed ({} of them)", form.speeds_deg_s.size()) : "";
     if (by_direction) text += by_speed ? " and direction" : "by direction";
     if (text.empty()) text = "alike at every speed";
+    if (form.second_comb != 0)
+        text += fmt::format(", with the second comb at n (Kg {} 1)", form.second_comb > 0 ? '+' : '-');
     if (form.turn_harmonics > 0)
         text += fmt::format(", with {} harmonic{} of the joint's turn", form.turn_harmonics,
                             form.turn_harmonics == 1 ? "" : "s");
@@ -78,10 +92,11 @@ std::string map_column_words(const MapForm& form, std::size_t column) {
     const std::size_t each = form.columns_a_direction(), within = column % each;
     const std::size_t speeds = form.speeds_deg_s.size();
     std::string what;
-    if (within < speeds) {
-        what = speeds > 1 ? fmt::format("{:.4g} deg/s", form.speeds_deg_s[within]) : "any speed";
-    } else if (within < speeds + 2 * form.turn_harmonics) {
-        const std::size_t at = within - speeds;
+    if (within < form.speed_columns()) {
+        what = speeds > 1 ? fmt::format("{:.4g} deg/s", form.speeds_deg_s[within % speeds]) : "any speed";
+        if (within >= speeds) what += ", second comb";
+    } else if (within < form.load_column()) {
+        const std::size_t at = within - form.speed_columns();
         what = fmt::format("{} of {} joint angle{}", at % 2 == 0 ? "cosine" : "sine", at / 2 + 1,
                            at / 2 == 0 ? "" : "s");
     } else {
@@ -102,13 +117,20 @@ std::string map_verdict(const MapFit& fit) {
                 fit.windows, fewest_map_windows));
             break;
         case MapFinding::nothing:
-            add(
-                fmt::format("Nothing turns with the motor at {} of gear ratio {:.6g}, by {} windows: the map "
-                            "is empty.",
+            add(fmt::format("No ripple found of {} at gear ratio {:.6g} in {} windows: the map is empty.",
                             orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
+            add(detectable_sentence(fit));
+            break;
+        case MapFinding::unclear:
+            add(fmt::format(
+                "Cannot tell: no regular ripple found of {} at gear ratio {:.6g} in {} windows, but "
+                "amplitudes above the noise, or no bound; the map is empty.",
+                orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
+            add(detectable_sentence(fit));
             break;
         case MapFinding::mapped:
             add(mapped_sentence(fit));
+            if (const std::string bound = detectable_sentence(fit); !bound.empty()) add(bound);
             break;
     }
     if (!fit.anchored && fit.finding == MapFinding::mapped)
