@@ -39,7 +39,7 @@ void add_ratio(std::vector<Reported>& reported, const RatioQuestion& question, I
     result.gear_ratio = std::move(ratio.fit);
     for (std::string& note : ratio.notes) result.notes.push_back(std::move(note));
     for (std::size_t i = 0; i < owner.size(); ++i) {
-        if (const auto n = ratio.order_of_line[i]) reported[owner[i]].line.order = static_cast<double>(*n);
+        if (const auto n = ratio.order_of_line[i]) reported[owner[i]].line.order = *n;
     }
 }
 
@@ -151,11 +151,12 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
         std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
     add_ratio(
         reported,
-        {options.hint, options.hinted_orders, looked.without_position, shared_order_error(looked, result)},
+        {options.hint, options.hinted_orders, looked.without_position, shared_order_error(looked, result),
+         options.unit_stated},
         result);
     result.families = families_among(reported);
+    name_mains(reported);
     for (Reported& r : reported) {
-        name_mains(r.line);
         result.lines.push_back(std::move(r.line));
     }
     std::stable_sort(result.lines.begin(), result.lines.end(),
