@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double least_score = 0.9;           // for a ratio to be reported: a judgement
+constexpr double least_score = 0.85;          // for a ratio to be reported: a judgement
 constexpr double least_listed_score = 0.005;  // for a candidate to be listed
 constexpr std::size_t most_candidates = 8;    // by hand: a list that a person reads
 
@@ -167,7 +167,7 @@ void add_folded(std::span<const OrderLine> lines, const RatioQuestion& question,
 /// A clock that is off, where only the clock makes an angle of the speed, and the hint would then hold. A
 /// clock may be off by any factor, so that one always fits.
 std::optional<RatioHypothesis> wrong_clock(const RatioHypothesis& best, GearRatio hint) {
-    constexpr double log_wrong_clock = -3.0;  // hint and clock together
+    constexpr double log_wrong_clock = -2.7;  // by hand: the factor of the hint and the rarity of such clocks together
     const double factor = best.ratio / hint.value();
     if (std::abs(factor - 1.0) < hint_tolerance) return std::nullopt;
     RatioHypothesis one = best;

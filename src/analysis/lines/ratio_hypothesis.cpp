@@ -56,9 +56,9 @@ OrderPrior order_prior(double one_comb, double two_combs, int step, double first
 }
 
 const std::array<OrderPrior, 3>& order_priors() {
-    static const std::array priors{order_prior(0.845, 0.25, 1, 0.45, 0.45, 0.1),
-                                   order_prior(0.15, 0.25, 1, 0.2, 0.25, 0.55),
-                                   order_prior(0.005, 0.5, 2, 0.0, 0.4, 0.6)};
+    static const std::array priors{order_prior(0.798, 0.25, 1, 0.45, 0.45, 0.1),
+                                   order_prior(0.2, 0.25, 1, 0.2, 0.25, 0.55),
+                                   order_prior(0.002, 0.5, 2, 0.0, 0.4, 0.6)};
     return priors;
 }
 
@@ -227,8 +227,17 @@ void describe(std::span<const OrderLine> lines, const RatioQuestion& question, R
     one.reason = std::move(text);
 }
 
+/// Two combs are a hypothesis where a line lies on each or is made up by both, and another line agrees.
 bool explains(const RatioHypothesis& one) {
-    return std::any_of(one.position.begin(), one.position.end(), [](const auto& at) { return at.has_value(); });
+    std::size_t lines = 0;
+    bool first = false, second = false;
+    for (const auto& at : one.position) {
+        if (!at) continue;
+        ++lines;
+        first = first || at->shift == 0.0 || at->spread > 0.0;
+        second = second || at->shift != 0.0;
+    }
+    return first && (one.second_comb == 0 || (second && lines > 1));
 }
 
 /// The nearest maximum of the evidence.
@@ -242,7 +251,8 @@ RatioHypothesis refined(std::span<const OrderLine> lines, double ratio, int seco
         one.log_evidence = log_evidence(
             lines, [&](const OrderLine& line) { return match(line, one.ratio, second_comb, prior); },
             one.position);
-        if (!explains(one)) return one;
+        if (std::none_of(one.position.begin(), one.position.end(), [](const auto& at) { return at.has_value(); }))
+            return one;
         if (round < 2) std::tie(one.ratio, error) = least_squares(lines, one);
     }
     one.value = one.ratio;
@@ -316,7 +326,15 @@ constexpr std::array unit_mistakes{UnitMistake{degrees_per_radian, "the speed is
                                    UnitMistake{1000.0, "the speed is off by 1000"},
                                    UnitMistake{1e-3, "the speed is off by 1000"}};
 /// Of each: rare where the log states its unit.
-constexpr double mistaken = 1e-3, unstated = 0.05;
+constexpr double mistaken = 0.01, unstated = 0.05;
+
+/// Where the unit is stated, a ratio as gears have it is no reason to doubt that.
+bool credible(double ratio) {
+    constexpr double whole = 0.005;
+    return (ratio >= few_teeth && ratio <= highest_ratio) ||
+           (ratio >= lowest_ratio && ratio < few_teeth &&
+            std::abs(ratio - std::round(ratio)) < whole * ratio);
+}
 
 void add_fixed(std::span<const OrderLine> lines, const RatioQuestion& question, RatioHypothesis one,
                double log_share, std::vector<RatioHypothesis>& all) {
@@ -354,6 +372,8 @@ void add_units(std::span<const OrderLine> lines, const RatioQuestion& question,
         for (const double ratio : ratios) {
             RatioHypothesis one;
             one.ratio = unit.factor * ratio;
+            const bool expected = question.hint && ratio == question.hint->value();
+            if (question.unit_stated && !expected && credible(one.ratio)) continue;
             one.value = ratio;
             one.as_read = false;
             one.other_unit = true;
