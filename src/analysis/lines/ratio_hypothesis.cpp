@@ -172,14 +172,14 @@ std::pair<double, double> least_squares(std::span<const OrderLine> lines, const 
     return bottom > 0.0 ? std::pair(top / bottom, 1.0 / std::sqrt(bottom)) : std::pair(one.ratio, one.ratio);
 }
 
-double log_prior(double ratio, double error, int second_comb, const OrderPrior& prior) {
+double log_prior(double ratio, double error, int second_comb, const OrderPrior& prior, bool one_line) {
     constexpr double log_ratios = 5.77, least_share = 1e-3;
     double factor = 2.5 * std::max(error / ratio, least_share) / log_ratios;
     if (ratio < lowest_ratio || ratio > highest_ratio) factor *= outside_factor;
     if (ratio < few_teeth && std::abs(ratio - std::round(ratio)) > 3.0 * error + 0.002 * ratio)
         factor *= broken_factor;
     factor *= second_comb == 0 ? prior.one_comb : prior.two_combs;
-    if (ratio > least_two_combs)
+    if (ratio > least_two_combs && !one_line)
         factor *= second_comb > 0 ? plus_share : second_comb < 0 ? minus_share : 1.0 - plus_share - minus_share;
     if (const auto listed = catalogue_ratio(ratio))
         factor *= std::find(sold.begin(), sold.end(), *listed) != sold.end() ? listed_factor
@@ -256,7 +256,7 @@ RatioHypothesis refined(std::span<const OrderLine> lines, double ratio, int seco
         if (round < 2) std::tie(one.ratio, error) = least_squares(lines, one);
     }
     one.value = one.ratio;
-    one.log_evidence += log_prior(one.ratio, error, second_comb, prior);
+    one.log_evidence += log_prior(one.ratio, error, second_comb, prior, lines.size() == 1);
     return one;
 }
 
