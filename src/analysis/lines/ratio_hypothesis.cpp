@@ -63,7 +63,7 @@ const std::array<OrderPrior, 3>& order_priors() {
 }
 
 /// That lines of the other spline are there: at Kg + 1 where the flexspline is the output, else at Kg - 1.
-constexpr double plus_share = 0.6, minus_share = 0.2;
+constexpr double plus_share = 0.6, minus_share = 0.2, one_comb_share = 0.2;
 /// Of a line under two combs: on the first, on the second, or made up by both. Ten real joints show lines of
 /// both as close together as sweeps cannot separate; they lie about the middle with this deviation.
 constexpr double on_first = 0.2, on_second = 0.2, of_both = 0.6, both_deviation = 0.6;
@@ -179,8 +179,7 @@ double log_prior(double ratio, double error, int second_comb, const OrderPrior& 
     if (ratio < few_teeth && std::abs(ratio - std::round(ratio)) > 3.0 * error + 0.002 * ratio)
         factor *= broken_factor;
     factor *= second_comb == 0 ? prior.one_comb : prior.two_combs;
-    if (ratio > least_two_combs && !one_line)
-        factor *= second_comb > 0 ? plus_share : second_comb < 0 ? minus_share : 1.0 - plus_share - minus_share;
+    if (!one_line) factor *= second_comb > 0 ? plus_share : second_comb < 0 ? minus_share : one_comb_share;
     if (const auto listed = catalogue_ratio(ratio))
         factor *= std::find(sold.begin(), sold.end(), *listed) != sold.end() ? listed_factor
                                                                               : other_output_factor;
@@ -341,6 +340,7 @@ void add_fixed(std::span<const OrderLine> lines, const RatioQuestion& question, 
     const auto keep = [&](double log_of_prior) {
         if (!explains(one)) return;
         one.log_evidence += log_of_prior + log_share;
+        if (lines.size() > 1) one.log_evidence += portable::log(one_comb_share);
         const std::string why = one.reason;
         describe(lines, question, one);
         if (!why.empty()) one.reason = why;
