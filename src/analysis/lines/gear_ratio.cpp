@@ -104,21 +104,39 @@ bool mirrors(const RatioHypothesis& one, const RatioHypothesis& other) {
            std::abs(one.ratio + one.second_comb - other.ratio) < 0.5;
 }
 
+constexpr double interval_share = 0.95;
+
+double share_of(const RatioHypothesis& form, const RatioHypothesis& best) {
+    return portable::exp(form.own_evidence - best.log_evidence);
+}
+
+/// Two combs are reported where one can be rejected.
+const RatioHypothesis& reported_form(const RatioHypothesis& best) {
+    if (best.second_comb == 0) return best;
+    const auto one_comb = std::find_if(best.forms.begin(), best.forms.end(), [](const RatioHypothesis& form) {
+        return form.second_comb == 0;
+    });
+    const bool rejected = one_comb == best.forms.end() || share_of(*one_comb, best) < 1.0 - interval_share;
+    return rejected ? best : *one_comb;
+}
+
 /// The interval covers all forms of the ratio that together have 0.95 of its probability.
-void widen(std::span<const OrderLine> lines, const RatioHypothesis& best, double shared_error,
-           GearRatioFit& result) {
-    double share = portable::exp(best.own_evidence - best.log_evidence);
-    for (const RatioHypothesis& form : best.forms) {
-        if (share >= 0.95) break;
-        share += portable::exp(form.own_evidence - best.log_evidence);
-        if (mirrors(best, form)) continue;
+void widen(std::span<const OrderLine> lines, const RatioHypothesis& best, const RatioHypothesis& reported,
+           double shared_error, GearRatioFit& result) {
+    double share = share_of(reported, best);
+    const auto add = [&](const RatioHypothesis& form) {
+        if (share >= interval_share || &form == &reported) return;
+        share += share_of(form, best);
+        if (mirrors(reported, form)) return;
         GearRatioFit other;
         fit(lines, form, shared_error, other);
         result.ci95_low = std::min(result.ci95_low, other.ci95_low);
         result.ci95_high = std::max(result.ci95_high, other.ci95_high);
         result.standard_error =
             std::max(result.standard_error, 0.25 * (result.ci95_high - result.ci95_low));
-    }
+    };
+    add(best);
+    for (const RatioHypothesis& form : best.forms) add(form);
 }
 
 /// What the fit leaves of each observation.
@@ -271,12 +289,13 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
     const bool clear = !result.fit.candidates.empty() && result.fit.candidates.front().value == best.value &&
                        result.fit.candidates.front().score >= least_score;
     if (!best.as_read || no_gear || !clear || !enough_lines(lines, best)) return result;
-    const auto estimates = fit(lines, best, question.shared_error, result.fit);
-    if (best.second_comb != 0) result.fit.second_comb = *result.fit.value + best.second_comb;
-    add_residuals(lines, best, estimates, result.fit);
-    widen(lines, best, question.shared_error, result.fit);
+    const RatioHypothesis& form = reported_form(best);
+    const auto estimates = fit(lines, form, question.shared_error, result.fit);
+    if (form.second_comb != 0) result.fit.second_comb = *result.fit.value + form.second_comb;
+    add_residuals(lines, form, estimates, result.fit);
+    widen(lines, best, form, question.shared_error, result.fit);
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (best.position[i]) result.order_of_line[i] = order_at(*best.position[i], *result.fit.value);
+        if (form.position[i]) result.order_of_line[i] = order_at(*form.position[i], *result.fit.value);
     }
     if (hint && best.hinted) {
         if (auto one = wrong_scale(best, result.fit, *hint, result.notes)) all.push_back(std::move(*one));
