@@ -26,11 +26,8 @@ double shared_order_error(const Looked& looked, const Identification& result) {
 void add_ratio(std::vector<Reported>& reported, const RatioQuestion& question, Identification& result) {
     std::vector<OrderLine> orders;
     std::vector<std::size_t> owner;
-    const bool any_certain = std::any_of(reported.begin(), reported.end(),
-                                         [](const Reported& r) { return r.order && r.order->certain; });
     for (std::size_t i = 0; i < reported.size(); ++i) {
-        // Where some lines surely turn with the joint, the doubtful ones have no say.
-        if (!reported[i].order || (any_certain && !reported[i].order->certain)) continue;
+        if (!reported[i].order) continue;
         orders.push_back(*reported[i].order);
         if (!reported[i].line.order_output_seen) orders.back().could_be = reported[i].line.could_be;
         owner.push_back(i);
