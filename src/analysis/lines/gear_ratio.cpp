@@ -15,7 +15,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double least_score = 0.85;          // for a ratio to be reported: a judgement
+constexpr double least_score = 0.9;           // for a ratio to be reported: a judgement
 constexpr double least_listed_score = 0.005;  // for a candidate to be listed
 constexpr std::size_t most_candidates = 8;    // by hand: a list that a person reads
 
@@ -34,16 +34,14 @@ struct Estimate {
 std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, const RatioHypothesis& best) {
     std::map<std::size_t, Estimate> estimates;
     std::map<std::size_t, double> bottom, speed_error;
-    // Where some lines are made up by both combs, the other comb pulls at those on one comb, too: by 0.09 rms
-    // of their distance, in lines of six joints of an arm.
-    constexpr double pull = 0.1;
+    // Where some lines are made up by both combs, the other comb pulls at those on one comb, too.
     const bool close_combs = std::any_of(best.position.begin(), best.position.end(),
-                                         [](const auto& at) { return at && at->spread > 0.0; });
+                                         [](const auto& at) { return at && at->of_both(); });
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (!best.position[i]) continue;
         const int n = best.position[i]->n;
         const double shift = best.position[i]->shift;
-        const double spread = std::max(best.position[i]->spread, close_combs ? pull : 0.0);
+        const double spread = std::max(best.position[i]->spread, close_combs ? pull_deviation : 0.0);
         for (const OrderObservation& seen : lines[i].observations) {
             const double ratio = seen.order_output / n - shift;
             const double noise = std::max(seen.error, 1e-7 * seen.order_output) / n;
@@ -65,7 +63,7 @@ std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, cons
 
 /// Order per turn of the motor.
 double order_at(const CombPosition& at, double ratio) {
-    return at.spread > 0.0 || at.shift == 0.0 ? at.n : at.n * (1.0 + at.shift / ratio);
+    return at.of_both() || at.shift == 0.0 ? at.n : at.n * (1.0 + at.shift / ratio);
 }
 
 /// Value, standard error and interval; returns what each source says, with its weight.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <string_view>
 
@@ -29,7 +30,7 @@ constexpr double few_teeth = 25.0, broken_factor = 0.1;
 constexpr double hint_factor = 3000.0;  // an expected ratio outweighs nearly all that lines show
 
 constexpr int highest_n = 32, highest_of_shaft = 64;
-constexpr std::size_t most_proposing = 8;  // lines, the strongest, that propose ratios
+constexpr std::size_t most_proposing = 8;  // lines, the most clearly seen, that propose ratios
 constexpr double same_ratio_share = 0.008;
 
 /// Probability of each n. The wave generator is an ellipse, so that what the gear does repeats twice a turn
@@ -64,9 +65,9 @@ const std::array<OrderPrior, 3>& order_priors() {
 
 /// That lines of the other spline are there: at Kg + 1 where the flexspline is the output, else at Kg - 1.
 constexpr double plus_share = 0.6, minus_share = 0.2, one_comb_share = 0.2;
-/// Of a line under two combs: on the first, on the second, or made up by both. Ten real joints show lines of
+/// Of a line under two combs: on either of them, pulled by the other, or made up by both. Ten real joints show lines of
 /// both as close together as sweeps cannot separate; they lie about the middle with this deviation.
-constexpr double on_first = 0.2, on_second = 0.2, of_both = 0.6, both_deviation = 0.6;
+constexpr double on_one = 0.1, pulled = 0.1, of_both = 0.6, both_deviation = 0.6;
 
 constexpr double log_range = 7.0;  // orders from 1 to about 1000, a line by chance anywhere in the logarithm
 
@@ -102,15 +103,34 @@ double chance_share(const OrderLine& line) {
     return line.certain ? share : 0.5;
 }
 
+std::vector<std::size_t> by_clearness(std::span<const OrderLine> lines) {
+    std::vector<std::size_t> order(lines.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return lines[a].snr > lines[b].snr; });
+    return order;
+}
+
 struct Match {
     double density = 0.0, best = 0.0;
     CombPosition position;
 };
 
-Match match(const OrderLine& line, double ratio, int second_comb, const OrderPrior& prior) {
+using Positions = std::vector<std::optional<CombPosition>>;
+
+/// Where both combs make up one line, no other line lies: `others` are positions of lines more clearly seen.
+bool possible(const CombPosition& position, const Positions& others) {
+    return std::none_of(others.begin(), others.end(), [&](const auto& other) {
+        return other && other->n == position.n && (other->of_both() || position.of_both());
+    });
+}
+
+Match match(const OrderLine& line, const Positions& others, double ratio, int second_comb,
+            const OrderPrior& prior) {
     Match found;
     const double q = line.order_output, error = line_error(line);
     const auto add = [&](double density, CombPosition position) {
+        if (second_comb != 0 && !possible(position, others)) return;
         found.density += density;
         if (density > found.best) found.best = density, found.position = position;
     };
@@ -125,8 +145,12 @@ Match match(const OrderLine& line, double ratio, int second_comb, const OrderPri
             add(share * t3(q - n * ratio, error), {n, 0.0, 0.0});
             continue;
         }
-        add(share * on_first * t3(q - n * ratio, error), {n, 0.0, 0.0});
-        add(share * on_second * t3(q - n * (ratio + shift), error), {n, shift, 0.0});
+        for (const double own : {0.0, shift}) {
+            const double off = q - n * (ratio + own);
+            add(share * on_one * t3(off, error), {n, own, 0.0});
+            add(share * pulled * normal(off, portable::hypot(error, n * pull_deviation)),
+                {n, own, pull_deviation});
+        }
         add(share * of_both * normal(q - n * (ratio + 0.5 * shift), portable::hypot(error, n * both_deviation)),
             {n, 0.5 * shift, both_deviation});
     }
@@ -144,14 +168,14 @@ Match match_of_shaft(const OrderLine& line, double turn) {
     return found;
 }
 
-/// Evidence of all lines with this matching; fills the positions of those that it explains.
+/// Evidence of all lines with this matching, the most clearly seen first; fills the positions of those that
+/// it explains.
 template <class Matching>
-double log_evidence(std::span<const OrderLine> lines, const Matching& matching,
-                    std::vector<std::optional<CombPosition>>& positions) {
+double log_evidence(std::span<const OrderLine> lines, const Matching& matching, Positions& positions) {
     double sum = 0.0;
     positions.assign(lines.size(), std::nullopt);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const Match found = matching(lines[i]);
+    for (const std::size_t i : by_clearness(lines)) {
+        const Match found = matching(lines[i], positions);
         const double off = chance_share(lines[i]), chance = off * chance_density(lines[i]);
         sum += portable::log((1.0 - off) * found.density + chance);
         if ((1.0 - off) * found.best > chance) positions[i] = found.position;
@@ -202,7 +226,7 @@ void describe(std::span<const OrderLine> lines, const RatioQuestion& question, R
     bool odd = false;
     for (const auto& at : one.position) {
         if (!at) continue;
-        (at->shift != 0.0 && at->spread == 0.0 ? second : first).insert(at->n);
+        (at->shift != 0.0 && !at->of_both() ? second : first).insert(at->n);
         odd = odd || at->n % 2 != 0;
     }
     std::string text = first.empty() ? "" : "lines at n = " + numbers(first);
@@ -233,7 +257,7 @@ bool explains(const RatioHypothesis& one) {
     for (const auto& at : one.position) {
         if (!at) continue;
         ++lines;
-        first = first || at->shift == 0.0 || at->spread > 0.0;
+        first = first || at->shift == 0.0 || at->of_both();
         second = second || at->shift != 0.0;
     }
     return first && (one.second_comb == 0 || (second && lines > 1));
@@ -248,7 +272,10 @@ RatioHypothesis refined(std::span<const OrderLine> lines, double ratio, int seco
     double error = ratio;
     for (int round = 0; round < 3; ++round) {
         one.log_evidence = log_evidence(
-            lines, [&](const OrderLine& line) { return match(line, one.ratio, second_comb, prior); },
+            lines,
+            [&](const OrderLine& line, const Positions& others) {
+                return match(line, others, one.ratio, second_comb, prior);
+            },
             one.position);
         if (std::none_of(one.position.begin(), one.position.end(), [](const auto& at) { return at.has_value(); }))
             return one;
@@ -259,16 +286,6 @@ RatioHypothesis refined(std::span<const OrderLine> lines, double ratio, int seco
     return one;
 }
 
-std::vector<const OrderLine*> strongest(std::span<const OrderLine> lines) {
-    std::vector<const OrderLine*> some;
-    for (const OrderLine& line : lines) some.push_back(&line);
-    std::stable_sort(some.begin(), some.end(), [](const OrderLine* a, const OrderLine* b) {
-        return a->amplitude_nm > b->amplitude_nm;
-    });
-    if (some.size() > most_proposing) some.resize(most_proposing);
-    return some;
-}
-
 void add_gears(std::span<const OrderLine> lines, const RatioQuestion& question,
                std::vector<RatioHypothesis>& all) {
     struct Start {
@@ -277,9 +294,11 @@ void add_gears(std::span<const OrderLine> lines, const RatioQuestion& question,
     };
     std::vector<Start> starts;
     if (question.hint) starts.push_back({question.hint->value(), 0});
-    for (const OrderLine* line : strongest(lines)) {
+    std::vector<std::size_t> proposing = by_clearness(lines);
+    if (proposing.size() > most_proposing) proposing.resize(most_proposing);
+    for (const std::size_t i : proposing) {
         for (int n = 1; n <= highest_n; ++n) {
-            const double ratio = line->order_output / n;
+            const double ratio = lines[i].order_output / n;
             starts.push_back({ratio, 0});
             for (const int second : {1, -1}) {
                 if (ratio < least_two_combs) continue;
@@ -348,14 +367,19 @@ void add_fixed(std::span<const OrderLine> lines, const RatioQuestion& question, 
     };
     if (one.value == 1.0) {
         one.log_evidence = log_evidence(
-            lines, [&](const OrderLine& line) { return match_of_shaft(line, one.ratio); }, one.position);
+            lines, [&](const OrderLine& line, const Positions&) { return match_of_shaft(line, one.ratio); },
+            one.position);
         keep(0.0);
         return;
     }
     for (const OrderPrior& prior : order_priors()) {
         RatioHypothesis copy = one;
         one.log_evidence = log_evidence(
-            lines, [&](const OrderLine& line) { return match(line, one.ratio, 0, prior); }, one.position);
+            lines,
+            [&](const OrderLine& line, const Positions& others) {
+                return match(line, others, one.ratio, 0, prior);
+            },
+            one.position);
         keep(portable::log(prior.one_comb));
         one = std::move(copy);
     }
