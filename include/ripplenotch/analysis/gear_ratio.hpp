@@ -55,7 +55,7 @@ struct RatioQuestion {
 /// prior probability in the logarithm from 1 to 320, more where a catalogue has them, and more near the hint.
 /// Compared as well: no gear at all (whole orders of the shaft that was measured), no connection between the
 /// lines, and a mistaken unit. The scores are these probabilities. The value is left empty unless one ratio
-/// has at least 0.9 and explains two lines, or one and the hint. Fit: per source the weighted mean over its
+/// has at least 0.85 and explains two lines, or one and the hint. Fit: per source the weighted mean over its
 /// lines, then over sources by Huber's weights (k = 1.345); where sources scatter more than their errors make
 /// likely (1 %), that widens the interval, by Student's t. Lines that both combs make up, too close together
 /// to be separated, count with the distance between the combs as their error.

@@ -65,9 +65,9 @@ const std::array<OrderPrior, 3>& order_priors() {
 
 /// That lines of the other spline are there: at Kg + 1 where the flexspline is the output, else at Kg - 1.
 constexpr double plus_share = 0.6, minus_share = 0.2, one_comb_share = 0.2;
-/// Of a line under two combs: on either of them, pulled by the other, or made up by both. Ten real joints show lines of
+/// Of a line under two combs: on either of them, or made up by both. Ten real joints show lines of
 /// both as close together as sweeps cannot separate; they lie about the middle with this deviation.
-constexpr double on_one = 0.1, pulled = 0.1, of_both = 0.6, both_deviation = 0.6;
+constexpr double on_one = 0.2, of_both = 0.6, both_deviation = 0.6;
 
 constexpr double log_range = 7.0;  // orders from 1 to about 1000, a line by chance anywhere in the logarithm
 
@@ -145,12 +145,8 @@ Match match(const OrderLine& line, const Positions& others, double ratio, int se
             add(share * t3(q - n * ratio, error), {n, 0.0, 0.0});
             continue;
         }
-        for (const double own : {0.0, shift}) {
-            const double off = q - n * (ratio + own);
-            add(share * on_one * t3(off, error), {n, own, 0.0});
-            add(share * pulled * normal(off, portable::hypot(error, n * pull_deviation)),
-                {n, own, pull_deviation});
-        }
+        for (const double own : {0.0, shift})
+            add(share * on_one * t3(q - n * (ratio + own), error), {n, own, 0.0});
         add(share * of_both * normal(q - n * (ratio + 0.5 * shift), portable::hypot(error, n * both_deviation)),
             {n, 0.5 * shift, both_deviation});
     }

@@ -16,14 +16,10 @@ namespace ripplenotch {
 struct CombPosition {
     int n = 0;
     double shift = 0.0;   ///< 0, or that of the second comb; half of it where both combs make up the line
-    double spread = 0.0;  ///< standard deviation of the shift; 0 where the line lies exactly on one of the combs
+    double spread = 0.0;  ///< standard deviation of the shift; 0 where the line lies on one of the combs
 
     [[nodiscard]] bool of_both() const { return std::abs(shift) == 0.5; }
 };
-
-/// The other comb pulls at a line on one comb: by 0.09 rms of the distance of the combs, in six joints of an
-/// arm.
-inline constexpr double pull_deviation = 0.1;
 
 /// One explanation of the lines.
 struct RatioHypothesis {

@@ -93,7 +93,7 @@ Identification of_the_motor(Identification found, double ratio) {
 
 // Nothing but the size of the numbers says in which unit the motion is, and the lines suit another as well.
 void doubt_unit(std::span<const Log> logs, Identification& found) {
-    constexpr double enough = 0.1;  // what a ratio that is reported leaves to everything else
+    constexpr double enough = 0.15;  // what a ratio that is reported leaves to everything else
     double share = 0.0;
     const RatioCandidate *other = nullptr, *as_read = nullptr;
     for (const RatioCandidate& one : found.gear_ratio.candidates) {
