@@ -386,7 +386,7 @@ void add_units(std::span<const OrderLine> lines, const RatioQuestion& question,
     for (const UnitMistake& unit : unit_mistakes) {
         std::vector<double> ratios(sold.begin(), sold.end());
         if (!question.unit_stated) ratios.push_back(1.0);
-        if (question.hint) ratios.push_back(question.hint->value());
+        if (question.hint && question.hint->value() != 1.0) ratios.push_back(question.hint->value());
         const double share =
             (question.unit_stated ? mistaken : unstated) / (2.0 * static_cast<double>(sold.size()));
         for (const double ratio : ratios) {
@@ -448,7 +448,7 @@ std::vector<RatioHypothesis> ratio_hypotheses(std::span<const OrderLine> lines,
                                               const RatioQuestion& question) {
     std::vector<RatioHypothesis> all;
     add_gears(lines, question, all);
-    constexpr double of_shaft = 0.005;
+    constexpr double of_shaft = 0.05;  // by hand: as probable as all gears of few teeth
     RatioHypothesis none;
     none.ratio = none.value = 1.0;
     none.reason = "whole orders of the shaft that was measured: no gear";
