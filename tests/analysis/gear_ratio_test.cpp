@@ -167,7 +167,7 @@ TEST_CASE("without a stated unit, whole orders of a shaft in radians are no gear
     CHECK_FALSE(result.fit.value.has_value());
     CHECK(result.fit.candidates[0].other_unit);
     CHECK(result.fit.candidates[0].value == 1.0);
-    CHECK_THAT(result.fit.candidates[0].reason, Contains("the speed is in rad/s, not deg/s and of the shaft"));
+    CHECK_THAT(result.fit.candidates[0].reason, Contains("the speed is in rad/s, not deg/s, the lines are whole"));
     // A ratio that no unit explains stays one.
     const auto gear = fit_gear_ratio(std::vector{line_at(100.0, 0.8), line_at(200.0, 0.5)}, question);
     REQUIRE(gear.fit.value.has_value());

@@ -282,7 +282,7 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
     }
     const double log_chance = log_evidence_of_chance(lines);
     result.fit.candidates = scored(all, log_chance);
-    if (!best.as_read)
+    if (!best.as_read && best.value != 1.0)
         result.notes.push_back(
             fmt::format("a ratio of {:.4g} would be {:.4g} {}", best.ratio, best.value, best.reason));
     const bool no_gear = std::abs(best.value - 1.0) < hint_tolerance && !best.hinted;

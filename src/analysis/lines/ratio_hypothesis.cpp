@@ -397,7 +397,8 @@ void add_units(std::span<const OrderLine> lines, const RatioQuestion& question,
             one.value = ratio;
             one.as_read = false;
             one.other_unit = true;
-            one.reason = fmt::format("if {}{}", unit.reason, ratio == 1.0 ? " and of the shaft itself" : "");
+            one.reason = fmt::format("if {}{}", unit.reason,
+                                     ratio == 1.0 ? ", the lines are whole orders of the shaft itself (no gear)" : "");
             const bool shaft = ratio == 1.0;
             add_fixed(lines, question, one,
                       portable::log(shaft ? share * static_cast<double>(sold.size()) : share), all);

@@ -239,7 +239,8 @@ std::string too_little(const Identification& found) {
 std::string frequencies(const Line& line) {
     if (line.hz) return fmt::format("{:.4g} Hz", *line.hz);
     const SeenFrequencies seen = seen_frequencies(line).value_or(SeenFrequencies{});
-    return fmt::format("{:.4g} to {:.4g} Hz", seen.lowest_hz, seen.highest_hz);
+    const std::string low = fmt::format("{:.4g}", seen.lowest_hz), high = fmt::format("{:.4g}", seen.highest_hz);
+    return low == high ? low + " Hz" : fmt::format("{} to {} Hz", low, high);
 }
 
 std::string doubted(const Identification& found) {

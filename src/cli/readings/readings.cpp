@@ -102,16 +102,13 @@ void doubt_unit(std::span<const Log> logs, Identification& found) {
         if (first == nullptr) first = &one;
     }
     if (share < enough || found.gear_ratio.value) return;
-    const std::string beside =
-        as_read == nullptr
-            ? ""
-            : fmt::format(", as well as those of a gear ratio of {:.5g} {}", as_read->value, assumed_reading(logs));
-    const std::string gear =
-        other->value == 1.0 ? "" : fmt::format(" with a gear ratio of {:.5g}", other->value);
+    std::string readings = other->reason;
+    if (other->value != 1.0) readings += fmt::format(", the gear ratio would be {:.5g}", other->value);
+    if (as_read != nullptr)
+        readings += fmt::format("; {}, the gear ratio would be {:.5g}", assumed_reading(logs), as_read->value);
     cast_doubt(found, {DoubtReason::unit,
-                       fmt::format("the log does not state the unit of its motion, and the lines are whole "
-                                   "orders {}{}{}: {} settles it",
-                                   other->reason, gear, beside, settling_options(logs))});
+                       fmt::format("the log does not state the unit of its motion: {}; {} settles it", readings,
+                                   settling_options(logs))});
 }
 
 Identification identified(std::span<const Log> logs, const IdentifyOptions& options,
@@ -218,6 +215,8 @@ Trace read_otherwise(const Trace& trace, const OtherReading& reading) {
 
 Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options) {
     Identification taken = identified(logs, options, {});
+    const auto is_unit = [](const Doubt& doubt) { return doubt.reason == DoubtReason::unit; };
+    if (std::any_of(taken.doubts.begin(), taken.doubts.end(), is_unit)) return taken;
     std::vector<OtherReading> readings = open_readings(logs);
     const bool open = !readings.empty();
     // What a rule decided is doubted only where nothing came of it.
