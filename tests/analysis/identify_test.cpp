@@ -133,7 +133,7 @@ TEST_CASE("a log of one speed says that order and tone look alike there, and is 
     CHECK(found.lines[0].kind == LineKind::unknown);
     CHECK_THAT(*found.lines[0].order_output, WithinRel(137.0, 1e-3));
     CHECK_FALSE(found.conclusive);
-    CHECK_THAT(found.verdict, Contains("a log at another speed would tell"));
+    CHECK_THAT(found.verdict, Contains("record another speed to decide"));
 }
 
 TEST_CASE("a joint without ripple: surely nothing, with the amplitude that would have shown") {
@@ -280,7 +280,7 @@ TEST_CASE(
 TEST_CASE(
     "of torque and velocity alone, with ramps between six speeds, the 95 % interval holds the ratio, too") {
     constexpr int runs = 60;
-    int covered = 0;
+    int covered = 0, given = 0;
     for (int run = 0; run < runs; ++run) {
         std::mt19937 drawn(static_cast<std::uint32_t>(9000 + run));
         const auto between = [&](double low, double high) {
@@ -305,13 +305,16 @@ TEST_CASE(
         tests::Noise noise(static_cast<std::uint32_t>(500 + run));
         for (double& v : trace.velocity_deg_s) v += 0.1 * noise();
         const auto found = identify_all({trace}).gear_ratio;
-        REQUIRE(found.value);
+        if (!found.value) continue;  // as with 60, which 30, sold and at n = 2 and 4, explains as well
+        CHECK(std::abs(*found.value / ratio - 1.0) < 0.02);  // never a multiple
+        ++given;
         covered += found.ci95_low <= ratio && ratio <= found.ci95_high;
     }
-    INFO(covered << " of " << runs);
+    INFO(covered << " of " << given << " given, of " << runs);
+    CHECK(given >= 95 * runs / 100);
     // Of 60 intervals that hold in 95 of a hundred, 50 and more hold in all but one of 1000 draws. With
     // speeds that count the ramps in full 7 held.
-    CHECK(covered >= 50);
+    CHECK(covered >= 50 * given / 60);
 }
 
 TEST_CASE("half a second lost in the middle of a log makes no line, moves none and raises no floor") {

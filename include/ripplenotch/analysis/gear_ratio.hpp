@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The gear ratio as the comb that output orders lie on: order_output = n * Kg, n a small integer.
+// The gear ratio Kg from the combs that output orders lie on: n Kg, where the wave generator turns against
+// the spline that stands still, and n (Kg + 1) or n (Kg - 1) against the one that moves.
 
 #include <optional>
 #include <span>
@@ -33,8 +34,9 @@ struct OrderLine {
 
 struct GearRatioResult {
     GearRatioFit fit;
-    std::vector<std::optional<int>>
-        order_of_line;  ///< n of each line under fit.value; empty where it lies off the comb
+    /// Of each line, per turn of the motor, under fit.value: n on the first comb, n (Kg +/- 1) / Kg on the
+    /// second; empty where it lies off both.
+    std::vector<std::optional<double>> order_of_line;
     std::vector<std::string> notes;
 };
 
@@ -44,16 +46,19 @@ struct RatioQuestion {
     std::span<const int> hinted_orders{};  ///< n at which the strongest line is believed to stand
     bool clock_in_doubt = false;  ///< the angle is velocity times time: a wrong clock scales every order
     double shared_error = 0.0;    ///< relative standard error that all orders have in common
+    bool unit_stated = true;      ///< false: nothing says what unit the motion is in
 };
 
-/// n runs from 1 to 8 for a line on its own and to 16 for lines that a comb explains besides. Every candidate
-/// is scored by how unlikely its matches are by chance, by whether odd lines set it apart from its half, by
-/// what real drives look like (ratios 25 to 320, n = 2 most often alone), by catalogue ratios, and by the
-/// hint; beside the combs stand ratios that a mistake in the log would explain: a unit of speed, with a hint
-/// also a clock or a scale. The scores are shares of one. The value is left empty unless one comb has at
-/// least 0.7. Fit: per source the weighted mean over its lines, then over sources by Huber's weights
-/// (k = 1.345); where sources scatter more than their errors make likely (1 %), that widens the interval, by
-/// Student's t.
+/// Ratios are compared by their posterior probability. A line lies on a tooth of a comb within its error, or
+/// anywhere by chance, which is the less probable the more clearly it is seen; a tooth has the prior
+/// probability of its n (1 to 32), so that a dense comb pays for what it explains by chance. Ratios have equal
+/// prior probability in the logarithm from 1 to 320, more where a catalogue has them, and more near the hint.
+/// Compared as well: no gear at all (whole orders of the shaft that was measured), no connection between the
+/// lines, and a mistaken unit. The scores are these probabilities. The value is left empty unless one ratio
+/// has at least 0.85 and explains two lines, or one and the hint. Fit: per source the weighted mean over its
+/// lines, then over sources by Huber's weights (k = 1.345); where sources scatter more than their errors make
+/// likely (1 %), that widens the interval, by Student's t. Lines that both combs make up, too close together
+/// to be separated, count with the distance between the combs as their error.
 [[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQuestion& question);
 
 }  // namespace ripplenotch

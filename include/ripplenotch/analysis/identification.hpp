@@ -55,6 +55,7 @@ struct RatioCandidate {
     double value = 0.0;
     double score = 0.0;  ///< 0..1, sums to at most 1 over the candidates
     std::string reason;
+    bool other_unit = false;  ///< only if the motion is in another unit than it was read in
 };
 
 /// Gear ratio from f = n Kg |v| / 360.
@@ -62,6 +63,9 @@ struct GearRatioFit {
     std::optional<double> value;  ///< empty when nothing supports one
     double standard_error = 0.0;
     double ci95_low = 0.0, ci95_high = 0.0;
+    /// Turns of the wave generator against the other spline, value + 1 or value - 1, where lines lie on its
+    /// multiples as well.
+    std::optional<double> second_comb;
     std::vector<RatioCandidate> candidates;  ///< likeliest first
     /// One entry per line observation used: its speed, frequency and what the fit leaves, in hertz.
     struct Residual {
@@ -69,6 +73,10 @@ struct GearRatioFit {
     };
     std::vector<Residual> residuals;
 };
+
+/// Ratios between which nothing decides, the most probable first; empty where there is a value, or where no
+/// ratio is probable.
+[[nodiscard]] std::vector<double> undecided_ratios(const GearRatioFit& fit);
 
 /// Fixed tones that are multiples of one frequency.
 struct ToneFamily {
@@ -144,6 +152,7 @@ void cast_doubt(Identification& found, Doubt doubt);
 struct IdentifyOptions {
     std::optional<GearRatio> hint;     ///< checked, not believed
     std::vector<int> hinted_orders;    ///< n at which the strongest line is believed to stand
+    bool unit_stated = true;           ///< false: nothing says what unit the motion is in
     double false_alarm = 0.01;         ///< chance that a log of noise gives any line
     std::vector<Doubt> doubts;         ///< what is known against these logs before they are looked at
 };

@@ -32,6 +32,7 @@ enum class RippleFinding {
 /// Why the lines are not believed whatever they show.
 enum class DoubtReason {
     clock,  ///< position, velocity and time contradict each other
+    unit,   ///< the unit of the motion is not stated, and another suits the lines as well
 };
 [[nodiscard]] std::string_view doubt_name(DoubtReason reason);
 /// Empty where nothing has this name.

@@ -8,15 +8,14 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/lines/comb.hpp"
 #include "analysis/lines/excess_scatter.hpp"
-#include "analysis/lines/ratio_rivals.hpp"
+#include "analysis/lines/ratio_hypothesis.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double least_score = 0.7;           // for a ratio to be given
+constexpr double least_score = 0.85;          // for a ratio to be reported: a judgement
 constexpr double least_listed_score = 0.005;  // for a candidate to be listed
 constexpr std::size_t most_candidates = 8;    // by hand: a list that a person reads
 
@@ -32,14 +31,25 @@ struct Estimate {
     double ratio = 0.0, variance = 0.0, weight = 1.0;
 };
 
-std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, const Comb& comb) {
+std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, const RatioHypothesis& best) {
     std::map<std::size_t, Estimate> estimates;
     std::map<std::size_t, double> bottom, speed_error;
+    // Where some lines are made up by both combs, the other comb pulls at those on one comb, too: by about a
+    // tenth of the distance of the combs, rms over the lines of six joints of an arm.
+    constexpr double pull_deviation = 0.12;
+    const bool close_combs = std::any_of(best.position.begin(), best.position.end(),
+                                         [](const auto& at) { return at && at->of_both(); });
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (!comb.n[i]) continue;
+        if (!best.position[i]) continue;
+        const int n = best.position[i]->n;
+        const double shift = best.position[i]->shift;
+        const double spread = std::max(best.position[i]->spread, close_combs ? pull_deviation : 0.0);
         for (const OrderObservation& seen : lines[i].observations) {
-            const double ratio = seen.order_output / *comb.n[i];
-            const double error = std::max(seen.error, 1e-7 * seen.order_output) / *comb.n[i];
+            const double ratio = seen.order_output / n - shift;
+            const double noise = std::max(seen.error, 1e-7 * seen.order_output) / n;
+            // Observations of one line share where it lies between the combs.
+            const double error = portable::hypot(
+                noise, spread * std::sqrt(static_cast<double>(lines[i].observations.size())));
             estimates[seen.source].ratio += ratio / (error * error);
             bottom[seen.source] += 1.0 / (error * error);
             speed_error[seen.source] = std::max(speed_error[seen.source], seen.speed_share_error);
@@ -53,10 +63,17 @@ std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, cons
     return estimates;
 }
 
-void fit(std::span<const OrderLine> lines, const Comb& comb, double shared_error, GearRatioFit& result) {
-    auto estimates = by_source(lines, comb);
+/// Order per turn of the motor.
+double order_at(const CombPosition& at, double ratio) {
+    return at.of_both() || at.shift == 0.0 ? at.n : at.n * (1.0 + at.shift / ratio);
+}
+
+/// Value, standard error and interval; returns what each source says, with its weight.
+std::map<std::size_t, Estimate> fit(std::span<const OrderLine> lines, const RatioHypothesis& best,
+                                    double shared_error, GearRatioFit& result) {
+    auto estimates = by_source(lines, best);
     constexpr double huber = 1.345;  // 95 % efficient where errors are normal (Huber 1964)
-    double ratio = comb.ratio, scale = 1.0, bottom = 0.0;
+    double ratio = best.ratio, scale = 1.0, bottom = 0.0;
     const auto freedom = static_cast<double>(estimates.size()) - 1.0;
     for (int round = 0; round < 30; ++round) {
         double top = 0.0, misfit = 0.0;
@@ -78,19 +95,68 @@ void fit(std::span<const OrderLine> lines, const Comb& comb, double shared_error
     const double reach = portable::hypot((scale > 1.0 ? student_95(freedom) : 1.960) * own, 1.960 * shared);
     result.ci95_low = ratio - reach;
     result.ci95_high = ratio + reach;
+    return estimates;
+}
+
+/// The same two combs with the other spline as output: the text says so, and it is no error of the value.
+bool mirrors(const RatioHypothesis& one, const RatioHypothesis& other) {
+    return one.second_comb != 0 && one.second_comb == -other.second_comb &&
+           std::abs(one.ratio + one.second_comb - other.ratio) < 0.5;
+}
+
+constexpr double interval_share = 0.95;
+
+double share_of(const RatioHypothesis& form, const RatioHypothesis& best) {
+    return portable::exp(form.own_evidence - best.log_evidence);
+}
+
+/// Two combs are reported where one has less than 0.01 of the probability.
+const RatioHypothesis& reported_form(const RatioHypothesis& best) {
+    if (best.second_comb == 0) return best;
+    const auto one_comb = std::find_if(best.forms.begin(), best.forms.end(), [](const RatioHypothesis& form) {
+        return form.second_comb == 0;
+    });
+    const bool rejected = one_comb == best.forms.end() || share_of(*one_comb, best) < 0.01;
+    return rejected ? best : *one_comb;
+}
+
+/// The interval covers all forms of the ratio that together have 0.95 of its probability.
+void widen(std::span<const OrderLine> lines, const RatioHypothesis& best, const RatioHypothesis& reported,
+           double shared_error, GearRatioFit& result) {
+    double share = share_of(reported, best);
+    const auto add = [&](const RatioHypothesis& form) {
+        if (share >= interval_share || &form == &reported) return;
+        share += share_of(form, best);
+        if (mirrors(reported, form)) return;
+        GearRatioFit other;
+        fit(lines, form, shared_error, other);
+        result.ci95_low = std::min(result.ci95_low, other.ci95_low);
+        result.ci95_high = std::max(result.ci95_high, other.ci95_high);
+        result.standard_error =
+            std::max(result.standard_error, 0.25 * (result.ci95_high - result.ci95_low));
+    };
+    add(best);
+    for (const RatioHypothesis& form : best.forms) add(form);
+}
+
+/// What the fit leaves of each observation.
+void add_residuals(std::span<const OrderLine> lines, const RatioHypothesis& best,
+                   const std::map<std::size_t, Estimate>& estimates, GearRatioFit& result) {
+    const double ratio = *result.value;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (!comb.n[i]) continue;
+        if (!best.position[i]) continue;
+        const double order = order_at(*best.position[i], ratio);
         for (const OrderObservation& seen : lines[i].observations) {
-            const double expected = *comb.n[i] * ratio * std::abs(seen.speed_deg_s) / 360.0;
-            result.residuals.push_back({seen.speed_deg_s, seen.hz, static_cast<double>(*comb.n[i]),
-                                        seen.hz - expected, estimates[seen.source].weight});
+            const double expected = order * ratio * std::abs(seen.speed_deg_s) / 360.0;
+            result.residuals.push_back(
+                {seen.speed_deg_s, seen.hz, order, seen.hz - expected, estimates.at(seen.source).weight});
         }
     }
 }
 
-void check_hint(const std::vector<Comb>& combs, std::span<const OrderLine> lines, GearRatio hint,
+void check_hint(const std::vector<RatioHypothesis>& all, std::span<const OrderLine> lines, GearRatio hint,
                 std::vector<std::string>& notes) {
-    if (std::any_of(combs.begin(), combs.end(), [](const Comb& comb) { return comb.hinted; })) return;
+    if (std::any_of(all.begin(), all.end(), [](const RatioHypothesis& one) { return one.hinted; })) return;
     const OrderLine& first = lines.front();
     const double n = std::max(1.0, std::round(first.order_output / hint.value()));
     const double off = 100.0 * (first.order_output / (n * hint.value()) - 1.0);
@@ -100,21 +166,95 @@ void check_hint(const std::vector<Comb>& combs, std::span<const OrderLine> lines
         hint.value(), first.order_output, off, n));
 }
 
-/// Everything that the lines could mean, as shares of one, likeliest first.
-std::vector<RatioCandidate> scored(std::span<const Comb> combs, std::span<const RatioRival> rivals) {
-    double most = combs.front().nats, total = 0.0;
-    for (const RatioRival& rival : rivals) most = std::max(most, rival.nats);
+/// Ratios of what a single line would be if it were folded at half the sample rate.
+void add_folded(std::span<const OrderLine> lines, const RatioQuestion& question,
+                std::vector<RatioHypothesis>& all) {
+    if (lines.size() != 1) return;
+    for (const double order : lines[0].could_be) {
+        OrderLine image = lines[0];
+        image.order_output = order;
+        for (RatioHypothesis& one : ratio_hypotheses(std::span(&image, 1), question)) {
+            if (!one.as_read) continue;
+            one.as_read = false;
+            one.reason = fmt::format("if folded from order {:.4g}; {}", order, one.reason);
+            all.push_back(std::move(one));
+        }
+    }
+}
+
+/// A clock that is off, where only the clock makes an angle of the speed, and the hint would then hold. A
+/// clock may be off by any factor, so that one always fits.
+std::optional<RatioHypothesis> wrong_clock(const RatioHypothesis& best, GearRatio hint) {
+    constexpr double log_wrong_clock = -2.7;  // by hand: the factor of the hint and the rarity of such clocks together
+    const double factor = best.ratio / hint.value();
+    if (std::abs(factor - 1.0) < hint_tolerance) return std::nullopt;
+    RatioHypothesis one = best;
+    one.value = hint.value();
+    one.as_read = false;
+    one.log_evidence += log_wrong_clock;
+    one.reason = fmt::format("if the clock (the nominal sample rate) runs {:.3g} times too {}",
+                             factor > 1.0 ? factor : 1.0 / factor, factor > 1.0 ? "fast" : "slow");
+    return one;
+}
+
+/// A ratio is a ratio of teeth: where the lines lie off the expected one by more than their errors allow and
+/// by little, the scale of the velocity or position is the likelier cause.
+std::optional<RatioHypothesis> wrong_scale(const RatioHypothesis& best, const GearRatioFit& fit,
+                                           GearRatio hint, std::vector<std::string>& notes) {
+    constexpr double least_error = 0.0005, log_wrong_scale = -0.5;  // by hand
+    const double share = *fit.value / hint.value() - 1.0;
+    const double uncertainty = 0.5 * (fit.ci95_high - fit.ci95_low) / hint.value();
+    if (std::abs(share) < std::max(least_error, 1.5 * uncertainty) || std::abs(share) > hint_tolerance)
+        return std::nullopt;
+    const std::string what = fmt::format("the velocity's or position's scale reads {:.2f} % {}",
+                                         100.0 * std::abs(share), share < 0.0 ? "high" : "low");
+    RatioHypothesis one = best;
+    one.value = hint.value();
+    one.as_read = false;
+    one.log_evidence += log_wrong_scale;
+    one.reason = "if " + what;
+    // 100 and 101 are both sold.
+    const auto listed = catalogue_ratio(best.ratio);
+    const bool another_gear = listed && *listed != catalogue_ratio(hint.value());
+    notes.push_back(fmt::format(
+        "the ratio {:.6g} is {:+.2f} % from the hint {:.6g}, more than its error of {:.2f} %: {}", *fit.value,
+        100.0 * share, hint.value(), 100.0 * uncertainty,
+        another_gear
+            ? fmt::format("either the gear is one of {:.6g}, or {}, or a time column runs off by that much",
+                          *listed, what)
+            : fmt::format("the likely cause is that {}, or that a time column runs off by that much; a gear "
+                          "ratio that odd is unlikely",
+                          what)));
+    return one;
+}
+
+/// Everything that the lines could mean, as shares of one with what chance explains, most probable first.
+std::vector<RatioCandidate> scored(const std::vector<RatioHypothesis>& hypotheses, double log_chance) {
+    double most = log_chance, total = 0.0;
+    for (const RatioHypothesis& one : hypotheses) most = std::max(most, one.log_evidence);
     std::vector<RatioCandidate> all;
-    for (const Comb& comb : combs) all.push_back({comb.ratio, portable::exp(comb.nats - most), comb.reason});
-    for (const RatioRival& rival : rivals)
-        all.push_back({rival.ratio, portable::exp(rival.nats - most), rival.reason});
+    for (const RatioHypothesis& one : hypotheses)
+        all.push_back({one.value, portable::exp(one.log_evidence - most), one.reason, one.other_unit});
     for (const RatioCandidate& one : all) total += one.score;
+    total += portable::exp(log_chance - most);
     for (RatioCandidate& one : all) one.score /= total;
     std::stable_sort(all.begin(), all.end(),
                      [](const RatioCandidate& a, const RatioCandidate& b) { return a.score > b.score; });
     std::erase_if(all, [](const RatioCandidate& one) { return one.score < least_listed_score; });
     if (all.size() > most_candidates) all.resize(most_candidates);
     return all;
+}
+
+/// Two lines, or one and a hint: a line on its own lies at some multiple of any ratio.
+bool enough_lines(std::span<const OrderLine> lines, const RatioHypothesis& best) {
+    std::size_t explained = 0;
+    bool certain = false;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (!best.position[i]) continue;
+        ++explained;
+        certain = certain || lines[i].certain;
+    }
+    return best.hinted || (explained > 1 && (certain || best.listed));
 }
 
 }  // namespace
@@ -124,39 +264,45 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
     result.order_of_line.resize(lines.size());
     if (lines.empty()) return result;
     const std::optional<GearRatio> hint = question.hint;
-    const std::vector<Comb> combs = all_combs(lines, hint, question.hinted_orders);
-    if (combs.empty()) return result;
-    const Comb& best = combs.front();
-    std::vector<RatioRival> rivals = unit_rivals(best, hint);
-    const auto add = [&](const std::optional<RatioRival>& rival) {
-        if (rival) rivals.push_back(*rival);
-    };
-    for (RatioRival& rival : fold_rivals(lines, hint, question.hinted_orders))
-        rivals.push_back(std::move(rival));
-    if (hint && question.clock_in_doubt && rivals.empty()) add(clock_rival(best, *hint));
-    if (hint) check_hint(combs, lines, *hint, result.notes);
+    std::vector<RatioHypothesis> all = ratio_hypotheses(lines, question);
+    if (hint) check_hint(all, lines, *hint, result.notes);
     if (!question.hinted_orders.empty() && !hint &&
-        std::none_of(combs.begin(), combs.end(), [](const Comb& comb) { return comb.hinted; })) {
-        result.notes.push_back("no comb puts the strongest line at a hinted order");
+        std::none_of(all.begin(), all.end(), [](const RatioHypothesis& one) { return one.hinted; }))
+        result.notes.push_back("no ratio puts the strongest line at a hinted order");
+    if (all.empty()) return result;
+    const RatioHypothesis best = all.front();
+    add_folded(lines, question, all);
+    if (hint && question.clock_in_doubt && best.as_read) {
+        if (auto one = wrong_clock(best, *hint)) {
+            result.notes.push_back(
+                fmt::format("the log has no position: {}, the lines at {:.4g} are those of {:.6g}",
+                            one->reason, best.ratio, hint->value()));
+            all.push_back(std::move(*one));
+        }
     }
-    const bool certain = std::any_of(lines.begin(), lines.end(), [&](const OrderLine& line) {
-        return line.certain && best.n[static_cast<std::size_t>(&line - lines.data())];
-    });
-    result.fit.candidates = scored(combs, rivals);
-    const RatioCandidate& likeliest = result.fit.candidates.front();
-    if (likeliest.value == best.ratio && likeliest.score >= least_score &&
-        (certain || best.hinted || best.listed)) {
-        result.order_of_line = best.n;
-        fit(lines, best, question.shared_error, result.fit);
-        if (hint && best.hinted && certain) add(scale_rival(best, result.fit, *hint));
-        result.fit.candidates = scored(combs, rivals);
-        // The robust fit moves the value a little from where the comparison of combs left it; one ratio, one
-        // number.
-        if (result.fit.value) result.fit.candidates.front().value = *result.fit.value;
+    const double log_chance = log_evidence_of_chance(lines);
+    result.fit.candidates = scored(all, log_chance);
+    if (!best.as_read && best.value != 1.0)
+        result.notes.push_back(
+            fmt::format("a ratio of {:.4g} would be {:.4g} {}", best.ratio, best.value, best.reason));
+    const bool no_gear = std::abs(best.value - 1.0) < hint_tolerance && !best.hinted;
+    const bool clear = !result.fit.candidates.empty() && result.fit.candidates.front().value == best.value &&
+                       result.fit.candidates.front().score >= least_score;
+    if (!best.as_read || no_gear || !clear || !enough_lines(lines, best)) return result;
+    const RatioHypothesis& form = reported_form(best);
+    const auto estimates = fit(lines, form, question.shared_error, result.fit);
+    if (form.second_comb != 0) result.fit.second_comb = *result.fit.value + form.second_comb;
+    add_residuals(lines, form, estimates, result.fit);
+    widen(lines, best, form, question.shared_error, result.fit);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (form.position[i]) result.order_of_line[i] = order_at(*form.position[i], *result.fit.value);
     }
-    for (RatioRival& rival : rivals) {
-        if (!rival.note.empty()) result.notes.push_back(std::move(rival.note));
+    if (hint && best.hinted) {
+        if (auto one = wrong_scale(best, result.fit, *hint, result.notes)) all.push_back(std::move(*one));
+        result.fit.candidates = scored(all, log_chance);
     }
+    // The robust fit moves the value a little from where the comparison left it; one ratio, one number.
+    result.fit.candidates.front().value = *result.fit.value;
     return result;
 }
 

@@ -19,11 +19,8 @@ namespace {
 void add_ratio(std::vector<Reported>& reported, const RatioQuestion& question, Identification& result) {
     std::vector<OrderLine> orders;
     std::vector<std::size_t> owner;
-    const bool any_certain = std::any_of(reported.begin(), reported.end(),
-                                         [](const Reported& r) { return r.order && r.order->certain; });
     for (std::size_t i = 0; i < reported.size(); ++i) {
-        // Where some lines surely turn with the joint, the doubtful ones have no say.
-        if (!reported[i].order || (any_certain && !reported[i].order->certain)) continue;
+        if (!reported[i].order) continue;
         orders.push_back(*reported[i].order);
         if (!reported[i].line.order_output_seen) orders.back().could_be = reported[i].line.could_be;
         owner.push_back(i);
@@ -32,7 +29,7 @@ void add_ratio(std::vector<Reported>& reported, const RatioQuestion& question, I
     result.gear_ratio = std::move(ratio.fit);
     for (std::string& note : ratio.notes) result.notes.push_back(std::move(note));
     for (std::size_t i = 0; i < owner.size(); ++i) {
-        if (const auto n = ratio.order_of_line[i]) reported[owner[i]].line.order = static_cast<double>(*n);
+        if (const auto n = ratio.order_of_line[i]) reported[owner[i]].line.order = *n;
     }
 }
 
@@ -73,10 +70,11 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     result.evidence = motion.sweeps > 0 ? LineEvidence::sweeps : LineEvidence::none;
     const bool without_position =
         std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
-    add_ratio(reported, {options.hint, options.hinted_orders, without_position, 0.0}, result);
+    add_ratio(reported,
+              {options.hint, options.hinted_orders, without_position, 0.0, options.unit_stated}, result);
     result.families = families_among(reported);
+    name_mains(reported);
     for (Reported& r : reported) {
-        name_mains(r.line);
         result.lines.push_back(std::move(r.line));
     }
     std::stable_sort(result.lines.begin(), result.lines.end(),

@@ -34,6 +34,16 @@ std::optional<double> motor_order(const Line& line) {
     return follows ? line.order : std::nullopt;
 }
 
+std::vector<double> undecided_ratios(const GearRatioFit& fit) {
+    constexpr double probable = 0.2, beside_it = 0.1;  // by hand: the first of all, the others of the first
+    std::vector<double> ratios;
+    if (fit.value || fit.candidates.empty() || fit.candidates.front().score < probable) return ratios;
+    for (const RatioCandidate& one : fit.candidates) {
+        if (one.score > beside_it * fit.candidates.front().score) ratios.push_back(one.value);
+    }
+    return ratios.size() > 1 ? ratios : std::vector<double>{};
+}
+
 std::optional<GearAccount> found_gear(const Identification& found) {
     if (!found.gear_ratio.value) return std::nullopt;
     std::vector<Order> orders;

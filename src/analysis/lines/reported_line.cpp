@@ -101,15 +101,34 @@ Reported from_motion(const MotionLines& motion, std::size_t source, const Identi
     return reported;
 }
 
-void name_mains(Line& line) {
-    if (line.kind != LineKind::tone || !line.hz) return;
-    for (const double mains : {50.0, 60.0}) {
-        const double n = std::round(*line.hz / mains);
-        if (n < 1.0 || n > 6.0 || std::abs(*line.hz - n * mains) > 0.004 * n * mains) continue;
-        const std::string name = n == 1.0 ? fmt::format("mains {:.0f} Hz", mains)
-                                          : fmt::format("{:.0f} times mains {:.0f} Hz", n, mains);
-        line.note = line.note.empty() ? name : name + ", " + line.note;
-        return;
+namespace {
+
+/// Which multiple of the mains frequency a tone is; 0: none.
+int mains_multiple(const Line& line, double mains_hz) {
+    constexpr double tolerance = 0.004;  // mains keep within 1 %, nearly always within a fifth of that
+    if (line.kind != LineKind::tone || !line.hz) return 0;
+    const double n = std::round(*line.hz / mains_hz);
+    const bool near = n >= 1.0 && n <= 6.0 && std::abs(*line.hz - n * mains_hz) <= tolerance * n * mains_hz;
+    return near ? static_cast<int>(n) : 0;
+}
+
+}  // namespace
+
+void name_mains(std::span<Reported> reported) {
+    const auto support = [&](double mains_hz) {
+        double sum = 0.0;
+        for (const Reported& one : reported) {
+            if (const int n = mains_multiple(one.line, mains_hz)) sum += one.line.snr / n;
+        }
+        return sum;
+    };
+    const double mains_hz = support(60.0) > support(50.0) ? 60.0 : 50.0;
+    for (Reported& one : reported) {
+        const int n = mains_multiple(one.line, mains_hz);
+        if (n == 0) continue;
+        const std::string name = n == 1 ? fmt::format("mains {:.0f} Hz", mains_hz)
+                                        : fmt::format("{} times mains {:.0f} Hz", n, mains_hz);
+        one.line.note = one.line.note.empty() ? name : name + ", " + one.line.note;
     }
 }
 

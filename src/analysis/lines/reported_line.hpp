@@ -23,7 +23,8 @@ struct Reported {
 [[nodiscard]] Reported from_motion(const MotionLines& motion, std::size_t source,
                                    const IdentifyOptions& options, double rate_hz);
 
-/// Says of a tone that it is mains or a multiple of it, within the doubt about its frequency.
-void name_mains(Line& line);
+/// Notes at tones that they are the mains frequency or a multiple of it: 50 or 60 Hz, whichever accounts for
+/// more of the tones of these logs, lower multiples counting more.
+void name_mains(std::span<Reported> reported);
 
 }  // namespace ripplenotch

@@ -15,7 +15,8 @@ constexpr std::array findings{Named<RippleFinding>{RippleFinding::ratio, "ratio"
                               Named<RippleFinding>{RippleFinding::one_speed, "one speed"},
                               Named<RippleFinding>{RippleFinding::nothing, "nothing"},
                               Named<RippleFinding>{RippleFinding::too_little, "too little motion"}};
-constexpr std::array doubt_reasons{Named<DoubtReason>{DoubtReason::clock, "clock"}};
+constexpr std::array doubt_reasons{Named<DoubtReason>{DoubtReason::clock, "clock"},
+                                   Named<DoubtReason>{DoubtReason::unit, "unit"}};
 constexpr std::array abouts{Named<Disagreement::About>{Disagreement::About::ratio, "gear ratio"},
                             Named<Disagreement::About>{Disagreement::About::amplitude, "amplitude"},
                             Named<Disagreement::About>{Disagreement::About::phase, "phase"}};

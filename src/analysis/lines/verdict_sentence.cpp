@@ -125,6 +125,17 @@ std::string besides(const Identification& found) {
     return tones_too(found) + hums_too(found) + disagreements_too(found);
 }
 
+/// Which of two combs is the ratio depends on which spline drives the joint: the lines do not show it.
+std::string of_both_splines(const GearRatioFit& ratio, int decimals) {
+    if (!ratio.second_comb) return "";
+    return fmt::format(
+        " with lines of both splines, {:.{}f} and {:.{}f} turns of the wave generator a turn of the joint (the "
+        "ratio is the {} where the {} spline is the output)",
+        std::min(*ratio.value, *ratio.second_comb), decimals, std::max(*ratio.value, *ratio.second_comb),
+        decimals, *ratio.second_comb > *ratio.value ? "larger" : "smaller",
+        *ratio.second_comb > *ratio.value ? "circular" : "flexible");
+}
+
 std::string with_ratio(const Identification& found) {
     std::vector<const Line*> lines;
     for (const Line& line : found.lines) {
@@ -133,24 +144,21 @@ std::string with_ratio(const Identification& found) {
     std::sort(lines.begin(), lines.end(), [](const Line* a, const Line* b) { return *a->order < *b->order; });
     std::vector<std::string> orders, amplitudes;
     for (const Line* line : lines) {
-        orders.push_back(fmt::format("{:.0f}", *line->order));
+        orders.push_back(fmt::format("{:.4g}", *line->order));
         amplitudes.push_back(fmt::format("{:.2f}", line->amplitude_nm));
     }
     std::vector<std::string> doubted;  // may be tones
     for (const Line* line : lines) {
-        if (line->kind == LineKind::unknown) doubted.push_back(fmt::format("{:.0f}", *line->order));
+        if (line->kind == LineKind::unknown) doubted.push_back(fmt::format("{:.4g}", *line->order));
     }
     const bool all_doubted = std::none_of(lines.begin(), lines.end(),
                                           [](const Line* line) { return line->kind == LineKind::order; });
     std::string doubt;
     if (all_doubted) {
-        doubt =
-            "; one speed dominates, where a fixed tone would look the same: a log at another speed would "
-            "tell";
+        doubt = "; only one speed, so each line is an order or a tone; record another speed to decide";
     } else if (!doubted.empty()) {
-        doubt = fmt::format("; {} may be a fixed tone{}: a log at another speed would tell",
-                            (doubted.size() == 1 ? "order " : "orders ") + listed(doubted),
-                            doubted.size() == 1 ? "" : "s");
+        doubt = fmt::format("; order{} {} or tone{}: record another speed to decide",
+                            doubted.size() == 1 ? "" : "s", listed(doubted), doubted.size() == 1 ? "" : "s");
     }
     const GearRatioFit& ratio = found.gear_ratio;
     const double half = 0.5 * (ratio.ci95_high - ratio.ci95_low);
@@ -159,10 +167,11 @@ std::string with_ratio(const Identification& found) {
                                 : lines.size() == 1 ? "A line that may be ripple"
                                                     : "Lines that may be ripple";
     return fmt::format(
-        "{} at order{} {} of the motor: gear ratio {:.{}f} +/- {:.{}f} (95 %), {} Nm zero to peak, from "
+        "{} at order{} {} of the motor: gear ratio {:.{}f} +/- {:.{}f} (95 %){}, {} Nm zero to peak, from "
         "{}{}{}.",
         subject, lines.size() == 1 ? "" : "s", listed(orders), *ratio.value, decimals, half, decimals,
-        listed(amplitudes), basis(found.grounds), at_rest(found) + doubt, besides(found));
+        of_both_splines(ratio, decimals), listed(amplitudes), basis(found.grounds), at_rest(found) + doubt,
+        besides(found));
 }
 
 std::string candidates(const Identification& found) {
@@ -174,6 +183,17 @@ std::string candidates(const Identification& found) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// "cannot tell which of 100 and 200 is the gear ratio: 100.00 (why), 200.00 (why)"
+std::string undecided(const Identification& found) {
+    std::vector<std::string> ratios;
+    for (const double ratio : undecided_ratios(found.gear_ratio)) ratios.push_back(fmt::format("{:.5g}", ratio));
+    const std::string all = candidates(found);
+    const std::string question = ratios.empty()
+                                     ? "the gear ratio cannot be determined from these lines"
+                                     : fmt::format("cannot tell which of {} is the gear ratio", listed(ratios));
+    return all.empty() ? question : question + ": " + all;
+}
+
 std::string without_ratio(const Identification& found) {
     std::vector<std::string> words;
     for (const Line* line : of_kind(found, LineKind::order)) {
@@ -181,9 +201,8 @@ std::string without_ratio(const Identification& found) {
             words.push_back(fmt::format("{:.5g} ({:.2g} Nm)", *line->order_output, line->amplitude_nm));
     }
     return fmt::format(
-        "Ripple at output order{} {}, from {}{}{}; the gear ratio cannot be told from that: {}.",
-        words.size() == 1 ? "" : "s", listed(words), basis(found.grounds), at_rest(found), besides(found),
-        candidates(found));
+        "Ripple at output order{} {}, from {}{}{}; {}.", words.size() == 1 ? "" : "s", listed(words),
+        basis(found.grounds), at_rest(found), besides(found), undecided(found));
 }
 
 std::string one_speed(const Identification& found) {
@@ -195,11 +214,8 @@ std::string one_speed(const Identification& found) {
                     first.hz.value_or(0.0), first.amplitude_nm, basis(found.grounds));
     if (first.order_output)
         text += fmt::format(": output order {:.5g} if it turns with the joint", *first.order_output);
-    text +=
-        "; one speed dominates, where an order and a fixed tone look alike, and a log at another speed would "
-        "tell";
-    if (!found.gear_ratio.candidates.empty())
-        text += "; as an order it fits a gear ratio of " + candidates(found);
+    text += "; only one speed, so a line is an order or a tone; record another speed to decide";
+    if (!found.gear_ratio.candidates.empty()) text += "; as orders: " + undecided(found);
     return text + at_rest(found) + besides(found) + ".";
 }
 
@@ -223,7 +239,8 @@ std::string too_little(const Identification& found) {
 std::string frequencies(const Line& line) {
     if (line.hz) return fmt::format("{:.4g} Hz", *line.hz);
     const SeenFrequencies seen = seen_frequencies(line).value_or(SeenFrequencies{});
-    return fmt::format("{:.4g} to {:.4g} Hz", seen.lowest_hz, seen.highest_hz);
+    const std::string low = fmt::format("{:.4g}", seen.lowest_hz), high = fmt::format("{:.4g}", seen.highest_hz);
+    return low == high ? low + " Hz" : fmt::format("{} to {} Hz", low, high);
 }
 
 std::string doubted(const Identification& found) {

@@ -30,6 +30,14 @@ std::vector<Order> sorted_orders(const std::vector<double>& values) {
     return orders;
 }
 
+std::string reason_for_none(const Identification& found) {
+    if (!found.doubts.empty()) return "cannot tell: " + found.doubts.front().because;
+    std::string ratios;
+    for (const double ratio : undecided_ratios(found.gear_ratio))
+        ratios += fmt::format("{}{:.5g}", ratios.empty() ? "" : " or ", ratio);
+    return ratios.empty() ? "found none" : "could not decide between " + ratios;
+}
+
 // What the file says where `before` comes first. A file that is asked and knows nothing is refused: it was
 // measured, and nothing was found.
 Statement statement_of(const JointFile& file, const std::vector<Statement>& before) {
@@ -41,8 +49,8 @@ Statement statement_of(const JointFile& file, const std::vector<Statement>& befo
     }
     JointFacts facts = file.facts(given);
     if (!facts.gear_ratio)
-        raise<DataError>("{}: its gear ratio is null, because identify found none; give --gear-ratio",
-                         file.source);
+        raise<DataError>("{}: its gear ratio is null, because identify {}; give --gear-ratio", file.source,
+                         reason_for_none(file.found));
     if (facts.orders.empty() && !orders_given)
         raise<DataError>("{}: it has no line that follows the motor; give --orders", file.source);
     return {file.source, facts.gear_ratio, std::move(facts.orders), std::move(facts.amplitude_nm),

@@ -20,9 +20,14 @@ std::string hz_range(const Line& line) {
     return seen ? range(seen->lowest_hz, seen->highest_hz, 4) : "-";
 }
 
-std::string line_row(const Line& line) {
-    return fmt::format("{:<8} {:>5} {:>13} {:>13} {:>10.3g} {:>8} {:>6.1f} {:>12}  {}",
-                       line_kind_name(line.kind), line.order ? fmt::format("{:g}", *line.order) : "-",
+/// At one speed a line is the one or the other.
+std::string_view kind_text(const Line& line) {
+    return line.kind == LineKind::unknown ? "order or tone" : line_kind_name(line.kind);
+}
+
+std::string line_row(const Line& line, std::size_t kind_width) {
+    return fmt::format("{:<{}} {:>5} {:>13} {:>13} {:>10.3g} {:>8} {:>6.1f} {:>12}  {}", kind_text(line),
+                       kind_width, line.order ? fmt::format("{:.4g}", *line.order) : "-",
                        line.order_output ? fmt::format("{:.3f}", *line.order_output) : "-", hz_range(line),
                        line.amplitude_nm,
                        line.phase_known ? fmt::format("{:.0f}", std::round(line.phase_deg) + 0.0) : "-",
@@ -67,15 +72,20 @@ std::string identification_report(const Identification& found, const std::vector
                             *ratio.value, ratio.standard_error, ratio.ci95_low, ratio.ci95_high);
     }
     if (!found.lines.empty()) {
+        std::size_t width = 8;
+        for (const Line& line : found.lines) width = std::max(width, kind_text(line).size());
         text += "\n" +
-                trimmed(fmt::format("{:<8} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "kind", "order",
-                                    "output order", "Hz", "amplitude", "phase", "SNR", "speed")) +
+                trimmed(fmt::format("{:<{}} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "kind", width,
+                                    "order", "output order", "Hz", "amplitude", "phase", "SNR", "speed")) +
                 "\n";
-        text += trimmed(fmt::format("{:<8} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "", "", "per turn",
-                                    "", "Nm", "deg", "", "deg/s")) +
+        text += trimmed(fmt::format("{:<{}} {:>5} {:>13} {:>13} {:>10} {:>8} {:>6} {:>12}", "", width, "",
+                                    "per turn", "", "Nm", "deg", "", "deg/s")) +
                 "\n";
-        for (const Line& line : found.lines) text += trimmed(line_row(line)) + "\n";
+        for (const Line& line : found.lines) text += trimmed(line_row(line, width)) + "\n";
     }
+    if (ratio.second_comb)
+        text += fmt::format("second comb: {:.4f} turns of the wave generator against the other spline\n",
+                            *ratio.second_comb);
     if (ratio.candidates.size() > (ratio.value ? 1U : 0U)) {
         text += ratio.value ? "\nrival ratios\n" : "\npossible ratios\n";
         for (std::size_t i = ratio.value ? 1 : 0; i < ratio.candidates.size(); ++i) {

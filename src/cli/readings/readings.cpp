@@ -51,10 +51,22 @@ std::vector<OtherReading> readings_of(std::span<const Log> logs, std::vector<Ass
     return found;
 }
 
-// Lines at orders of a joint behind a gear of this ratio are lines at orders of the motor.
+// A motor in rad/s is as fast as a joint in deg/s: where only that decided on the unit, it is not known. Units
+// that are open anyhow are compared reading by reading.
+bool motor_unit_possible(std::span<const Log> logs, const OtherReading& reading) {
+    const bool as_taken = reading.velocity_factor == 1.0 && !reading.changes_side;
+    return as_taken && open_readings(logs).empty() && !in_motor_units(logs) &&
+           std::any_of(logs.begin(), logs.end(), [](const Log& log) { return log.layout.unit_by_size; });
+}
+
+// Lines at orders of a joint behind a gear of this ratio are lines at orders of the motor, and the speeds are
+// those of the log again.
 Identification of_the_motor(Identification found, double ratio) {
     std::string lines;
     for (Line& line : found.lines) {
+        line.speed_from_deg_s *= ratio;
+        line.speed_to_deg_s *= ratio;
+        for (AmplitudeAtSpeed& at : line.by_speed) at.speed_deg_s *= ratio;
         if (!line.order_output) continue;
         line.order = *line.order_output / ratio;
         line.order_output.reset();
@@ -64,6 +76,9 @@ Identification of_the_motor(Identification found, double ratio) {
             lines += fmt::format("{}{:.4g} ({:.2g} Nm)", lines.empty() ? "" : ", ", *line.order,
                                  line.amplitude_nm);
     }
+    found.grounds.slowest_deg_s *= ratio;
+    found.grounds.fastest_deg_s *= ratio;
+    found.grounds.sweep_turns *= ratio;
     found.gear_ratio = {};
     found.conclusive = false;
     found.verdict = lines.empty()
@@ -74,6 +89,26 @@ Identification of_the_motor(Identification found, double ratio) {
                               "{} cycles per turn of the motor; --gear-ratio settles it.",
                               lines);
     return found;
+}
+
+// Nothing but the size of the numbers says in which unit the motion is, and the lines suit another as well.
+void doubt_unit(std::span<const Log> logs, Identification& found) {
+    constexpr double enough = 0.15;  // what a ratio that is reported leaves to everything else
+    double share = 0.0;
+    const RatioCandidate *other = nullptr, *as_read = nullptr;
+    for (const RatioCandidate& one : found.gear_ratio.candidates) {
+        if (one.other_unit) share += one.score;
+        const RatioCandidate*& first = one.other_unit ? other : as_read;
+        if (first == nullptr) first = &one;
+    }
+    if (share < enough || found.gear_ratio.value) return;
+    std::string readings = other->reason;
+    if (other->value != 1.0) readings += fmt::format(", the gear ratio would be {:.5g}", other->value);
+    if (as_read != nullptr)
+        readings += fmt::format("; {}, the gear ratio would be {:.5g}", assumed_reading(logs), as_read->value);
+    cast_doubt(found, {DoubtReason::unit,
+                       fmt::format("the log does not state the unit of its motion: {}; {} settles it", readings,
+                                   settling_options(logs))});
 }
 
 Identification identified(std::span<const Log> logs, const IdentifyOptions& options,
@@ -94,10 +129,12 @@ Identification identified(std::span<const Log> logs, const IdentifyOptions& opti
     for (std::size_t i = 0; i < logs.size(); ++i)
         views.push_back(as_taken ? logs[i].trace.view() : traces[i].view());
     IdentifyOptions doubting = options;
+    doubting.unit_stated = !motor_unit_possible(logs, reading);
     for (const Log& log : logs) {
         for (Doubt& doubt : log_doubts(log, read)) doubting.doubts.push_back(std::move(doubt));
     }
     Identification found = identify(views, doubting);
+    if (!doubting.unit_stated) doubt_unit(logs, found);
     return motor ? of_the_motor(std::move(found), stand_in_ratio) : found;
 }
 
@@ -178,8 +215,8 @@ Trace read_otherwise(const Trace& trace, const OtherReading& reading) {
 
 Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options) {
     Identification taken = identified(logs, options, {});
-    if (taken.gear_ratio.value.value_or(stand_in_ratio) < least_ratio)
-        taken = of_the_motor(std::move(taken), 1.0);
+    const auto is_unit = [](const Doubt& doubt) { return doubt.reason == DoubtReason::unit; };
+    if (std::any_of(taken.doubts.begin(), taken.doubts.end(), is_unit)) return taken;
     std::vector<OtherReading> readings = open_readings(logs);
     const bool open = !readings.empty();
     // What a rule decided is doubted only where nothing came of it.

@@ -65,8 +65,10 @@ GearRatioFit ratio_from_json(Fields& fields) {
     if (fit.value && !(*fit.value > 0.0)) {
         raise<DataError>("{} is {}, expected a positive number or null", fields.where("value"), *fit.value);
     }
+    if (fields.has("second_comb")) fit.second_comb = fields.number_if_any("second_comb");
     fields.each("candidates", [&](Fields& entry) {
-        fit.candidates.push_back({entry.number("value"), entry.number("score"), entry.text("reason")});
+        fit.candidates.push_back({entry.number("value"), entry.number("score"), entry.text("reason"),
+                                  entry.has("other_unit") && entry.flag("other_unit")});
     });
     if (!fields.has("residuals")) return fit;
     fields.each("residuals", [&](Fields& entry) {

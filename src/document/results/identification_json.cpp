@@ -47,11 +47,15 @@ Json ratio_to_json(const GearRatioFit& fit) {
     json["stderr"] = fit.value ? finite_or_null(fit.standard_error) : Json(nullptr);
     json["ci95"] =
         fit.value ? Json{finite_or_null(fit.ci95_low), finite_or_null(fit.ci95_high)} : Json(nullptr);
+    json["second_comb"] = optional_to_json(fit.second_comb);
     json["candidates"] = Json::array();
     for (const RatioCandidate& candidate : fit.candidates) {
         list_in(json, "candidates")
             .push_back(
-                {{"value", candidate.value}, {"score", candidate.score}, {"reason", candidate.reason}});
+                {{"value", candidate.value},
+                        {"score", candidate.score},
+                        {"reason", candidate.reason},
+                        {"other_unit", candidate.other_unit}});
     }
     json["residuals"] = Json::array();
     for (const auto& r : fit.residuals) {

@@ -220,6 +220,7 @@ class Inference {
         if (option.empty() && !possible.empty()) option = possible.front().option;
         Assumption read{fmt::format("unit{} of {}", motor ? " and side" : "", about), assumed,
                         reason(possible, without_position), option, possible.empty() ? thinkable : possible};
+        layout_.unit_by_size = !stated() && !by_convention() && !evidence_.wrap && !best_.ratio;
         if (possible.empty()) {
             layout_.inferences.push_back(std::move(read));
             return;
@@ -231,6 +232,16 @@ class Inference {
             }
         }
         layout_.assumptions.push_back(std::move(read));
+    }
+
+    /// The convention of a name that decided on the unit; null where none did.
+    const Convention* by_convention() const {
+        for (const auto* column : {&subject_->velocity, &subject_->position}) {
+            if (!*column || (*column)->unit_is_stated || (*column)->convention == nullptr) continue;
+            const auto& read = column == &subject_->velocity ? best_.velocity : best_.position;
+            if (read.unit == (*column)->convention->unit) return (*column)->convention;
+        }
+        return nullptr;
     }
 
     std::string side_words() const {
@@ -253,11 +264,7 @@ class Inference {
                                      *best_.ratio)
                        : fmt::format("named as the motor's; divided by the ratio {:.5g}", *best_.ratio);
         }
-        for (const auto* column : {&subject_->velocity, &subject_->position}) {
-            if (!*column || (*column)->unit_is_stated || (*column)->convention == nullptr) continue;
-            const auto& read = column == &subject_->velocity ? best_.velocity : best_.position;
-            if (read.unit == (*column)->convention->unit) return std::string((*column)->convention->source);
-        }
+        if (const Convention* convention = by_convention()) return std::string(convention->source);
         if (evidence_.wrap) return fmt::format("the position starts again at {:.5g}", *evidence_.wrap);
         const bool by_position = evidence_.scale && without_position.size() > 1 &&
                                  without_position[1].cost - without_position[0].cost < open_margin;
