@@ -146,11 +146,10 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     }
     looked.without_position =
         std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
-    add_ratio(
-        reported,
-        {options.hint, options.hinted_orders, looked.without_position, shared_order_error(looked, result),
-         options.unit_stated},
-        result);
+    add_ratio(reported,
+              {options.hint, options.hinted_orders, looked.without_position,
+               shared_order_error(looked, result), options.unit_stated},
+              result);
     result.families = families_among(reported);
     name_mains(reported);
     for (Reported& r : reported) {
