@@ -167,7 +167,8 @@ TEST_CASE("without a stated unit, whole orders of a shaft in radians are no gear
     CHECK_FALSE(result.fit.value.has_value());
     CHECK(result.fit.candidates[0].other_unit);
     CHECK(result.fit.candidates[0].value == 1.0);
-    CHECK_THAT(result.fit.candidates[0].reason, Contains("the speed is in rad/s, not deg/s, the lines are whole"));
+    CHECK_THAT(result.fit.candidates[0].reason,
+               Contains("the speed is in rad/s, not deg/s, the lines are whole"));
     // A ratio that no unit explains stays one.
     const auto gear = fit_gear_ratio(std::vector{line_at(100.0, 0.8), line_at(200.0, 0.5)}, question);
     REQUIRE(gear.fit.value.has_value());
@@ -272,8 +273,8 @@ TEST_CASE("the 95 % interval covers the truth in 93 to 97 of a hundred fits") {
 
 TEST_CASE("the comb of five published peaks has its base at 40.26 Hz") {
     // [39.01628, 81.93419, 120.95047, 159.96675, 241.90094] Hz are n = 1, 2, 3, 4, 6; least squares through
-    // the origin: sum n f / sum n^2 = 2657.01 / 66 = 40.2577. Here frequencies stand for twice the orders of a
-    // joint at 720 deg/s.
+    // the origin: sum n f / sum n^2 = 2657.01 / 66 = 40.2577. Here frequencies stand for twice the orders of
+    // a joint at 720 deg/s.
     std::vector<OrderLine> lines;
     for (const double hz : {39.01628, 81.93419, 120.95047, 159.96675, 241.90094})
         lines.push_back(line_at(0.5 * hz, 1.0, 0.4, {720}));

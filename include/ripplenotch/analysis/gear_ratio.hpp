@@ -51,14 +51,14 @@ struct RatioQuestion {
 
 /// Ratios are compared by their posterior probability. A line lies on a tooth of a comb within its error, or
 /// anywhere by chance, which is the less probable the more clearly it is seen; a tooth has the prior
-/// probability of its n (1 to 32), so that a dense comb pays for what it explains by chance. Ratios have equal
-/// prior probability in the logarithm from 1 to 320, more where a catalogue has them, and more near the hint.
-/// Compared as well: no gear at all (whole orders of the shaft that was measured), no connection between the
-/// lines, and a mistaken unit. The scores are these probabilities. The value is left empty unless one ratio
-/// has at least 0.85 and explains two lines, or one and the hint. Fit: per source the weighted mean over its
-/// lines, then over sources by Huber's weights (k = 1.345); where sources scatter more than their errors make
-/// likely (1 %), that widens the interval, by Student's t. Lines that both combs make up, too close together
-/// to be separated, count with the distance between the combs as their error.
+/// probability of its n (1 to 32), so that a dense comb pays for what it explains by chance. Ratios have
+/// equal prior probability in the logarithm from 1 to 320, more where a catalogue has them, and more near the
+/// hint. Compared as well: no gear at all (whole orders of the shaft that was measured), no connection
+/// between the lines, and a mistaken unit. The scores are these probabilities. The value is left empty unless
+/// one ratio has at least 0.85 and explains two lines, or one and the hint. Fit: per source the weighted mean
+/// over its lines, then over sources by Huber's weights (k = 1.345); where sources scatter more than their
+/// errors make likely (1 %), that widens the interval, by Student's t. Lines that both combs make up, too
+/// close together to be separated, count with the distance between the combs as their error.
 [[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQuestion& question);
 
 }  // namespace ripplenotch

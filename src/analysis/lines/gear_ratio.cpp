@@ -48,8 +48,8 @@ std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, cons
             const double ratio = seen.order_output / n - shift;
             const double noise = std::max(seen.error, 1e-7 * seen.order_output) / n;
             // Observations of one line share where it lies between the combs.
-            const double error = portable::hypot(
-                noise, spread * std::sqrt(static_cast<double>(lines[i].observations.size())));
+            const double error =
+                portable::hypot(noise, spread * std::sqrt(static_cast<double>(lines[i].observations.size())));
             estimates[seen.source].ratio += ratio / (error * error);
             bottom[seen.source] += 1.0 / (error * error);
             speed_error[seen.source] = std::max(speed_error[seen.source], seen.speed_share_error);
@@ -113,9 +113,8 @@ double share_of(const RatioHypothesis& form, const RatioHypothesis& best) {
 /// Two combs are reported where one has less than 0.01 of the probability.
 const RatioHypothesis& reported_form(const RatioHypothesis& best) {
     if (best.second_comb == 0) return best;
-    const auto one_comb = std::find_if(best.forms.begin(), best.forms.end(), [](const RatioHypothesis& form) {
-        return form.second_comb == 0;
-    });
+    const auto one_comb = std::find_if(best.forms.begin(), best.forms.end(),
+                                       [](const RatioHypothesis& form) { return form.second_comb == 0; });
     const bool rejected = one_comb == best.forms.end() || share_of(*one_comb, best) < 0.01;
     return rejected ? best : *one_comb;
 }
@@ -132,8 +131,7 @@ void widen(std::span<const OrderLine> lines, const RatioHypothesis& best, const 
         fit(lines, form, shared_error, other);
         result.ci95_low = std::min(result.ci95_low, other.ci95_low);
         result.ci95_high = std::max(result.ci95_high, other.ci95_high);
-        result.standard_error =
-            std::max(result.standard_error, 0.25 * (result.ci95_high - result.ci95_low));
+        result.standard_error = std::max(result.standard_error, 0.25 * (result.ci95_high - result.ci95_low));
     };
     add(best);
     for (const RatioHypothesis& form : best.forms) add(form);
@@ -185,7 +183,8 @@ void add_folded(std::span<const OrderLine> lines, const RatioQuestion& question,
 /// A clock that is off, where only the clock makes an angle of the speed, and the hint would then hold. A
 /// clock may be off by any factor, so that one always fits.
 std::optional<RatioHypothesis> wrong_clock(const RatioHypothesis& best, GearRatio hint) {
-    constexpr double log_wrong_clock = -2.7;  // by hand: the factor of the hint and the rarity of such clocks together
+    constexpr double log_wrong_clock =
+        -2.7;  // by hand: the factor of the hint and the rarity of such clocks together
     const double factor = best.ratio / hint.value();
     if (std::abs(factor - 1.0) < hint_tolerance) return std::nullopt;
     RatioHypothesis one = best;

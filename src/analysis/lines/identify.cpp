@@ -15,12 +15,18 @@
 namespace ripplenotch {
 namespace {
 
+/// What a joint carries repeats once a turn, with and without a gear: such a line says nothing of the ratio.
+bool is_once_a_turn(const OrderLine& line) {
+    constexpr double tolerance = 0.02;  // by hand: of the joint's turn, beside the line's own error
+    return std::abs(line.order_output - 1.0) < std::max(tolerance, 3.0 * line.error);
+}
+
 /// Fits the ratio to what may be orders and writes each line's order per motor turn.
 void add_ratio(std::vector<Reported>& reported, const RatioQuestion& question, Identification& result) {
     std::vector<OrderLine> orders;
     std::vector<std::size_t> owner;
     for (std::size_t i = 0; i < reported.size(); ++i) {
-        if (!reported[i].order) continue;
+        if (!reported[i].order || is_once_a_turn(*reported[i].order)) continue;
         orders.push_back(*reported[i].order);
         if (!reported[i].line.order_output_seen) orders.back().could_be = reported[i].line.could_be;
         owner.push_back(i);

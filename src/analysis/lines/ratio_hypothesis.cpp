@@ -147,7 +147,8 @@ Match match(const OrderLine& line, const Positions& others, double ratio, int se
         }
         for (const double own : {0.0, shift})
             add(share * on_one * t3(q - n * (ratio + own), error), {n, own, 0.0});
-        add(share * of_both * normal(q - n * (ratio + 0.5 * shift), portable::hypot(error, n * both_deviation)),
+        add(share * of_both *
+                normal(q - n * (ratio + 0.5 * shift), portable::hypot(error, n * both_deviation)),
             {n, 0.5 * shift, both_deviation});
     }
     return found;
@@ -201,16 +202,15 @@ double log_prior(double ratio, double error, int second_comb, const OrderPrior& 
     factor *= second_comb == 0 ? prior.one_comb : prior.two_combs;
     if (!one_line) factor *= second_comb > 0 ? plus_share : second_comb < 0 ? minus_share : one_comb_share;
     if (const auto listed = catalogue_ratio(ratio))
-        factor *= std::find(sold.begin(), sold.end(), *listed) != sold.end() ? listed_factor
-                                                                              : other_output_factor;
+        factor *=
+            std::find(sold.begin(), sold.end(), *listed) != sold.end() ? listed_factor : other_output_factor;
     return portable::log(factor);
 }
 
 bool leads_at(std::span<const OrderLine> lines, const RatioHypothesis& one, std::span<const int> orders) {
-    const auto strongest =
-        std::max_element(lines.begin(), lines.end(), [](const OrderLine& a, const OrderLine& b) {
-            return a.amplitude_nm < b.amplitude_nm;
-        });
+    const auto strongest = std::max_element(
+        lines.begin(), lines.end(),
+        [](const OrderLine& a, const OrderLine& b) { return a.amplitude_nm < b.amplitude_nm; });
     const auto& at = one.position[static_cast<std::size_t>(strongest - lines.begin())];
     return at && std::find(orders.begin(), orders.end(), at->n) != orders.end();
 }
@@ -233,7 +233,8 @@ void describe(std::span<const OrderLine> lines, const RatioQuestion& question, R
         text += fmt::format("; no odd order: cannot be distinguished from {:.4g}", 2.0 * one.ratio);
     if (const auto listed = catalogue_ratio(one.value))
         text += fmt::format("; {:.0f} is a catalogue ratio", *listed);
-    if (question.hint && std::abs(one.value - question.hint->value()) < hint_tolerance * question.hint->value()) {
+    if (question.hint &&
+        std::abs(one.value - question.hint->value()) < hint_tolerance * question.hint->value()) {
         one.hinted = true;
         text += fmt::format("; agrees with the hint {:.6g}", question.hint->value());
     }
@@ -273,7 +274,8 @@ RatioHypothesis refined(std::span<const OrderLine> lines, double ratio, int seco
                 return match(line, others, one.ratio, second_comb, prior);
             },
             one.position);
-        if (std::none_of(one.position.begin(), one.position.end(), [](const auto& at) { return at.has_value(); }))
+        if (std::none_of(one.position.begin(), one.position.end(),
+                         [](const auto& at) { return at.has_value(); }))
             return one;
         if (round < 2) std::tie(one.ratio, error) = least_squares(lines, one);
     }
@@ -397,8 +399,9 @@ void add_units(std::span<const OrderLine> lines, const RatioQuestion& question,
             one.value = ratio;
             one.as_read = false;
             one.other_unit = true;
-            one.reason = fmt::format("if {}{}", unit.reason,
-                                     ratio == 1.0 ? ", the lines are whole orders of the shaft itself (no gear)" : "");
+            one.reason =
+                fmt::format("if {}{}", unit.reason,
+                            ratio == 1.0 ? ", the lines are whole orders of the shaft itself (no gear)" : "");
             const bool shaft = ratio == 1.0;
             add_fixed(lines, question, one,
                       portable::log(shaft ? share * static_cast<double>(sold.size()) : share), all);

@@ -23,13 +23,13 @@ struct CombPosition {
 
 /// One explanation of the lines.
 struct RatioHypothesis {
-    double ratio = 0.0;     ///< as the log is read
-    double value = 0.0;     ///< of the gear: differs from ratio where a unit is mistaken
-    int second_comb = 0;    ///< lines also at n (ratio + 1) or n (ratio - 1); 0: none
-    bool as_read = true;    ///< false: only if the log is not what it says it is
+    double ratio = 0.0;       ///< as the log is read
+    double value = 0.0;       ///< of the gear: differs from ratio where a unit is mistaken
+    int second_comb = 0;      ///< lines also at n (ratio + 1) or n (ratio - 1); 0: none
+    bool as_read = true;      ///< false: only if the log is not what it says it is
     bool other_unit = false;  ///< a unit is mistaken
     bool hinted = false;
-    bool listed = false;    ///< a catalogue has it
+    bool listed = false;  ///< a catalogue has it
     double log_evidence = 0.0;
     std::vector<std::optional<CombPosition>> position;  ///< of each line; empty where it lies off the combs
     std::string reason;

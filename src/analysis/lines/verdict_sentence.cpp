@@ -129,7 +129,8 @@ std::string besides(const Identification& found) {
 std::string of_both_splines(const GearRatioFit& ratio, int decimals) {
     if (!ratio.second_comb) return "";
     return fmt::format(
-        " with lines of both splines, {:.{}f} and {:.{}f} turns of the wave generator a turn of the joint (the "
+        " with lines of both splines, {:.{}f} and {:.{}f} turns of the wave generator a turn of the joint "
+        "(the "
         "ratio is the {} where the {} spline is the output)",
         std::min(*ratio.value, *ratio.second_comb), decimals, std::max(*ratio.value, *ratio.second_comb),
         decimals, *ratio.second_comb > *ratio.value ? "larger" : "smaller",
@@ -186,11 +187,12 @@ std::string candidates(const Identification& found) {
 /// "cannot tell which of 100 and 200 is the gear ratio: 100.00 (why), 200.00 (why)"
 std::string undecided(const Identification& found) {
     std::vector<std::string> ratios;
-    for (const double ratio : undecided_ratios(found.gear_ratio)) ratios.push_back(fmt::format("{:.5g}", ratio));
+    for (const double ratio : undecided_ratios(found.gear_ratio))
+        ratios.push_back(fmt::format("{:.5g}", ratio));
     const std::string all = candidates(found);
-    const std::string question = ratios.empty()
-                                     ? "the gear ratio cannot be determined from these lines"
-                                     : fmt::format("cannot tell which of {} is the gear ratio", listed(ratios));
+    const std::string question =
+        ratios.empty() ? "the gear ratio cannot be determined from these lines"
+                       : fmt::format("cannot tell which of {} is the gear ratio", listed(ratios));
     return all.empty() ? question : question + ": " + all;
 }
 
@@ -200,9 +202,8 @@ std::string without_ratio(const Identification& found) {
         if (words.size() < 5)
             words.push_back(fmt::format("{:.5g} ({:.2g} Nm)", *line->order_output, line->amplitude_nm));
     }
-    return fmt::format(
-        "Ripple at output order{} {}, from {}{}{}; {}.", words.size() == 1 ? "" : "s", listed(words),
-        basis(found.grounds), at_rest(found), besides(found), undecided(found));
+    return fmt::format("Ripple at output order{} {}, from {}{}{}; {}.", words.size() == 1 ? "" : "s",
+                       listed(words), basis(found.grounds), at_rest(found), besides(found), undecided(found));
 }
 
 std::string one_speed(const Identification& found) {
@@ -239,7 +240,8 @@ std::string too_little(const Identification& found) {
 std::string frequencies(const Line& line) {
     if (line.hz) return fmt::format("{:.4g} Hz", *line.hz);
     const SeenFrequencies seen = seen_frequencies(line).value_or(SeenFrequencies{});
-    const std::string low = fmt::format("{:.4g}", seen.lowest_hz), high = fmt::format("{:.4g}", seen.highest_hz);
+    const std::string low = fmt::format("{:.4g}", seen.lowest_hz),
+                      high = fmt::format("{:.4g}", seen.highest_hz);
     return low == high ? low + " Hz" : fmt::format("{} to {} Hz", low, high);
 }
 

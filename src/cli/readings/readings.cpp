@@ -51,8 +51,8 @@ std::vector<OtherReading> readings_of(std::span<const Log> logs, std::vector<Ass
     return found;
 }
 
-// A motor in rad/s is as fast as a joint in deg/s: where only that decided on the unit, it is not known. Units
-// that are open anyhow are compared reading by reading.
+// A motor in rad/s is as fast as a joint in deg/s: where only that decided on the unit, it is not known.
+// Units that are open anyhow are compared reading by reading.
 bool motor_unit_possible(std::span<const Log> logs, const OtherReading& reading) {
     const bool as_taken = reading.velocity_factor == 1.0 && !reading.changes_side;
     return as_taken && open_readings(logs).empty() && !in_motor_units(logs) &&
@@ -105,10 +105,11 @@ void doubt_unit(std::span<const Log> logs, Identification& found) {
     std::string readings = other->reason;
     if (other->value != 1.0) readings += fmt::format(", the gear ratio would be {:.5g}", other->value);
     if (as_read != nullptr)
-        readings += fmt::format("; {}, the gear ratio would be {:.5g}", assumed_reading(logs), as_read->value);
+        readings +=
+            fmt::format("; {}, the gear ratio would be {:.5g}", assumed_reading(logs), as_read->value);
     cast_doubt(found, {DoubtReason::unit,
-                       fmt::format("the log does not state the unit of its motion: {}; {} settles it", readings,
-                                   settling_options(logs))});
+                       fmt::format("the log does not state the unit of its motion: {}; {} settles it",
+                                   readings, settling_options(logs))});
 }
 
 Identification identified(std::span<const Log> logs, const IdentifyOptions& options,

@@ -51,8 +51,7 @@ Json ratio_to_json(const GearRatioFit& fit) {
     json["candidates"] = Json::array();
     for (const RatioCandidate& candidate : fit.candidates) {
         list_in(json, "candidates")
-            .push_back(
-                {{"value", candidate.value},
+            .push_back({{"value", candidate.value},
                         {"score", candidate.score},
                         {"reason", candidate.reason},
                         {"other_unit", candidate.other_unit}});
