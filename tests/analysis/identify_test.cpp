@@ -47,9 +47,9 @@ TEST_CASE("the paper's four logs give ratio 100, orders 1 and 2, and no line at 
     CHECK(found.gear_ratio.ci95_low <= 100.0);
     CHECK(found.gear_ratio.ci95_high >= 100.0);
     CHECK(found.conclusive);
-    CHECK(found.evidence == LineEvidence::stretches);
+    CHECK(found.evidence == LineEvidence::sweeps);
     CHECK_THAT(found.verdict, Contains("orders 1 and 2 of the motor: gear ratio "));
-    CHECK_THAT(found.verdict, Contains("from 3 steady stretches at 60 to 180 deg/s; no line at rest"));
+    CHECK_THAT(found.verdict, Contains("from 3 sweeps over 5 output turns at 60 to 180 deg/s; no line at rest"));
     REQUIRE(found.lines.size() == 2);
     for (const Line& line : found.lines) {
         CHECK(line.kind == LineKind::order);
@@ -60,7 +60,8 @@ TEST_CASE("the paper's four logs give ratio 100, orders 1 and 2, and no line at 
             CHECK_THAT(at.hz, WithinRel(*line.order * 100.0 * at.speed_deg_s / 360.0, 1e-3));
             clearest = std::max(clearest, at.snr);
         }
-        CHECK(line.snr == clearest);
+        CHECK(line.snr <= clearest);
+        CHECK(line.snr > 0.5 * clearest);
         CHECK_THAT(line.speed_from_deg_s, WithinRel(60.0, 1e-3));
         CHECK_THAT(line.speed_to_deg_s, WithinRel(180.0, 1e-3));
         REQUIRE(line.phase_known);

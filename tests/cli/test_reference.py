@@ -102,8 +102,8 @@ class Bash(unittest.TestCase):
     def test_commands_options_choices_and_files(self):
         for words, last, expected in (
                 (["ripplenotch"], "id", ["identify"]),
-                (["ripplenotch", "identify"], "--evid", ["--evidence"]),
-                (["ripplenotch", "identify", "--evidence"], "s", ["steady"]),
+                (["ripplenotch", "spectrum"], "--dom", ["--domain"]),
+                (["ripplenotch", "spectrum", "--domain"], "o", ["order"]),
                 (["ripplenotch", "identify", "--gear-ratio"], "", []),
                 (["ripplenotch", "identify"], "lo", ["log.csv"]),
                 (["ripplenotch", "nonsense"], "--", [])):

@@ -52,8 +52,7 @@ struct SignificantPeak {
 /// Maxima that stand above the running floor alone: candidates, which may be the flank of something broad, or
 /// the noise in it. `floor` is noise_floor(spectrum).
 [[nodiscard]] std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum,
-                                                           std::span<const double> floor,
-                                                           double false_alarm);
+                                                           std::span<const double> floor, double false_alarm);
 
 /// The power from which on a maximum at this bin is significant; infinite where none is tested. `floor` is
 /// noise_floor(spectrum).

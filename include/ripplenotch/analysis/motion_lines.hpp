@@ -39,8 +39,8 @@ struct MotionLinesOptions {
 };
 
 struct MotionLines {
-    std::vector<MotionLine> lines;    ///< in the order found: clearest first
-    std::vector<SpectralHump> humps;  ///< against frequency, of what the lines leave
+    std::vector<MotionLine> lines;      ///< in the order found: clearest first
+    std::vector<SpectralHump> humps;    ///< against frequency, of what the lines leave
     std::size_t sweeps = 0, rests = 0;  ///< pieces of motion and of standstill that were used
     std::size_t sweeps_left_out = 0;
     double turns = 0.0;  ///< output turns that the sweeps cover

@@ -27,7 +27,7 @@ struct SampleRun {
 };
 
 struct RunRule {
-    double slowest_share = 0.02;  ///< of the log's highest speed; slower motion belongs to no run
+    double slowest_share = 0.02;    ///< of the log's highest speed; slower motion belongs to no run
     double standstill_deg_s = 0.0;  ///< nor does this
 };
 

@@ -16,11 +16,11 @@ struct SweepRule {
     /// turn needs. The families of both splines, one order apart, are two lines then.
     double longest_turns = 4.0;
     double longest_s = 20.0;          ///< ... and of at most this duration
-    double shortest_turns = 0.02;  ///< by hand
+    double shortest_turns = 0.02;     ///< by hand
     std::size_t fewest_samples = 24;  ///< by hand: a line of four cycles and four cells beside it
     double slowest_share = 0.02;      ///< of the log's highest speed; slower motion belongs to no sweep
-    /// The smooth part of the torque that is taken out of a sweep: a line, and cosines up to so many cycles in
-    /// the sweep.
+    /// The smooth part of the torque that is taken out of a sweep: a line, and cosines up to so many cycles
+    /// in the sweep.
     double trend_cycles = 2.5;
     std::size_t most_samples =
         300000;                     ///< with more, evenly chosen pieces are used, so that the cost is bounded
@@ -39,8 +39,8 @@ struct Sweep {
     std::vector<double> value;            ///< torque_nm * weight, in Nm turns
     /// Hann window in angle times the angle that the sample stands for; at standstill in time.
     std::vector<double> weight;
-    std::vector<double> share_turns;      ///< angle that a sample stands for; at standstill seconds
-    std::size_t trend_terms = 0;          ///< of the smooth part taken out
+    std::vector<double> share_turns;  ///< angle that a sample stands for; at standstill seconds
+    std::size_t trend_terms = 0;      ///< of the smooth part taken out
     double weight_sum = 0.0, weight_square_sum = 0.0;
     double length_turns = 0.0;
     double duration_s = 0.0;

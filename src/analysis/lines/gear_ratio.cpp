@@ -64,7 +64,7 @@ std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, cons
 }
 
 /// Order per turn of the motor.
-double order_at(const CombPosition& at, double ratio) {
+double order_of_motor(const CombPosition& at, double ratio) {
     return at.of_both() || at.shift == 0.0 ? at.n : at.n * (1.0 + at.shift / ratio);
 }
 
@@ -104,7 +104,7 @@ bool mirrors(const RatioHypothesis& one, const RatioHypothesis& other) {
            std::abs(one.ratio + one.second_comb - other.ratio) < 0.5;
 }
 
-constexpr double interval_share = 0.95;
+constexpr double interval_share = 0.95;  // the probability that an interval is stated with
 
 double share_of(const RatioHypothesis& form, const RatioHypothesis& best) {
     return portable::exp(form.own_evidence - best.log_evidence);
@@ -120,8 +120,8 @@ const RatioHypothesis& reported_form(const RatioHypothesis& best) {
 }
 
 /// The interval covers all forms of the ratio that together have 0.95 of its probability.
-void widen(std::span<const OrderLine> lines, const RatioHypothesis& best, const RatioHypothesis& reported,
-           double shared_error, GearRatioFit& result) {
+void widen_interval(std::span<const OrderLine> lines, const RatioHypothesis& best,
+                    const RatioHypothesis& reported, double shared_error, GearRatioFit& result) {
     double share = share_of(reported, best);
     const auto add = [&](const RatioHypothesis& form) {
         if (share >= interval_share || &form == &reported) return;
@@ -143,7 +143,7 @@ void add_residuals(std::span<const OrderLine> lines, const RatioHypothesis& best
     const double ratio = *result.value;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (!best.position[i]) continue;
-        const double order = order_at(*best.position[i], ratio);
+        const double order = order_of_motor(*best.position[i], ratio);
         for (const OrderObservation& seen : lines[i].observations) {
             const double expected = order * ratio * std::abs(seen.speed_deg_s) / 360.0;
             result.residuals.push_back(
@@ -292,9 +292,9 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
     const auto estimates = fit(lines, form, question.shared_error, result.fit);
     if (form.second_comb != 0) result.fit.second_comb = *result.fit.value + form.second_comb;
     add_residuals(lines, form, estimates, result.fit);
-    widen(lines, best, form, question.shared_error, result.fit);
+    widen_interval(lines, best, form, question.shared_error, result.fit);
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        if (form.position[i]) result.order_of_line[i] = order_at(*form.position[i], *result.fit.value);
+        if (form.position[i]) result.order_of_line[i] = order_of_motor(*form.position[i], *result.fit.value);
     }
     if (hint && best.hinted) {
         if (auto one = wrong_scale(best, result.fit, *hint, result.notes)) all.push_back(std::move(*one));

@@ -8,7 +8,8 @@
 
 namespace ripplenotch {
 
-/// Humps of what the lines leave of the sweeps:  those that outdo the strongest line that may turn with the joint. At most three, most torque first.
+/// Humps of what the lines leave of the sweeps:  those that outdo the strongest line that may turn with the
+/// joint. At most three, most torque first.
 [[nodiscard]] std::vector<Hum> hums_beside(const MotionLines& motion, const std::vector<Line>& lines);
 
 }  // namespace ripplenotch

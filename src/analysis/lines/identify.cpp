@@ -76,8 +76,8 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     result.evidence = motion.sweeps > 0 ? LineEvidence::sweeps : LineEvidence::none;
     const bool without_position =
         std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
-    add_ratio(reported,
-              {options.hint, options.hinted_orders, without_position, 0.0, options.unit_stated}, result);
+    add_ratio(reported, {options.hint, options.hinted_orders, without_position, 0.0, options.unit_stated},
+              result);
     result.families = families_among(reported);
     name_mains(reported);
     for (Reported& r : reported) {

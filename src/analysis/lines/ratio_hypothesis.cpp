@@ -22,16 +22,16 @@ constexpr std::array sold{30.0, 50.0, 80.0, 100.0, 120.0, 160.0};
 constexpr double listed_tolerance = 0.004, listed_factor = 10.0, other_output_factor = 3.0;
 
 constexpr double lowest_ratio = 0.99, highest_ratio = 321.0;  // of joints and their gears
-constexpr double outside_factor = 0.007;
+constexpr double outside_factor = 0.007;                      // by hand: hardly any joint has another
 /// Wave generators are built from this ratio on (the smallest sold is 30); below it there is one comb.
 constexpr double least_two_combs = 29.0;
 /// Below this a gear has few teeth, and its ratio is mostly whole.
 constexpr double few_teeth = 25.0, broken_factor = 0.1;
 constexpr double hint_factor = 3000.0;  // an expected ratio outweighs nearly all that lines show
 
-constexpr int highest_n = 32, highest_of_shaft = 64;
-constexpr std::size_t most_proposing = 8;  // lines, the most clearly seen, that propose ratios
-constexpr double same_ratio_share = 0.008;
+constexpr int highest_n = 32, highest_of_shaft = 64;  // by hand: lines seldom reach so far
+constexpr std::size_t most_proposing = 8;             // lines, the most clearly seen, that propose ratios
+constexpr double same_ratio_share = 0.008;            // by hand: twice listed_tolerance
 
 /// Probability of each n. The wave generator is an ellipse, so that what the gear does repeats twice a turn
 /// of the motor: n = 2 leads, and its multiples follow; n = 1 comes from eccentric parts (Tuttle and Seering,
@@ -89,8 +89,8 @@ double normal(double off, double deviation) {
 
 /// A line by chance, or of the output side: once or a few times a turn of the joint, from what it carries.
 double chance_density(const OrderLine& line) {
-    constexpr double output_side = 0.2;
-    constexpr int highest_of_output = 4;
+    constexpr double output_side = 0.2;   // by hand
+    constexpr int highest_of_output = 4;  // by hand
     double density = (1.0 - output_side) / (log_range * line.order_output);
     for (int k = 1; k <= highest_of_output; ++k)
         density += output_side / highest_of_output * t3(line.order_output - k, line_error(line));
@@ -181,7 +181,7 @@ double log_evidence(std::span<const OrderLine> lines, const Matching& matching, 
 }
 
 /// Weighted least squares of order_output / n - shift, and its standard error.
-std::pair<double, double> least_squares(std::span<const OrderLine> lines, const RatioHypothesis& one) {
+std::pair<double, double> fitted_ratio(std::span<const OrderLine> lines, const RatioHypothesis& one) {
     double top = 0.0, bottom = 0.0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (!one.position[i]) continue;
@@ -194,7 +194,7 @@ std::pair<double, double> least_squares(std::span<const OrderLine> lines, const 
 }
 
 double log_prior(double ratio, double error, int second_comb, const OrderPrior& prior, bool one_line) {
-    constexpr double log_ratios = 5.77, least_share = 1e-3;
+    constexpr double log_ratios = 5.77, least_share = 1e-3;  // the logarithm of 320; by hand
     double factor = 2.5 * std::max(error / ratio, least_share) / log_ratios;
     if (ratio < lowest_ratio || ratio > highest_ratio) factor *= outside_factor;
     if (ratio < few_teeth && std::abs(ratio - std::round(ratio)) > 3.0 * error + 0.002 * ratio)
@@ -261,8 +261,8 @@ bool explains(const RatioHypothesis& one) {
 }
 
 /// The nearest maximum of the evidence.
-RatioHypothesis refined(std::span<const OrderLine> lines, double ratio, int second_comb,
-                        const OrderPrior& prior) {
+RatioHypothesis nearest_maximum(std::span<const OrderLine> lines, double ratio, int second_comb,
+                                const OrderPrior& prior) {
     RatioHypothesis one;
     one.ratio = ratio;
     one.second_comb = second_comb;
@@ -277,7 +277,7 @@ RatioHypothesis refined(std::span<const OrderLine> lines, double ratio, int seco
         if (std::none_of(one.position.begin(), one.position.end(),
                          [](const auto& at) { return at.has_value(); }))
             return one;
-        if (round < 2) std::tie(one.ratio, error) = least_squares(lines, one);
+        if (round < 2) std::tie(one.ratio, error) = fitted_ratio(lines, one);
     }
     one.value = one.ratio;
     one.log_evidence += log_prior(one.ratio, error, second_comb, prior, lines.size() == 1);
@@ -308,7 +308,7 @@ void add_gears(std::span<const OrderLine> lines, const RatioQuestion& question,
     for (const OrderPrior& prior : order_priors()) {
         std::vector<RatioHypothesis> found;
         for (const Start& start : starts) {
-            RatioHypothesis one = refined(lines, start.ratio, start.second_comb, prior);
+            RatioHypothesis one = nearest_maximum(lines, start.ratio, start.second_comb, prior);
             const auto same = [&](const RatioHypothesis& other) {
                 return other.second_comb == one.second_comb &&
                        std::abs(other.ratio - one.ratio) < 1e-6 * one.ratio;
@@ -328,7 +328,7 @@ struct UnitMistake {
     double factor;
     std::string_view reason;
 };
-constexpr double rpm_per_rad_s = 9.549296585513721;
+constexpr double rpm_per_rad_s = 9.549296585513721;  // 60 / (2 pi)
 constexpr std::array unit_mistakes{UnitMistake{degrees_per_radian, "the speed is in rad/s, not deg/s"},
                                    UnitMistake{1.0 / degrees_per_radian, "the speed is in deg/s, not rad/s"},
                                    UnitMistake{6.0, "the speed is in rpm, not deg/s"},
@@ -346,7 +346,7 @@ constexpr double mistaken = 0.01, unstated = 0.05;
 
 /// Where the unit is stated, a ratio as gears have it is no reason to doubt that.
 bool credible(double ratio) {
-    constexpr double whole = 0.005;
+    constexpr double whole = 0.005;  // by hand
     return (ratio >= few_teeth && ratio <= highest_ratio) ||
            (ratio >= lowest_ratio && ratio < few_teeth &&
             std::abs(ratio - std::round(ratio)) < whole * ratio);
@@ -462,7 +462,7 @@ std::vector<RatioHypothesis> ratio_hypotheses(std::span<const OrderLine> lines,
 }
 
 double log_evidence_of_chance(std::span<const OrderLine> lines) {
-    constexpr double prior = 0.3;
+    constexpr double prior = 0.3;  // by hand: that no line is of a gear or a shaft
     double sum = portable::log(prior);
     for (const OrderLine& line : lines) sum += portable::log(chance_density(line));
     return sum;

@@ -93,7 +93,8 @@ Reported from_motion(const MotionLines& motion, std::size_t source, const Identi
         OrderLine{order, error, found.snr, found.amplitude_nm, found.kind == LineKind::order, {seen}};
     // Orders that were searched have shown there what they explain.
     std::vector<Fold> folds = found.folds;
-    std::erase_if(folds, [&](const Fold& fold) { return fold.order_output <= motion.highest_spectrum_order; });
+    std::erase_if(folds,
+                  [&](const Fold& fold) { return fold.order_output <= motion.highest_spectrum_order; });
     unfold(reported, {order, 0.5 * motion.resolution_orders, found.gain_angle, found.gain_time, folds},
            options, rate_hz);
     if (line.kind == LineKind::tone) reported.order.reset();

@@ -118,6 +118,31 @@ double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place) 
     return gain_in(sweeps, stack, place, own_value);
 }
 
+double gain_difference_error(std::span<const Sweep> sweeps, const PlacedLine& one, const PlacedLine& other,
+                             double share) {
+    const auto gains_of = [&](const PlacedLine& line) {
+        std::vector<double> gains(sweeps.size(), 0.0);
+        if (!line.place) return gains;
+        const std::vector<FourierPoint> points =
+            points_of(sweeps, line.stack, *line.place, *line.place, own_value);
+        for (std::size_t i = 0; i < sweeps.size(); ++i) {
+            const double noise = noise_at(line.stack, i, *line.place);
+            if (noise > 0.0) gains[i] = line.stack.sweep_weights[i] * std::norm(points[i].value) / noise;
+        }
+        return gains;
+    };
+    const std::vector<double> first = gains_of(one), second = gains_of(other);
+    double heaviest = 0.0, squares = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        heaviest = std::max({heaviest, one.stack.sweep_weights.empty() ? 0.0 : one.stack.sweep_weights[i],
+                             other.stack.sweep_weights.empty() ? 0.0 : other.stack.sweep_weights[i]});
+        constexpr double same = 0.01;  // by hand: of the larger
+        const double larger = std::max(first[i], second[i]);
+        if (std::abs(first[i] - second[i]) > same * larger) squares += larger * larger;
+    }
+    return heaviest > 0.0 ? share * std::sqrt(squares) / heaviest : 0.0;
+}
+
 double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place) {
     return gain_in(sweeps, stack, place, [&](const Sweep& sweep) { return value_without(sweep, line); });
 }

@@ -3,6 +3,7 @@
 // Internal to the analysis room: what the sweeps say about one line at a place on an axis.
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,17 @@ double gain_at(const Stack& stack, std::size_t bin);
 /// What a line explains beyond noise, in nats: weighted sum over sweeps of power over noise, less one each.
 /// Sweeps weigh by what they know, the best of them 1.
 double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place);
+
+/// A line on the axis of a stack; empty where none is there.
+struct PlacedLine {
+    const Stack& stack;
+    std::optional<double> place;
+};
+/// By how much the difference of two gains is uncertain if the noise at each place is known to `share`,
+/// independently in each sweep. Sweeps in which both lines explain the same, as where they are one and the
+/// same frequency, leave no doubt.
+double gain_difference_error(std::span<const Sweep> sweeps, const PlacedLine& one, const PlacedLine& other,
+                             double share);
 
 /// The same after another line is taken out of each sweep with the amplitude and phase that it has there.
 double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place);

@@ -171,9 +171,11 @@ bool stands_out(const Stack& stack, std::span<const SignificantPeak> peaks, doub
 LineKind judged(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Rivals& rivals, bool by_angle) {
     const auto& [angle, time, angle_peaks, time_peaks] = stacks;
     const double apart = rivals.gain_angle - rivals.gain_time;
-    // The two noise floors are estimates of their own, a few per cent apart.
-    const double decisive =
-        std::max(decisive_nats, floor_doubt * std::max(rivals.gain_angle, rivals.gain_time));
+    // The noise floors on both axes are estimates of their own, in each sweep.
+    const double decisive = std::max(
+        decisive_nats,
+        gain_difference_error(sweeps, {angle, rivals.has_order ? std::optional(rivals.order) : std::nullopt},
+                              {time, rivals.has_hz ? std::optional(rivals.hz) : std::nullopt}, floor_doubt));
     if (std::abs(apart) > decisive) return apart > 0.0 ? LineKind::order : LineKind::tone;
     const bool two_lines =
         rivals.has_order && rivals.has_hz &&

@@ -16,9 +16,7 @@ double length_of(const Sweep& sweep, Axis axis) {
     return axis == Axis::angle ? sweep.length_turns : sweep.duration_s;
 }
 
-PowerSpectrum Stack::tested() const {
-    return {ratio, 1.0, resolution / spacing, first, averages, searched};
-}
+PowerSpectrum Stack::tested() const { return {ratio, 1.0, resolution / spacing, first, averages, searched}; }
 
 std::vector<SignificantPeak> Stack::peaks(double false_alarm) const {
     auto found = significant_peaks(tested(), false_alarm / tries_factor);

@@ -134,12 +134,17 @@ void Stacking::add(std::size_t number, Part& part) {
     std::vector<double> floor = noise_floor({power, 1.0, cell, reach.first, {}});
     const auto clear = static_cast<std::size_t>(clear_of_motion(sweep) / stack_.spacing) + 1;
     if (stack_.axis == Axis::angle && reach.end > clear) {
-        // What the trend leaves of the motion folds to around the sample rate and smears, at the least, over
-        // smeared_cells there: unseen where it is weak.
+        // What the trend leaves of the motion folds to around the sample rate, smeared over the cells that
+        // the sweep's own speeds span there: unseen where it is weak.
         const std::size_t slow = std::min(reach.end, reach.first + static_cast<std::size_t>(2.0 * cell));
         const double motion =
             *std::max_element(power.begin(), power.begin() + static_cast<std::ptrdiff_t>(slow));
-        if (motion > 0.5 * smeared_cells * floor[reach.end / 2]) {
+        const double per_turn = 360.0 * sweep.rate_hz;
+        const double smeared =
+            (per_turn / std::max(sweep.slow_deg_s, 1e-9) - per_turn / std::max(sweep.quick_deg_s, 1e-9)) *
+            sweep.length_turns / hann_cell;
+        constexpr double most_of_noise = 8.0;  // the largest of a few cells of noise, over their mean
+        if (motion > std::max(most_of_noise, 0.5 * smeared) * floor[reach.end / 2]) {
             reach.end = std::min(reach.end, clear);
             if (too_few()) return;
             power.resize(reach.end);

@@ -70,8 +70,8 @@ PowerSpectrum Welch::tested() const {
     // A single spectrum of red noise has maxima near its low end that few cells beside them do not explain.
     constexpr double unsearched_cells = 5.0;
     const std::size_t first = std::min(trend_bins, power_.size());
-    return {power_, averages, hann_cell, first, {},
-            first + static_cast<std::size_t>(std::ceil(unsearched_cells * hann_cell))};
+    return {power_, averages, hann_cell,
+            first,  {},       first + static_cast<std::size_t>(std::ceil(unsearched_cells * hann_cell))};
 }
 
 std::optional<Welch> Welch::at(Hertz rate) const {
