@@ -111,7 +111,12 @@ struct Disagreement {
 /// in 95 of 100 logs. Where lines were found it holds for further ones.
 struct SearchedOrders {
     double lowest_order = 0.0, highest_order = 0.0;  ///< cycles per output turn
-    double detectable_nm = 0.0;                      ///< zero to peak
+    double detectable_nm = 0.0;                      ///< zero to peak, the largest of the range
+    /// From this order on up to the highest, a smaller amplitude would have been found.
+    struct Bound {
+        double from_order = 0.0, detectable_nm = 0.0;
+    };
+    std::vector<Bound> bounds;  ///< ascending in order, the first for the whole range
 };
 
 struct Identification {

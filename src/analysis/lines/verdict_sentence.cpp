@@ -221,12 +221,17 @@ std::string one_speed(const Identification& found) {
 }
 
 std::string nothing(const Identification& found) {
+    const SearchedOrders& searched = *found.searched;
+    std::vector<std::string> bounds;
+    for (const SearchedOrders::Bound& bound : searched.bounds)
+        bounds.push_back(fmt::format("{:.2g} Nm from {:.3g}", bound.detectable_nm, bound.from_order));
+    constexpr std::size_t most = 3;  // by hand: the whole range, and the two that say most
+    if (bounds.size() > most) bounds.erase(bounds.begin() + 1, bounds.end() - (most - 1));
     return fmt::format(
-        "No ripple: no line above {:.2g} Nm at {:.3g} to {:.4g} cycles per output turn, in {} ({:.2g} % "
-        "false "
+        "No ripple: no line above {} to {:.4g} cycles per output turn, in {} ({:.2g} % false "
         "alarms){}{}.",
-        found.searched->detectable_nm, found.searched->lowest_order, found.searched->highest_order,
-        basis(found.grounds), 100.0 * found.grounds.false_alarm, at_rest(found), besides(found));
+        fmt::join(bounds, ", "), searched.highest_order, basis(found.grounds),
+        100.0 * found.grounds.false_alarm, at_rest(found), besides(found));
 }
 
 std::string too_little(const Identification& found) {

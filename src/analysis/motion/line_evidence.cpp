@@ -118,8 +118,8 @@ double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place) 
     return gain_in(sweeps, stack, place, own_value);
 }
 
-double gain_difference_error(std::span<const Sweep> sweeps, const PlacedLine& one, const PlacedLine& other,
-                             double share) {
+GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& one, const PlacedLine& other,
+                               double share) {
     const auto gains_of = [&](const PlacedLine& line) {
         std::vector<double> gains(sweeps.size(), 0.0);
         if (!line.place) return gains;
@@ -132,15 +132,18 @@ double gain_difference_error(std::span<const Sweep> sweeps, const PlacedLine& on
         return gains;
     };
     const std::vector<double> first = gains_of(one), second = gains_of(other);
-    double heaviest = 0.0, squares = 0.0;
+    double heaviest = 0.0, squares = 0.0, difference = 0.0;
     for (std::size_t i = 0; i < sweeps.size(); ++i) {
-        heaviest = std::max({heaviest, one.stack.sweep_weights.empty() ? 0.0 : one.stack.sweep_weights[i],
-                             other.stack.sweep_weights.empty() ? 0.0 : other.stack.sweep_weights[i]});
+        for (const Stack* stack : {&one.stack, &other.stack})
+            if (i < stack->sweep_weights.size()) heaviest = std::max(heaviest, stack->sweep_weights[i]);
         constexpr double same = 0.01;  // by hand: of the larger
         const double larger = std::max(first[i], second[i]);
-        if (std::abs(first[i] - second[i]) > same * larger) squares += larger * larger;
+        if (std::abs(first[i] - second[i]) <= same * larger) continue;
+        squares += larger * larger;
+        difference += first[i] - second[i];
     }
-    return heaviest > 0.0 ? share * std::sqrt(squares) / heaviest : 0.0;
+    if (!(heaviest > 0.0)) return {};
+    return {difference / heaviest, share * std::sqrt(squares) / heaviest};
 }
 
 double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place) {

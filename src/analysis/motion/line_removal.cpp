@@ -28,8 +28,7 @@ class Rows {
         : sweep_(sweep), lines_(lines), values_(count() * length) {
         const std::size_t n = sweep.turns.size();
         place_.resize((n + length - 1) / length * length);
-        for (std::size_t k = 0; k < n; ++k)
-            place_[k] = sweep.progress(k);
+        for (std::size_t k = 0; k < n; ++k) place_[k] = sweep.progress(k);
         cosine_.resize(place_.size());
         for (std::size_t k = 0; k < place_.size(); ++k) cosine_[k] = std::numbers::pi * place_[k];
         portable::cos(cosine_, cosine_);

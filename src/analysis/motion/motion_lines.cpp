@@ -126,8 +126,17 @@ std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, con
         if (!std::isfinite(ratio)) continue;
         if (!(searched.detectable_nm > 0.0)) searched.lowest_order = place;
         searched.highest_order = place;
-        searched.detectable_nm = std::max(searched.detectable_nm, stack.floor_nm[k] * std::sqrt(ratio));
+        const double here_nm = stack.floor_nm[k] * std::sqrt(ratio);
+        searched.detectable_nm = std::max(searched.detectable_nm, here_nm);
+        for (auto& bound : searched.bounds) bound.detectable_nm = std::max(bound.detectable_nm, here_nm);
+        searched.bounds.push_back({place, here_nm});
     }
+    // Of the bounds from each order on those that say less than half of the one before.
+    std::vector<SearchedOrders::Bound> steps;
+    for (const auto& bound : searched.bounds) {
+        if (steps.empty() || bound.detectable_nm < 0.5 * steps.back().detectable_nm) steps.push_back(bound);
+    }
+    searched.bounds = std::move(steps);
     if (!(searched.detectable_nm > 0.0)) return std::nullopt;
     return searched;
 }
@@ -170,12 +179,11 @@ bool stands_out(const Stack& stack, std::span<const SignificantPeak> peaks, doub
 
 LineKind judged(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Rivals& rivals, bool by_angle) {
     const auto& [angle, time, angle_peaks, time_peaks] = stacks;
-    const double apart = rivals.gain_angle - rivals.gain_time;
     // The noise floors on both axes are estimates of their own, in each sweep.
-    const double decisive = std::max(
-        decisive_nats,
-        gain_difference_error(sweeps, {angle, rivals.has_order ? std::optional(rivals.order) : std::nullopt},
-                              {time, rivals.has_hz ? std::optional(rivals.hz) : std::nullopt}, floor_doubt));
+    const auto [apart, error] =
+        gain_difference(sweeps, {angle, rivals.has_order ? std::optional(rivals.order) : std::nullopt},
+                        {time, rivals.has_hz ? std::optional(rivals.hz) : std::nullopt}, floor_doubt);
+    const double decisive = std::max(decisive_nats, error);
     if (std::abs(apart) > decisive) return apart > 0.0 ? LineKind::order : LineKind::tone;
     const bool two_lines =
         rivals.has_order && rivals.has_hz &&
@@ -420,8 +428,11 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     found.resolution_orders = angle.resolution;
     found.highest_spectrum_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
     found.searched = searched_orders(sweeps, angle, 0.5 * options.false_alarm, lines.taken_orders());
-    if (found.searched)
+    if (found.searched) {
         found.searched->detectable_nm = std::max(found.searched->detectable_nm, lines.least_amplitude());
+        for (auto& bound : found.searched->bounds)
+            bound.detectable_nm = std::max(bound.detectable_nm, lines.least_amplitude());
+    }
     found.humps =
         lines.stacks().time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
     found.lines = std::move(lines.lines);

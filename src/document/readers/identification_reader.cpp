@@ -159,8 +159,13 @@ Identification identification_from_json(std::string_view text, const std::string
     found.evidence = fields.named("evidence", evidence_of);
     if (fields.has("searched")) {
         Fields searched = fields.object("searched");
-        found.searched = {searched.number("lowest_order"), searched.number("highest_order"),
-                          searched.number("detectable_nm")};
+        found.searched = {searched.number("lowest_order"),
+                          searched.number("highest_order"),
+                          searched.number("detectable_nm"),
+                          {}};
+        searched.each("bounds", [&](Fields& entry) {
+            found.searched->bounds.push_back({entry.number("from_order"), entry.number("detectable_nm")});
+        });
         searched.finish();
     }
     Fields ratio = fields.object("gear_ratio");

@@ -128,7 +128,11 @@ void add_fields(Json& json, const Identification& identification) {
     if (const auto& searched = identification.searched) {
         json["searched"] = {{"lowest_order", searched->lowest_order},
                             {"highest_order", searched->highest_order},
-                            {"detectable_nm", searched->detectable_nm}};
+                            {"detectable_nm", searched->detectable_nm},
+                            {"bounds", Json::array()}};
+        for (const SearchedOrders::Bound& bound : searched->bounds)
+            list_in(json["searched"], "bounds")
+                .push_back({{"from_order", bound.from_order}, {"detectable_nm", bound.detectable_nm}});
     }
     json["gear_ratio"] = ratio_to_json(identification.gear_ratio);
     json["gear"] = gear_to_json(found_gear(identification));
