@@ -49,7 +49,8 @@ TEST_CASE("the paper's four logs give ratio 100, orders 1 and 2, and no line at 
     CHECK(found.conclusive);
     CHECK(found.evidence == LineEvidence::sweeps);
     CHECK_THAT(found.verdict, Contains("orders 1 and 2 of the motor: gear ratio "));
-    CHECK_THAT(found.verdict, Contains("from 3 sweeps over 5 output turns at 60 to 180 deg/s; no line at rest"));
+    CHECK_THAT(found.verdict,
+               Contains("from 3 sweeps over 5 output turns at 60 to 180 deg/s; no line at rest"));
     REQUIRE(found.lines.size() == 2);
     for (const Line& line : found.lines) {
         CHECK(line.kind == LineKind::order);

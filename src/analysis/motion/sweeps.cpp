@@ -28,14 +28,14 @@ std::vector<SampleRun> pieces_of(const SampleRun& run, const TraceView& log, std
     const auto count = static_cast<std::size_t>(
         std::clamp(std::floor(2.0 * length / longest) - 1.0, 1.0, static_cast<double>(run.size())));
     if (count == 1) return {run};
-    const double hop = length / static_cast<double>(count + 1);
+    const double hop = length / static_cast<double>(count + 1), width = std::min(2.0 * hop, 1.5 * longest);
     std::vector<SampleRun> pieces;
     std::size_t from = run.first;
     for (std::size_t i = 0; i < count; ++i) {
         const double begin = hop * static_cast<double>(i);
         while (from < run.end && std::abs(turns[from] - start) < begin) ++from;
         std::size_t to = from;
-        while (to < run.end && std::abs(turns[to] - start) <= begin + 2.0 * hop) ++to;
+        while (to < run.end && std::abs(turns[to] - start) <= begin + width) ++to;
         pieces.push_back({from, to});
     }
     return pieces;
