@@ -89,7 +89,8 @@ TEST_CASE("strong lines off the comb of a multiple decide for the ratio that exp
     CHECK_THAT(*result.fit.value, WithinRel(45.0, 1e-6));
 }
 
-TEST_CASE("a low ratio is found as any other: 16, not 32; 6 is what a shaft without a gear may show, too") {
+TEST_CASE(
+    "a low ratio is found as any other: 16, not 32, and 6 is what a shaft without a gear may show, too") {
     const auto of = [](double ratio, std::optional<GearRatio> hint) {
         const std::vector lines{line_at(ratio, 0.4, 0.002), line_at(2.0 * ratio, 0.3, 0.002)};
         return fit_gear_ratio(lines, {hint}).fit;

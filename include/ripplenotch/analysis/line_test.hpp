@@ -59,17 +59,18 @@ struct SignificantPeak {
 [[nodiscard]] double significant_power(const PowerSpectrum& spectrum, std::span<const double> floor,
                                        std::size_t bin, double false_alarm);
 
-/// The noise-free power, over the mean noise power, of a line that exceeds `threshold` (a multiple of that
-/// noise) with a probability of 95 %: its power is noncentral chi-square, here by its mean and variance.
-[[nodiscard]] double detectable_ratio(double threshold, double averages);
-
-/// A power over the floor that noise of so many averages exceeds with this chance.
-[[nodiscard]] double ratio_exceeded(double chance, double averages, double cells);
-
 /// Power over a floor, of so many averages; the floor was itself estimated from `cells` independent cells.
 struct PowerOverFloor {
     double ratio = 0.0, averages = 1.0, cells = 0.0;
 };
+
+/// The noise-free power, over the mean noise power, of a line that exceeds `threshold` with a probability of
+/// 95 %: its power is noncentral chi-square, here by its mean and variance. `cells` is not asked.
+[[nodiscard]] double detectable_ratio(const PowerOverFloor& threshold);
+
+/// The power over a floor, with the averages and cells of `noise`, that noise exceeds with this chance.
+[[nodiscard]] PowerOverFloor exceeded(double chance, PowerOverFloor noise);
+
 /// Chance that noise exceeds that ratio.
 [[nodiscard]] double exceedance(const PowerOverFloor& seen);
 

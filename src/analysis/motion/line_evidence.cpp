@@ -179,9 +179,8 @@ double recurring_ratio(std::span<const Sweep> sweeps, const Stack& stack, double
         all.begin(), all.end(),
         [](const SweepPart& a, const SweepPart& b) { return a.weight * a.share < b.weight * b.share; });
     const Others others = without(all, static_cast<std::size_t>(heaviest - all.begin()), {});
-    return detectable_ratio(ratio_exceeded(recurrence_chance, others.averages, floor_cells(stack)),
-                            others.averages) /
-           others.share;
+    const PowerOverFloor noise{.averages = others.averages, .cells = floor_cells(stack)};
+    return detectable_ratio(exceeded(recurrence_chance, noise)) / others.share;
 }
 
 bool shown_throughout(std::span<const Sweep> sweeps, const Stack& stack, double place) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "analysis/motion/line_evidence.hpp"
 #include "analysis/motion/line_removal.hpp"
@@ -121,8 +122,8 @@ std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, con
             if (searched.detectable_nm > 0.0) break;
             continue;
         }
-        const double ratio =
-            std::max(detectable_ratio(threshold, stack.averages[k]), recurring_ratio(sweeps, stack, place));
+        const double ratio = std::max(detectable_ratio({.ratio = threshold, .averages = stack.averages[k]}),
+                                      recurring_ratio(sweeps, stack, place));
         if (!std::isfinite(ratio)) continue;
         if (!(searched.detectable_nm > 0.0)) searched.lowest_order = place;
         searched.highest_order = place;
@@ -299,6 +300,7 @@ class LineSearch {
         KnownLine known;
         std::size_t bin = 0;
         double ratio = 0.0, floor_nm = 0.0;  ///< of the bin, before it was taken out
+        bool confirmed = false;
     };
 
     [[nodiscard]] const Stack& stack_of(Axis axis) const {
@@ -325,7 +327,8 @@ class LineSearch {
         complete(sweeps_, stacks_, rivals, as_order, options_, line);
         const auto bin =
             std::min(static_cast<std::size_t>(std::lround(place / stack.spacing)), stack.ratio.size() - 1);
-        return Tentative{std::move(line), {stack.axis, place}, bin, stack.ratio[bin], stack.floor_nm[bin]};
+        return Tentative{std::move(line),  {stack.axis, place}, bin,
+                         stack.ratio[bin], stack.floor_nm[bin], false};
     }
 
     bool consider(Sought sought) {
@@ -347,40 +350,78 @@ class LineSearch {
     /// above what remains when all of them are out.
     bool confirm_prominent() {
         constexpr std::size_t most_tentative = 3;  // by hand: each costs a further look at all sweeps
+        if (!use_prominent_peaks()) return false;
+        const State before{torques_of(sweeps_), stacks_, taken_orders_, taken_hz_, out_};
         std::vector<Tentative> tentative;
-        const auto restore_all = [&] {
-            for (Sweep& sweep : sweeps_) fit_out(sweep, out_);
-            stacks_ = stacked(sweeps_, options_);
-        };
-        for (int looks = 0; looks < 6 && tentative.size() < most_tentative; ++looks) {
-            Stacks prominent = stacks_;
-            for (auto [stack, peaks] : {std::pair{&prominent.angle, &prominent.angle_peaks},
-                                        std::pair{&prominent.time, &prominent.time_peaks}}) {
-                const PowerSpectrum spectrum = stack->tested();
-                *peaks = prominent_peaks(spectrum, noise_floor(spectrum), 0.5 * options_.false_alarm);
-            }
-            auto sought = seek(sweeps_, prominent, range_, taken_orders_, taken_hz_, options_);
+        for (std::size_t looks = 0; looks < 2 * most_tentative && tentative.size() < most_tentative;
+             ++looks) {
+            if (!tentative.empty() && !use_prominent_peaks()) break;
+            auto sought = seek(sweeps_, stacks_, range_, taken_orders_, taken_hz_, options_);
             if (!sought) break;
             auto one = measured(std::move(*sought));
             if (!one) continue;
             take_out(one->known);
             tentative.push_back(std::move(*one));
-            std::vector<bool> confirmed;
-            for (const Tentative& each : tentative) confirmed.push_back(is_significant(each));
-            if (std::find(confirmed.begin(), confirmed.end(), true) == confirmed.end()) continue;
-            out_.resize(out_.size() - tentative.size());
-            for (std::size_t i = 0; i < tentative.size(); ++i) {
-                if (!confirmed[i]) continue;
-                out_.push_back(tentative[i].known);
-                lines.push_back(std::move(tentative[i].line));
+            std::size_t confirmed = 0;
+            for (Tentative& each : tentative) {
+                each.confirmed = is_significant(each);
+                confirmed += each.confirmed ? 1 : 0;
             }
-            restore_all();
+            if (confirmed == 0) continue;
+            for (Tentative& each : tentative)
+                if (each.confirmed) lines.push_back(std::move(each.line));
+            if (confirmed == tentative.size()) return true;
+            out_ = before.out;
+            for (const Tentative& each : tentative)
+                if (each.confirmed) out_.push_back(each.known);
+            for (Sweep& sweep : sweeps_) fit_out(sweep, out_);
+            stacks_ = stacked(sweeps_, options_);
             return true;
         }
-        if (tentative.empty()) return false;
-        out_.resize(out_.size() - tentative.size());
-        restore_all();
+        restore(before);
         return false;
+    }
+
+    struct State {
+        std::vector<std::vector<double>> torque_nm;  ///< by sweep
+        Stacks stacks;
+        std::vector<double> taken_orders, taken_hz;
+        std::vector<KnownLine> out;
+    };
+
+    static std::vector<std::vector<double>> torques_of(std::span<const Sweep> sweeps) {
+        std::vector<std::vector<double>> torques;
+        for (const Sweep& sweep : sweeps) torques.push_back(sweep.torque_nm);
+        return torques;
+    }
+
+    void restore(const State& before) {
+        for (std::size_t i = 0; i < sweeps_.size(); ++i) {
+            Sweep& sweep = sweeps_[i];
+            sweep.torque_nm = before.torque_nm[i];
+            for (std::size_t k = 0; k < sweep.value.size(); ++k)
+                sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
+        }
+        stacks_ = before.stacks;
+        taken_orders_ = before.taken_orders;
+        taken_hz_ = before.taken_hz;
+        out_ = before.out;
+    }
+
+    /// Candidates in place of significant peaks; false where there is none.
+    bool use_prominent_peaks() {
+        bool any = false;
+        for (const auto& [stack, peaks, lowest, taken] :
+             {std::tuple{&stacks_.angle, &stacks_.angle_peaks, 0.0, &taken_orders_},
+              std::tuple{&stacks_.time, &stacks_.time_peaks, options_.lowest_tone_hz, &taken_hz_}}) {
+            const PowerSpectrum spectrum = stack->tested();
+            *peaks = prominent_peaks(spectrum, noise_floor(spectrum), 0.5 * options_.false_alarm);
+            for (const SignificantPeak& peak : *peaks) {
+                const double place = static_cast<double>(peak.bin) * stack->spacing;
+                any = any || (place >= lowest && !near_any(*taken, place, line_cells * stack->resolution));
+            }
+        }
+        return any;
     }
 
     [[nodiscard]] bool is_significant(const Tentative& one) const {

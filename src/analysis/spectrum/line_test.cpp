@@ -149,6 +149,18 @@ Floors floors_about(const PowerSpectrum& s, std::size_t bin) {
     return floors;
 }
 
+/// The first floor of floors_about(), where both sides have room for it; else none.
+Floor innermost_floor(const PowerSpectrum& s, std::size_t bin) {
+    const std::size_t from = bins_of(s, inner_from_cells), to = bins_of(s, inner_to_cells);
+    const std::size_t room = bins_of(s, guard_cells) + bins_of(s, fewest_cells);
+    if (bin - s.first < room || s.power.size() - 1 - bin < room) return {};
+    std::vector<double> values;
+    for (std::size_t d = from; d <= to; ++d)
+        values.insert(values.end(), {s.power[bin - d], s.power[bin + d]});
+    const double cells = static_cast<double>(values.size()) / s.bins_per_cell;
+    return {median_in(values) / median_over_mean(s.averages_at(bin)), cells};
+}
+
 /// Independent tries among the bins that are searched.
 double tries_of(const PowerSpectrum& s) {
     const std::size_t from = std::min(std::max(s.first, s.searched), s.power.size());
@@ -225,20 +237,26 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         const double averages = spectrum.averages_at(k), rough = 4.0 * power[k] / floor[k];
         if (rough < 2.0 || tries * exceedance({.ratio = rough, .averages = averages, .cells = 1e6}) > 1.0)
             continue;
-        const Floors floors = floors_about(spectrum, k);
-        if (floors.every.empty()) continue;
-        SignificantPeak peak{k, 0.0, 0.0};
-        const auto chance_over = [&](const Floor& beside) {
-            const double known = averages_of(floors.averages, beside.power / floor[k]);
+        const auto chance_over = [&](const Floor& beside, double independent) {
+            const double known = averages_of(independent, beside.power / floor[k]);
             return tries *
                    exceedance({.ratio = power[k] / beside.power, .averages = known, .cells = beside.cells});
         };
+        // The innermost floor alone turns most away, at little cost: no more averages are independent than
+        // all, and fewer make a chance larger.
+        if (const Floor inner = innermost_floor(spectrum, k);
+            inner.cells > 0.0 && chance_over(inner, averages) > false_alarm)
+            continue;
+        const Floors floors = floors_about(spectrum, k);
+        if (floors.every.empty()) continue;
+        SignificantPeak peak{k, 0.0, 0.0};
         for (const Floor& beside : floors.every) {
             peak.floor = std::max(peak.floor, beside.power);
-            peak.false_alarm = std::max(peak.false_alarm, chance_over(beside));
+            peak.false_alarm = std::max(peak.false_alarm, chance_over(beside, floors.averages));
         }
         double least = floors.either.empty() ? 0.0 : 1.0;
-        for (const Floor& beside : floors.either) least = std::min(least, chance_over(beside));
+        for (const Floor& beside : floors.either)
+            least = std::min(least, chance_over(beside, floors.averages));
         peak.false_alarm = std::min(1.0, std::max(peak.false_alarm, least));
         if (peak.false_alarm <= false_alarm) peaks.push_back(peak);
     }
@@ -260,9 +278,10 @@ std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum, std:
     return peaks;
 }
 
-double ratio_exceeded(double chance, double averages, double cells) {
+PowerOverFloor exceeded(double chance, PowerOverFloor noise) {
     const auto is_below = [&](double ratio) {
-        return exceedance({.ratio = ratio, .averages = averages, .cells = cells}) > chance;
+        noise.ratio = ratio;
+        return exceedance(noise) > chance;
     };
     double high = 1.0;
     while (is_below(high) && high < 1e100) high *= 2.0;
@@ -271,7 +290,8 @@ double ratio_exceeded(double chance, double averages, double cells) {
         const double middle = 0.5 * (low + high);
         (is_below(middle) ? low : high) = middle;
     }
-    return high;
+    noise.ratio = high;
+    return noise;
 }
 
 double significant_power(const PowerSpectrum& spectrum, std::span<const double> floor, std::size_t bin,
@@ -282,7 +302,8 @@ double significant_power(const PowerSpectrum& spectrum, std::span<const double> 
     if (floors.every.empty()) return none;
     const auto threshold = [&](const Floor& beside) {
         const double known = averages_of(floors.averages, beside.power / floor[bin]);
-        return beside.power * ratio_exceeded(false_alarm / tries_of(spectrum), known, beside.cells);
+        const double chance = false_alarm / tries_of(spectrum);
+        return beside.power * exceeded(chance, {.averages = known, .cells = beside.cells}).ratio;
     };
     double highest = 0.0, either = floors.either.empty() ? 0.0 : none;
     for (const Floor& beside : floors.every) highest = std::max(highest, threshold(beside));
@@ -290,12 +311,12 @@ double significant_power(const PowerSpectrum& spectrum, std::span<const double> 
     return std::max(highest, either);
 }
 
-double detectable_ratio(double threshold, double averages) {
-    // 1 + r - z sqrt((1 + 2 r) / averages) = threshold, of which the larger root: with u = sqrt(1 + 2 r),
-    // u^2 - 2 z u / sqrt(averages) + 1 = 2 threshold.
+double detectable_ratio(const PowerOverFloor& threshold) {
+    // 1 + r - z sqrt((1 + 2 r) / averages) = threshold.ratio, of which the larger root: with u = sqrt(1 + 2
+    // r), u^2 - 2 z u / sqrt(averages) + 1 = 2 threshold.ratio.
     constexpr double one_sided_95 = 1.645;
-    const double half = one_sided_95 / std::sqrt(averages);
-    const double u = half + std::sqrt(half * half + std::max(0.0, 2.0 * threshold - 1.0));
+    const double half = one_sided_95 / std::sqrt(threshold.averages);
+    const double u = half + std::sqrt(half * half + std::max(0.0, 2.0 * threshold.ratio - 1.0));
     return std::max(0.0, 0.5 * (u * u - 1.0));
 }
 
