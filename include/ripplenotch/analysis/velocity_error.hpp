@@ -7,7 +7,7 @@
 namespace ripplenotch {
 
 /// The logged velocity is so much too high, and so late (a filter's lag is a delay, too). With standard
-/// errors. Steady stretches tell the offset alone.
+/// errors. Steady speeds show the offset alone.
 struct VelocityError {
     DegPerSec offset, offset_error;
     Seconds delay, delay_error;

@@ -52,10 +52,8 @@ enum class LineEvidence { none, stretches, sweeps, both };
 
 /// What a verdict rests on.
 struct Grounds {
-    std::size_t stretches = 0, rests = 0;  ///< steady stretches that were looked at: moving, at rest
-    std::size_t sweeps = 0;
-    double sweep_turns = 0.0;  ///< output turns that the sweeps cover
-    bool from_sweeps = false;  ///< speeds are those of the sweeps, not of the stretches
+    std::size_t sweeps = 0, rests = 0;  ///< pieces of motion in one direction, and of standstill
+    double sweep_turns = 0.0;           ///< output turns that the sweeps cover
     double slowest_deg_s = 0.0, fastest_deg_s = 0.0;
     double false_alarm = 0.0;
 };

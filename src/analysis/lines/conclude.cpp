@@ -24,7 +24,6 @@ Grounds grounds_of(const MotionLines& motion, const IdentifyOptions& options) {
     grounds.sweeps = motion.sweeps;
     grounds.rests = motion.rests;
     grounds.sweep_turns = motion.turns;
-    grounds.from_sweeps = true;
     grounds.slowest_deg_s = motion.slowest_deg_s;
     grounds.fastest_deg_s = motion.fastest_deg_s;
     return grounds;

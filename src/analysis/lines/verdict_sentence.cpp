@@ -25,14 +25,11 @@ std::string speeds(double from, double to) {
                                  : fmt::format("{:.3g} to {:.3g} deg/s", from, to);
 }
 
-/// "3 steady stretches at 60 to 180 deg/s"
+/// "3 sweeps over 5 output turns at 60 to 180 deg/s"
 std::string basis(const Grounds& grounds) {
     const std::string at = speeds(grounds.slowest_deg_s, grounds.fastest_deg_s);
-    if (grounds.from_sweeps) {
-        return fmt::format("{} over {:.3g} output turns at {}", how_many(grounds.sweeps, "sweep"),
-                           grounds.sweep_turns, at);
-    }
-    return fmt::format("{} at {}", how_many(grounds.stretches, "steady stretch", "steady stretches"), at);
+    return fmt::format("{} over {:.3g} output turn{} at {}", how_many(grounds.sweeps, "sweep"),
+                       grounds.sweep_turns, fmt::format("{:.3g}", grounds.sweep_turns) == "1" ? "" : "s", at);
 }
 
 bool seen_at_rest(const Line& line) {
@@ -259,7 +256,7 @@ std::string doubted(const Identification& found) {
         if (seen.size() < most)
             seen.push_back(fmt::format("{} ({:.2g} Nm)", frequencies(line), line.amplitude_nm));
     }
-    if (found.grounds.stretches + found.grounds.sweeps == 0) return text;
+    if (found.grounds.sweeps == 0) return text;
     std::string families;
     for (const ToneFamily& family : found.families) families += ", " + family_in_words(family);
     return text + fmt::format(" Seen, from {}: {}{}{}.", basis(found.grounds),

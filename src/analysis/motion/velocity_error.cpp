@@ -100,6 +100,9 @@ std::optional<VelocityFit> fit_velocity_error(std::span<const TraceView> logs, s
     VelocityFit fit;
     fit.error = {DegPerSec(best[power.offset()]), DegPerSec(deviation(covariance, power.offset())),
                  Seconds(best[power.delay()]), Seconds(deviation(covariance, power.delay()))};
+    // At steady speeds the lines say nothing of a delay: what was supposed beforehand is no finding.
+    constexpr double told_share = 0.7;  // by hand: of the error beforehand
+    fit.error.delay_told = fit.error.delay_error.value() < told_share * likely_delay_s;
     fit.order_shares.assign(best.begin(), best.begin() + static_cast<Eigen::Index>(orders.size()));
     fit.most_cycles = power.most_cycles(best);
     // Of the clearest order, what noise of the torque would not leave if the other unknowns were known.
