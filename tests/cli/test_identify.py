@@ -326,6 +326,65 @@ class Spectra(unittest.TestCase):
         self.assertIn("nowhere moves", still.stderr)
 
 
+class AnyTravelAnyRatio(unittest.TestCase):
+    """Lines from four cycles per sweep, or once per output turn, on, and a bound for what was searched."""
+
+    def simulated(self, folder, ratio, *motions, rate="1kHz", ripple=("1:0.8Nm:30deg", "2:0.5Nm"), noise="0.05Nm", seed=1):
+        words = [word for motion in motions for word in ("--motion", motion)] + [word for one in ripple for word in ("--ripple", one)]
+        path = str(pathlib.Path(folder) / "log.csv")
+        done = run("simulate", "--gear-ratio", str(ratio), *words, "--sample-rate", rate, "--noise", noise, "--seed", str(seed), "-o", path, "--force")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return path
+
+    def to_and_fro(self, degrees, seconds, times=5):
+        return [f"poly6,to={angle}deg,duration={seconds}s" for _ in range(times) for angle in (degrees, 0)]
+
+    def test_low_ratios_over_short_travel(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for ratio, travel in ((30, 60), (50, 60), (40, 115), (100, 38)):
+                found = identified(self.simulated(folder, ratio, *self.to_and_fro(travel, travel / 30)))
+                lines = {round(line["order_output"] / ratio): line["amplitude_nm"] for line in found["lines"] if line["order_output"]}
+                self.assertAlmostEqual(lines.get(1, 0.0), 0.8, delta=0.05, msg=(ratio, travel, found["verdict"]))
+                self.assertAlmostEqual(lines.get(2, 0.0), 0.5, delta=0.05, msg=(ratio, travel, found["verdict"]))
+
+    def test_ratios_below_twenty(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for ratio in (6, 9, 16):
+                found = identified(self.simulated(folder, ratio, "constant,speed=300deg/s,duration=4s", "constant,speed=200deg/s,duration=4s",
+                                                  "constant,speed=100deg/s,duration=6s"))
+                seen = sorted(line["order_output"] for line in found["lines"] if line["kind"] == "order")
+                self.assertEqual(len(seen), 2, found["verdict"])
+                self.assertAlmostEqual(seen[0], ratio, delta=0.05)
+                self.assertAlmostEqual(seen[1], 2 * ratio, delta=0.05)
+                value = found["gear_ratio"]["value"]
+                self.assertTrue(value is None or abs(value - ratio) < 0.05, found["verdict"])
+                self.assertTrue(value is not None or not found["conclusive"])
+
+    def test_a_bound_names_its_range_and_holds_there(self):
+        with tempfile.TemporaryDirectory() as folder:
+            motions = self.to_and_fro(200, 1.0, 10)
+            found = identified(self.simulated(folder, 100, *motions, rate="77Hz", ripple=(), noise="0.1Nm"))
+            self.assertEqual((found["finding"], found["lines"]), ("nothing", []))
+            searched = found["searched"]
+            # 77 rows a sweep, 20 sweeps: least squares of one amplitude has a standard error of 0.1 Nm sqrt(2 / 1540).
+            self.assertGreater(searched["detectable_nm"], 3 * 0.1 * math.sqrt(2 / 1540))
+            self.assertLess(searched["lowest_order"], searched["highest_order"])
+            self.assertIn(f"to {searched['highest_order']:.4g} cycles per output turn", found["verdict"])
+            self.assertEqual([bound["detectable_nm"] for bound in searched["bounds"]],
+                             sorted((bound["detectable_nm"] for bound in searched["bounds"]), reverse=True))
+            middle = math.sqrt(searched["lowest_order"] * searched["highest_order"])
+            path = self.simulated(folder, middle, *motions, rate="77Hz", ripple=(f"1:{2 * searched['detectable_nm']:.4g}Nm",), noise="0.1Nm")
+            lines = [line["order_output"] for line in identified(path)["lines"] if line["kind"] in ("order", "unknown")]
+            self.assertTrue(any(abs(order - middle) < 2.0 for order in lines), lines)
+
+    def test_a_joint_that_hardly_moves_allows_no_claim(self):
+        with tempfile.TemporaryDirectory() as folder:
+            found = identified(self.simulated(folder, 100, "poly6,to=2deg,duration=1s", ripple=()))
+            self.assertIsNone(found["searched"])
+            self.assertFalse(found["conclusive"])
+            self.assertTrue(found["verdict"].startswith("Cannot tell"), found["verdict"])
+
+
 @unittest.skipUnless((LOGS / "README.md").is_file(), "the real logs are not here")
 class RealLogs(unittest.TestCase):
     def near(self, values, expected, share):
