@@ -227,10 +227,11 @@ class Doubts(unittest.TestCase):
             logs = [self.log(folder, f"{v}.csv", speed=v, tones=self.TONES, clock=1.475, position=False, seed=v)
                     for v in (36, 48)]
             found = identified(*logs)
+            # Tones of one size at 30 Hz, and at 40 Hz at a speed higher by a third, are as much one order as they are two tones.
             self.assertEqual(orders(found), [])
             self.assertIsNone(found["gear_ratio"]["value"])
-            self.assertEqual(found["families"][0]["multiples"], [2, 3, 4, 5])
-            self.assertAlmostEqual(found["families"][0]["hz"], 10.0, delta=0.05)
+            self.assertFalse(found["conclusive"])
+            self.assertEqual(sorted(round(line["hz"], -1) for line in found["lines"]), [20, 30, 40, 50])
 
     def test_a_joint_that_wears_is_told_log_by_log(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -32,6 +32,13 @@ std::string basis(const Grounds& grounds) {
                        grounds.sweep_turns, fmt::format("{:.3g}", grounds.sweep_turns) == "1" ? "" : "s", at);
 }
 
+std::string order_or_tone(const Grounds& grounds) {
+    constexpr double one_speed = 0.05;  // by hand: of the fastest
+    const bool one = grounds.fastest_deg_s - grounds.slowest_deg_s < one_speed * grounds.fastest_deg_s;
+    return fmt::format("; {} an order or a tone; record another speed to decide",
+                       one ? "only one speed, so a line is" : "at these speeds a line may be");
+}
+
 bool seen_at_rest(const Line& line) {
     return std::any_of(line.by_speed.begin(), line.by_speed.end(),
                        [](const AmplitudeAtSpeed& at) { return at.speed_deg_s == 0.0; });
@@ -153,7 +160,7 @@ std::string with_ratio(const Identification& found) {
                                           [](const Line* line) { return line->kind == LineKind::order; });
     std::string doubt;
     if (all_doubted) {
-        doubt = "; only one speed, so each line is an order or a tone; record another speed to decide";
+        doubt = order_or_tone(found.grounds);
     } else if (!doubted.empty()) {
         doubt = fmt::format("; order{} {} or tone{}: record another speed to decide",
                             doubted.size() == 1 ? "" : "s", listed(doubted), doubted.size() == 1 ? "" : "s");
@@ -212,7 +219,7 @@ std::string one_speed(const Identification& found) {
                     first.hz.value_or(0.0), first.amplitude_nm, basis(found.grounds));
     if (first.order_output)
         text += fmt::format(": output order {:.5g} if it turns with the joint", *first.order_output);
-    text += "; only one speed, so a line is an order or a tone; record another speed to decide";
+    text += order_or_tone(found.grounds);
     if (!found.gear_ratio.candidates.empty()) text += "; as orders: " + undecided(found);
     return text + at_rest(found) + besides(found) + ".";
 }
