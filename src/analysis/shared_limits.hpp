@@ -2,7 +2,12 @@
 #pragma once
 // What several searches of this room decide by.
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <span>
+
+#include "ripplenotch/core/trace.hpp"
 
 namespace ripplenotch {
 
@@ -16,5 +21,18 @@ inline constexpr double tries_per_cell = 1.6;
 /// Of the polynomial that takes the slow course off a window: a cubic, since a quadratic leaks
 /// into order 2 where a joint turns round.
 inline constexpr std::ptrdiff_t window_trend_terms = 4;
+
+/// Smaller lines are not reported: a share of the torque's range, and in any case what rounding makes of a
+/// constant.
+inline double least_amplitude_nm(std::span<const TraceView> logs, double share) {
+    double range = 0.0, largest = 0.0;
+    for (const TraceView& log : logs) {
+        const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
+        if (low == log.torque_nm.end()) continue;
+        range = std::max(range, *high - *low);
+        largest = std::max({largest, std::abs(*low), std::abs(*high)});
+    }
+    return std::max(share * range, 1e-9 * largest);
+}
 
 }  // namespace ripplenotch

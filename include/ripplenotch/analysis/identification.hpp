@@ -155,8 +155,8 @@ struct Identification {
 void cast_doubt(Identification& found, Doubt doubt);
 
 struct IdentifyOptions {
-    std::optional<GearRatio> hint;   ///< checked, not believed
-    std::vector<int> hinted_orders;  ///< n at which the strongest line is believed to stand
+    std::optional<GearRatio> hint;   ///< checked against the lines
+    std::vector<int> hinted_orders;  ///< n at which the strongest line is expected
     bool unit_stated = true;         ///< false: nothing says what unit the motion is in
     double false_alarm = 0.01;       ///< chance that a log of noise gives any line
     std::vector<Doubt> doubts;       ///< what is known against these logs before they are looked at

@@ -71,19 +71,6 @@ Candidate best_place_between(const Stack& stack, double from, double to) {
     return best;
 }
 
-/// Smaller lines are not reported: a share of the torque's range, and in any case what rounding makes of a
-/// constant.
-double least_amplitude_of(std::span<const TraceView> logs, double share) {
-    double range = 0.0, largest = 0.0;
-    for (const TraceView& log : logs) {
-        const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
-        if (low == log.torque_nm.end()) continue;
-        range = std::max(range, *high - *low);
-        largest = std::max({largest, std::abs(*low), std::abs(*high)});
-    }
-    return std::max(share * range, 1e-9 * largest);
-}
-
 /// The order at half the sample rate in the sweeps that know most: the lower median over their weights, at
 /// the upper quartile of their speeds.
 double half_rate_of_most(std::span<const Sweep> sweeps, const Stack& stack) {
@@ -274,7 +261,7 @@ class LineSearch {
           options_(options),
           absolute_angle_(absolute_angle),
           range_(speed_range(sweeps)),
-          least_amplitude_(least_amplitude_of(logs, options.least_share)),
+          least_amplitude_(least_amplitude_nm(logs, options.least_share)),
           stacks_(stacked(sweeps, options)) {}
 
     /// One more line; false when there is none.

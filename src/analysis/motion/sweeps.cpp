@@ -167,7 +167,7 @@ void put_right(const TraceView& log, const VelocityError& error, std::vector<dou
 /// What lies between the runs of a log, in pieces of at most rule.longest_s, where the joint stands still.
 std::vector<SampleRun> rests_of(const TraceView& log, std::span<const double> speed, double standstill_deg_s,
                                 const SweepRule& rule) {
-    constexpr double shortest_s = 0.5;  // by hand: five cycles of the slowest tone that is told
+    constexpr double shortest_s = 0.5;  // by hand: five cycles of the slowest tone that is reported
     const auto longest = static_cast<std::size_t>(rule.longest_s * log.sample_rate.value());
     std::vector<SampleRun> rests;
     for (const SampleRun& run : whole_runs(log.size(), log.run_starts)) {

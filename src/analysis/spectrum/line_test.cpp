@@ -237,10 +237,10 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         const double averages = spectrum.averages_at(k), rough = 4.0 * power[k] / floor[k];
         if (rough < 2.0 || tries * exceedance({.ratio = rough, .averages = averages, .cells = 1e6}) > 1.0)
             continue;
-        const auto chance_over = [&](const Floor& beside, double independent) {
-            const double known = averages_of(independent, beside.power / floor[k]);
+        const auto chance_over = [&](const Floor& level, double independent) {
+            const double known = averages_of(independent, level.power / floor[k]);
             return tries *
-                   exceedance({.ratio = power[k] / beside.power, .averages = known, .cells = beside.cells});
+                   exceedance({.ratio = power[k] / level.power, .averages = known, .cells = level.cells});
         };
         // The innermost floor alone turns most away, at little cost: no more averages are independent than
         // all, and fewer make a chance larger.
@@ -250,13 +250,12 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         const Floors floors = floors_about(spectrum, k);
         if (floors.every.empty()) continue;
         SignificantPeak peak{k, 0.0, 0.0};
-        for (const Floor& beside : floors.every) {
-            peak.floor = std::max(peak.floor, beside.power);
-            peak.false_alarm = std::max(peak.false_alarm, chance_over(beside, floors.averages));
+        for (const Floor& level : floors.every) {
+            peak.floor = std::max(peak.floor, level.power);
+            peak.false_alarm = std::max(peak.false_alarm, chance_over(level, floors.averages));
         }
         double least = floors.either.empty() ? 0.0 : 1.0;
-        for (const Floor& beside : floors.either)
-            least = std::min(least, chance_over(beside, floors.averages));
+        for (const Floor& level : floors.either) least = std::min(least, chance_over(level, floors.averages));
         peak.false_alarm = std::min(1.0, std::max(peak.false_alarm, least));
         if (peak.false_alarm <= false_alarm) peaks.push_back(peak);
     }
@@ -300,14 +299,14 @@ double significant_power(const PowerSpectrum& spectrum, std::span<const double> 
     if (bin <= spectrum.first || bin < spectrum.searched || bin + 1 >= spectrum.power.size()) return none;
     const Floors floors = floors_about(spectrum, bin);
     if (floors.every.empty()) return none;
-    const auto threshold = [&](const Floor& beside) {
-        const double known = averages_of(floors.averages, beside.power / floor[bin]);
+    const auto threshold = [&](const Floor& level) {
+        const double known = averages_of(floors.averages, level.power / floor[bin]);
         const double chance = false_alarm / tries_of(spectrum);
-        return beside.power * exceeded(chance, {.averages = known, .cells = beside.cells}).ratio;
+        return level.power * exceeded(chance, {.averages = known, .cells = level.cells}).ratio;
     };
     double highest = 0.0, either = floors.either.empty() ? 0.0 : none;
-    for (const Floor& beside : floors.every) highest = std::max(highest, threshold(beside));
-    for (const Floor& beside : floors.either) either = std::min(either, threshold(beside));
+    for (const Floor& level : floors.every) highest = std::max(highest, threshold(level));
+    for (const Floor& level : floors.either) either = std::min(either, threshold(level));
     return std::max(highest, either);
 }
 

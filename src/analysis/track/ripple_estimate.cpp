@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/shared_limits.hpp"
 #include "analysis/track/cut_windows.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "core/matrices/factorisations.hpp"
@@ -374,18 +375,6 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     return found;
 }
 
-/// What rounding, and the curve of a torque of this range between its samples, may look like.
-double least_amplitude_nm(std::span<const TraceView> logs) {
-    double range = 0.0, largest = 0.0;
-    for (const TraceView& log : logs) {
-        const auto [low, high] = std::minmax_element(log.torque_nm.begin(), log.torque_nm.end());
-        if (low == log.torque_nm.end()) continue;
-        range = std::max(range, *high - *low);
-        largest = std::max({largest, std::abs(*low), std::abs(*high)});
-    }
-    return std::max(least_range_share * range, 1e-9 * largest);
-}
-
 /// Speeds of the logs, and those at which an order reaches half the sample rate.
 struct Limits {
     double fastest_deg_s = 0.0, rate_turns_deg_s = std::numeric_limits<double>::max();
@@ -463,7 +452,7 @@ std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, Gea
     const std::vector<Moving> moving = moving_of(logs, ratio);
     const Limits limits = limits_of(moving, ratio);
     const std::vector<OrderSegments> gathered = gather_segments(moving, ratio, limits, sorted);
-    const double least_nm = least_amplitude_nm(logs);
+    const double least_nm = least_amplitude_nm(logs, least_range_share);
     std::vector<RippleEstimate> found;
     for (const Order order : orders) {
         const auto at = std::lower_bound(sorted.begin(), sorted.end(), order.value()) - sorted.begin();
