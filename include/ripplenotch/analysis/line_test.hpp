@@ -39,9 +39,9 @@ struct SignificantPeak {
 /// Local maxima whose false_alarm is at most the one asked for, in bin order. Each is compared with the
 /// largest of four floors: 2 to 5, 3 to 12 and 3 to 40 cells away, and the one below it. So the flank of a
 /// broad resonance is no line, and neither is the noise inside a narrow one. Near the low end the lower floor
-/// is what lies just outside of the main lobe, so that a spectrum that falls steeply is no line either. The
-/// floor is known from few cells, which the test allows for: the ratio follows an F distribution. Maxima with
-/// less than 4 cells beside them are not tested.
+/// is what lies just outside of the main lobe, or what a spectrum as steep as behind a resonance would have
+/// there. The floor is known from few cells, which the test allows for: the ratio follows an F distribution.
+/// Maxima with fewer than 4 cells around them are not tested.
 [[nodiscard]] std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum,
                                                              double false_alarm);
 /// The same where noise_floor(spectrum) is at hand.
@@ -59,7 +59,12 @@ struct SignificantPeak {
 [[nodiscard]] double significant_power(const PowerSpectrum& spectrum, std::span<const double> floor,
                                        std::size_t bin, double false_alarm);
 
-/// Power over a floor, of so many averages; the floor was itself estimated from `cells` independent cells.
+/// What a median of exponential values knows of their mean, as a share of what the mean of as many knows:
+/// (ln 2)^2.
+inline constexpr double median_efficiency = 0.48;
+
+/// Power over a floor, of so many averages; the floor was itself estimated as well as by the mean of `cells`
+/// independent cells.
 struct PowerOverFloor {
     double ratio = 0.0, averages = 1.0, cells = 0.0;
 };

@@ -2,6 +2,7 @@
 #pragma once
 // Motion cut into sweeps of one direction, each ready for Fourier sums over angle or over time.
 
+#include <complex>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -41,6 +42,8 @@ struct Sweep {
     std::vector<double> weight;
     std::vector<double> share_turns;  ///< angle that a sample stands for; at standstill seconds
     std::size_t trend_terms = 0;      ///< of the smooth part taken out
+    /// Cosine and sine part of each line that was removed from torque_nm, in the order of the lines.
+    std::vector<std::complex<double>> removed_nm;
     double weight_sum = 0.0, weight_square_sum = 0.0;
     double length_turns = 0.0;
     double duration_s = 0.0;

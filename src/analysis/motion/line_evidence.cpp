@@ -84,7 +84,7 @@ Others without(const std::vector<SweepPart>& all, std::size_t left_out, const st
 double floor_cells(const Stack& stack) {
     const double cells =
         static_cast<double>(stack.ratio.size() - stack.first) * stack.spacing / stack.resolution;
-    return std::min(80.0, cells);  // noise_floor() goes 40 cells to each side
+    return median_efficiency * std::min(80.0, cells);  // noise_floor() goes 40 cells to each side
 }
 
 template <class ValueOf>
@@ -112,6 +112,18 @@ double gain_at(const Stack& stack, std::size_t bin) {
         total += stack.sweep_weights[i];
     }
     return most > 0.0 ? (stack.ratio[bin] - 1.0) * total / most : 0.0;
+}
+
+double mean_ratio(std::span<const Sweep> sweeps, const Stack& stack, double place) {
+    const std::vector<FourierPoint> points = points_of(sweeps, stack, place, place, own_value);
+    double weights = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < sweeps.size(); ++i) {
+        const double noise = noise_at(stack, i, place);
+        if (!(noise > 0.0)) continue;
+        weights += stack.sweep_weights[i];
+        sum += stack.sweep_weights[i] * std::norm(points[i].value) / noise;
+    }
+    return weights > 0.0 ? sum / weights : 0.0;
 }
 
 double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place) {
@@ -147,7 +159,7 @@ GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& 
 }
 
 double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place) {
-    return gain_in(sweeps, stack, place, [&](const Sweep& sweep) { return value_without(sweep, line); });
+    return gain_in(sweeps, stack, place, [&](const Sweep& sweep) { return without_line(sweep, line).value; });
 }
 
 bool recurs(std::span<const Sweep> sweeps, const Stack& stack, double place) {

@@ -16,6 +16,9 @@ namespace ripplenotch {
 /// each.
 double gain_at(const Stack& stack, std::size_t bin);
 
+/// Power over noise at a place, weighted mean over the sweeps, as Stack::ratio has it at its bins.
+double mean_ratio(std::span<const Sweep> sweeps, const Stack& stack, double place);
+
 /// What a line explains beyond noise, in nats: weighted sum over sweeps of power over noise, less one each.
 /// Sweeps weigh by what they know, the best of them 1.
 double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "core/functions/many_numbers.hpp"
@@ -135,38 +136,43 @@ class SmoothProducts {
     std::vector<double> by_slope_;    ///< every term by the slope
 };
 
-/// Of one sweep what a line is there, sample by sample: nothing where the sweep is too short to tell.
-std::vector<double> there(const Sweep& sweep, const KnownLine& line) {
+/// Adds a line of a known amplitude, cosine and sine part, to the torque.
+void add_line(Sweep& sweep, const KnownLine& line, std::complex<double> amplitude_nm) {
     const auto at = places(sweep, line.axis);
-    std::vector<double> cosine(at.size()), sine(at.size());
-    std::array<double, Rows::length> angle{};
+    std::array<double, Rows::length> angle{}, cosine{}, sine{};
     for (std::size_t first = 0; first < at.size(); first += angle.size()) {
         const std::size_t here = std::min(angle.size(), at.size() - first);
         for (std::size_t i = 0; i < here; ++i) angle[i] = full_turn * line.place * at[first + i];
-        portable::phasors(std::span(angle).first(here), std::span(cosine).subspan(first),
-                          std::span(sine).subspan(first));
+        portable::phasors(std::span(angle).first(here), cosine, sine);
+        for (std::size_t i = 0; i < here; ++i) {
+            const double torque = amplitude_nm.real() * cosine[i] + amplitude_nm.imag() * sine[i];
+            sweep.torque_nm[first + i] += torque;
+            sweep.value[first + i] += sweep.weight[first + i] * torque;
+        }
     }
+}
+
+/// What least squares finds of a line in the sweep's torque as it is; 0 where the sweep is too short for it.
+std::complex<double> amplitude_of(const Sweep& sweep, const KnownLine& line) {
+    const auto at = places(sweep, line.axis);
+    std::array<double, Rows::length> angle{}, cosine{}, sine{};
     double cc = 0.0, cs = 0.0, ss = 0.0, xc = 0.0, xs = 0.0;
-    for (std::size_t k = 0; k < at.size(); ++k) {
-        cc += sweep.weight[k] * cosine[k] * cosine[k];
-        cs += sweep.weight[k] * cosine[k] * sine[k];
-        ss += sweep.weight[k] * sine[k] * sine[k];
-        xc += sweep.value[k] * cosine[k];
-        xs += sweep.value[k] * sine[k];
+    for (std::size_t first = 0; first < at.size(); first += angle.size()) {
+        const std::size_t here = std::min(angle.size(), at.size() - first);
+        for (std::size_t i = 0; i < here; ++i) angle[i] = full_turn * line.place * at[first + i];
+        portable::phasors(std::span(angle).first(here), cosine, sine);
+        for (std::size_t i = 0; i < here; ++i) {
+            const double weight = sweep.weight[first + i], value = sweep.value[first + i];
+            cc += weight * cosine[i] * cosine[i];
+            cs += weight * cosine[i] * sine[i];
+            ss += weight * sine[i] * sine[i];
+            xc += value * cosine[i];
+            xs += value * sine[i];
+        }
     }
     const double determinant = cc * ss - cs * cs;
     if (!(determinant > 1e-6 * cc * ss)) return {};
-    const double a = (xc * ss - xs * cs) / determinant, b = (xs * cc - xc * cs) / determinant;
-    for (std::size_t k = 0; k < at.size(); ++k) cosine[k] = a * cosine[k] + b * sine[k];
-    return cosine;
-}
-
-void subtract_from(Sweep& sweep, const KnownLine& line) {
-    const std::vector<double> torque = there(sweep, line);
-    for (std::size_t k = 0; k < torque.size(); ++k) {
-        sweep.torque_nm[k] -= torque[k];
-        sweep.value[k] -= sweep.weight[k] * torque[k];
-    }
+    return {(xc * ss - xs * cs) / determinant, (xs * cc - xc * cs) / determinant};
 }
 
 /// True where each line is clear of the smooth part and of the lines of its own axis.
@@ -219,23 +225,34 @@ void fit_out(Sweep& sweep, std::span<const KnownLine> lines) {
     });
     for (std::size_t k = 0; k < sweep.value.size(); ++k)
         sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
+    sweep.removed_nm.clear();
+    for (auto m = static_cast<Eigen::Index>(sweep.trend_terms); m < n; m += 2)
+        sweep.removed_nm.emplace_back(found[m], found[m + 1]);
 }
 
-std::vector<double> value_without(const Sweep& sweep, const KnownLine& line) {
-    std::vector<double> torque = there(sweep, line);
-    if (torque.empty()) return sweep.value;
-    for (std::size_t k = 0; k < torque.size(); ++k) torque[k] = sweep.value[k] - sweep.weight[k] * torque[k];
-    return torque;
+Sweep without_line(Sweep sweep, const KnownLine& line) {
+    add_line(sweep, line, -amplitude_of(sweep, line));
+    return sweep;
 }
 
-void take_out_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines) {
+void remove_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines) {
     on_two_cores(sweeps.size(), [&](std::size_t i) {
-        if (clear(sweeps[i], lines)) {
-            subtract_from(sweeps[i], lines.back());
-        } else {
-            fit_out(sweeps[i], lines);
+        Sweep& sweep = sweeps[i];
+        if (!clear(sweep, lines)) {
+            fit_out(sweep, lines);
+            return;
         }
+        sweep.removed_nm.push_back(amplitude_of(sweep, lines.back()));
+        add_line(sweep, lines.back(), -sweep.removed_nm.back());
     });
+}
+
+std::vector<Sweep> with_line(std::vector<Sweep> sweeps, std::span<const KnownLine> lines,
+                             std::size_t restored) {
+    on_two_cores(sweeps.size(), [&](std::size_t i) {
+        add_line(sweeps[i], lines[restored], sweeps[i].removed_nm[restored]);
+    });
+    return sweeps;
 }
 
 }  // namespace ripplenotch

@@ -20,14 +20,17 @@ struct KnownLine {
 /// torque: all of them fitted at once, by least squares under the weights. Cost O(n (terms + 2 lines)^2).
 void fit_out(Sweep& sweep, std::span<const KnownLine> lines);
 
-/// The sweep's value once a line is out with the amplitude and phase that it has there, nothing else fitted
-/// anew.
-[[nodiscard]] std::vector<double> value_without(const Sweep& sweep, const KnownLine& line);
+/// The sweep without what least squares finds of a line in it, nothing else fitted anew.
+[[nodiscard]] Sweep without_line(Sweep sweep, const KnownLine& line);
 
-/// Takes the last of the lines out, those before it being out. A sweep of few cycles cannot tell a line from
-/// its smooth part, nor from a line near by, when one is fitted after the other: there all are fitted at
-/// once. What would be left otherwise stands at the frequency that the line has where the sweep is fastest, a
+/// Removes the last of the lines, those before it being removed. A sweep of few cycles cannot separate a line
+/// from its smooth part, nor from a line near by, when one is fitted after the other: there all are fitted at
+/// once. What would remain otherwise stands at the frequency that the line has where the sweep is fastest, a
 /// fixed one.
-void take_out_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines);
+void remove_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines);
+
+/// Sweeps from which all lines were removed, with one of them restored as it was found in each.
+[[nodiscard]] std::vector<Sweep> with_line(std::vector<Sweep> sweeps, std::span<const KnownLine> lines,
+                                           std::size_t restored);
 
 }  // namespace ripplenotch

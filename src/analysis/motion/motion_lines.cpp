@@ -37,25 +37,20 @@ double half_rate_order(std::span<const Sweep> sweeps) {
     return order;
 }
 
-/// The significant, recurring peak that explains most, apart from lines already found.
-std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& stack,
-                                  std::span<const SignificantPeak> peaks, std::span<const double> taken,
-                                  double lowest) {
-    std::vector<Candidate> candidates;
-    for (const SignificantPeak& peak : peaks) {
+/// The prominent peak that explains most, apart from lines already found.
+std::optional<Candidate> clearest(std::span<const Sweep> sweeps, const Stack& stack, double false_alarm,
+                                  std::span<const double> taken, double lowest) {
+    const PowerSpectrum spectrum = stack.tested();
+    std::optional<Candidate> best;
+    for (const SignificantPeak& peak : prominent_peaks(spectrum, noise_floor(spectrum), false_alarm)) {
         const double place = static_cast<double>(peak.bin) * stack.spacing;
-        if (place >= lowest && !near_any(taken, place, line_cells * stack.resolution))
-            candidates.push_back({peak, gain_at(stack, peak.bin)});
-    }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.gain > b.gain; });
-    for (const Candidate& candidate : candidates) {
-        const double place = static_cast<double>(candidate.peak.bin) * stack.spacing;
+        if (place < lowest || near_any(taken, place, line_cells * stack.resolution)) continue;
+        const double gain = gain_at(stack, peak.bin);
+        if (best && gain <= best->gain) continue;
         const bool folded = stack.axis == Axis::angle && place > half_rate_order(sweeps);
-        if (folded && !shown_throughout(sweeps, stack, place)) continue;
-        if (recurs(sweeps, stack, place)) return candidate;
+        if (!folded || shown_throughout(sweeps, stack, place)) best = Candidate{peak, gain};
     }
-    return std::nullopt;
+    return best;
 }
 
 /// The most that any line of the other axis explains where this one could be seen there, from..to on that
@@ -155,104 +150,40 @@ double order_at(std::span<const Sweep> sweeps, const Stack& stack, double hz) {
 struct Rivals {
     double order = 0.0, hz = 0.0;
     bool has_order = false, has_hz = false;
-    double gain_angle = 0.0, gain_time = 0.0;
+    bool two_lines = false;  ///< both are prominent, the one that was not seen first as well
 };
 
-/// True when a place is a significant peak itself, not merely the best that noise offers.
-bool stands_out(const Stack& stack, std::span<const SignificantPeak> peaks, double place) {
-    return std::any_of(peaks.begin(), peaks.end(), [&](const SignificantPeak& peak) {
-        return std::abs(static_cast<double>(peak.bin) * stack.spacing - place) < stack.resolution;
-    });
-}
-
-LineKind judged(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Rivals& rivals, bool by_angle) {
-    const auto& [angle, time, angle_peaks, time_peaks] = stacks;
+/// Order or tone, by what explains the line more; unknown where neither does. `two_lines`: at the line's
+/// frequencies there is a line of the other axis as well.
+LineKind judged(std::span<const Sweep> sweeps, const Stacks& stacks, const Rivals& rivals, bool by_angle) {
+    const Stack &angle = stacks.angle, &time = stacks.time;
     // The noise floors on both axes are estimates of their own, in each sweep.
     const auto [apart, error] =
         gain_difference(sweeps, {angle, rivals.has_order ? std::optional(rivals.order) : std::nullopt},
                         {time, rivals.has_hz ? std::optional(rivals.hz) : std::nullopt}, floor_doubt);
     const double decisive = std::max(decisive_nats, error);
     if (std::abs(apart) > decisive) return apart > 0.0 ? LineKind::order : LineKind::tone;
-    const bool two_lines =
-        rivals.has_order && rivals.has_hz &&
-        (by_angle ? stands_out(time, time_peaks, rivals.hz) : stands_out(angle, angle_peaks, rivals.order));
-    if (!two_lines) return LineKind::unknown;
-    // Two lines, not one seen twice, when each keeps what it explains after the other is taken out.
+    if (!rivals.two_lines) return LineKind::unknown;
+    // Two lines, not one seen twice, when each keeps what it explains after the other is removed.
     const double order_left = gain_without(sweeps, {Axis::time, rivals.hz}, angle, rivals.order);
     const double tone_left = gain_without(sweeps, {Axis::angle, rivals.order}, time, rivals.hz);
-    if (order_left < kept_share * rivals.gain_angle || tone_left < kept_share * rivals.gain_time)
+    if (order_left < kept_share * gain_of(sweeps, angle, rivals.order) ||
+        tone_left < kept_share * gain_of(sweeps, time, rivals.hz))
         return LineKind::unknown;
     return by_angle ? LineKind::order : LineKind::tone;
 }
 
-// One line looked for: where it stands in both domains, as far as it stands there.
-struct Sought {
-    MotionLine line;
+/// A line that was removed from the sweeps before it is known to be one.
+struct CandidateLine {
+    KnownLine known;
     Rivals rivals;
-    bool by_angle = false;  ///< the domain in which it was seen first
-    double seen_at = 0.0;   ///< in that domain
+    bool by_angle = false;  ///< the axis on which it was seen first
 };
 
-std::optional<Sought> seek(const std::vector<Sweep>& sweeps, const Stacks& stacks, const SpeedRange& range,
-                           const std::vector<double>& taken_orders, const std::vector<double>& taken_hz,
-                           const MotionLinesOptions& options) {
-    const Stack &angle = stacks.angle, &time = stacks.time;
-    std::optional<Candidate> order, tone;
-    on_two_cores(2, [&](std::size_t i) {
-        if (i == 0)
-            order = clearest(sweeps, angle, stacks.angle_peaks, taken_orders, 0.0);
-        else
-            tone = clearest(sweeps, time, stacks.time_peaks, taken_hz, options.lowest_tone_hz);
-    });
-    if (!order && !tone) return std::nullopt;
-    Sought sought;
-    sought.by_angle = order && (!tone || order->gain >= tone->gain);
-    std::size_t order_bin = 0, hz_bin = 0;
-    if (sought.by_angle) {
-        order_bin = order->peak.bin;
-        sought.seen_at = static_cast<double>(order_bin) * angle.spacing;
-        hz_bin =
-            best_place_between(time, sought.seen_at * range.slow / 360.0, sought.seen_at * range.fast / 360.0)
-                .peak.bin;
-        sought.line.false_alarm = order->peak.false_alarm;
-    } else {
-        hz_bin = tone->peak.bin;
-        sought.seen_at = static_cast<double>(hz_bin) * time.spacing;
-        if (range.fast > 0.0)
-            order_bin = best_place_between(angle, sought.seen_at * 360.0 / range.fast,
-                                           sought.seen_at * 360.0 / range.slow)
-                            .peak.bin;
-        sought.line.false_alarm = tone->peak.false_alarm;
-    }
-    Rivals& rivals = sought.rivals;
-    rivals.has_order = order_bin > 0;
-    rivals.has_hz = hz_bin > 0;
-    if (rivals.has_order) rivals.order = refined(sweeps, angle, order_bin);
-    if (rivals.has_hz) rivals.hz = refined(sweeps, time, hz_bin);
-    rivals.gain_angle = rivals.has_order ? gain_of(sweeps, angle, rivals.order) : 0.0;
-    rivals.gain_time = rivals.has_hz ? gain_of(sweeps, time, rivals.hz) : 0.0;
-    sought.line.gain_angle = rivals.gain_angle;
-    sought.line.gain_time = rivals.gain_time;
-    sought.line.kind = judged(sweeps, stacks, rivals, sought.by_angle);
-    if (sought.line.kind == LineKind::tone && !at_two_speeds(sweeps, stacks.time, rivals.hz))
-        sought.line.kind = LineKind::unknown;
-    return sought;
-}
-
-// What else the domains tell of a line that stays.
-void complete(const std::vector<Sweep>& sweeps, const Stacks& stacks, const Rivals& rivals, bool as_order,
-              const MotionLinesOptions& options, MotionLine& line) {
-    if (line.kind == LineKind::unknown && as_order) {
-        line.hz = rivals.hz;
-        line.hz_stderr = stacks.time.resolution;
-    }
-    if (stacks.angle.ratio.empty()) return;  // at standstill
-    line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, stacks.angle, rivals.hz);
-    line.folds =
-        folds_of(sweeps, stacks.angle, {.seen = line.order_seen, .highest = options.stack.highest_order});
-}
-
-/// The search under way: sweeps without what has been found, their spectra, and what is not looked at again.
+/// Lines hide each other: each adds to the noise that is measured near the others. So whatever is prominent
+/// is removed, the clearest first, and then each candidate is tested against the noise that remains when all
+/// of them are removed. Those that fail are put back, which raises the noise for the others; what remains in
+/// the end is significant each by itself.
 class LineSearch {
   public:
     LineSearch(std::vector<Sweep>& sweeps, std::span<const TraceView> logs, bool absolute_angle,
@@ -262,162 +193,158 @@ class LineSearch {
           absolute_angle_(absolute_angle),
           range_(speed_range(sweeps)),
           least_amplitude_(least_amplitude_nm(logs, options.least_share)),
-          stacks_(stacked(sweeps, options)) {}
-
-    /// One more line; false when there is none.
-    bool next() {
-        if (auto sought = seek(sweeps_, stacks_, range_, taken_orders_, taken_hz_, options_)) {
-            consider(std::move(*sought));
-            return true;
+          stacks_(stacked(sweeps, options)) {
+        for (std::size_t looks = 0; looks < 2 * options.most_lines && out_.size() < options.most_lines;
+             ++looks) {
+            if (!remove_clearest()) break;
         }
-        return confirm_prominent();
+        while (put_back_insignificant()) {
+        }
     }
 
-    std::vector<MotionLine> lines;
+    /// The clearest first. What does not recur is no line: a burst, or the ripple of another joint that passes
+    /// by. It is no noise either, and stays removed.
+    [[nodiscard]] std::vector<MotionLine> lines() {
+        std::vector<MotionLine> lines;
+        for (std::size_t i = 0; i < out_.size(); ++i) {
+            const std::vector<Sweep> sweeps = with_line(sweeps_, out_, i);
+            if (recurs(sweeps, stack_of(out_[i].axis), out_[i].place)) lines.push_back(measured(sweeps, i));
+        }
+        return lines;
+    }
 
     [[nodiscard]] Stacks& stacks() { return stacks_; }
     [[nodiscard]] const SpeedRange& range() const { return range_; }
-    [[nodiscard]] const std::vector<double>& taken_orders() const { return taken_orders_; }
+    [[nodiscard]] std::vector<double> orders() const {
+        std::vector<double> orders;
+        for (const KnownLine& line : out_)
+            if (line.axis == Axis::angle) orders.push_back(line.place);
+        return orders;
+    }
     [[nodiscard]] double least_amplitude() const { return least_amplitude_; }
 
   private:
-    /// A line that was taken out of the sweeps before it is known to be one.
-    struct Tentative {
-        MotionLine line;
-        KnownLine known;
-        std::size_t bin = 0;
-        double ratio = 0.0, floor_nm = 0.0;  ///< of the bin, before it was taken out
-        bool confirmed = false;
-    };
-
     [[nodiscard]] const Stack& stack_of(Axis axis) const {
         return axis == Axis::angle ? stacks_.angle : stacks_.time;
     }
+    [[nodiscard]] double false_alarm() const { return 0.5 * options_.false_alarm; }  // two axes are searched
 
-    /// Measures what was found and marks its place; empty where it is no line to be reported.
-    std::optional<Tentative> measured(Sought sought) {
-        MotionLine& line = sought.line;
-        const Rivals& rivals = sought.rivals;
+    /// False when nothing is prominent.
+    bool remove_clearest() {
+        const Stack &angle = stacks_.angle, &time = stacks_.time;
+        std::optional<Candidate> order, tone;
+        on_two_cores(2, [&](std::size_t i) {
+            if (i == 0)
+                order = clearest(sweeps_, angle, false_alarm(), taken_orders_, 0.0);
+            else
+                tone = clearest(sweeps_, time, false_alarm(), taken_hz_, options_.lowest_tone_hz);
+        });
+        if (!order && !tone) return false;
+        CandidateLine line;
+        line.by_angle = order && (!tone || order->gain >= tone->gain);
+        line.rivals = rivals_of(line.by_angle ? order->peak.bin : tone->peak.bin, line.by_angle);
+        LineKind kind = judged(sweeps_, stacks_, line.rivals, line.by_angle);
         const bool as_order =
-            line.kind == LineKind::order || (line.kind == LineKind::unknown && rivals.has_order);
-        const Stack& stack = as_order ? stacks_.angle : stacks_.time;
+            kind == LineKind::order || (kind == LineKind::unknown && line.rivals.has_order);
+        const Stack& stack = as_order ? angle : time;
         auto& taken = as_order ? taken_orders_ : taken_hz_;
-        const double place = as_order ? rivals.order : rivals.hz;
-        // What a line leaves beside itself, because its amplitude changes within a sweep, is no line.
-        const bool rest_of_known = near_any(taken, place, line_cells * stack.resolution);
-        measure(sweeps_, stack, place, line);
-        if (!absolute_angle_) line.phase_deg.reset();
-        (sought.by_angle ? taken_orders_ : taken_hz_).push_back(sought.seen_at);
-        const bool of_the_motion = !as_order && place < options_.lowest_tone_hz;
-        if (rest_of_known || of_the_motion || line.amplitude_nm < least_amplitude_) return std::nullopt;
-        taken.push_back(place);
-        complete(sweeps_, stacks_, rivals, as_order, options_, line);
-        const auto bin =
-            std::min(static_cast<std::size_t>(std::lround(place / stack.spacing)), stack.ratio.size() - 1);
-        return Tentative{std::move(line),  {stack.axis, place}, bin,
-                         stack.ratio[bin], stack.floor_nm[bin], false};
-    }
-
-    bool consider(Sought sought) {
-        auto one = measured(std::move(sought));
-        if (!one) return false;
-        take_out(one->known);
-        lines.push_back(std::move(one->line));
+        line.known = {stack.axis, as_order ? line.rivals.order : line.rivals.hz};
+        // What a line leaves near itself, because its amplitude changes within a sweep, is no line.
+        const bool rest_of_known = near_any(taken, line.known.place, line_cells * stack.resolution);
+        const std::size_t seen_bin = line.by_angle ? order->peak.bin : tone->peak.bin;
+        (line.by_angle ? taken_orders_ : taken_hz_)
+            .push_back(static_cast<double>(seen_bin) * (line.by_angle ? angle : time).spacing);
+        const bool of_the_motion = !as_order && line.known.place < options_.lowest_tone_hz;
+        if (rest_of_known || of_the_motion) return true;
+        taken.push_back(line.known.place);
+        candidates_.push_back(line);
+        out_.push_back(line.known);
+        remove_last(sweeps_, out_);
+        stacks_ = stacked(sweeps_, options_);
         return true;
     }
 
-    void take_out(const KnownLine& line) {
-        out_.push_back(line);
-        take_out_last(sweeps_, out_);
+    /// Where a peak stands on its own axis, and the most that the other axis offers for it.
+    [[nodiscard]] Rivals rivals_of(std::size_t bin, bool by_angle) const {
+        const Stack &angle = stacks_.angle, &time = stacks_.time;
+        const double seen_at = static_cast<double>(bin) * (by_angle ? angle : time).spacing;
+        Candidate other;
+        if (by_angle)
+            other = best_place_between(time, seen_at * range_.slow / 360.0, seen_at * range_.fast / 360.0);
+        else if (range_.fast > 0.0)
+            other = best_place_between(angle, seen_at * 360.0 / range_.fast, seen_at * 360.0 / range_.slow);
+        const std::size_t order_bin = by_angle ? bin : other.peak.bin;
+        const std::size_t hz_bin = by_angle ? other.peak.bin : bin;
+        Rivals rivals;
+        rivals.has_order = order_bin > 0;
+        rivals.has_hz = hz_bin > 0;
+        if (rivals.has_order) rivals.order = refined(sweeps_, angle, order_bin);
+        if (rivals.has_hz) rivals.hz = refined(sweeps_, time, hz_bin);
+        if (rivals.has_order && rivals.has_hz) {
+            const Stack& stack = by_angle ? time : angle;
+            const double place = by_angle ? rivals.hz : rivals.order;
+            const PowerSpectrum spectrum = stack.tested();
+            for (const SignificantPeak& peak :
+                 prominent_peaks(spectrum, noise_floor(spectrum), false_alarm()))
+                rivals.two_lines = rivals.two_lines || std::abs(static_cast<double>(peak.bin) * stack.spacing -
+                                                                place) < stack.resolution;
+        }
+        return rivals;
+    }
+
+    /// False when every candidate is significant.
+    bool put_back_insignificant() {
+        std::vector<KnownLine> kept;
+        std::vector<CandidateLine> kept_candidates;
+        for (std::size_t i = 0; i < out_.size(); ++i) {
+            if (!is_significant(i)) continue;
+            kept.push_back(out_[i]);
+            kept_candidates.push_back(candidates_[i]);
+        }
+        if (kept.size() == out_.size()) return false;
+        out_ = std::move(kept);
+        candidates_ = std::move(kept_candidates);
+        on_two_cores(sweeps_.size(), [&](std::size_t i) { fit_out(sweeps_[i], out_); });
         stacks_ = stacked(sweeps_, options_);
+        return true;
     }
 
-    /// Lines near each other, or near the low end, hide in what each adds to the noise measured beside the
-    /// other. A few that are prominent are taken out one after the other; those stay that are significant
-    /// above what remains when all of them are out.
-    bool confirm_prominent() {
-        constexpr std::size_t most_tentative = 3;  // by hand: each costs a further look at all sweeps
-        if (!use_prominent_peaks()) return false;
-        const State before{torques_of(sweeps_), stacks_, taken_orders_, taken_hz_, out_};
-        std::vector<Tentative> tentative;
-        for (std::size_t looks = 0; looks < 2 * most_tentative && tentative.size() < most_tentative;
-             ++looks) {
-            if (!tentative.empty() && !use_prominent_peaks()) break;
-            auto sought = seek(sweeps_, stacks_, range_, taken_orders_, taken_hz_, options_);
-            if (!sought) break;
-            auto one = measured(std::move(*sought));
-            if (!one) continue;
-            take_out(one->known);
-            tentative.push_back(std::move(*one));
-            std::size_t confirmed = 0;
-            for (Tentative& each : tentative) {
-                each.confirmed = is_significant(each);
-                confirmed += each.confirmed ? 1 : 0;
-            }
-            if (confirmed == 0) continue;
-            for (Tentative& each : tentative)
-                if (each.confirmed) lines.push_back(std::move(each.line));
-            if (confirmed == tentative.size()) return true;
-            out_ = before.out;
-            for (const Tentative& each : tentative)
-                if (each.confirmed) out_.push_back(each.known);
-            for (Sweep& sweep : sweeps_) fit_out(sweep, out_);
-            stacks_ = stacked(sweeps_, options_);
-            return true;
-        }
-        restore(before);
-        return false;
-    }
-
-    struct State {
-        std::vector<std::vector<double>> torque_nm;  ///< by sweep
-        Stacks stacks;
-        std::vector<double> taken_orders, taken_hz;
-        std::vector<KnownLine> out;
-    };
-
-    static std::vector<std::vector<double>> torques_of(std::span<const Sweep> sweeps) {
-        std::vector<std::vector<double>> torques;
-        for (const Sweep& sweep : sweeps) torques.push_back(sweep.torque_nm);
-        return torques;
-    }
-
-    void restore(const State& before) {
-        for (std::size_t i = 0; i < sweeps_.size(); ++i) {
-            Sweep& sweep = sweeps_[i];
-            sweep.torque_nm = before.torque_nm[i];
-            for (std::size_t k = 0; k < sweep.value.size(); ++k)
-                sweep.value[k] = sweep.torque_nm[k] * sweep.weight[k];
-        }
-        stacks_ = before.stacks;
-        taken_orders_ = before.taken_orders;
-        taken_hz_ = before.taken_hz;
-        out_ = before.out;
-    }
-
-    /// Candidates in place of significant peaks; false where there is none.
-    bool use_prominent_peaks() {
-        bool any = false;
-        for (const auto& [stack, peaks, lowest, taken] :
-             {std::tuple{&stacks_.angle, &stacks_.angle_peaks, 0.0, &taken_orders_},
-              std::tuple{&stacks_.time, &stacks_.time_peaks, options_.lowest_tone_hz, &taken_hz_}}) {
-            const PowerSpectrum spectrum = stack->tested();
-            *peaks = prominent_peaks(spectrum, noise_floor(spectrum), 0.5 * options_.false_alarm);
-            for (const SignificantPeak& peak : *peaks) {
-                const double place = static_cast<double>(peak.bin) * stack->spacing;
-                any = any || (place >= lowest && !near_any(*taken, place, line_cells * stack->resolution));
-            }
-        }
-        return any;
-    }
-
-    [[nodiscard]] bool is_significant(const Tentative& one) const {
-        const Stack& stack = stack_of(one.known.axis);
-        if (one.bin >= stack.ratio.size() || !(stack.floor_nm[one.bin] > 0.0)) return false;
+    /// Against the noise that remains when all candidates are removed.
+    [[nodiscard]] bool is_significant(std::size_t candidate) const {
+        const auto& [axis, place] = out_[candidate];
+        const Stack& stack = stack_of(axis);
+        const auto bin = static_cast<std::size_t>(std::lround(place / stack.spacing));
+        if (bin >= stack.ratio.size() || !(stack.averages[bin] > 0.0)) return false;
+        const std::vector<Sweep> sweeps = with_line(sweeps_, out_, candidate);
         const PowerSpectrum spectrum = stack.tested();
-        const double grown = one.floor_nm / stack.floor_nm[one.bin];
-        return one.ratio * grown * grown > significant_power(spectrum, noise_floor(spectrum), one.bin,
-                                                             0.5 * options_.false_alarm / stack.tries_factor);
+        const double threshold =
+            significant_power(spectrum, noise_floor(spectrum), bin, false_alarm() / stack.tries_factor);
+        if (std::getenv("DBG")) std::fprintf(stderr, "cand axis %d place %.2f ratio %.2f running %.3f thr %.2f recurs %d n %.1f\n", int(axis), place, mean_ratio(sweeps, stack, place), noise_floor(spectrum)[bin], threshold, int(recurs(sweeps, stack, place)), stack.averages[bin]);
+        return mean_ratio(sweeps, stack, place) > threshold;
+    }
+
+    [[nodiscard]] MotionLine measured(std::span<const Sweep> sweeps, std::size_t candidate) const {
+        const auto& [known, rivals, by_angle] = candidates_[candidate];
+        const Stack &angle = stacks_.angle, &time = stacks_.time;
+        MotionLine line;
+        line.gain_angle = rivals.has_order ? gain_of(sweeps, angle, rivals.order) : 0.0;
+        line.gain_time = rivals.has_hz ? gain_of(sweeps, time, rivals.hz) : 0.0;
+        line.kind = judged(sweeps, stacks_, rivals, by_angle);
+        const bool as_order = known.axis == Axis::angle;
+        if (line.kind == (as_order ? LineKind::tone : LineKind::order)) line.kind = LineKind::unknown;
+        if (line.kind == LineKind::tone && !at_two_speeds(sweeps, time, rivals.hz))
+            line.kind = LineKind::unknown;
+        measure(sweeps, stack_of(known.axis), known.place, line);
+        if (!absolute_angle_) line.phase_deg.reset();
+        if (line.kind == LineKind::unknown && as_order) {
+            line.hz = rivals.hz;
+            line.hz_stderr = time.resolution;
+        }
+        if (angle.ratio.empty()) return line;  // at standstill
+        line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, angle, rivals.hz);
+        line.folds =
+            folds_of(sweeps, angle, {.seen = line.order_seen, .highest = options_.stack.highest_order});
+        return line;
     }
 
     std::vector<Sweep>& sweeps_;
@@ -427,7 +354,8 @@ class LineSearch {
     double least_amplitude_;
     Stacks stacks_;
     std::vector<double> taken_orders_, taken_hz_;
-    std::vector<KnownLine> out_;
+    std::vector<KnownLine> out_;             ///< removed from the sweeps
+    std::vector<CandidateLine> candidates_;  ///< the same, with what is known of each
 };
 
 }  // namespace
@@ -445,26 +373,23 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     for (const Sweep& sweep : sweeps) {
         if (!cut.absolute_angle) values.push_back(sweep.value);
     }
-    LineSearch lines(sweeps, logs, cut.absolute_angle, options);
-    found.slowest_deg_s = lines.range().slow;
-    found.fastest_deg_s = lines.range().fast;
-    for (std::size_t round = 0; round < 2 * options.most_lines && lines.lines.size() < options.most_lines;
-         ++round) {
-        if (!lines.next()) break;
-    }
-    const Stack& angle = lines.stacks().angle;
+    LineSearch search_of(sweeps, logs, cut.absolute_angle, options);
+    found.slowest_deg_s = search_of.range().slow;
+    found.fastest_deg_s = search_of.range().fast;
+    found.lines = search_of.lines();
+    std::erase_if(found.lines, [&](const MotionLine& line) { return line.amplitude_nm < search_of.least_amplitude(); });
+    const Stack& angle = search_of.stacks().angle;
     found.resolution_orders = angle.resolution;
     found.highest_spectrum_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
-    found.searched = searched_orders(sweeps, angle, 0.5 * options.false_alarm, lines.taken_orders());
+    found.searched = searched_orders(sweeps, angle, 0.5 * options.false_alarm, search_of.orders());
     if (found.searched) {
-        found.searched->detectable_nm = std::max(found.searched->detectable_nm, lines.least_amplitude());
-        for (auto& bound : found.searched->bounds)
-            bound.detectable_nm = std::max(bound.detectable_nm, lines.least_amplitude());
+        const double least_nm = search_of.least_amplitude();
+        found.searched->detectable_nm = std::max(found.searched->detectable_nm, least_nm);
+        for (auto& bound : found.searched->bounds) bound.detectable_nm = std::max(bound.detectable_nm, least_nm);
     }
     found.humps =
-        lines.stacks().time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
-    found.lines = std::move(lines.lines);
-    search.angle = std::move(lines.stacks().angle);
+        search_of.stacks().time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
+    search.angle = std::move(search_of.stacks().angle);
     for (std::size_t i = 0; i < values.size(); ++i) sweeps[i].value = std::move(values[i]);
     if (!cut.absolute_angle) search.sweeps = std::move(sweeps);
     return search;

@@ -12,7 +12,6 @@ namespace ripplenotch {
 /// The sweeps in both domains, after what has been found so far was taken out of them.
 struct Stacks {
     Stack angle, time;
-    std::vector<SignificantPeak> angle_peaks, time_peaks;
 };
 
 /// On two cores.

@@ -62,20 +62,21 @@ double averages_of(double averages, double floor_over_noise) {
     return (1.0 + common) * (1.0 + common) / (1.0 / averages + common * common);
 }
 
-/// A floor beside a bin, and how well it is known.
+/// A floor near a bin, and from how many cells it is known.
 struct Floor {
     double power = 0.0, cells = 0.0;
 };
 
-/// A line stands above every floor of the first list, and above one of the second where there are any.
+/// A line exceeds every floor of the first list, and one of the second where there are any.
 struct Floors {
     std::vector<Floor> every, either;
     double averages = 1.0;  ///< independent ones behind each value
 };
 
-/// Independent averages behind values of noise, by their scatter: their upper quartile lies 0.6745 standard
-/// deviations above the median, and a mean of n has a standard deviation of 1 / sqrt(n). What a motion leaves
-/// in each of its repetitions scatters as a single one does.
+/// Independent averages behind values of noise over their floor, by their scatter below the median, where
+/// lines are not seen. What a motion leaves in each of its repetitions scatters as a single one does. The
+/// cube root of a mean of n exponentials is nearly normal, of mean 1 - s^2 and deviation s, s^2 = 1 / (9 n)
+/// (Wilson and Hilferty 1931).
 double averages_by_scatter(std::vector<double> values) {
     const auto at = [&](double share) {
         const auto place =
@@ -83,10 +84,38 @@ double averages_by_scatter(std::vector<double> values) {
         std::nth_element(values.begin(), place, values.end());
         return *place;
     };
-    const double upper = at(0.75), middle = at(0.5);
-    if (!(middle > 0.0) || !(upper > middle)) return std::numeric_limits<double>::infinity();
-    const double deviation = (upper / middle - 1.0) / 0.6745;
-    return 1.0 / (deviation * deviation);
+    const double middle = at(0.5), lower = at(0.25);
+    if (!(middle > 0.0) || !(lower < middle)) return std::numeric_limits<double>::infinity();
+    const double spread = (1.0 - portable::exp(portable::log(lower / middle) / 3.0)) / 0.6745;  // s / (1 - s^2)
+    const double deviation = 0.5 * (std::sqrt(1.0 + 4.0 * spread * spread) - 1.0) / spread;
+    return 1.0 / (9.0 * deviation * deviation);
+}
+
+constexpr double uncensored_share = 0.75;  // of the values around a bin: lines in the others do not raise the floor
+
+/// Expectation of censored_sum() for values of mean 1, each the mean of `averages` exponentials.
+double censored_expectation(double averages) {
+    const double n = averages;
+    // Wilson and Hilferty 1931: the cube root of a gamma variable is nearly normal.
+    const double cube_root = 1.0 - 1.0 / (9.0 * n) + 0.6745 * std::sqrt(1.0 / (9.0 * n));
+    const double quantile = cube_root * cube_root * cube_root;
+    const double partial_mean =
+        uncensored_share - portable::exp(n * portable::log(n * quantile) - n * quantile - portable::lgamma(n + 1.0));
+    return (partial_mean + (1.0 - uncensored_share) * quantile) / uncensored_share;
+}
+
+/// Mean noise of values that are exponential means, from their lower three quarters: the rest counts as if at
+/// the largest of these (type-II censoring, of which this is the maximum-likelihood estimate; as sure as the
+/// mean of so many values). Reorders the values.
+Floor floor_from(std::vector<double>& values, double averages, double bins_per_cell) {
+    const auto kept = static_cast<std::size_t>(std::ceil(uncensored_share * static_cast<double>(values.size())));
+    if (kept == 0) return {};
+    const auto last = values.begin() + static_cast<std::ptrdiff_t>(kept - 1);
+    std::nth_element(values.begin(), last, values.end());
+    double sum = static_cast<double>(values.size() - kept) * *last;
+    for (auto value = values.begin(); value <= last; ++value) sum += *value;
+    return {sum / static_cast<double>(kept) / censored_expectation(averages),
+            static_cast<double>(kept) / bins_per_cell};
 }
 
 std::size_t bins_of(const PowerSpectrum& s, double cells) {
@@ -95,44 +124,46 @@ std::size_t bins_of(const PowerSpectrum& s, double cells) {
 
 /// The floors about a bin: around it on both sides, near and far, and below it, since spectra of motion fall
 /// steeply from their low end. Both sides shrink alike near an end of the spectrum: one flank of a steep
-/// floor would stand for too little or too much. Near the low end there is no room below. What lies just
-/// outside of the main lobe there is few cells; what lies above says what the noise may be here at most, if
-/// it falls with frequency no steeper than behind a resonance, by the fourth power. Either will do. Empty
-/// where too few cells lie around the bin.
-Floors floors_about(const PowerSpectrum& s, std::size_t bin) {
-    const double to_mean = median_over_mean(s.averages_at(bin));
+/// floor would stand for too little or too much. Near the low end there is no room below. Either what lies
+/// just outside of the main lobe there (few cells) has to do, or what lies nearest above, raised by the
+/// fourth power of the frequency: noise falls no steeper than behind a resonance, so that it is no more than
+/// that here. Empty where too few cells lie around the bin.
+Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std::size_t bin) {
+    const double averages = s.averages_at(bin);
     const std::size_t below = bin - s.first, above = s.power.size() - 1 - bin;
     const std::size_t guard = bins_of(s, guard_cells), fewest = guard + bins_of(s, fewest_cells);
     Floors floors;
     const auto beyond_guard = [guard](std::size_t room) { return room > guard ? room - guard : 0; };
     if (beyond_guard(below) + beyond_guard(above) < bins_of(s, fewest_cells)) return floors;
     std::vector<double> values;
-    const auto floor = [&] {
-        const double cells = static_cast<double>(values.size()) / s.bins_per_cell;
-        return values.empty() ? Floor{} : Floor{median_in(values) / to_mean, cells};
-    };
     const auto add_below = [&](std::size_t from, std::size_t to) {
         for (std::size_t d = from; d <= std::min(to, below); ++d) values.push_back(s.power[bin - d]);
     };
     const auto add_above = [&](std::size_t from, std::size_t to) {
         for (std::size_t d = from; d <= std::min(to, above); ++d) values.push_back(s.power[bin + d]);
     };
-    const bool has_room = below >= fewest;
+    const auto floor = [&] { return floor_from(values, averages, s.bins_per_cell); };
     const std::size_t shorter = std::min(below, above), longer = std::max(below, above);
     const std::size_t reach = shorter >= fewest ? shorter : std::min(bins_of(s, near_cells), longer);
+    {
+        const std::size_t end = std::min(bins_of(s, far_cells), reach);
+        for (std::size_t d = guard; d <= end; ++d) {
+            if (d <= below) values.push_back(s.power[bin - d] / running[bin - d]);
+            if (d <= above) values.push_back(s.power[bin + d] / running[bin + d]);
+        }
+        if (!values.empty())
+            floors.averages = std::clamp(averages_by_scatter(std::move(values)), 1.0, std::max(1.0, averages));
+    }
     for (const auto& [from, to] :
          {std::pair{inner_from_cells, inner_to_cells}, {guard_cells, near_cells}, {guard_cells, far_cells}}) {
         values.clear();
         const std::size_t end = std::min(bins_of(s, to), reach);
         add_below(bins_of(s, from), end);
         add_above(bins_of(s, from), end);
-        if (values.empty()) continue;
-        // The last and widest ring.
-        floors.averages = std::clamp(averages_by_scatter(values), 1.0, std::max(1.0, s.averages_at(bin)));
-        floors.every.push_back(floor());
+        if (!values.empty()) floors.every.push_back(floor());
     }
     values.clear();
-    if (has_room) {
+    if (below >= fewest) {
         add_below(guard, bins_of(s, near_cells));
         floors.every.push_back(floor());
         return floors;
@@ -140,25 +171,13 @@ Floors floors_about(const PowerSpectrum& s, std::size_t bin) {
     add_below(bins_of(s, lobe_cells), below);
     if (!values.empty()) floors.either.push_back(floor());
     values.clear();
-    for (std::size_t d = guard; d <= std::min(reach, above); ++d) {
+    for (std::size_t d = bins_of(s, inner_from_cells); d <= std::min(bins_of(s, inner_to_cells), above); ++d) {
         const double rise = static_cast<double>(bin + d) / static_cast<double>(bin);
         values.push_back(s.power[bin + d] * rise * rise * rise * rise);
     }
     if (!values.empty()) floors.either.push_back(floor());
     if (floors.either.empty()) floors.every.clear();
     return floors;
-}
-
-/// The first floor of floors_about(), where both sides have room for it; else none.
-Floor innermost_floor(const PowerSpectrum& s, std::size_t bin) {
-    const std::size_t from = bins_of(s, inner_from_cells), to = bins_of(s, inner_to_cells);
-    const std::size_t room = bins_of(s, guard_cells) + bins_of(s, fewest_cells);
-    if (bin - s.first < room || s.power.size() - 1 - bin < room) return {};
-    std::vector<double> values;
-    for (std::size_t d = from; d <= to; ++d)
-        values.insert(values.end(), {s.power[bin - d], s.power[bin + d]});
-    const double cells = static_cast<double>(values.size()) / s.bins_per_cell;
-    return {median_in(values) / median_over_mean(s.averages_at(bin)), cells};
 }
 
 /// Independent tries among the bins that are searched.
@@ -179,8 +198,7 @@ double median_over_mean(double averages) {
 double exceedance(const PowerOverFloor& seen) {
     const auto [ratio, averages, cells] = seen;
     if (!(ratio > 0.0)) return 1.0;
-    // A median of m exponentials knows their mean as well as 0.48 m of them averaged: (ln 2)^2.
-    const double knowledge = std::max(0.5, 0.48 * cells * averages);
+    const double knowledge = std::max(0.5, cells * averages);
     return incomplete_beta(knowledge / (knowledge + averages * ratio), knowledge, averages);
 }
 
@@ -237,25 +255,19 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         const double averages = spectrum.averages_at(k), rough = 4.0 * power[k] / floor[k];
         if (rough < 2.0 || tries * exceedance({.ratio = rough, .averages = averages, .cells = 1e6}) > 1.0)
             continue;
-        const auto chance_over = [&](const Floor& level, double independent) {
-            const double known = averages_of(independent, level.power / floor[k]);
-            return tries *
-                   exceedance({.ratio = power[k] / level.power, .averages = known, .cells = level.cells});
-        };
-        // The innermost floor alone turns most away, at little cost: no more averages are independent than
-        // all, and fewer make a chance larger.
-        if (const Floor inner = innermost_floor(spectrum, k);
-            inner.cells > 0.0 && chance_over(inner, averages) > false_alarm)
-            continue;
-        const Floors floors = floors_about(spectrum, k);
+        const Floors floors = floors_about(spectrum, floor, k);
         if (floors.every.empty()) continue;
+        const auto chance_over = [&](const Floor& level) {
+            const double known = averages_of(floors.averages, level.power / floor[k]);
+            return tries * exceedance({.ratio = power[k] / level.power, .averages = known, .cells = level.cells});
+        };
         SignificantPeak peak{k, 0.0, 0.0};
         for (const Floor& level : floors.every) {
             peak.floor = std::max(peak.floor, level.power);
-            peak.false_alarm = std::max(peak.false_alarm, chance_over(level, floors.averages));
+            peak.false_alarm = std::max(peak.false_alarm, chance_over(level));
         }
         double least = floors.either.empty() ? 0.0 : 1.0;
-        for (const Floor& level : floors.either) least = std::min(least, chance_over(level, floors.averages));
+        for (const Floor& level : floors.either) least = std::min(least, chance_over(level));
         peak.false_alarm = std::min(1.0, std::max(peak.false_alarm, least));
         if (peak.false_alarm <= false_alarm) peaks.push_back(peak);
     }
@@ -271,7 +283,7 @@ std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum, std:
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
         const double chance = tries * exceedance({.ratio = power[k] / floor[k],
                                                   .averages = spectrum.averages_at(k),
-                                                  .cells = 2.0 * far_cells});
+                                                  .cells = median_efficiency * 2.0 * far_cells});
         if (chance <= false_alarm) peaks.push_back({k, floor[k], chance});
     }
     return peaks;
@@ -297,13 +309,14 @@ double significant_power(const PowerSpectrum& spectrum, std::span<const double> 
                          double false_alarm) {
     constexpr double none = std::numeric_limits<double>::infinity();
     if (bin <= spectrum.first || bin < spectrum.searched || bin + 1 >= spectrum.power.size()) return none;
-    const Floors floors = floors_about(spectrum, bin);
+    const Floors floors = floors_about(spectrum, floor, bin);
     if (floors.every.empty()) return none;
     const auto threshold = [&](const Floor& level) {
         const double known = averages_of(floors.averages, level.power / floor[bin]);
         const double chance = false_alarm / tries_of(spectrum);
         return level.power * exceeded(chance, {.averages = known, .cells = level.cells}).ratio;
     };
+    if (std::getenv("DBG2")) { std::fprintf(stderr, "  bin %zu below %zu neff %.2f every", bin, bin - spectrum.first, floors.averages); for (auto& e : floors.every) std::fprintf(stderr, " %.2f/%.1f->%.1f", e.power, e.cells, threshold(e)); std::fprintf(stderr, " either"); for (auto& e : floors.either) std::fprintf(stderr, " %.2f/%.1f->%.1f", e.power, e.cells,threshold(e)); std::fprintf(stderr, " cellbins %.1f\n", spectrum.bins_per_cell); }
     double highest = 0.0, either = floors.either.empty() ? 0.0 : none;
     for (const Floor& level : floors.every) highest = std::max(highest, threshold(level));
     for (const Floor& level : floors.either) either = std::min(either, threshold(level));

@@ -303,7 +303,7 @@ double effective_averages(const OrderSegments& order) {
 double threshold(double averages, double bins, double false_alarm) {
     double low = 1.0, high = 2.0;
     const auto chance = [&](double ratio) {
-        return exceedance({.ratio = ratio, .averages = averages, .cells = bins});
+        return exceedance({.ratio = ratio, .averages = averages, .cells = median_efficiency * bins});
     };
     while (chance(high) > false_alarm && high < 1e12) high *= 2.0;
     for (int i = 0; i < 60; ++i) {
@@ -353,7 +353,7 @@ RippleEstimate estimate_of(double value, const OrderSegments& order, std::size_t
     found.false_alarm = noise.power > 0.0
                             ? std::min(1.0, tries * exceedance({.ratio = power / noise.along_slope,
                                                                 .averages = averages,
-                                                                .cells = noise.bins}))
+                                                                .cells = median_efficiency * noise.bins}))
                             : (power > 0.0 ? 0.0 : 1.0);
     // Power of line and noise is about normal, of variance (2 A^2 N + N^2) / averages, and so is the
     // logarithm of the noise, known from the bins to one side, here and in the log it is said of: the A^2 at
