@@ -175,16 +175,22 @@ std::complex<double> amplitude_of(const Sweep& sweep, const KnownLine& line) {
     return {(xc * ss - xs * cs) / determinant, (xs * cc - xc * cs) / determinant};
 }
 
-/// True where each line is clear of the smooth part and of the lines of its own axis.
+/// Cycles between two lines in a sweep; between an order and a tone, the least that the speeds allow.
+double cycles_apart(const Sweep& sweep, const KnownLine& one, const KnownLine& other) {
+    if (one.axis == other.axis) return std::abs(one.place - other.place) * length_of(sweep, one.axis);
+    const KnownLine& order = one.axis == Axis::angle ? one : other;
+    const double hz = one.axis == Axis::angle ? other.place : one.place;
+    const double slow = order.place * sweep.slow_deg_s / 360.0, quick = order.place * sweep.quick_deg_s / 360.0;
+    return std::max({0.0, slow - hz, hz - quick}) * sweep.duration_s;
+}
+
+/// True where each line is clear of the smooth part and of the other lines.
 bool clear(const Sweep& sweep, std::span<const KnownLine> lines) {
     const double smooth_cycles = 0.5 * static_cast<double>(sweep.trend_terms);
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        const double length = length_of(sweep, lines[i].axis);
-        if (lines[i].place * length < smooth_cycles + clear_cycles) return false;
-        for (std::size_t j = 0; j < i; ++j) {
-            const bool near = std::abs(lines[i].place - lines[j].place) * length < clear_cycles;
-            if (lines[i].axis == lines[j].axis && near) return false;
-        }
+        if (lines[i].place * length_of(sweep, lines[i].axis) < smooth_cycles + clear_cycles) return false;
+        for (std::size_t j = 0; j < i; ++j)
+            if (cycles_apart(sweep, lines[i], lines[j]) < clear_cycles) return false;
     }
     return true;
 }
@@ -249,10 +255,21 @@ void remove_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines) {
 
 std::vector<Sweep> with_line(std::vector<Sweep> sweeps, std::span<const KnownLine> lines,
                              std::size_t restored) {
+    std::vector<KnownLine> others(lines.begin(), lines.end());
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(restored));
     on_two_cores(sweeps.size(), [&](std::size_t i) {
-        add_line(sweeps[i], lines[restored], sweeps[i].removed_nm[restored]);
+        if (clear(sweeps[i], lines))
+            add_line(sweeps[i], lines[restored], sweeps[i].removed_nm[restored]);
+        else
+            fit_out(sweeps[i], others);
     });
     return sweeps;
+}
+
+bool apart(std::span<const Sweep> sweeps, const KnownLine& one, const KnownLine& other) {
+    return std::all_of(sweeps.begin(), sweeps.end(), [&](const Sweep& sweep) {
+        return cycles_apart(sweep, one, other) >= clear_cycles;
+    });
 }
 
 }  // namespace ripplenotch

@@ -29,8 +29,11 @@ void fit_out(Sweep& sweep, std::span<const KnownLine> lines);
 /// fixed one.
 void remove_last(std::vector<Sweep>& sweeps, std::span<const KnownLine> lines);
 
-/// Sweeps from which all lines were removed, with one of them restored as it was found in each.
+/// Sweeps from which all lines were removed, with one of them left in: what only it explains is in them then.
 [[nodiscard]] std::vector<Sweep> with_line(std::vector<Sweep> sweeps, std::span<const KnownLine> lines,
                                            std::size_t restored);
+
+/// True where two lines do not stand for each other in any sweep.
+[[nodiscard]] bool apart(std::span<const Sweep> sweeps, const KnownLine& one, const KnownLine& other);
 
 }  // namespace ripplenotch

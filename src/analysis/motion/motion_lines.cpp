@@ -292,35 +292,40 @@ class LineSearch {
         return rivals;
     }
 
-    /// False when every candidate is significant.
+    /// Of the candidates that are not significant the weakest is put back, and those with it that it does not
+    /// stand for: of two that stand for each other neither seems to be needed. False when all are significant.
     bool put_back_insignificant() {
-        std::vector<KnownLine> kept;
-        std::vector<CandidateLine> kept_candidates;
-        for (std::size_t i = 0; i < out_.size(); ++i) {
-            if (!is_significant(i)) continue;
-            kept.push_back(out_[i]);
-            kept_candidates.push_back(candidates_[i]);
+        std::vector<std::pair<double, std::size_t>> failed;
+        for (std::size_t i = 0; i < out_.size(); ++i)
+            if (const double share = share_of_threshold(i); !(share > 1.0)) failed.emplace_back(share, i);
+        if (failed.empty()) return false;
+        std::sort(failed.begin(), failed.end());
+        std::vector<std::size_t> dropped;
+        for (const auto& [share, i] : failed)
+            if (std::all_of(dropped.begin(), dropped.end(),
+                            [&](std::size_t other) { return apart(sweeps_, out_[i], out_[other]); }))
+                dropped.push_back(i);
+        std::sort(dropped.begin(), dropped.end(), std::greater());
+        for (const std::size_t i : dropped) {
+            out_.erase(out_.begin() + static_cast<std::ptrdiff_t>(i));
+            candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(i));
         }
-        if (kept.size() == out_.size()) return false;
-        out_ = std::move(kept);
-        candidates_ = std::move(kept_candidates);
         on_two_cores(sweeps_.size(), [&](std::size_t i) { fit_out(sweeps_[i], out_); });
         stacks_ = stacked(sweeps_, options_);
         return true;
     }
 
-    /// Against the noise that remains when all candidates are removed.
-    [[nodiscard]] bool is_significant(std::size_t candidate) const {
+    /// The power of a candidate over that from which on it is significant, against the noise that remains when
+    /// all candidates are removed.
+    [[nodiscard]] double share_of_threshold(std::size_t candidate) const {
         const auto& [axis, place] = out_[candidate];
         const Stack& stack = stack_of(axis);
         const auto bin = static_cast<std::size_t>(std::lround(place / stack.spacing));
-        if (bin >= stack.ratio.size() || !(stack.averages[bin] > 0.0)) return false;
-        const std::vector<Sweep> sweeps = with_line(sweeps_, out_, candidate);
+        if (bin >= stack.ratio.size() || !(stack.averages[bin] > 0.0)) return 0.0;
         const PowerSpectrum spectrum = stack.tested();
-        const double threshold =
-            significant_power(spectrum, noise_floor(spectrum), bin, false_alarm() / stack.tries_factor);
-        if (std::getenv("DBG")) std::fprintf(stderr, "cand axis %d place %.2f ratio %.2f running %.3f thr %.2f recurs %d n %.1f\n", int(axis), place, mean_ratio(sweeps, stack, place), noise_floor(spectrum)[bin], threshold, int(recurs(sweeps, stack, place)), stack.averages[bin]);
-        return mean_ratio(sweeps, stack, place) > threshold;
+        if (std::getenv("DBG")) std::fprintf(stderr, "cand axis %d place %.3f ratio %.2f running %.3f thr %.2f n %.1f recurs %d below %d\n", int(axis), place, mean_ratio(with_line(sweeps_, out_, candidate), stack, place), noise_floor(spectrum)[bin], significant_power(spectrum, noise_floor(spectrum), bin, false_alarm() / stack.tries_factor), stack.averages[bin], int(recurs(with_line(sweeps_, out_, candidate), stack, place)), int(bin)-int(stack.first));
+        return mean_ratio(with_line(sweeps_, out_, candidate), stack, place) /
+               significant_power(spectrum, noise_floor(spectrum), bin, false_alarm() / stack.tries_factor);
     }
 
     [[nodiscard]] MotionLine measured(std::span<const Sweep> sweeps, std::size_t candidate) const {

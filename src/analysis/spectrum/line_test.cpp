@@ -62,15 +62,14 @@ double averages_of(double averages, double floor_over_noise) {
     return (1.0 + common) * (1.0 + common) / (1.0 / averages + common * common);
 }
 
-/// A floor near a bin, and from how many cells it is known.
+/// A floor near a bin, from how many cells it is known, and how many independent averages noise has there.
 struct Floor {
-    double power = 0.0, cells = 0.0;
+    double power = 0.0, cells = 0.0, averages = 1.0;
 };
 
 /// A line exceeds every floor of the first list, and one of the second where there are any.
 struct Floors {
     std::vector<Floor> every, either;
-    double averages = 1.0;  ///< independent ones behind each value
 };
 
 /// Independent averages behind values of noise over their floor, by their scatter below the median, where
@@ -115,7 +114,7 @@ Floor floor_from(std::vector<double>& values, double averages, double bins_per_c
     double sum = static_cast<double>(values.size() - kept) * *last;
     for (auto value = values.begin(); value <= last; ++value) sum += *value;
     return {sum / static_cast<double>(kept) / censored_expectation(averages),
-            static_cast<double>(kept) / bins_per_cell};
+            static_cast<double>(kept) / bins_per_cell, averages};
 }
 
 std::size_t bins_of(const PowerSpectrum& s, double cells) {
@@ -142,7 +141,12 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
     const auto add_above = [&](std::size_t from, std::size_t to) {
         for (std::size_t d = from; d <= std::min(to, above); ++d) values.push_back(s.power[bin + d]);
     };
-    const auto floor = [&] { return floor_from(values, averages, s.bins_per_cell); };
+    double independent = 1.0;
+    const auto floor = [&] {
+        Floor found = floor_from(values, averages, s.bins_per_cell);
+        found.averages = averages_of(independent, found.power / running[bin]);
+        return found;
+    };
     const std::size_t shorter = std::min(below, above), longer = std::max(below, above);
     const std::size_t reach = shorter >= fewest ? shorter : std::min(bins_of(s, near_cells), longer);
     {
@@ -152,7 +156,7 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
             if (d <= above) values.push_back(s.power[bin + d] / running[bin + d]);
         }
         if (!values.empty())
-            floors.averages = std::clamp(averages_by_scatter(std::move(values)), 1.0, std::max(1.0, averages));
+            independent = std::clamp(averages_by_scatter(std::move(values)), 1.0, std::max(1.0, averages));
     }
     for (const auto& [from, to] :
          {std::pair{inner_from_cells, inner_to_cells}, {guard_cells, near_cells}, {guard_cells, far_cells}}) {
@@ -162,6 +166,9 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
         add_above(bins_of(s, from), end);
         if (!values.empty()) floors.every.push_back(floor());
     }
+    // Where the nearest cells are above those further out, the noise rises towards the bin: by as much again.
+    if (below >= fewest && floors.every.size() > 1 && floors.every[0].power > floors.every[1].power)
+        floors.every[0].power *= floors.every[0].power / floors.every[1].power;
     values.clear();
     if (below >= fewest) {
         add_below(guard, bins_of(s, near_cells));
@@ -175,7 +182,10 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
         const double rise = static_cast<double>(bin + d) / static_cast<double>(bin);
         values.push_back(s.power[bin + d] * rise * rise * rise * rise);
     }
-    if (!values.empty()) floors.either.push_back(floor());
+    if (!values.empty()) {
+        floors.either.push_back(floor_from(values, averages, s.bins_per_cell));
+        floors.either.back().averages = independent;  // it is a limit, and not what the noise is
+    }
     if (floors.either.empty()) floors.every.clear();
     return floors;
 }
@@ -258,8 +268,7 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         const Floors floors = floors_about(spectrum, floor, k);
         if (floors.every.empty()) continue;
         const auto chance_over = [&](const Floor& level) {
-            const double known = averages_of(floors.averages, level.power / floor[k]);
-            return tries * exceedance({.ratio = power[k] / level.power, .averages = known, .cells = level.cells});
+            return tries * exceedance({.ratio = power[k] / level.power, .averages = level.averages, .cells = level.cells});
         };
         SignificantPeak peak{k, 0.0, 0.0};
         for (const Floor& level : floors.every) {
@@ -312,11 +321,9 @@ double significant_power(const PowerSpectrum& spectrum, std::span<const double> 
     const Floors floors = floors_about(spectrum, floor, bin);
     if (floors.every.empty()) return none;
     const auto threshold = [&](const Floor& level) {
-        const double known = averages_of(floors.averages, level.power / floor[bin]);
         const double chance = false_alarm / tries_of(spectrum);
-        return level.power * exceeded(chance, {.averages = known, .cells = level.cells}).ratio;
+        return level.power * exceeded(chance, {.averages = level.averages, .cells = level.cells}).ratio;
     };
-    if (std::getenv("DBG2")) { std::fprintf(stderr, "  bin %zu below %zu neff %.2f every", bin, bin - spectrum.first, floors.averages); for (auto& e : floors.every) std::fprintf(stderr, " %.2f/%.1f->%.1f", e.power, e.cells, threshold(e)); std::fprintf(stderr, " either"); for (auto& e : floors.either) std::fprintf(stderr, " %.2f/%.1f->%.1f", e.power, e.cells,threshold(e)); std::fprintf(stderr, " cellbins %.1f\n", spectrum.bins_per_cell); }
     double highest = 0.0, either = floors.either.empty() ? 0.0 : none;
     for (const Floor& level : floors.every) highest = std::max(highest, threshold(level));
     for (const Floor& level : floors.either) either = std::min(either, threshold(level));
