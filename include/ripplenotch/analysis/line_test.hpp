@@ -19,6 +19,8 @@ struct PowerSpectrum {
     std::size_t first = 0;  ///< bins below are not used
     std::span<const double> averages_by_bin = {};  ///< when given, instead of `averages`
     std::size_t searched = 0;  ///< bins below, if not below `first`, are noise for others, and not searched
+    /// By bin, not 0 where a line was removed, and the noise with it; empty: none was.
+    std::span<const char> removed = {};
 
     [[nodiscard]] double averages_at(std::size_t bin) const {
         return averages_by_bin.empty() ? averages : averages_by_bin[bin];
@@ -54,10 +56,14 @@ struct SignificantPeak {
 [[nodiscard]] std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum,
                                                            std::span<const double> floor, double false_alarm);
 
-/// The power from which on a maximum at this bin is significant; infinite where none is tested. `floor` is
-/// noise_floor(spectrum).
-[[nodiscard]] double significant_power(const PowerSpectrum& spectrum, std::span<const double> floor,
-                                       std::size_t bin, double false_alarm);
+/// Powers from which on a maximum at a bin is no noise, and from which on it is a line. They differ near the
+/// low end, where what the motion leaves is no noise either. Infinite where nothing is tested.
+struct LineThreshold {
+    double noise = 0.0, line = 0.0;
+};
+/// `floor` is noise_floor(spectrum).
+[[nodiscard]] LineThreshold line_threshold(const PowerSpectrum& spectrum, std::span<const double> floor,
+                                           std::size_t bin, double false_alarm);
 
 /// What a median of exponential values knows of their mean, as a share of what the mean of as many knows:
 /// (ln 2)^2.

@@ -29,12 +29,14 @@ struct Stack {
     std::vector<double> floor_nm;       ///< what noise alone shows, rms over sweeps
     std::vector<double> sweep_weights;  ///< effective samples
     std::vector<std::vector<float>> floors;  ///< per sweep and bin: mean noise power |S|^2; 0 where not used
-    std::size_t first = 0;                   ///< lowest bin in use
+    std::vector<char> removed;  ///< by bin, not 0 where a line was removed from the sweeps; see mark_removed()
+    std::size_t first = 0;      ///< lowest bin in use
     std::size_t searched = 0;                ///< lowest bin at which lines are looked for
+    double lowest = 0.0;                     ///< the lowest order, or hertz, that is claimed to be searched
 
     [[nodiscard]] PowerSpectrum tested() const;
-    /// significant_peaks of `ratio`, the chance corrected for grids finer than the resolution.
-    [[nodiscard]] std::vector<SignificantPeak> peaks(double false_alarm) const;
+    /// States that the sweeps hold no line at a place, and no noise there.
+    void mark_removed(double place);
     struct HumpRule {
         double false_alarm = 0.0;
         double lowest = 0.0;  ///< from where on humps are told, in orders or hertz

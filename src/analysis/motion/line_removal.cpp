@@ -180,7 +180,8 @@ double cycles_apart(const Sweep& sweep, const KnownLine& one, const KnownLine& o
     if (one.axis == other.axis) return std::abs(one.place - other.place) * length_of(sweep, one.axis);
     const KnownLine& order = one.axis == Axis::angle ? one : other;
     const double hz = one.axis == Axis::angle ? other.place : one.place;
-    const double slow = order.place * sweep.slow_deg_s / 360.0, quick = order.place * sweep.quick_deg_s / 360.0;
+    const double slow = order.place * sweep.slow_deg_s / 360.0,
+                 quick = order.place * sweep.quick_deg_s / 360.0;
     return std::max({0.0, slow - hz, hz - quick}) * sweep.duration_s;
 }
 
@@ -267,9 +268,8 @@ std::vector<Sweep> with_line(std::vector<Sweep> sweeps, std::span<const KnownLin
 }
 
 bool apart(std::span<const Sweep> sweeps, const KnownLine& one, const KnownLine& other) {
-    return std::all_of(sweeps.begin(), sweeps.end(), [&](const Sweep& sweep) {
-        return cycles_apart(sweep, one, other) >= clear_cycles;
-    });
+    return std::all_of(sweeps.begin(), sweeps.end(),
+                       [&](const Sweep& sweep) { return cycles_apart(sweep, one, other) >= clear_cycles; });
 }
 
 }  // namespace ripplenotch

@@ -1,22 +1,31 @@
 // SPDX-License-Identifier: MIT
-#include "analysis/motion/motion_search.hpp"
+#include "ripplenotch/analysis/motion_lines.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <functional>
 
 #include "analysis/motion/line_evidence.hpp"
 #include "analysis/motion/line_removal.hpp"
-#include "analysis/motion/stacks.hpp"
+#include "analysis/motion/velocity_error.hpp"
 #include "analysis/shared_limits.hpp"
 #include "core/process/two_cores.hpp"
-#include "ripplenotch/core/median.hpp"
 
 namespace ripplenotch {
 namespace {
 
 constexpr double kept_share = 0.8;  // by hand: of a gain, left once the other line is out
 constexpr double line_cells = 2.0;  // half width of a line's main lobe, in resolutions
+
+/// The sweeps on both axes, without the lines that were removed from them.
+struct Stacks {
+    Stack angle, time;
+};
+
+Stacks stacked(std::span<const Sweep> sweeps, const MotionLinesOptions& options) {
+    return {stack_sweeps(sweeps, Axis::angle, options.stack),
+            stack_sweeps(sweeps, Axis::time, options.stack)};
+}
 
 struct Candidate {
     SignificantPeak peak;
@@ -97,9 +106,10 @@ std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, con
     for (std::size_t k = std::max<std::size_t>(stack.searched, 1); k < stack.ratio.size();
          k = std::max(k + 1, static_cast<std::size_t>(step * static_cast<double>(k)))) {
         const double place = static_cast<double>(k) * stack.spacing;
+        if (place < stack.lowest) continue;
         if (place > highest) break;
         if (near_any(taken, place, line_cells * stack.resolution)) continue;
-        const double threshold = significant_power(spectrum, floor, k, chance);
+        const double threshold = line_threshold(spectrum, floor, k, chance).line;
         if (!std::isfinite(threshold)) {
             if (searched.detectable_nm > 0.0) break;
             continue;
@@ -202,25 +212,28 @@ class LineSearch {
         }
     }
 
-    /// The clearest first. What does not recur is no line: a burst, or the ripple of another joint that passes
-    /// by. It is no noise either, and stays removed.
+    /// The clearest first. What does not recur is no line: a burst, or the ripple of another joint that
+    /// passes by. Near the low end what is no noise may still be motion. Both stay removed, and are not
+    /// reported.
     [[nodiscard]] std::vector<MotionLine> lines() {
         std::vector<MotionLine> lines;
         for (std::size_t i = 0; i < out_.size(); ++i) {
             const std::vector<Sweep> sweeps = with_line(sweeps_, out_, i);
-            if (recurs(sweeps, stack_of(out_[i].axis), out_[i].place)) lines.push_back(measured(sweeps, i));
+            const auto& [axis, place] = out_[i];
+            if (!(shares_of_threshold(sweeps, i).line > 1.0) || !recurs(sweeps, stack_of(axis), place))
+                continue;
+            MotionLine line = measured(sweeps, i);
+            if (line.amplitude_nm < least_amplitude_) continue;
+            if (axis == Axis::angle) orders_.push_back(place);
+            lines.push_back(std::move(line));
         }
         return lines;
     }
+    /// Of the lines that lines() gave.
+    [[nodiscard]] std::span<const double> orders() const { return orders_; }
 
     [[nodiscard]] Stacks& stacks() { return stacks_; }
     [[nodiscard]] const SpeedRange& range() const { return range_; }
-    [[nodiscard]] std::vector<double> orders() const {
-        std::vector<double> orders;
-        for (const KnownLine& line : out_)
-            if (line.axis == Axis::angle) orders.push_back(line.place);
-        return orders;
-    }
     [[nodiscard]] double least_amplitude() const { return least_amplitude_; }
 
   private:
@@ -244,8 +257,7 @@ class LineSearch {
         line.by_angle = order && (!tone || order->gain >= tone->gain);
         line.rivals = rivals_of(line.by_angle ? order->peak.bin : tone->peak.bin, line.by_angle);
         LineKind kind = judged(sweeps_, stacks_, line.rivals, line.by_angle);
-        const bool as_order =
-            kind == LineKind::order || (kind == LineKind::unknown && line.rivals.has_order);
+        const bool as_order = kind == LineKind::order || (kind == LineKind::unknown && line.rivals.has_order);
         const Stack& stack = as_order ? angle : time;
         auto& taken = as_order ? taken_orders_ : taken_hz_;
         line.known = {stack.axis, as_order ? line.rivals.order : line.rivals.hz};
@@ -260,8 +272,14 @@ class LineSearch {
         candidates_.push_back(line);
         out_.push_back(line.known);
         remove_last(sweeps_, out_);
-        stacks_ = stacked(sweeps_, options_);
+        stack_again();
         return true;
+    }
+
+    void stack_again() {
+        stacks_ = stacked(sweeps_, options_);
+        for (const KnownLine& line : out_)
+            (line.axis == Axis::angle ? stacks_.angle : stacks_.time).mark_removed(line.place);
     }
 
     /// Where a peak stands on its own axis, and the most that the other axis offers for it.
@@ -286,18 +304,22 @@ class LineSearch {
             const PowerSpectrum spectrum = stack.tested();
             for (const SignificantPeak& peak :
                  prominent_peaks(spectrum, noise_floor(spectrum), false_alarm()))
-                rivals.two_lines = rivals.two_lines || std::abs(static_cast<double>(peak.bin) * stack.spacing -
-                                                                place) < stack.resolution;
+                rivals.two_lines =
+                    rivals.two_lines ||
+                    std::abs(static_cast<double>(peak.bin) * stack.spacing - place) < stack.resolution;
         }
         return rivals;
     }
 
     /// Of the candidates that are not significant the weakest is put back, and those with it that it does not
-    /// stand for: of two that stand for each other neither seems to be needed. False when all are significant.
+    /// stand for: of two that stand for each other neither seems to be needed. False when all are
+    /// significant.
     bool put_back_insignificant() {
         std::vector<std::pair<double, std::size_t>> failed;
         for (std::size_t i = 0; i < out_.size(); ++i)
-            if (const double share = share_of_threshold(i); !(share > 1.0)) failed.emplace_back(share, i);
+            if (const double share = shares_of_threshold(with_line(sweeps_, out_, i), i).noise;
+                !(share > 1.0))
+                failed.emplace_back(share, i);
         if (failed.empty()) return false;
         std::sort(failed.begin(), failed.end());
         std::vector<std::size_t> dropped;
@@ -311,21 +333,23 @@ class LineSearch {
             candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(i));
         }
         on_two_cores(sweeps_.size(), [&](std::size_t i) { fit_out(sweeps_[i], out_); });
-        stacks_ = stacked(sweeps_, options_);
+        stack_again();
         return true;
     }
 
-    /// The power of a candidate over that from which on it is significant, against the noise that remains when
-    /// all candidates are removed.
-    [[nodiscard]] double share_of_threshold(std::size_t candidate) const {
+    /// The power of a candidate over those from which on it is no noise, and a line, against the noise that
+    /// remains when all candidates are removed. `sweeps` hold it alone.
+    [[nodiscard]] LineThreshold shares_of_threshold(std::span<const Sweep> sweeps,
+                                                    std::size_t candidate) const {
         const auto& [axis, place] = out_[candidate];
         const Stack& stack = stack_of(axis);
         const auto bin = static_cast<std::size_t>(std::lround(place / stack.spacing));
-        if (bin >= stack.ratio.size() || !(stack.averages[bin] > 0.0)) return 0.0;
+        if (bin >= stack.ratio.size() || !(stack.averages[bin] > 0.0)) return {};
         const PowerSpectrum spectrum = stack.tested();
-        if (std::getenv("DBG")) std::fprintf(stderr, "cand axis %d place %.3f ratio %.2f running %.3f thr %.2f n %.1f recurs %d below %d\n", int(axis), place, mean_ratio(with_line(sweeps_, out_, candidate), stack, place), noise_floor(spectrum)[bin], significant_power(spectrum, noise_floor(spectrum), bin, false_alarm() / stack.tries_factor), stack.averages[bin], int(recurs(with_line(sweeps_, out_, candidate), stack, place)), int(bin)-int(stack.first));
-        return mean_ratio(with_line(sweeps_, out_, candidate), stack, place) /
-               significant_power(spectrum, noise_floor(spectrum), bin, false_alarm() / stack.tries_factor);
+        const LineThreshold threshold =
+            line_threshold(spectrum, noise_floor(spectrum), bin, false_alarm() / stack.tries_factor);
+        const double power = mean_ratio(sweeps, stack, place);
+        return {power / threshold.noise, power / threshold.line};
     }
 
     [[nodiscard]] MotionLine measured(std::span<const Sweep> sweeps, std::size_t candidate) const {
@@ -347,6 +371,10 @@ class LineSearch {
         }
         if (angle.ratio.empty()) return line;  // at standstill
         line.order_seen = rivals.has_order ? rivals.order : order_at(sweeps, angle, rivals.hz);
+        if (line.kind == LineKind::unknown && !as_order) {
+            line.order_output = line.order_seen;
+            line.order_stderr = angle.resolution;
+        }
         line.folds =
             folds_of(sweeps, angle, {.seen = line.order_seen, .highest = options_.stack.highest_order});
         return line;
@@ -358,13 +386,18 @@ class LineSearch {
     SpeedRange range_;
     double least_amplitude_;
     Stacks stacks_;
-    std::vector<double> taken_orders_, taken_hz_;
+    std::vector<double> taken_orders_, taken_hz_, orders_;
     std::vector<KnownLine> out_;             ///< removed from the sweeps
     std::vector<CandidateLine> candidates_;  ///< the same, with what is known of each
 };
 
-}  // namespace
+struct MotionSearch {
+    MotionLines found;
+    Stack angle;                ///< of what the lines left
+    std::vector<Sweep> sweeps;  ///< where the angle is not absolute: no line that was found removed
+};
 
+/// The search for lines in sweeps whose angle is taken as it is.
 MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const MotionLinesOptions& options) {
     MotionSearch search;
     MotionLines& found = search.found;
@@ -382,7 +415,6 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     found.slowest_deg_s = search_of.range().slow;
     found.fastest_deg_s = search_of.range().fast;
     found.lines = search_of.lines();
-    std::erase_if(found.lines, [&](const MotionLine& line) { return line.amplitude_nm < search_of.least_amplitude(); });
     const Stack& angle = search_of.stacks().angle;
     found.resolution_orders = angle.resolution;
     found.highest_spectrum_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
@@ -390,7 +422,8 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     if (found.searched) {
         const double least_nm = search_of.least_amplitude();
         found.searched->detectable_nm = std::max(found.searched->detectable_nm, least_nm);
-        for (auto& bound : found.searched->bounds) bound.detectable_nm = std::max(bound.detectable_nm, least_nm);
+        for (auto& bound : found.searched->bounds)
+            bound.detectable_nm = std::max(bound.detectable_nm, least_nm);
     }
     found.humps =
         search_of.stacks().time.humps({.false_alarm = options.false_alarm, .lowest = options.lowest_tone_hz});
@@ -398,6 +431,44 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     for (std::size_t i = 0; i < values.size(); ++i) sweeps[i].value = std::move(values[i]);
     if (!cut.absolute_angle) search.sweeps = std::move(sweeps);
     return search;
+}
+
+// By hand: of a cycle of the highest order. A line moved by less loses less than a hundredth of its height.
+constexpr double unseen_cycles = 0.02;
+
+/// The orders among the lines, the one that explains most first.
+std::vector<MotionLine*> orders_among(std::vector<MotionLine>& lines) {
+    std::vector<MotionLine*> orders;
+    for (MotionLine& line : lines) {
+        if (line.kind == LineKind::order) orders.push_back(&line);
+    }
+    std::stable_sort(orders.begin(), orders.end(),
+                     [](const MotionLine* a, const MotionLine* b) { return a->gain_angle > b->gain_angle; });
+    return orders;
+}
+
+}  // namespace
+
+MotionLines find_motion_lines(std::span<const TraceView> logs, const MotionLinesOptions& options) {
+    MotionSearch search = search_sweeps(cut_sweeps(logs, options.sweeps), logs, options);
+    MotionLines& found = search.found;
+    if (found.absolute_angle) return std::move(found);
+    const std::vector<MotionLine*> lines = orders_among(found.lines);
+    std::vector<double> orders;
+    for (const MotionLine* line : lines) orders.push_back(line->order_output);
+    const auto fit = fit_velocity_error(logs, search.sweeps, search.angle, orders);
+    if (!fit) return std::move(found);
+    MotionLines again;
+    if (fit->most_cycles > unseen_cycles)
+        again = search_sweeps(cut_sweeps(logs, options.sweeps, fit->error), logs, options).found;
+    if (orders_among(again.lines).empty()) {
+        for (std::size_t i = 0; i < fit->order_shares.size(); ++i)
+            lines[i]->order_output *= 1.0 + fit->order_shares[i];
+        again = std::move(found);
+    }
+    again.velocity_error = fit->error;
+    again.order_share_error = fit->order_share_error;
+    return again;
 }
 
 }  // namespace ripplenotch

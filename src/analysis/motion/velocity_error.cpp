@@ -2,18 +2,291 @@
 #include "analysis/motion/velocity_error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <vector>
 
-#include "analysis/motion/velocity_noise.hpp"
-#include "analysis/motion/velocity_power.hpp"
 #include "core/matrices/factorisations.hpp"
+#include "core/matrices/linear_algebra.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using Complex = std::complex<double>;
+
+/// A sweep's torque at one order: demodulated, and averaged over short cells. The three columns are what the
+/// order's own place, the offset and the delay add to the angle, in turns for one unit of each, about their
+/// means.
+struct DemodulatedSweep {
+    std::size_t sweep = 0, order = 0;  ///< which
+    double cycles = 0.0;               ///< per turn
+    double noise = 0.0;                ///< power of it in the sum
+    std::vector<std::complex<double>> value;
+    std::vector<double> weight, weight_square, seconds;
+    std::array<std::vector<double>, 3> column;
+    double variance_per_s = 0.0;  ///< of the angle, in turns^2: what noise of the velocity adds up to
+    double weights = 0.0, weight_squares = 0.0;
+};
+
+/// Half of the summed power over noise at some values of the unknowns: one for each order (its place, as a
+/// share), the offset in deg/s, the delay in seconds. With what the unknowns may be beforehand.
+class RipplePower {
+  public:
+    /// `beforehand`: its errors are how far offset and delay may be from 0.
+    RipplePower(std::vector<DemodulatedSweep> all, std::size_t orders, const VelocityError& beforehand)
+        : all_(std::move(all)),
+          orders_(orders),
+          certainty_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(orders) + 2)) {
+        const double off = beforehand.offset_error.value(), late = beforehand.delay_error.value();
+        certainty_[offset()] = 1.0 / (off * off);
+        certainty_[delay()] = 1.0 / (late * late);
+    }
+
+    struct At {
+        double value = 0.0;
+        Eigen::VectorXd slope;
+        Eigen::MatrixXd curve;     ///< of the power itself, and
+        Eigen::MatrixXd expected;  ///< what it is where the cells are in phase: never indefinite
+    };
+
+    [[nodiscard]] Eigen::Index unknowns() const { return static_cast<Eigen::Index>(orders_) + 2; }
+    [[nodiscard]] Eigen::Index offset() const { return static_cast<Eigen::Index>(orders_); }
+    [[nodiscard]] Eigen::Index delay() const { return static_cast<Eigen::Index>(orders_) + 1; }
+
+    [[nodiscard]] At at(const Eigen::VectorXd& unknown) const {
+        At sum{-0.5 * unknown.dot(certainty_.cwiseProduct(unknown)), -certainty_.cwiseProduct(unknown),
+               -Eigen::MatrixXd(certainty_.asDiagonal()), Eigen::MatrixXd(certainty_.asDiagonal())};
+        for (const DemodulatedSweep& cells : all_) add(cells, unknown, sum);
+        return sum;
+    }
+
+    /// Covariance of the slope at the maximum: of noise of the torque, and of what the orders have in common,
+    /// noise of the velocity and what was believed beforehand.
+    struct SlopeVariance {
+        Eigen::MatrixXd own, common;
+    };
+    [[nodiscard]] SlopeVariance slope_variance(const Eigen::VectorXd& unknown) const;
+
+    /// How far offset and delay move a cell within its sweep, at most, in cycles of its order.
+    [[nodiscard]] double most_cycles(const Eigen::VectorXd& unknown) const;
+
+  private:
+    [[nodiscard]] std::array<Eigen::Index, 3> places_of(const DemodulatedSweep& cells) const {
+        return {static_cast<Eigen::Index>(cells.order), offset(), delay()};
+    }
+
+    void add(const DemodulatedSweep& cells, const Eigen::VectorXd& unknown, At& sum) const;
+
+    std::vector<DemodulatedSweep> all_;
+    std::size_t orders_;
+    Eigen::VectorXd certainty_;
+};
+
+// So many of a sweep turn less than a tenth of a cycle each where the whole is wrong by five cycles.
+constexpr std::size_t cells_per_sweep = 48;
+
+void centre(DemodulatedSweep& cells) {
+    for (std::vector<double>& column : cells.column) {
+        double mean = 0.0;
+        for (std::size_t i = 0; i < column.size(); ++i) mean += cells.weight[i] * column[i] / cells.weights;
+        for (double& one : column) one -= mean;
+    }
+}
+
+struct PowerMoments {
+    Complex value;
+    std::array<Complex, 3> first{};
+    std::array<std::array<Complex, 3>, 3> second{};
+};
+
+/// The sum and its derivatives by the three unknowns that move it.
+PowerMoments power_moments(const DemodulatedSweep& cells, const std::array<double, 3>& moved) {
+    PowerMoments sum;
+    const double rate = full_turn * cells.cycles;
+    for (std::size_t i = 0; i < cells.value.size(); ++i) {
+        const double off =
+            moved[0] * cells.column[0][i] + moved[1] * cells.column[1][i] + moved[2] * cells.column[2][i];
+        const Complex z = cells.value[i] * portable::polar(1.0, -rate * off);
+        sum.value += z;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Complex by_a = Complex(0.0, -rate * cells.column[a][i]) * z;
+            sum.first[a] += by_a;
+            for (std::size_t b = 0; b <= a; ++b)
+                sum.second[a][b] += Complex(0.0, -rate * cells.column[b][i]) * by_a;
+        }
+    }
+    return sum;
+}
+
+/// Sums of weight * column a * column b over the cells.
+double spread_of_cells(const DemodulatedSweep& cells, const std::vector<double>& weight, std::size_t a,
+                       std::size_t b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < weight.size(); ++i)
+        sum += weight[i] * cells.column[a][i] * cells.column[b][i];
+    return sum;
+}
+
+/// `noise` and `variance_per_s` are left to the caller. Cost O(samples).
+DemodulatedSweep demodulated(const TraceView& log, const Sweep& sweep, double cycles_per_turn) {
+    const std::size_t n = sweep.turns.size(), count = std::min(n, cells_per_sweep);
+    DemodulatedSweep cells;
+    cells.cycles = cycles_per_turn;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t first = n * i / count, end = n * (i + 1) / count;
+        Complex sum;
+        double weight = 0.0, squares = 0.0, turns = 0.0, time = 0.0, speed = 0.0;
+        for (std::size_t k = first; k < end; ++k) {
+            sum += sweep.value[k] * portable::polar(1.0, -full_turn * cycles_per_turn * sweep.turns[k]);
+            weight += sweep.weight[k];
+            squares += sweep.weight[k] * sweep.weight[k];
+            turns += sweep.turns[k];
+            time += sweep.time_s[k];
+            speed += log.velocity_deg_s[sweep.first + k];
+        }
+        const auto samples = static_cast<double>(end - first);
+        cells.value.push_back(sum);
+        cells.weight.push_back(weight);
+        cells.weight_square.push_back(squares);
+        cells.weights += weight;
+        cells.weight_squares += squares;
+        cells.seconds.push_back(samples / sweep.rate_hz);
+        cells.column[0].push_back(turns / samples);
+        const bool summed = !log.has_position();
+        cells.column[1].push_back(summed ? -time / samples / 360.0 : 0.0);
+        cells.column[2].push_back(summed ? speed / samples / 360.0 : 0.0);
+    }
+    centre(cells);
+    return cells;
+}
+
+void RipplePower::add(const DemodulatedSweep& cells, const VectorXd& unknown, At& sum) const {
+    const auto place = places_of(cells);
+    const PowerMoments m = power_moments(cells, {unknown[place[0]], unknown[place[1]], unknown[place[2]]});
+    const double power = std::norm(m.value) / cells.noise;
+    sum.value += 0.5 * power;
+    const double rate = full_turn * cells.cycles;
+    const double stiff = power / cells.weights * rate * rate;
+    for (std::size_t a = 0; a < 3; ++a) {
+        sum.slope[place[a]] += std::real(std::conj(m.value) * m.first[a]) / cells.noise;
+        for (std::size_t b = 0; b <= a; ++b) {
+            const double curve =
+                std::real(std::conj(m.first[a]) * m.first[b] + std::conj(m.value) * m.second[a][b]) /
+                cells.noise;
+            const double expected = stiff * spread_of_cells(cells, cells.weight, a, b);
+            sum.curve(place[a], place[b]) += curve;
+            sum.expected(place[a], place[b]) += expected;
+            if (a == b) continue;
+            sum.curve(place[b], place[a]) += curve;
+            sum.expected(place[b], place[a]) += expected;
+        }
+    }
+}
+
+double RipplePower::most_cycles(const VectorXd& unknown) const {
+    double most = 0.0;
+    for (const DemodulatedSweep& cells : all_) {
+        for (std::size_t i = 0; i < cells.value.size(); ++i) {
+            const double off = unknown[offset()] * cells.column[1][i] + unknown[delay()] * cells.column[2][i];
+            most = std::max(most, cells.cycles * std::abs(off));
+        }
+    }
+    return most;
+}
+
+RipplePower::SlopeVariance RipplePower::slope_variance(const VectorXd& unknown) const {
+    SlopeVariance variance{MatrixXd::Zero(unknowns(), unknowns()), MatrixXd(certainty_.asDiagonal())};
+    std::vector<VectorXd> after;  // by cell, how much of the slope one turn of angle from there on makes
+    const DemodulatedSweep* before = nullptr;
+    const auto settle = [&] {
+        if (before == nullptr) return;
+        for (std::size_t i = 0; i < after.size(); ++i)
+            variance.common += before->variance_per_s * before->seconds[i] * after[i] * after[i].transpose();
+        after.clear();
+    };
+    for (const DemodulatedSweep& cells : all_) {
+        // The orders of one sweep follow each other, and share its angle.
+        if (before != nullptr && before->sweep != cells.sweep) settle();
+        before = &cells;
+        after.resize(cells.value.size(), VectorXd::Zero(unknowns()));
+        const auto place = places_of(cells);
+        const PowerMoments m =
+            power_moments(cells, {unknown[place[0]], unknown[place[1]], unknown[place[2]]});
+        const double power = std::max(0.0, std::norm(m.value) / cells.noise - 1.0);
+        const double rate = full_turn * cells.cycles, stiff = power / cells.weights * rate * rate;
+        for (std::size_t a = 0; a < 3; ++a) {
+            double tail = 0.0;
+            for (std::size_t i = cells.value.size(); i-- > 0;) {
+                tail += cells.weight[i] * cells.column[a][i];
+                after[i][place[a]] += stiff * tail;
+            }
+            for (std::size_t b = 0; b < 3; ++b) {
+                variance.own(place[a], place[b]) += 0.5 * power * rate * rate *
+                                                    spread_of_cells(cells, cells.weight_square, a, b) /
+                                                    cells.weight_squares;
+            }
+        }
+    }
+    settle();
+    return variance;
+}
+
+/// Where a velocity in coarse steps turns, it stays at one value while the joint is up to a step beside it: a
+/// parabola that reaches a share h of the step, anything from 0 to 1, is off by 2 h / 3 - 1 / 2 in the mean.
+constexpr double square_off = 1.0 / 27.0 + 1.0 / 36.0;
+constexpr std::size_t fewest_alike = 3;  // by hand: noise alone makes two alike now and then
+constexpr double same_step = 1e-3;       // by hand: of a step; values have been rounded in other units
+
+/// Variance that turning points of a velocity in steps add to its sum in each second, in deg^2/s. Between
+/// them the steps average out.
+double of_steps(std::span<const double> velocity_deg_s, Hertz rate) {
+    double sum = 0.0;
+    std::size_t begin = 0;
+    for (std::size_t k = 1; k < velocity_deg_s.size(); ++k) {
+        if (velocity_deg_s[k] == velocity_deg_s[begin]) continue;
+        if (begin > 0 && k - begin >= fewest_alike) {
+            const double before = velocity_deg_s[begin - 1] - velocity_deg_s[begin],
+                         after = velocity_deg_s[k] - velocity_deg_s[begin];
+            const double seconds = static_cast<double>(k - begin) / rate.value();
+            if (std::abs(before - after) <= same_step * std::abs(after))
+                sum += square_off * after * after * seconds * seconds;
+        }
+        begin = k;
+    }
+    return sum / (static_cast<double>(velocity_deg_s.size()) / rate.value());
+}
+
+/// Variance that the velocity's noise adds to its sum in each second, in deg^2/s: the noise of means over
+/// 25 ms, which motion hardly bends, times their length. From third differences of neighbouring means (the
+/// squares of 1, 3, 3, 1 are 20 together), by their median, so that a few jerks do not count; and what a
+/// velocity in coarse steps is off by where it turns. 0 for a log of fewer than a hundred means.
+double velocity_noise(const TraceView& log) {
+    // By hand: long enough to hold the noise that a filter lets pass, short enough for motion of some hertz.
+    constexpr double mean_over_s = 0.025;
+    constexpr std::size_t fewest_means = 100;  // by hand: their median is within a tenth
+    constexpr double normal_median = 0.6745;   // of the magnitude of a normal variable, in deviations
+    const auto samples =
+        static_cast<std::size_t>(std::max(1.0, std::round(mean_over_s * log.sample_rate.value())));
+    std::vector<double> means;
+    for (std::size_t first = 0; first + samples <= log.size(); first += samples) {
+        double sum = 0.0;
+        for (std::size_t k = first; k < first + samples; ++k) sum += log.velocity_deg_s[k];
+        means.push_back(sum / static_cast<double>(samples));
+    }
+    if (means.size() < fewest_means) return 0.0;
+    std::vector<double> bends;
+    for (std::size_t i = 3; i < means.size(); ++i)
+        bends.push_back(std::abs(means[i] - 3.0 * means[i - 1] + 3.0 * means[i - 2] - means[i - 3]));
+    const double deviation = median_in(bends) / normal_median / std::sqrt(20.0);
+    return deviation * deviation * static_cast<double>(samples) / log.sample_rate.value() +
+           of_steps(log.velocity_deg_s, log.sample_rate);
+}
+
 constexpr std::size_t most_orders = 4;   // by hand: the clearest say nearly all
 constexpr double offset_share = 0.01;    // by hand, of the fastest speed: a poor tachometer's
 constexpr double likely_delay_s = 0.02;  // by hand: a velocity filter of 8 Hz is as late

@@ -180,8 +180,10 @@ class Level {
         const double averages = averages_of(window_cells_, at);
         const double side =
             static_cast<double>(std::min(at - before(side_blocks), after(side_blocks) - end) - guard_blocks);
-        const double chance = std::min(
-            1.0, tries * exceedance({.ratio = ratio, .averages = averages, .cells = median_efficiency * side / window_blocks}));
+        const double chance =
+            std::min(1.0, tries * exceedance({.ratio = ratio,
+                                              .averages = averages,
+                                              .cells = median_efficiency * side / window_blocks}));
         if (chance > false_alarm) return;
         into.push_back({grown(at, floor, chance), averages * (ratio - 1.0 - portable::log(ratio))});
     }

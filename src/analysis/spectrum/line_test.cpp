@@ -85,12 +85,14 @@ double averages_by_scatter(std::vector<double> values) {
     };
     const double middle = at(0.5), lower = at(0.25);
     if (!(middle > 0.0) || !(lower < middle)) return std::numeric_limits<double>::infinity();
-    const double spread = (1.0 - portable::exp(portable::log(lower / middle) / 3.0)) / 0.6745;  // s / (1 - s^2)
+    const double spread =
+        (1.0 - portable::exp(portable::log(lower / middle) / 3.0)) / 0.6745;  // s / (1 - s^2)
     const double deviation = 0.5 * (std::sqrt(1.0 + 4.0 * spread * spread) - 1.0) / spread;
     return 1.0 / (9.0 * deviation * deviation);
 }
 
-constexpr double uncensored_share = 0.75;  // of the values around a bin: lines in the others do not raise the floor
+constexpr double uncensored_share =
+    0.75;  // of the values around a bin: lines in the others do not raise the floor
 
 /// Expectation of censored_sum() for values of mean 1, each the mean of `averages` exponentials.
 double censored_expectation(double averages) {
@@ -98,8 +100,8 @@ double censored_expectation(double averages) {
     // Wilson and Hilferty 1931: the cube root of a gamma variable is nearly normal.
     const double cube_root = 1.0 - 1.0 / (9.0 * n) + 0.6745 * std::sqrt(1.0 / (9.0 * n));
     const double quantile = cube_root * cube_root * cube_root;
-    const double partial_mean =
-        uncensored_share - portable::exp(n * portable::log(n * quantile) - n * quantile - portable::lgamma(n + 1.0));
+    const double partial_mean = uncensored_share - portable::exp(n * portable::log(n * quantile) -
+                                                                 n * quantile - portable::lgamma(n + 1.0));
     return (partial_mean + (1.0 - uncensored_share) * quantile) / uncensored_share;
 }
 
@@ -107,7 +109,8 @@ double censored_expectation(double averages) {
 /// the largest of these (type-II censoring, of which this is the maximum-likelihood estimate; as sure as the
 /// mean of so many values). Reorders the values.
 Floor floor_from(std::vector<double>& values, double averages, double bins_per_cell) {
-    const auto kept = static_cast<std::size_t>(std::ceil(uncensored_share * static_cast<double>(values.size())));
+    const auto kept =
+        static_cast<std::size_t>(std::ceil(uncensored_share * static_cast<double>(values.size())));
     if (kept == 0) return {};
     const auto last = values.begin() + static_cast<std::ptrdiff_t>(kept - 1);
     std::nth_element(values.begin(), last, values.end());
@@ -135,11 +138,14 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
     const auto beyond_guard = [guard](std::size_t room) { return room > guard ? room - guard : 0; };
     if (beyond_guard(below) + beyond_guard(above) < bins_of(s, fewest_cells)) return floors;
     std::vector<double> values;
+    const auto is_noise = [&](std::size_t at) { return s.removed.empty() || s.removed[at] == 0; };
     const auto add_below = [&](std::size_t from, std::size_t to) {
-        for (std::size_t d = from; d <= std::min(to, below); ++d) values.push_back(s.power[bin - d]);
+        for (std::size_t d = from; d <= std::min(to, below); ++d)
+            if (is_noise(bin - d)) values.push_back(s.power[bin - d]);
     };
     const auto add_above = [&](std::size_t from, std::size_t to) {
-        for (std::size_t d = from; d <= std::min(to, above); ++d) values.push_back(s.power[bin + d]);
+        for (std::size_t d = from; d <= std::min(to, above); ++d)
+            if (is_noise(bin + d)) values.push_back(s.power[bin + d]);
     };
     double independent = 1.0;
     const auto floor = [&] {
@@ -152,8 +158,8 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
     {
         const std::size_t end = std::min(bins_of(s, far_cells), reach);
         for (std::size_t d = guard; d <= end; ++d) {
-            if (d <= below) values.push_back(s.power[bin - d] / running[bin - d]);
-            if (d <= above) values.push_back(s.power[bin + d] / running[bin + d]);
+            if (d <= below && is_noise(bin - d)) values.push_back(s.power[bin - d] / running[bin - d]);
+            if (d <= above && is_noise(bin + d)) values.push_back(s.power[bin + d] / running[bin + d]);
         }
         if (!values.empty())
             independent = std::clamp(averages_by_scatter(std::move(values)), 1.0, std::max(1.0, averages));
@@ -172,13 +178,15 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
     values.clear();
     if (below >= fewest) {
         add_below(guard, bins_of(s, near_cells));
-        floors.every.push_back(floor());
+        if (!values.empty()) floors.every.push_back(floor());
         return floors;
     }
     add_below(bins_of(s, lobe_cells), below);
     if (!values.empty()) floors.either.push_back(floor());
     values.clear();
-    for (std::size_t d = bins_of(s, inner_from_cells); d <= std::min(bins_of(s, inner_to_cells), above); ++d) {
+    for (std::size_t d = bins_of(s, inner_from_cells); d <= std::min(bins_of(s, inner_to_cells), above);
+         ++d) {
+        if (!is_noise(bin + d)) continue;
         const double rise = static_cast<double>(bin + d) / static_cast<double>(bin);
         values.push_back(s.power[bin + d] * rise * rise * rise * rise);
     }
@@ -268,7 +276,9 @@ std::vector<SignificantPeak> significant_peaks(const PowerSpectrum& spectrum, st
         const Floors floors = floors_about(spectrum, floor, k);
         if (floors.every.empty()) continue;
         const auto chance_over = [&](const Floor& level) {
-            return tries * exceedance({.ratio = power[k] / level.power, .averages = level.averages, .cells = level.cells});
+            return tries *
+                   exceedance(
+                       {.ratio = power[k] / level.power, .averages = level.averages, .cells = level.cells});
         };
         SignificantPeak peak{k, 0.0, 0.0};
         for (const Floor& level : floors.every) {
@@ -288,12 +298,31 @@ std::vector<SignificantPeak> prominent_peaks(const PowerSpectrum& spectrum, std:
     std::vector<SignificantPeak> peaks;
     const auto& power = spectrum.power;
     const double tries = tries_of(spectrum);
+    const std::size_t last = power.size() - 1, guard = bins_of(spectrum, guard_cells);
+    std::vector<double> values;
     for (std::size_t k = std::max(spectrum.first + 1, spectrum.searched); k + 1 < power.size(); ++k) {
         if (power[k] < power[k - 1] || power[k] <= power[k + 1]) continue;
-        const double chance = tries * exceedance({.ratio = power[k] / floor[k],
-                                                  .averages = spectrum.averages_at(k),
-                                                  .cells = median_efficiency * 2.0 * far_cells});
-        if (chance <= false_alarm) peaks.push_back({k, floor[k], chance});
+        const double averages = spectrum.averages_at(k);
+        const auto chance = [&](const Floor& level) {
+            return tries *
+                   exceedance({.ratio = power[k] / level.power, .averages = averages, .cells = level.cells});
+        };
+        SignificantPeak peak{k, floor[k], chance({floor[k], median_efficiency * 2.0 * far_cells, averages})};
+        // Near the ends the running floor stands on so few cells that the line itself raises it.
+        const std::size_t below = k - spectrum.first, above = last - k;
+        if (peak.false_alarm > false_alarm && std::min(below, above) < bins_of(spectrum, 0.5 * far_cells)) {
+            values.clear();
+            const std::size_t reach = bins_of(spectrum, near_cells);
+            for (std::size_t d = guard; d <= reach; ++d) {
+                if (d <= below) values.push_back(power[k - d]);
+                if (d <= above) values.push_back(power[k + d]);
+            }
+            if (!values.empty()) {
+                const Floor level = floor_from(values, averages, spectrum.bins_per_cell);
+                peak = {k, level.power, chance(level)};
+            }
+        }
+        if (peak.false_alarm <= false_alarm) peaks.push_back(peak);
     }
     return peaks;
 }
@@ -314,20 +343,23 @@ PowerOverFloor exceeded(double chance, PowerOverFloor noise) {
     return noise;
 }
 
-double significant_power(const PowerSpectrum& spectrum, std::span<const double> floor, std::size_t bin,
-                         double false_alarm) {
+LineThreshold line_threshold(const PowerSpectrum& spectrum, std::span<const double> floor, std::size_t bin,
+                             double false_alarm) {
     constexpr double none = std::numeric_limits<double>::infinity();
-    if (bin <= spectrum.first || bin < spectrum.searched || bin + 1 >= spectrum.power.size()) return none;
+    if (bin <= spectrum.first || bin < spectrum.searched || bin + 1 >= spectrum.power.size())
+        return {none, none};
     const Floors floors = floors_about(spectrum, floor, bin);
-    if (floors.every.empty()) return none;
+    if (floors.every.empty()) return {none, none};
+    const double chance = false_alarm / tries_of(spectrum);
     const auto threshold = [&](const Floor& level) {
-        const double chance = false_alarm / tries_of(spectrum);
         return level.power * exceeded(chance, {.averages = level.averages, .cells = level.cells}).ratio;
     };
-    double highest = 0.0, either = floors.either.empty() ? 0.0 : none;
-    for (const Floor& level : floors.every) highest = std::max(highest, threshold(level));
+    LineThreshold found;
+    for (const Floor& level : floors.every) found.noise = std::max(found.noise, threshold(level));
+    double either = floors.either.empty() ? 0.0 : none;
     for (const Floor& level : floors.either) either = std::min(either, threshold(level));
-    return std::max(highest, either);
+    found.line = std::max(found.noise, either);
+    return found;
 }
 
 double detectable_ratio(const PowerOverFloor& threshold) {
