@@ -2,6 +2,8 @@
 #include "ripplenotch/analysis/motion_lines.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "analysis/traces.hpp"
 #include "support/catch.hpp"
@@ -47,6 +49,29 @@ TEST_CASE("orders are found in a motion that is never steady, with amplitude and
         CHECK_THAT(line->amplitude_nm, WithinRel(amplitude, 0.05));
         REQUIRE(line->phase_deg.has_value() == position);
         if (position) CHECK_THAT(*line->phase_deg, WithinAbs(phase * degrees_per_radian, 8.0));
+    }
+}
+
+TEST_CASE("lines that stand four resolutions apart in short sweeps are all found, though each hides the others") {
+    // To and fro over 30 deg: orders 96, 192, 288, 384 are 8, 16, 24 and 32 cycles in a sweep.
+    const auto speed = [](double t) { return 15.0 * std::numbers::pi * std::sin(std::numbers::pi * t); };
+    for (const std::uint32_t seed : {1U, 2U, 3U}) {
+        const Trace trace = tests::make_trace(
+            {.rate_hz = 500.0,
+             .seconds = 10.0,
+             .speed_deg_s = speed,
+             .ripple = {{96.0, 0.5, 0.4}, {192.0, 0.4, -1.0}, {288.0, 0.3, 2.0}, {384.0, 0.3, 1.0}},
+             .noise_nm = 0.2,
+             .seed = seed});
+        const MotionLines found = lines_of(trace);
+        for (const auto& [order, amplitude] :
+             {std::pair{96.0, 0.5}, {192.0, 0.4}, {288.0, 0.3}, {384.0, 0.3}}) {
+            CAPTURE(seed, order);
+            const MotionLine* line = nearest_order(found, order);
+            REQUIRE(line != nullptr);
+            CHECK_THAT(line->amplitude_nm, WithinRel(amplitude, 0.15));
+        }
+        CHECK(found.lines.size() == 4);
     }
 }
 

@@ -14,10 +14,11 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double lobe_cells = 4.0 / 3.0;  // half of a Hann line's main lobe: two cycles
-constexpr double guard_cells = 3.0;       // the main lobe of a Hann line and its first side lobe
-constexpr double near_cells = 12.0;       // by hand: from a line, for a floor that slopes
-constexpr double far_cells = 40.0;        // by hand: for a median that is known better
+constexpr double lobe_cells = 4.0 / 3.0;    // half of a Hann line's main lobe: two cycles
+constexpr double fewest_below_cells = 2.0;  // by hand
+constexpr double guard_cells = 3.0;         // the main lobe of a Hann line and its first side lobe
+constexpr double near_cells = 12.0;         // by hand: from a line, for a floor that slopes
+constexpr double far_cells = 40.0;          // by hand: for a median that is known better
 constexpr double inner_from_cells = 2.0;  // noise through a lightly damped resonance is only a few cells wide
 constexpr double inner_to_cells = 5.0;    // by hand
 constexpr double fewest_cells = 4.0;      // by hand
@@ -181,8 +182,18 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
         if (!values.empty()) floors.every.push_back(floor());
         return floors;
     }
-    add_below(bins_of(s, lobe_cells), below);
-    if (!values.empty()) floors.either.push_back(floor());
+    // What the motion leaves is the same in all repetitions: one average, over a floor that is known as well
+    // as the noise is.
+    const auto add_limit = [&] {
+        if (values.empty()) return;
+        Floor limit = floor_from(values, averages, s.bins_per_cell);
+        limit.cells *= independent;
+        limit.averages = 1.0;
+        floors.either.push_back(limit);
+    };
+    // The trend takes noise with it just above the first bins.
+    if (below >= bins_of(s, lobe_cells + fewest_below_cells)) add_below(bins_of(s, lobe_cells), below);
+    add_limit();
     values.clear();
     for (std::size_t d = bins_of(s, inner_from_cells); d <= std::min(bins_of(s, inner_to_cells), above);
          ++d) {
@@ -190,10 +201,7 @@ Floors floors_about(const PowerSpectrum& s, std::span<const double> running, std
         const double rise = static_cast<double>(bin + d) / static_cast<double>(bin);
         values.push_back(s.power[bin + d] * rise * rise * rise * rise);
     }
-    if (!values.empty()) {
-        floors.either.push_back(floor_from(values, averages, s.bins_per_cell));
-        floors.either.back().averages = independent;  // it is a limit, and not what the noise is
-    }
+    add_limit();
     if (floors.either.empty()) floors.every.clear();
     return floors;
 }
