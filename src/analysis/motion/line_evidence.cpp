@@ -248,8 +248,8 @@ double gain_of(std::span<const Sweep> sweeps, const Stack& stack, double place) 
     return gain_in(sweeps, stack, place, own_value);
 }
 
-GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& one, const PlacedLine& other,
-                               double share) {
+GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& one,
+                               const PlacedLine& other) {
     const auto gains_of = [&](const PlacedLine& line) {
         std::vector<double> gains(sweeps.size(), 0.0);
         if (!line.place) return gains;
@@ -273,7 +273,8 @@ GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& 
         difference += first[i] - second[i];
     }
     if (!(heaviest > 0.0)) return {};
-    return {difference / heaviest, share * std::sqrt(squares) / heaviest};
+    const double floor_error = 1.0 / std::sqrt(std::min(floor_cells(one.stack), floor_cells(other.stack)));
+    return {difference / heaviest, floor_error * std::sqrt(squares) / heaviest};
 }
 
 double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place) {

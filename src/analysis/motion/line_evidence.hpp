@@ -28,14 +28,13 @@ struct PlacedLine {
     const Stack& stack;
     std::optional<double> place;
 };
-/// What one line explains more than another, and how uncertain that is if the noise at each place is known to
-/// `share`, independently in each sweep. Sweeps in which both explain the same, as where they are one and the
-/// same frequency, say nothing.
+/// What one line explains more than another, and how uncertain that is because the noise floor of each sweep
+/// is known from few cells, at each place independently. Sweeps in which both explain the same, as where they
+/// are one and the same frequency, say nothing.
 struct GainDifference {
     double value = 0.0, error = 0.0;
 };
-GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& one, const PlacedLine& other,
-                               double share);
+GainDifference gain_difference(std::span<const Sweep> sweeps, const PlacedLine& one, const PlacedLine& other);
 
 /// The same after another line is taken out of each sweep with the amplitude and phase that it has there.
 double gain_without(std::span<const Sweep> sweeps, const KnownLine& line, const Stack& stack, double place);

@@ -167,10 +167,9 @@ struct Rivals {
 /// frequencies there is a line of the other axis as well.
 LineKind judged(std::span<const Sweep> sweeps, const Stacks& stacks, const Rivals& rivals, bool by_angle) {
     const Stack &angle = stacks.angle, &time = stacks.time;
-    // The noise floors on both axes are estimates of their own, in each sweep.
     const auto [apart, error] =
         gain_difference(sweeps, {angle, rivals.has_order ? std::optional(rivals.order) : std::nullopt},
-                        {time, rivals.has_hz ? std::optional(rivals.hz) : std::nullopt}, floor_doubt);
+                        {time, rivals.has_hz ? std::optional(rivals.hz) : std::nullopt});
     const double decisive = std::max(decisive_nats, error);
     if (std::abs(apart) > decisive) return apart > 0.0 ? LineKind::order : LineKind::tone;
     if (!rivals.two_lines) return LineKind::unknown;
@@ -204,11 +203,14 @@ class LineSearch {
           range_(speed_range(sweeps)),
           least_amplitude_(least_amplitude_nm(logs, options.least_share)),
           stacks_(stacked(sweeps, options)) {
-        for (std::size_t looks = 0; looks < 2 * options.most_lines && out_.size() < options.most_lines;
-             ++looks) {
-            if (!remove_clearest()) break;
-        }
-        while (put_back_insignificant()) {
+        std::size_t looks = 0;
+        bool put_back = true;
+        // What was put back may have stood for another: the image of an order for the order itself.
+        while (put_back) {
+            while (looks < 2 * options.most_lines && out_.size() < options.most_lines && remove_clearest())
+                ++looks;
+            put_back = false;
+            while (put_back_insignificant()) put_back = true;
         }
     }
 

@@ -73,10 +73,19 @@ struct Floors {
     std::vector<Floor> every, either;
 };
 
+constexpr double normal_quartile = 0.6745;
+
+/// A quantile of a mean of `averages` exponentials over its expectation; `normal` is that of the normal
+/// distribution. The cube root is nearly normal (Wilson and Hilferty 1931).
+double quantile_over_mean(double averages, double normal) {
+    const double variance = 1.0 / (9.0 * averages);
+    const double cube_root = 1.0 - variance + normal * std::sqrt(variance);
+    return cube_root * cube_root * cube_root;
+}
+
 /// Independent averages behind values of noise over their floor, by their scatter below the median, where
 /// lines are not seen. What a motion leaves in each of its repetitions scatters as a single one does. The
-/// cube root of a mean of n exponentials is nearly normal, of mean 1 - s^2 and deviation s, s^2 = 1 / (9 n)
-/// (Wilson and Hilferty 1931).
+/// cube root of a mean of n exponentials has the mean 1 - s^2 and the deviation s, s^2 = 1 / (9 n).
 double averages_by_scatter(std::vector<double> values) {
     const auto at = [&](double share) {
         const auto place =
@@ -87,7 +96,7 @@ double averages_by_scatter(std::vector<double> values) {
     const double middle = at(0.5), lower = at(0.25);
     if (!(middle > 0.0) || !(lower < middle)) return std::numeric_limits<double>::infinity();
     const double spread =
-        (1.0 - portable::exp(portable::log(lower / middle) / 3.0)) / 0.6745;  // s / (1 - s^2)
+        (1.0 - portable::exp(portable::log(lower / middle) / 3.0)) / normal_quartile;  // s / (1 - s^2)
     const double deviation = 0.5 * (std::sqrt(1.0 + 4.0 * spread * spread) - 1.0) / spread;
     return 1.0 / (9.0 * deviation * deviation);
 }
@@ -95,12 +104,10 @@ double averages_by_scatter(std::vector<double> values) {
 constexpr double uncensored_share =
     0.75;  // of the values around a bin: lines in the others do not raise the floor
 
-/// Expectation of censored_sum() for values of mean 1, each the mean of `averages` exponentials.
+/// Expectation of floor_from() for values of mean 1, each the mean of `averages` exponentials.
 double censored_expectation(double averages) {
     const double n = averages;
-    // Wilson and Hilferty 1931: the cube root of a gamma variable is nearly normal.
-    const double cube_root = 1.0 - 1.0 / (9.0 * n) + 0.6745 * std::sqrt(1.0 / (9.0 * n));
-    const double quantile = cube_root * cube_root * cube_root;
+    const double quantile = quantile_over_mean(averages, normal_quartile);
     const double partial_mean = uncensored_share - portable::exp(n * portable::log(n * quantile) -
                                                                  n * quantile - portable::lgamma(n + 1.0));
     return (partial_mean + (1.0 - uncensored_share) * quantile) / uncensored_share;
@@ -236,15 +243,28 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
     const auto stride = static_cast<std::size_t>(std::max(1.0, reach_bins / 8.0));
     const auto reach = static_cast<std::size_t>(std::ceil(reach_bins));
     RunningMedian median_around(spectrum.power);
+    // A line and its main lobe are a large part of so few cells: their lower quartile stands instead of the
+    // median.
+    const bool few = static_cast<double>(n - spectrum.first) < far_cells * spectrum.bins_per_cell;
+    std::vector<double> values;
+    const auto quartile = [&](std::size_t from, std::size_t count) {
+        values.assign(spectrum.power.begin() + static_cast<std::ptrdiff_t>(from),
+                      spectrum.power.begin() + static_cast<std::ptrdiff_t>(from + count));
+        const auto place = values.begin() + static_cast<std::ptrdiff_t>(count / 4);
+        std::nth_element(values.begin(), place, values.end());
+        return *place;
+    };
     const auto at = [&](std::size_t bin) {
         const std::size_t inside =
             std::clamp(bin, std::min(spectrum.first + stride, n - 1), n - 1 - std::min(stride, n - 1));
         const std::size_t middle = std::max(inside, spectrum.first);
         // Both sides alike: one flank of a steep floor would stand for too little or too much.
         const std::size_t half = std::min({reach, middle - spectrum.first, n - 1 - middle});
-        return std::max(
-            median_around.at(middle - half, 2 * half + 1) / median_over_mean(spectrum.averages_at(bin)),
-            1e-300);
+        const std::size_t from = middle - half, count = 2 * half + 1;
+        const double averages = spectrum.averages_at(bin);
+        return std::max(few ? quartile(from, count) / quantile_over_mean(averages, -normal_quartile)
+                            : median_around.at(from, count) / median_over_mean(averages),
+                        1e-300);
     };
     // Between places a stride apart the floor runs on a straight line in log power.
     std::vector<double> levels{at(spectrum.first)}, factors;
