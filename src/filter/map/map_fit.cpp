@@ -17,28 +17,19 @@ namespace ripplenotch {
 namespace {
 
 constexpr double errors_apart = 3.0;       // by hand: three standard errors
+constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
 constexpr double ripple_over_noise = 2.0;  ///< squares of an order that an oscillator may follow
-// Squares of an order that is there for certain. The noise of order 1 is measured at 1.5 alone, where a
-// spectrum that falls with the third power of the frequency is 11 times smaller.
-constexpr double certain_over_noise = 4.0, certain_over_noise_above = 11.0, one_sided_below = 1.1;
-constexpr double share_apart = 0.15;  ///< less is no reason to doubt a map
 
-MapOrderScore score_of(double order, const HeldOut& held) {
-    MapOrderScore score;
-    score.order = order;
-    score.ripple_nm = std::sqrt(held.total);
-    score.noise_nm = std::sqrt(held.noise);
-    score.left_nm = std::sqrt(held.residual);
-    if (held.total > held.noise)
-        score.predicted_share =
-            std::clamp((held.total - held.residual) / (held.total - held.noise), 0.0, 1.0);
-    return score;
+// The windows of one log, or of all others; blocks keep their numbers.
+MapData of_log(const MapData& data, std::size_t log, bool is) {
+    MapData part = data;
+    std::erase_if(part.windows, [&](const MapWindow& window) { return (window.log == log) != is; });
+    return part;
 }
 
 // The factor by which the windows of `one` are what a map of the `others` says, and its error by blocks.
 MapAgreement agreement_of(const MapData& one, const MapData& others, const MapForm& form, std::size_t order) {
-    const RippleMap frame = frame_of(one, form, 0.0);
-    const MapRegression other(others, frame, order), own(one, frame, order);
+    const MapRegression other(others, form, order), own(one, form, order);
     const auto values = other.values();
     std::complex<double> alike = 0.0;
     double said = 0.0;
@@ -69,49 +60,82 @@ MapAgreement agreement_of(const MapData& one, const MapData& others, const MapFo
     return found;
 }
 
-void hold_logs_together(const MapData& data, const MapChoice& choice, const GearAccount& gear,
-                        std::size_t logs, MapFit& fit) {
+void hold_logs_together(const MapData& data, const MapChoice& choice, std::size_t logs, MapFit& fit) {
     for (std::size_t l = 0; logs > 1 && l < logs; ++l) {
         const MapData one = of_log(data, l, true), others = of_log(data, l, false);
         if (one.windows.empty() || others.windows.empty()) continue;
-        for (std::size_t i = 0; i < data.orders.size(); ++i) {
-            if (!choice.present[i]) continue;
-            MapAgreement found = agreement_of(one, others, choice.form, i);
-            found.log = l;
-            found.order = gear.orders[i].value();
-            fit.agreement.push_back(found);
+        for (std::size_t i = 0; i < fit.scores.size(); ++i) {
+            if (!fit.scores[i].in_map) continue;
+            fit.agreement.push_back(agreement_of(one, others, choice.form, i));
+            fit.agreement.back().log = l;
+            fit.agreement.back().order = fit.scores[i].order;
         }
     }
 }
 
-bool exceeds_noise(const MapOrderScore& score, double factor) {
-    return score.ripple_nm * score.ripple_nm >= factor * score.noise_nm * score.noise_nm;
-}
-
 // An order whose ripple is there and follows no form stays in the map with no amplitude, for who follows it.
-void fill_map(const MapData& data, const MapChoice& choice, const GearAccount& gear, double zero_deg,
-              MapFit& fit) {
-    fit.map = frame_of(data, choice.form, zero_deg);
-    const RippleMap frame = fit.map;
+void fill_map(const MapData& data, const MapForm& form, MapFit& fit) {
+    fit.map = data.frame;
+    fit.map.form = form;
     fit.map.orders.clear();
-    fit.map.gear_ratio = gear.ratio;
-    for (std::size_t i = 0; i < data.orders.size(); ++i) {
+    for (std::size_t i = 0; i < fit.scores.size(); ++i) {
         const MapOrderScore& score = fit.scores[i];
-        if (!score.in_map && !exceeds_noise(score, ripple_over_noise)) continue;
         const double noise = score.noise_nm * score.noise_nm;
-        const double left = score.in_map ? score.left_nm * score.left_nm : score.ripple_nm * score.ripple_nm;
-        const MapRegression regression(data, frame, i);
-        fit.map.orders.push_back(gear.orders[i]);
+        const double all = score.ripple_nm * score.ripple_nm;
+        if (!score.in_map && all < ripple_over_noise * noise) continue;
+        const double left = score.in_map ? score.left_nm * score.left_nm : all;
+        const MapRegression regression(data, form, i);
+        fit.map.orders.push_back(data.frame.orders[i]);
         fit.map.spread_nm.push_back(std::sqrt(std::max(left - noise, 0.01 * left)));
         fit.errors.push_back(regression.errors());
         fit.map.values.push_back(regression.values());
-        if (!score.in_map) fit.map.values.back().assign(choice.form.columns(), 0.0);
+        if (!score.in_map) fit.map.values.back().assign(form.columns(), 0.0);
     }
 }
 
-bool all_agree(const MapFit& fit) {
-    return std::all_of(fit.agreement.begin(), fit.agreement.end(),
-                       [](const MapAgreement& one) { return one.agrees; });
+double decibels_down(double from_nm, double to_nm) {
+    return to_nm > 0.0 && from_nm > 0.0 ? 20.0 * portable::log10(from_nm / to_nm) : 0.0;
+}
+
+std::string orders_of(const std::vector<MapOrderScore>& scores) {
+    std::string text;
+    for (const MapOrderScore& score : scores) text += (text.empty() ? "" : ", ") + shortest(score.order);
+    return (scores.size() == 1 ? "order " : "orders ") + text;
+}
+
+std::string disagreements(const MapFit& fit) {
+    std::string text;
+    for (const MapAgreement& one : fit.agreement) {
+        if (one.agrees) continue;
+        text += fmt::format("{}in log {} order {} is {:.2f} times as large and {:.0f} deg ahead",
+                            text.empty() ? "" : ", ", one.log + 1, shortest(one.order), one.amplitude_ratio,
+                            std::round(one.phase_deg) + 0.0);
+    }
+    return text;
+}
+
+std::string mapped_sentence(const MapFit& fit) {
+    std::string text = "Cross-validated:";
+    bool first = true;
+    for (const MapOrderScore& score : fit.scores) {
+        if (!score.in_map) continue;
+        text += fmt::format("{} order {} falls from {:.3g} to {:.3g} Nm ({:.1f} dB; noise limit {:.1f} dB)",
+                            first ? "" : ",", shortest(score.order), score.ripple_nm, score.left_nm,
+                            decibels_down(score.ripple_nm, score.left_nm),
+                            decibels_down(score.ripple_nm, score.noise_nm));
+        first = false;
+    }
+    return text + fmt::format("; amplitudes {}.", map_form_words(fit.map.form));
+}
+
+std::string detectable_sentence(const MapFit& fit) {
+    std::string text;
+    for (const MapOrderScore& score : fit.scores) {
+        if (score.in_map || !std::isfinite(score.detectable_nm) || !(score.detectable_nm > 0.0)) continue;
+        text += fmt::format("{}{:.2g} Nm of order {}", text.empty() ? "" : ", ", score.detectable_nm,
+                            shortest(score.order));
+    }
+    return text.empty() ? text : fmt::format("An amplitude of {} would have been found.", text);
 }
 
 }  // namespace
@@ -136,27 +160,95 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         return fit;
     }
     const MapChoice choice = choose_map(data, fit.anchored);
+    fit.scores = choice.scores;
+    fit.finding = choice.finding;
     fit.notes = choice.notes;
-    bool any = false, excess = false, bounded = true;
-    for (std::size_t i = 0; i < data.orders.size(); ++i) {
-        MapOrderScore score = score_of(gear.orders[i].value(), choice.held_out[i]);
-        score.in_map = choice.present[i];
-        score.false_alarm = choice.false_alarm[i];
-        if (!score.in_map) score.detectable_nm = detectable_amplitude(data, i, fit.anchored);
-        any = any || score.in_map;
-        const double certain = score.order < one_sided_below ? certain_over_noise_above : certain_over_noise;
-        excess = excess || exceeds_noise(score, certain);
-        bounded = bounded && std::isfinite(score.detectable_nm);
-        fit.notes.push_back(fmt::format("order {}: false-alarm probability {:.2g}", shortest(score.order),
-                                        score.false_alarm));
-        fit.scores.push_back(score);
-    }
-    // Amplitudes beyond the noise that follow no form tried may be a ripple of another form.
-    fit.finding = any ? MapFinding::mapped : excess || !bounded ? MapFinding::unclear : MapFinding::nothing;
-    if (any) fill_map(data, choice, gear, zero_deg, fit);
-    hold_logs_together(data, choice, gear, logs.size(), fit);
-    fit.conclusive = fit.anchored && fit.finding != MapFinding::unclear && all_agree(fit);
+    if (fit.finding == MapFinding::mapped) fill_map(data, choice.form, fit);
+    hold_logs_together(data, choice, logs.size(), fit);
+    const bool agree = std::all_of(fit.agreement.begin(), fit.agreement.end(),
+                                   [](const MapAgreement& one) { return one.agrees; });
+    fit.conclusive = fit.anchored && fit.finding != MapFinding::unclear && agree;
     return fit;
+}
+
+std::string_view map_finding_name(MapFinding finding) {
+    switch (finding) {
+        case MapFinding::mapped:
+            return "mapped";
+        case MapFinding::nothing:
+            return "nothing";
+        case MapFinding::unclear:
+            return "unclear";
+        case MapFinding::too_little:
+            return "too-little";
+    }
+    return "";
+}
+
+std::string map_form_words(const MapForm& form) {
+    const bool by_speed = form.speeds_deg_s.size() > 1, by_direction = form.directions > 1;
+    std::string text = by_speed ? fmt::format("by speed ({} of them)", form.speeds_deg_s.size()) : "";
+    if (by_direction) text += by_speed ? " and direction" : "by direction";
+    if (text.empty()) text = "alike at every speed";
+    if (form.second_comb != 0)
+        text += fmt::format(", with the second comb at n (Kg {} 1)", form.second_comb > 0 ? '+' : '-');
+    if (form.turn_harmonics > 0)
+        text += fmt::format(", with {} harmonic{} of the joint's turn", form.turn_harmonics,
+                            form.turn_harmonics == 1 ? "" : "s");
+    if (form.by_load) text += ", and by load";
+    return text + (form.by_temperature ? ", and by temperature" : "");
+}
+
+std::string map_column_words(const MapForm& form, std::size_t column) {
+    const std::size_t each = form.columns_a_direction(), within = column % each;
+    const std::size_t speeds = form.speeds_deg_s.size();
+    std::string what;
+    if (within < form.speed_columns()) {
+        what = speeds > 1 ? fmt::format("{:.4g} deg/s", form.speeds_deg_s[within % speeds]) : "any speed";
+        if (within >= speeds) what += ", second comb";
+    } else if (within < form.load_column()) {
+        const std::size_t at = within - form.speed_columns();
+        what = fmt::format("{} of {} joint angle{}", at % 2 == 0 ? "cosine" : "sine", at / 2 + 1,
+                           at / 2 == 0 ? "" : "s");
+    } else {
+        what = form.by_load && within == form.load_column() ? "per Nm of load" : "per degC beyond the middle";
+    }
+    if (form.directions == 1) return what;
+    return (column < each ? "forward, " : "backward, ") + what;
+}
+
+std::string map_verdict(const MapFit& fit) {
+    std::string text = fit.doubt;
+    const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
+    switch (fit.finding) {
+        case MapFinding::too_little:
+            add(fmt::format(
+                "Cannot tell: the motor turns 2.5 times in one direction in {} windows, and {} are "
+                "needed to leave some out; the map is empty.",
+                fit.windows, fewest_map_windows));
+            break;
+        case MapFinding::nothing:
+            add(fmt::format("No ripple found of {} at gear ratio {:.6g} in {} windows: the map is empty.",
+                            orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
+            add(detectable_sentence(fit));
+            break;
+        case MapFinding::unclear:
+            add(fmt::format(
+                "Cannot tell: no regular ripple found of {} at gear ratio {:.6g} in {} windows, but "
+                "amplitudes above the noise, or no bound; the map is empty.",
+                orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
+            add(detectable_sentence(fit));
+            break;
+        case MapFinding::mapped:
+            add(mapped_sentence(fit));
+            if (const std::string bound = detectable_sentence(fit); !bound.empty()) add(bound);
+            break;
+    }
+    if (!fit.anchored && fit.finding == MapFinding::mapped)
+        add("The log has no position: phases count from its first row.");
+    if (const std::string apart = disagreements(fit); !apart.empty())
+        add(fmt::format("The logs disagree: {}.", apart));
+    return text;
 }
 
 }  // namespace ripplenotch

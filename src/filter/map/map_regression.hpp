@@ -11,25 +11,25 @@
 
 namespace ripplenotch {
 
-/// Sums of squares over the scored windows of one block, in units of the noise variance.
-struct BlockSquares {
+/// Sums of squares over the scored windows, in units of the noise variance.
+struct MapSquares {
     double total = 0.0;    ///< of the amplitudes
     double noise = 0.0;    ///< expected of noise alone
     double weights = 0.0;  ///< a sum of 1 is 1 / weights Nm^2, as a mean over the windows
 };
 
-/// Ridge regression. Its prior: the amplitudes of neighbouring speeds and of the two directions differ by
-/// about the order's own amplitude; those of the joint's turn, of the load and of the temperature are half of
-/// it.
+/// Ridge regression. Its prior is a random walk: from the slowest to the fastest speed, and from one
+/// direction to the other, an amplitude changes by about the order's own amplitude, however many speeds there
+/// are in between.
 class MapRegression {
   public:
-    MapRegression(const MapData& data, const RippleMap& frame, std::size_t order);
+    MapRegression(const MapData& data, const MapForm& form, std::size_t order);
 
     /// By column, from all windows.
     [[nodiscard]] std::vector<std::complex<double>> values() const;
     /// Standard errors of both parts: the larger of what noise makes and of what the spread of blocks shows.
     [[nodiscard]] std::vector<std::complex<double>> errors() const;
-    [[nodiscard]] BlockSquares squares(std::size_t block) const { return blocks_[block].squares; }
+    [[nodiscard]] MapSquares squares(std::size_t block) const { return blocks_[block].squares; }
     /// Residual squares of block `column` when it and block `row` are left out of the fit. The diagonal is
     /// cross-validation; the other columns of a row choose a form for block `row` without having seen it.
     [[nodiscard]] Eigen::MatrixXd residuals() const;
@@ -39,6 +39,8 @@ class MapRegression {
     [[nodiscard]] std::complex<double> predicted(std::size_t window,
                                                  const std::vector<std::complex<double>>& values) const;
     [[nodiscard]] double weight(std::size_t window) const { return weight_[window]; }
+    [[nodiscard]] double noise() const { return noise_; }    ///< mean over the windows, Nm^2
+    [[nodiscard]] double energy() const { return energy_; }  ///< the same of the squared amplitudes
 
   private:
     using Matrix = Eigen::MatrixXcd;
@@ -46,13 +48,12 @@ class MapRegression {
     struct Block {
         Matrix gram, scored_gram;
         Vector right, scored_right;
-        BlockSquares squares;
+        MapSquares squares;
     };
     [[nodiscard]] Eigen::MatrixXd penalty(const RippleMap& frame) const;
     [[nodiscard]] static double residual(const Block& block, const Vector& values);
 
-    const MapData& data_;
-    std::size_t order_;
+    double noise_ = 0.0, energy_ = 0.0;
     Matrix columns_;  ///< by window
     std::vector<double> weight_;
     Matrix gram_;

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "filter/map/map_runner.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/filter/map_keys.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -30,9 +29,29 @@ std::size_t whole_value(const Settings& settings, std::string_view key) {
     return static_cast<std::size_t>(settings.number(key));
 }
 
-// As the keys state it; empty without cosines.
-std::optional<RippleMap> stated_map(std::string_view method, const Settings& settings,
-                                    const RippleOrders& ripple) {
+}  // namespace
+
+RippleMap StatedMap::at_temperature() const {
+    if (!map.form.by_temperature) return map;
+    RippleMap there = map;
+    there.form.by_temperature = false;
+    const MapRange& seen = map.temperatures_degc;
+    const double warmer = std::clamp(degc, seen.from, seen.to) - seen.middle();
+    const std::size_t each = map.form.columns_a_direction(), last = map.form.temperature_column();
+    for (std::size_t i = 0; i < map.values.size(); ++i) {
+        there.values[i].clear();
+        for (std::size_t c = 0; c < map.values[i].size(); ++c) {
+            if (c % each == last) continue;
+            const bool first_comb = c % each < map.form.speeds_deg_s.size();
+            there.values[i].push_back(map.values[i][c] +
+                                      (first_comb ? warmer * map.values[i][c - c % each + last] : 0.0));
+        }
+    }
+    return there;
+}
+
+std::optional<StatedMap> map_of(std::string_view method, const Settings& settings,
+                                const RippleOrders& ripple) {
     if (!settings.has("cosines") && !settings.has("sines")) return std::nullopt;
     RippleMap map;
     map.gear_ratio = GearRatio(ripple.gear_ratio);
@@ -67,28 +86,16 @@ std::optional<RippleMap> stated_map(std::string_view method, const Settings& set
             map.values.back().emplace_back(cosines[c], sines[c]);
     }
     map.spread_nm = per_order(method, settings, "spread", ripple, 0.0);
-    return map;
-}
-
-}  // namespace
-
-std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
-                                const RippleOrders& ripple) {
-    std::optional<RippleMap> map = stated_map(method, settings, ripple);
-    if (!map || !map->form.by_temperature) return map;
+    StatedMap stated{std::move(map)};
+    if (!stated.map.form.by_temperature) return stated;
     if (!settings.has("temperature"))
         raise<UsageError>(
             "method {}: its map depends on the joint's temperature, and nobody states it; say it in degC, "
             "temperature=31",
             method);
-    return at_temperature(*map, settings.number("temperature"));
-}
-
-std::optional<RippleMap> warming_map_of(std::string_view method, const Settings& settings,
-                                        const RippleOrders& ripple) {
-    if (settings.text("temperature-of") != "rows") return std::nullopt;
-    std::optional<RippleMap> map = stated_map(method, settings, ripple);
-    return map && map->form.by_temperature ? std::move(map) : std::nullopt;
+    stated.degc = settings.number("temperature");
+    stated.follows_rows = settings.text("temperature-of") == "rows";
+    return stated;
 }
 
 std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fitted) {
