@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <span>
 
 #include "filter/map/map_regression.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -35,7 +36,9 @@ constexpr std::size_t injections = 20;
 constexpr double injection_step = 1.25;
 constexpr double most_injected = 10.0;  ///< times the rms amplitude: a test that misses this has no power
 constexpr double least_errors_better = 2.0;  ///< by which a map has to be better than none
-constexpr double certain_over_noise = 4.0;   ///< squares of an order that is there for certain
+// Squares of an order that is there for certain. The noise of order 1 is measured at 1.5 alone, where a
+// spectrum that falls with the third power of the frequency is 11 times smaller.
+constexpr double certain_over_noise = 4.0, certain_over_noise_above = 11.0, one_sided_below = 1.1;
 
 // Columns that say nothing are shrunk, so that a few forms are enough: each of speed, direction, second comb
 // and temperature is in or not. The one with the fewest columns first.
@@ -126,11 +129,12 @@ struct RotationTest {
     /// The false-alarm probability: the share of draws that are as large, the log itself counted. 1 where the
     /// noise beside the order alone may be as large (chi-square of two degrees of freedom at `level`), or
     /// where the order is no line among its neighbours.
-    [[nodiscard]] double false_alarm(const MapData& data, std::size_t order) const {
+    [[nodiscard]] double false_alarm(const MapData& data, std::size_t order,
+                                     std::span<const MapForm> of_forms) const {
         ArrayXd largest = ArrayXd::Constant(phasors.cols(), -std::numeric_limits<double>::infinity());
         double most = 0.0;
-        const MapForm* best = &forms.front();
-        for (const MapForm& form : forms) {
+        const MapForm* best = &of_forms.front();
+        for (const MapForm& form : of_forms) {
             const MatrixXcd reduction = MapRegression(data, form, order).reduction();
             const MatrixXcd turned = phasors.conjugate().cwiseProduct(reduction * phasors);
             const ArrayXd squares = turned.colwise().sum().real().transpose().array();
@@ -165,7 +169,8 @@ double detectable_amplitude(const MapData& data, const MapRegression& own, const
         ArrayXd better = -alike.residuals().diagonal().array();
         for (std::size_t b = 0; b < data.blocks; ++b)
             better(static_cast<Eigen::Index>(b)) += alike.squares(b).total;
-        return in_errors(better) > least_errors_better && test.false_alarm(injected, order) <= test.level;
+        return in_errors(better) > least_errors_better &&
+               test.false_alarm(injected, order, test.forms) <= test.level;
     };
     double amplitude_nm = std::sqrt(own.noise() / static_cast<double>(data.windows.size()));
     for (; amplitude_nm < most_injected * std::sqrt(own.energy()); amplitude_nm *= injection_step) {
@@ -190,51 +195,40 @@ std::size_t smallest_good(const std::vector<MatrixXd>& residuals, Eigen::Index l
     return static_cast<std::size_t>(good - sums.begin());
 }
 
-/// Left-out squares of all forms: of each order, and of the orders that have a say.
-struct CrossValidation {
-    std::vector<std::vector<MatrixXd>> by_order;  ///< by order, then by form
-    std::vector<MatrixXd> sums;                   ///< by form
-
-    CrossValidation(const MapData& data, const std::vector<MapForm>& forms, const std::vector<bool>& counts)
-        : by_order(counts.size()) {
-        const auto blocks = static_cast<Eigen::Index>(data.blocks);
-        for (const MapForm& form : forms) {
-            sums.emplace_back(MatrixXd::Zero(blocks, blocks));
-            for (std::size_t i = 0; i < counts.size(); ++i) {
-                by_order[i].push_back(MapRegression(data, form, i).residuals());
-                if (counts[i]) sums.back() += by_order[i].back();
-            }
-        }
-    }
-};
-
 }  // namespace
 
 MapChoice choose_map(const MapData& data, bool tied) {
     MapChoice choice;
-    RotationTest test(data, tied);
+    const RotationTest test(data, tied);
+    const auto blocks = static_cast<Eigen::Index>(data.blocks);
     const std::size_t orders = data.frame.orders.size();
+    std::vector<bool> chooses;
     for (std::size_t i = 0; i < orders; ++i) {
         choice.scores.push_back({data.frame.orders[i].value()});
-        choice.scores[i].false_alarm = test.false_alarm(data, i);
+        choice.scores[i].false_alarm = test.false_alarm(data, i, test.forms);
+        chooses.push_back(choice.scores[i].false_alarm <= test.level);
     }
-    // Beside an order that is there any other is tested by itself.
-    const auto least = [](const MapOrderScore& a, const MapOrderScore& b) {
-        return a.false_alarm < b.false_alarm;
-    };
-    const bool any =
-        std::min_element(choice.scores.begin(), choice.scores.end(), least)->false_alarm <= test.level;
-    std::vector<bool> present;
-    for (const MapOrderScore& score : choice.scores)
-        present.push_back(any && score.false_alarm <= other_order_false_alarm);
-    const CrossValidation trials(
-        data, any ? test.forms : std::vector<MapForm>(test.forms.begin(), test.forms.begin() + 1), present);
-    const auto blocks = static_cast<Eigen::Index>(data.blocks);
-    const std::size_t chosen = smallest_good(trials.sums, blocks);
+    // Residual squares of left-out blocks: of each form by order, and of each form over the orders that
+    // choose.
+    std::vector<std::vector<MatrixXd>> residuals(orders);
+    std::vector<MatrixXd> sums;
+    const bool any = std::find(chooses.begin(), chooses.end(), true) != chooses.end();
+    for (const MapForm& form : std::span(test.forms).first(any ? test.forms.size() : 1)) {
+        sums.emplace_back(MatrixXd::Zero(blocks, blocks));
+        for (std::size_t i = 0; i < orders; ++i) {
+            residuals[i].push_back(MapRegression(data, form, i).residuals());
+            if (chooses[i]) sums.back() += residuals[i].back();
+        }
+    }
+    const std::size_t chosen = smallest_good(sums, blocks);
     choice.form = test.forms[chosen];
     std::vector<double> errors_better;
     bool mapped = false;
     for (std::size_t i = 0; i < orders; ++i) {
+        MapOrderScore& score = choice.scores[i];
+        // The form was chosen without the other orders: they are tested under that form alone.
+        if (any && !chooses[i])
+            score.false_alarm = test.false_alarm(data, i, std::span(test.forms).subspan(chosen, 1));
         const MapRegression alike(data, test.forms.front(), i);
         MapSquares all;
         double residual = 0.0;
@@ -244,11 +238,10 @@ MapChoice choose_map(const MapData& data, bool tied) {
             all.total += squares.total;
             all.noise += squares.noise;
             all.weights += squares.weights;
-            const double left = trials.by_order[i][smallest_good(trials.sums, b)](b, b);
+            const double left = residuals[i][smallest_good(sums, b)](b, b);
             residual += left;
             better(b) = squares.total - left;
         }
-        MapOrderScore& score = choice.scores[i];
         if (all.weights > 0.0) {
             score.ripple_nm = std::sqrt(all.total / all.weights);
             score.noise_nm = std::sqrt(all.noise / all.weights);
@@ -257,27 +250,27 @@ MapChoice choose_map(const MapData& data, bool tied) {
         if (all.total > all.noise)
             score.predicted_share = std::clamp((all.total - residual) / (all.total - all.noise), 0.0, 1.0);
         errors_better.push_back(in_errors(better));
-        mapped = mapped || (score.false_alarm <= test.level && errors_better[i] > least_errors_better);
+        mapped = mapped || (chooses[i] && errors_better[i] > least_errors_better);
         choice.notes.push_back(fmt::format(
             "order {}: false-alarm probability {:.2g}; of {:.4g} squares of left-out blocks the simplest "
             "form "
             "leaves {:.4g}, the one taken {:.4g}, and {:.4g} where it is chosen without the block",
-            shortest(score.order), score.false_alarm, all.total, trials.by_order[i].front().trace(),
-            trials.by_order[i][chosen].trace(), residual));
+            shortest(score.order), score.false_alarm, all.total, residuals[i].front().trace(),
+            residuals[i][chosen].trace(), residual));
     }
     bool unclear = false;
     for (std::size_t i = 0; i < orders; ++i) {
         MapOrderScore& score = choice.scores[i];
-        score.in_map = mapped && present[i] && errors_better[i] > 0.0;
+        score.in_map = mapped && errors_better[i] > 0.0 && score.false_alarm <= other_order_false_alarm;
         if (score.in_map) continue;
         const MapRegression alike(data, test.forms.front(), i);
         score.detectable_nm = detectable_amplitude(data, alike, test, i);
         // What the log itself has and the test did not find bounds nothing.
-        if (std::norm(alike.values().front()) > score.detectable_nm * score.detectable_nm)
+        if (std::norm(alike.values()(0)) > score.detectable_nm * score.detectable_nm)
             score.detectable_nm = std::numeric_limits<double>::infinity();
         // Amplitudes beyond the noise that follow no form tried may be a ripple of another form.
-        const bool certain =
-            score.ripple_nm * score.ripple_nm >= certain_over_noise * score.noise_nm * score.noise_nm;
+        const double over = score.order < one_sided_below ? certain_over_noise_above : certain_over_noise;
+        const bool certain = score.ripple_nm * score.ripple_nm >= over * score.noise_nm * score.noise_nm;
         unclear = unclear || certain || !std::isfinite(score.detectable_nm);
     }
     choice.finding = mapped ? MapFinding::mapped : unclear ? MapFinding::unclear : MapFinding::nothing;

@@ -2,9 +2,12 @@
 #include "ripplenotch/filter/map_fit.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "filter/map/map_choice.hpp"
@@ -20,36 +23,27 @@ constexpr double errors_apart = 3.0;       // by hand: three standard errors
 constexpr double share_apart = 0.15;       ///< less is no reason to doubt a map
 constexpr double ripple_over_noise = 2.0;  ///< squares of an order that an oscillator may follow
 
-// The windows of one log, or of all others; blocks keep their numbers.
-MapData of_log(const MapData& data, std::size_t log, bool is) {
-    MapData part = data;
-    std::erase_if(part.windows, [&](const MapWindow& window) { return (window.log == log) != is; });
-    return part;
-}
-
-// The factor by which the windows of `one` are what a map of the `others` says, and its error by blocks.
-MapAgreement agreement_of(const MapData& one, const MapData& others, const MapForm& form, std::size_t order) {
-    const MapRegression other(others, form, order), own(one, form, order);
-    const auto values = other.values();
+// The factor by which the ripple of one log is what a map of the others says, and its error by blocks.
+MapAgreement agreement_of(const MapRegression& fit, const std::vector<bool>& of_log, std::size_t log,
+                          double order) {
+    const Eigen::VectorXcd others = fit.values(of_log);
     std::complex<double> alike = 0.0;
-    double said = 0.0;
-    for (std::size_t i = 0; i < one.windows.size(); ++i) {
-        const std::complex<double> expected = own.predicted(i, values);
-        alike += own.weight(i) * std::conj(expected) * one.windows[i].value[order];
-        said += own.weight(i) * std::norm(expected);
-    }
-    MapAgreement found;
-    if (!(said > 0.0)) return found;
-    const std::complex<double> factor = alike / said;
-    std::vector<std::complex<double>> off(one.blocks);
-    for (std::size_t i = 0; i < one.windows.size(); ++i) {
-        const std::complex<double> expected = own.predicted(i, values);
-        off[one.windows[i].block] +=
-            own.weight(i) * std::conj(expected) * (one.windows[i].value[order] - factor * expected);
-    }
-    double square = 1.0 / said;  // what noise alone makes of each part
-    for (const auto& block : off) square += 0.5 * std::norm(block) / (said * said);
-    const double error = std::sqrt(square), size = portable::hypot(factor.real(), factor.imag());
+    double expected = 0.0, square = 0.0;
+    const auto each_block = [&](const auto& take) {
+        for (std::size_t b = 0; b < of_log.size(); ++b)
+            if (of_log[b]) take(fit.products(b, others));
+    };
+    each_block([&](const auto& block) {
+        alike += block.first;
+        expected += block.second;
+    });
+    MapAgreement found{log, order};
+    if (!(expected > 0.0)) return found;
+    const std::complex<double> factor = alike / expected;
+    each_block([&](const auto& block) { square += 0.5 * std::norm(block.first - factor * block.second); });
+    // Not below what noise alone makes of each part.
+    const double error = std::sqrt(1.0 / expected + square / (expected * expected));
+    const double size = portable::hypot(factor.real(), factor.imag());
     found.amplitude_ratio = size;
     found.amplitude_error = error;
     // z = A exp(-i phase): a phase that is ahead turns z backward.
@@ -60,15 +54,15 @@ MapAgreement agreement_of(const MapData& one, const MapData& others, const MapFo
     return found;
 }
 
-void hold_logs_together(const MapData& data, const MapChoice& choice, std::size_t logs, MapFit& fit) {
+void hold_logs_together(const MapData& data, const MapForm& form, std::size_t logs, MapFit& fit) {
     for (std::size_t l = 0; logs > 1 && l < logs; ++l) {
-        const MapData one = of_log(data, l, true), others = of_log(data, l, false);
-        if (one.windows.empty() || others.windows.empty()) continue;
+        std::vector<bool> of_log(data.blocks);
+        for (const MapWindow& window : data.windows) of_log[window.block] = window.log == l;
+        if (std::adjacent_find(of_log.begin(), of_log.end(), std::not_equal_to<>()) == of_log.end()) continue;
         for (std::size_t i = 0; i < fit.scores.size(); ++i) {
             if (!fit.scores[i].in_map) continue;
-            fit.agreement.push_back(agreement_of(one, others, choice.form, i));
-            fit.agreement.back().log = l;
-            fit.agreement.back().order = fit.scores[i].order;
+            fit.agreement.push_back(
+                agreement_of(MapRegression(data, form, i), of_log, l, fit.scores[i].order));
         }
     }
 }
@@ -88,7 +82,8 @@ void fill_map(const MapData& data, const MapForm& form, MapFit& fit) {
         fit.map.orders.push_back(data.frame.orders[i]);
         fit.map.spread_nm.push_back(std::sqrt(std::max(left - noise, 0.01 * left)));
         fit.errors.push_back(regression.errors());
-        fit.map.values.push_back(regression.values());
+        const Eigen::VectorXcd values = regression.values();
+        fit.map.values.emplace_back(values.begin(), values.end());
         if (!score.in_map) fit.map.values.back().assign(form.columns(), 0.0);
     }
 }
@@ -97,45 +92,37 @@ double decibels_down(double from_nm, double to_nm) {
     return to_nm > 0.0 && from_nm > 0.0 ? 20.0 * portable::log10(from_nm / to_nm) : 0.0;
 }
 
-std::string orders_of(const std::vector<MapOrderScore>& scores) {
+// What `words` has of each, but for those of which it has nothing.
+template <typename Each, typename Words>
+std::string listed(const std::vector<Each>& all, const Words& words) {
     std::string text;
-    for (const MapOrderScore& score : scores) text += (text.empty() ? "" : ", ") + shortest(score.order);
-    return (scores.size() == 1 ? "order " : "orders ") + text;
-}
-
-std::string disagreements(const MapFit& fit) {
-    std::string text;
-    for (const MapAgreement& one : fit.agreement) {
-        if (one.agrees) continue;
-        text += fmt::format("{}in log {} order {} is {:.2f} times as large and {:.0f} deg ahead",
-                            text.empty() ? "" : ", ", one.log + 1, shortest(one.order), one.amplitude_ratio,
-                            std::round(one.phase_deg) + 0.0);
-    }
+    for (const Each& one : all)
+        if (const std::string part = words(one); !part.empty()) text += (text.empty() ? "" : ", ") + part;
     return text;
 }
 
-std::string mapped_sentence(const MapFit& fit) {
-    std::string text = "Cross-validated:";
-    bool first = true;
-    for (const MapOrderScore& score : fit.scores) {
-        if (!score.in_map) continue;
-        text += fmt::format("{} order {} falls from {:.3g} to {:.3g} Nm ({:.1f} dB; noise limit {:.1f} dB)",
-                            first ? "" : ",", shortest(score.order), score.ripple_nm, score.left_nm,
-                            decibels_down(score.ripple_nm, score.left_nm),
-                            decibels_down(score.ripple_nm, score.noise_nm));
-        first = false;
-    }
-    return text + fmt::format("; amplitudes {}.", map_form_words(fit.map.form));
+std::string orders_of(const std::vector<MapOrderScore>& scores) {
+    return (scores.size() == 1 ? "order " : "orders ") +
+           listed(scores, [](const MapOrderScore& score) { return shortest(score.order); });
 }
 
-std::string detectable_sentence(const MapFit& fit) {
-    std::string text;
-    for (const MapOrderScore& score : fit.scores) {
-        if (score.in_map || !std::isfinite(score.detectable_nm) || !(score.detectable_nm > 0.0)) continue;
-        text += fmt::format("{}{:.2g} Nm of order {}", text.empty() ? "" : ", ", score.detectable_nm,
-                            shortest(score.order));
-    }
-    return text.empty() ? text : fmt::format("An amplitude of {} would have been found.", text);
+std::string disagreement(const MapAgreement& one) {
+    if (one.agrees) return "";
+    return fmt::format("in log {} order {} is {:.2f} times as large and {:.0f} deg ahead", one.log + 1,
+                       shortest(one.order), one.amplitude_ratio, std::round(one.phase_deg) + 0.0);
+}
+
+std::string mapped_order(const MapOrderScore& score) {
+    if (!score.in_map) return "";
+    return fmt::format("order {} falls from {:.3g} to {:.3g} Nm ({:.1f} dB; noise limit {:.1f} dB)",
+                       shortest(score.order), score.ripple_nm, score.left_nm,
+                       decibels_down(score.ripple_nm, score.left_nm),
+                       decibels_down(score.ripple_nm, score.noise_nm));
+}
+
+std::string bound_of(const MapOrderScore& score) {
+    if (score.in_map || !std::isfinite(score.detectable_nm) || !(score.detectable_nm > 0.0)) return "";
+    return fmt::format("{:.2g} Nm of order {}", score.detectable_nm, shortest(score.order));
 }
 
 }  // namespace
@@ -164,7 +151,7 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
     fit.finding = choice.finding;
     fit.notes = choice.notes;
     if (fit.finding == MapFinding::mapped) fill_map(data, choice.form, fit);
-    hold_logs_together(data, choice, logs.size(), fit);
+    hold_logs_together(data, choice.form, logs.size(), fit);
     const bool agree = std::all_of(fit.agreement.begin(), fit.agreement.end(),
                                    [](const MapAgreement& one) { return one.agrees; });
     fit.conclusive = fit.anchored && fit.finding != MapFinding::unclear && agree;
@@ -172,17 +159,8 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
 }
 
 std::string_view map_finding_name(MapFinding finding) {
-    switch (finding) {
-        case MapFinding::mapped:
-            return "mapped";
-        case MapFinding::nothing:
-            return "nothing";
-        case MapFinding::unclear:
-            return "unclear";
-        case MapFinding::too_little:
-            return "too-little";
-    }
-    return "";
+    constexpr std::array<std::string_view, 4> names = {"mapped", "nothing", "unclear", "too-little"};
+    return names[static_cast<std::size_t>(finding)];
 }
 
 std::string map_form_words(const MapForm& form) {
@@ -218,37 +196,35 @@ std::string map_column_words(const MapForm& form, std::size_t column) {
 }
 
 std::string map_verdict(const MapFit& fit) {
-    std::string text = fit.doubt;
-    const auto add = [&text](const std::string& sentence) { text += (text.empty() ? "" : " ") + sentence; };
-    switch (fit.finding) {
-        case MapFinding::too_little:
-            add(fmt::format(
-                "Cannot tell: the motor turns 2.5 times in one direction in {} windows, and {} are "
-                "needed to leave some out; the map is empty.",
-                fit.windows, fewest_map_windows));
-            break;
-        case MapFinding::nothing:
-            add(fmt::format("No ripple found of {} at gear ratio {:.6g} in {} windows: the map is empty.",
-                            orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
-            add(detectable_sentence(fit));
-            break;
-        case MapFinding::unclear:
-            add(fmt::format(
-                "Cannot tell: no regular ripple found of {} at gear ratio {:.6g} in {} windows, but "
-                "amplitudes above the noise, or no bound; the map is empty.",
-                orders_of(fit.scores), fit.map.gear_ratio.value(), fit.windows));
-            add(detectable_sentence(fit));
-            break;
-        case MapFinding::mapped:
-            add(mapped_sentence(fit));
-            if (const std::string bound = detectable_sentence(fit); !bound.empty()) add(bound);
-            break;
+    std::vector<std::string> sentences = {fit.doubt};
+    const std::string ratio = fmt::format("{} at gear ratio {:.6g} in {} windows", orders_of(fit.scores),
+                                          fit.map.gear_ratio.value(), fit.windows);
+    if (fit.finding == MapFinding::too_little) {
+        sentences.push_back(
+            fmt::format("Cannot tell: the motor turns 2.5 times in one direction in {} windows, and {} are "
+                        "needed to leave "
+                        "some out; the map is empty.",
+                        fit.windows, fewest_map_windows));
+    } else if (fit.finding == MapFinding::nothing) {
+        sentences.push_back(fmt::format("No ripple found of {}: the map is empty.", ratio));
+    } else if (fit.finding == MapFinding::unclear) {
+        sentences.push_back(
+            fmt::format("Cannot tell: no regular ripple found of {}, but amplitudes above the noise, or no "
+                        "bound; the map is "
+                        "empty.",
+                        ratio));
+    } else {
+        sentences.push_back(fmt::format("Cross-validated: {}; amplitudes {}.",
+                                        listed(fit.scores, mapped_order), map_form_words(fit.map.form)));
     }
+    if (const std::string bounds = listed(fit.scores, bound_of); !bounds.empty())
+        sentences.push_back(fmt::format("An amplitude of {} would have been found.", bounds));
     if (!fit.anchored && fit.finding == MapFinding::mapped)
-        add("The log has no position: phases count from its first row.");
-    if (const std::string apart = disagreements(fit); !apart.empty())
-        add(fmt::format("The logs disagree: {}.", apart));
-    return text;
+        sentences.emplace_back("The log has no position: phases count from its first row.");
+    if (const std::string apart = listed(fit.agreement, disagreement); !apart.empty())
+        sentences.push_back(fmt::format("The logs disagree: {}.", apart));
+    if (fit.doubt.empty()) sentences.erase(sentences.begin());
+    return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 }  // namespace ripplenotch

@@ -27,23 +27,19 @@ MapRegression::MapRegression(const MapData& data, const MapForm& form, std::size
     noise_ = std::max(noise_, least_noise_share * energy_);
     const auto columns = static_cast<Eigen::Index>(form.columns());
     const Matrix none = Matrix::Zero(columns, columns);
-    columns_ = Matrix::Zero(static_cast<Eigen::Index>(data.windows.size()), columns);
     blocks_.assign(data.blocks, {none, none, Vector::Zero(columns), Vector::Zero(columns), {}});
     gram_ = penalty(frame);
     right_ = Vector::Zero(columns);
     std::vector<double> row(form.columns());
-    for (std::size_t i = 0; i < data.windows.size(); ++i) {
-        const MapWindow& window = data.windows[i];
+    for (const MapWindow& window : data.windows) {
         map_weights(frame, window.state, row);
-        const std::complex<double> second = second_comb_phasor(frame, order, window.state.position_deg);
+        const std::complex<double> second =
+            std::conj(second_comb_phasor(frame, order, window.state.position_deg));
         Vector x(columns);
         for (std::size_t c = 0; c < row.size(); ++c)
-            x(static_cast<Eigen::Index>(c)) =
-                row[c] * (form.is_second_comb(c) ? std::conj(second) : std::complex<double>(1.0));
-        columns_.row(static_cast<Eigen::Index>(i)) = x.adjoint();
+            x(static_cast<Eigen::Index>(c)) = row[c] * (form.is_second_comb(c) ? second : 1.0);
         // Half of the noise is in each part; that of one window is known from a few numbers only.
         const double weight = 4.0 * independent_share / (window.noise[order] + noise_);
-        weight_.push_back(weight);
         const std::complex<double> value = window.value[order];
         const Matrix square = weight * x * x.adjoint();
         Block& block = blocks_[window.block];
@@ -94,15 +90,20 @@ Eigen::MatrixXd MapRegression::penalty(const RippleMap& frame) const {
     return p;
 }
 
-std::vector<std::complex<double>> MapRegression::values() const {
-    const Vector z = HermitianFactors(gram_).solve(right_);
-    return {z.begin(), z.end()};
+Eigen::VectorXcd MapRegression::values(const std::vector<bool>& left_out) const {
+    Matrix gram = gram_;
+    Vector right = right_;
+    for (std::size_t b = 0; b < left_out.size(); ++b) {
+        if (!left_out[b]) continue;
+        gram -= blocks_[b].gram;
+        right -= blocks_[b].right;
+    }
+    return HermitianFactors(gram).solve(right);
 }
 
-std::complex<double> MapRegression::predicted(std::size_t window,
-                                              const std::vector<std::complex<double>>& values) const {
-    const Eigen::Map<const Vector> z(values.data(), columns_.cols());
-    return columns_.row(static_cast<Eigen::Index>(window)) * z;
+std::pair<std::complex<double>, double> MapRegression::products(std::size_t block,
+                                                                const Eigen::VectorXcd& values) const {
+    return {values.dot(blocks_[block].right), values.dot(blocks_[block].gram * values).real()};
 }
 
 // Sandwich over the blocks (Liang and Zeger 1986), each part by itself.
@@ -126,14 +127,13 @@ std::vector<std::complex<double>> MapRegression::errors() const {
     return errors;
 }
 
-double MapRegression::residual(const Block& block, const Vector& values) {
-    const std::complex<double> explained = values.dot(2.0 * block.scored_right - block.scored_gram * values);
-    return std::max(block.squares.total - explained.real(), 0.0);
-}
-
 Eigen::MatrixXd MapRegression::residuals() const {
     const auto count = static_cast<Eigen::Index>(blocks_.size());
     Eigen::MatrixXd found(count, count);
+    const auto residual = [](const Block& block, const Vector& values) {
+        const auto explained = values.dot(2.0 * block.scored_right - block.scored_gram * values);
+        return std::max(block.squares.total - explained.real(), 0.0);
+    };
     for (Eigen::Index a = 0; a < count; ++a) {
         for (Eigen::Index b = a; b < count; ++b) {
             const Block &one = blocks_[static_cast<std::size_t>(a)],

@@ -38,13 +38,11 @@ RippleMap StatedMap::at_temperature() const {
     const MapRange& seen = map.temperatures_degc;
     const double warmer = std::clamp(degc, seen.from, seen.to) - seen.middle();
     const std::size_t each = map.form.columns_a_direction(), last = map.form.temperature_column();
-    for (std::size_t i = 0; i < map.values.size(); ++i) {
-        there.values[i].clear();
-        for (std::size_t c = 0; c < map.values[i].size(); ++c) {
-            if (c % each == last) continue;
-            const bool first_comb = c % each < map.form.speeds_deg_s.size();
-            there.values[i].push_back(map.values[i][c] +
-                                      (first_comb ? warmer * map.values[i][c - c % each + last] : 0.0));
+    for (std::vector<std::complex<double>>& values : there.values) {
+        for (std::size_t d = map.form.directions; d-- > 0;) {
+            const auto from = values.begin() + static_cast<std::ptrdiff_t>(d * each);
+            for (std::size_t k = 0; k < map.form.speeds_deg_s.size(); ++k) from[k] += warmer * from[last];
+            values.erase(from + static_cast<std::ptrdiff_t>(last));
         }
     }
     return there;

@@ -13,77 +13,76 @@
 
 namespace ripplenotch {
 
-namespace map_keys_detail {
-
-inline constexpr std::array<std::string_view, 2> temperature_of = {"stated", "rows"};
-inline constexpr std::array<std::string_view, 2> beyond = {"refuse", "hold"};
-
-constexpr Key list_of(std::string_view name, Dimension dimension, std::string_view help,
-                      double at_least = -1e300) {
-    return {.name = name, .kind = KeyKind::list, .dimension = dimension, .at_least = at_least, .help = help};
-}
-constexpr Key whole(std::string_view name, std::string_view usual, double least, double most,
-                    std::string_view help) {
-    return {
-        .name = name, .default_text = usual, .at_least = least, .at_most = most, .whole = true, .help = help};
-}
-
-}  // namespace map_keys_detail
+inline constexpr std::array<std::string_view, 2> temperature_of_choices = {"stated", "rows"};
+inline constexpr std::array<std::string_view, 2> beyond_choices = {"refuse", "hold"};
 
 /// `map` is never seen by a method: whoever loads files replaces it by the keys that it stands for.
-inline constexpr std::array ripple_map_keys = {
-    Key{.name = "map",
-        .kind = KeyKind::text,
-        .help = "map.json of the command map: the keys below, unless given"},
-    map_keys_detail::list_of("cosines", Dimension::torque,
-                             "of ripple = cosine cos(n motor angle) + sine sin(n motor angle): all values of "
-                             "the first order, then of the next; or map=map.json"),
-    map_keys_detail::list_of("sines", Dimension::torque, "as cosines"),
-    map_keys_detail::list_of("speeds", Dimension::speed,
-                             "joint speeds at which an order has a value; one for all when left out", 0.0),
-    map_keys_detail::whole("directions", "1", 1.0, 2.0, "2: values forward, then values backward"),
-    map_keys_detail::whole(
-        "turn-harmonics", "0", 0.0, 8.0,
-        "after those of the speeds, a cosine and a sine of 1, 2, ... times the joint's own angle"),
-    map_keys_detail::whole("by-load", "0", 0.0, 1.0, "1: last, a value in proportion to the torque, per Nm"),
-    map_keys_detail::whole("by-temperature", "0", 0.0, 1.0,
-                           "1: behind it, a value per degC beyond the middle of the temperatures"),
-    Key{.name = "slowest",
-        .dimension = Dimension::speed,
-        .default_text = "0deg/s",
-        .at_least = 0.0,
-        .help = "below it the two directions run into each other"},
-    map_keys_detail::list_of("positions", Dimension::angle,
-                             "least and greatest joint position that was seen"),
-    map_keys_detail::list_of("loads", Dimension::torque, "least and greatest torque that was seen"),
-    Key{.name = "temperatures",
-        .kind = KeyKind::list,
-        .at_least = -274.0,
-        .at_most = 1000.0,
-        .help = "least and greatest temperature that was seen, degC"},
-    Key{.name = "temperature",
-        .at_least = -274.0,
-        .at_most = 1000.0,
-        .help = "of the joint, degC; for a map that depends on it, by default the mean of the log's column"},
-    Key{.name = "temperature-of",
-        .kind = KeyKind::choice,
-        .default_text = "stated",
-        .choices = map_keys_detail::temperature_of,
-        .help = "rows: the temperature is that of each row, and the stated one where a row has none"},
-    map_keys_detail::list_of("spread", Dimension::torque, "by how much each order strays from the map, rms",
-                             0.0),
-    Key{.name = "fastest",
-        .dimension = Dimension::speed,
-        .above = 0.0,
-        .help = "speed up to which the map was made"},
-    Key{.name = "beyond",
-        .kind = KeyKind::choice,
-        .default_text = "refuse",
-        .choices = map_keys_detail::beyond,
-        .help = "a joint half as fast again: refuse, as another joint; hold: the map's edge"},
-    map_keys_detail::whole(
-        "second-comb", "0", -1.0, 1.0,
-        "1 or -1: after those of the speeds, as many of lines at n (gear ratio + 1) or n (gear ratio - 1)")};
+inline constexpr std::array ripple_map_keys = [] {
+    const auto list = [](std::string_view name, Dimension dimension, std::string_view help, double least) {
+        return Key{
+            .name = name, .kind = KeyKind::list, .dimension = dimension, .at_least = least, .help = help};
+    };
+    const auto whole = [](std::string_view name, double least, double most, std::string_view help) {
+        const std::string_view usual = least > 0.0 ? "1" : "0";
+        return Key{.name = name,
+                   .default_text = usual,
+                   .at_least = least,
+                   .at_most = most,
+                   .whole = true,
+                   .help = help};
+    };
+    const auto degc = [](std::string_view name, KeyKind kind, std::string_view help) {
+        return Key{.name = name, .kind = kind, .at_least = -274.0, .at_most = 1000.0, .help = help};
+    };
+    const auto choice = [](std::string_view name, std::span<const std::string_view> choices,
+                           std::string_view help) {
+        return Key{.name = name,
+                   .kind = KeyKind::choice,
+                   .default_text = choices[0],
+                   .choices = choices,
+                   .help = help};
+    };
+    constexpr double any = -1e300;
+    return std::array{
+        Key{.name = "map",
+            .kind = KeyKind::text,
+            .help = "map.json of the command map: the keys below, unless given"},
+        list("cosines", Dimension::torque,
+             "of ripple = cosine cos(n motor angle) + sine sin(n motor angle): all values of the first "
+             "order, then of the next; or map=map.json",
+             any),
+        list("sines", Dimension::torque, "as cosines", any),
+        list("speeds", Dimension::speed,
+             "joint speeds at which an order has a value; one for all when left out", 0.0),
+        whole("directions", 1.0, 2.0, "2: values forward, then values backward"),
+        whole("turn-harmonics", 0.0, 8.0,
+              "after those of the speeds, a cosine and a sine of 1, 2, ... times the joint's own angle"),
+        whole("by-load", 0.0, 1.0, "1: last, a value in proportion to the torque, per Nm"),
+        whole("by-temperature", 0.0, 1.0,
+              "1: behind it, a value per degC beyond the middle of the temperatures"),
+        Key{.name = "slowest",
+            .dimension = Dimension::speed,
+            .default_text = "0deg/s",
+            .at_least = 0.0,
+            .help = "below it the two directions run into each other"},
+        list("positions", Dimension::angle, "least and greatest joint position that was seen", any),
+        list("loads", Dimension::torque, "least and greatest torque that was seen", any),
+        degc("temperatures", KeyKind::list, "least and greatest temperature that was seen, degC"),
+        degc("temperature", KeyKind::number,
+             "of the joint, degC; for a map that depends on it, by default the mean of the log's column"),
+        choice("temperature-of", temperature_of_choices,
+               "rows: the temperature is that of each row, and the stated one where a row has none"),
+        list("spread", Dimension::torque, "by how much each order strays from the map, rms", 0.0),
+        Key{.name = "fastest",
+            .dimension = Dimension::speed,
+            .above = 0.0,
+            .help = "speed up to which the map was made"},
+        choice("beyond", beyond_choices,
+               "a joint half as fast again: refuse, as another joint; hold: the map's edge"),
+        whole("second-comb", -1.0, 1.0,
+              "1 or -1: after those of the speeds, as many of lines at n (gear ratio + 1) or n (gear ratio - "
+              "1)")};
+}();
 
 /// One list of several.
 template <std::size_t... Sizes>
