@@ -49,7 +49,7 @@ MapWindow window_of(const RippleWindow& window, const GearAccount& gear, double 
 }
 
 template <typename Value>
-MapRange range_of(const std::vector<MapWindow>& windows, const Value& value) {
+MapRange range_seen(const std::vector<MapWindow>& windows, const Value& value) {
     if (windows.empty()) return {};
     MapRange range{value(windows.front().state), value(windows.front().state)};
     for (const MapWindow& window : windows)
@@ -94,11 +94,11 @@ MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, doubl
     data.frame.orders = gear.orders;
     data.frame.zero_deg = zero_deg;
     data.frame.speeds_deg_s =
-        range_of(data.windows, [](const MapState& at) { return std::abs(at.speed_deg_s); });
-    data.frame.positions_deg = range_of(data.windows, [](const MapState& at) { return at.position_deg; });
-    data.frame.loads_nm = range_of(data.windows, [](const MapState& at) { return at.load_nm; });
+        range_seen(data.windows, [](const MapState& at) { return std::abs(at.speed_deg_s); });
+    data.frame.positions_deg = range_seen(data.windows, [](const MapState& at) { return at.position_deg; });
+    data.frame.loads_nm = range_seen(data.windows, [](const MapState& at) { return at.load_nm; });
     data.frame.temperatures_degc =
-        range_of(data.windows, [](const MapState& at) { return at.temperature_degc.value_or(0.0); });
+        range_seen(data.windows, [](const MapState& at) { return at.temperature_degc.value_or(0.0); });
     number_blocks(data);
     return data;
 }

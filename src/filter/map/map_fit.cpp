@@ -146,12 +146,10 @@ MapFit fit_ripple_map(std::span<const TraceView> logs, const GearAccount& gear, 
         for (const Order order : gear.orders) fit.scores.push_back({order.value()});
         return fit;
     }
-    const MapChoice choice = choose_map(data, fit.anchored);
-    fit.scores = choice.scores;
-    fit.finding = choice.finding;
-    fit.notes = choice.notes;
-    if (fit.finding == MapFinding::mapped) fill_map(data, choice.form, fit);
-    hold_logs_together(data, choice.form, logs.size(), fit);
+    choose_map(data, fit);
+    const MapForm form = fit.map.form;
+    if (fit.finding == MapFinding::mapped) fill_map(data, form, fit);
+    hold_logs_together(data, form, logs.size(), fit);
     const bool agree = std::all_of(fit.agreement.begin(), fit.agreement.end(),
                                    [](const MapAgreement& one) { return one.agrees; });
     fit.conclusive = fit.anchored && fit.finding != MapFinding::unclear && agree;

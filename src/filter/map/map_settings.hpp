@@ -18,7 +18,8 @@ inline constexpr std::array<std::string_view, 2> beyond_choices = {"refuse", "ho
 
 /// `map` is never seen by a method: whoever loads files replaces it by the keys that it stands for.
 inline constexpr std::array ripple_map_keys = [] {
-    const auto list = [](std::string_view name, Dimension dimension, std::string_view help, double least) {
+    const auto list = [](std::string_view name, Dimension dimension, std::string_view help,
+                         double least = Key{}.at_least) {
         return Key{
             .name = name, .kind = KeyKind::list, .dimension = dimension, .at_least = least, .help = help};
     };
@@ -42,16 +43,14 @@ inline constexpr std::array ripple_map_keys = [] {
                    .choices = choices,
                    .help = help};
     };
-    constexpr double any = -1e300;
     return std::array{
         Key{.name = "map",
             .kind = KeyKind::text,
             .help = "map.json of the command map: the keys below, unless given"},
         list("cosines", Dimension::torque,
              "of ripple = cosine cos(n motor angle) + sine sin(n motor angle): all values of the first "
-             "order, then of the next; or map=map.json",
-             any),
-        list("sines", Dimension::torque, "as cosines", any),
+             "order, then of the next; or map=map.json"),
+        list("sines", Dimension::torque, "as cosines"),
         list("speeds", Dimension::speed,
              "joint speeds at which an order has a value; one for all when left out", 0.0),
         whole("directions", 1.0, 2.0, "2: values forward, then values backward"),
@@ -65,8 +64,8 @@ inline constexpr std::array ripple_map_keys = [] {
             .default_text = "0deg/s",
             .at_least = 0.0,
             .help = "below it the two directions run into each other"},
-        list("positions", Dimension::angle, "least and greatest joint position that was seen", any),
-        list("loads", Dimension::torque, "least and greatest torque that was seen", any),
+        list("positions", Dimension::angle, "least and greatest joint position that was seen"),
+        list("loads", Dimension::torque, "least and greatest torque that was seen"),
         degc("temperatures", KeyKind::list, "least and greatest temperature that was seen, degC"),
         degc("temperature", KeyKind::number,
              "of the joint, degC; for a map that depends on it, by default the mean of the log's column"),
