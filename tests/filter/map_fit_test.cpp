@@ -152,6 +152,25 @@ TEST_CASE("a short run at one speed holds its orders: sixteen windows are enough
     }
 }
 
+TEST_CASE("no short run is told to be empty below a bound that its ripple exceeds") {
+    std::size_t empty = 0;
+    for (const double share : {0.01, 0.03, 0.1, 0.3}) {
+        RippleMap weak = plain_map();
+        for (auto& values : weak.values) values[0] *= share;
+        for (unsigned seed = 1; seed <= 6; ++seed) {
+            const MapFit fit = fit_of(mapped_log(weak, 1.25 + 0.25 * seed, 0.05, 200 + seed), mapped_gear());
+            INFO(share << ", " << seed << ": " << map_verdict(fit));
+            if (fit.finding != MapFinding::nothing && fit.finding != MapFinding::mapped) continue;
+            for (std::size_t i = 0; i < 2; ++i) {
+                if (fit.scores[i].in_map) continue;
+                CHECK(fit.scores[i].detectable_nm > std::abs(weak.values[i][0]));
+                ++empty;
+            }
+        }
+    }
+    CHECK(empty > 0);
+}
+
 TEST_CASE("an empty map is bounded: a ripple of the bound is found, of twice the bound always") {
     RippleMap none = plain_map();
     none.orders = {Order(2.0)};
