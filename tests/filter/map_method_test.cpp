@@ -4,7 +4,7 @@
 #include "filter/mapped.hpp"
 #include "filter/tables.hpp"
 #include "ripplenotch/core/error.hpp"
-#include "ripplenotch/filter/map_keys.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 #include "support/catch.hpp"
 
 using namespace ripplenotch;

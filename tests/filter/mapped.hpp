@@ -42,6 +42,14 @@ inline RippleMap rich_map() {
     return map;
 }
 
+/// The same without that harmonic.
+inline RippleMap speed_map() {
+    RippleMap map = rich_map();
+    map.form.turn_harmonics = 0;
+    map.values = {{{0.5, 0.1}, {0.2, -0.4}, {-0.1, 0.6}, {0.4, 0.3}}};
+    return map;
+}
+
 /// Orders 1 and 2 of both combs, n 100 and n 101 cycles per output turn, alike at every speed.
 inline RippleMap two_comb_map() {
     RippleMap map = plain_map();

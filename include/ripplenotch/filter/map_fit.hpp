@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ripplenotch/core/gear_account.hpp"
@@ -60,8 +61,8 @@ inline constexpr std::size_t fewest_map_windows = 12;
 
 /// Fits each order in windows of 2.5 motor turns beside a cubic (docs/methods/subtract.md), then the windows'
 /// amplitudes by ridge regression on the columns of a form. An order comes into the map where a rotation test
-/// finds it, at 1 % for all orders together; the form is the smallest one within a standard error of the best
-/// in cross-validation.
+/// finds it, at 1 % for all orders together; the form is the smallest one that cross-validation does not tell
+/// from the best.
 /// Angles count from `zero_deg`. Logs without a position have none to count from: throws DataError for
 /// several of them. Throws UsageError for no log. `temperatures_degc`: the joint's temperature at each row of
 /// each log, which enters where it pays; or nothing.
@@ -76,5 +77,9 @@ inline constexpr std::size_t fewest_map_windows = 12;
 
 /// One sentence with numbers.
 [[nodiscard]] std::string map_verdict(const MapFit& fit);
+
+/// What map=map.json stands for as the keys of a method: gear-ratio, orders, cosines, sines and what else the
+/// form needs, in the order of the page; angles count from position 0 then. The map has an order.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& map);
 
 }  // namespace ripplenotch

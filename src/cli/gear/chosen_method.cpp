@@ -10,7 +10,7 @@
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/document/table_json.hpp"
-#include "ripplenotch/filter/map_keys.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -207,10 +207,9 @@ const Command commands::map{
     .summary = "the ripple by motor angle, speed and direction, for a compensator without delay",
     .description =
         "Reads logs of one joint and fits the cosine and sine amplitude of each order, on both combs of a "
-        "harmonic\ndrive, as a function of speed, direction, the joint's own turn, load and temperature; the "
-        "form is chosen by\ncross-validation. The map is empty where no order follows the motor; the "
-        "amplitude "
-        "that would have been found\nis stated.\n"
+        "harmonic\ndrive, as a function of speed, direction and temperature; the form is chosen by "
+        "cross-validation. The map\nis empty where no order follows the motor; the amplitude that would have "
+        "been found is stated.\n"
         "Example: ripplenotch map log.csv --gear-ratio 100 --orders 1,2 -o map.json",
     .attach = attach_map,
 };

@@ -17,7 +17,6 @@
 #include "ripplenotch/document/map_json.hpp"
 #include "ripplenotch/evaluate/comparison.hpp"
 #include "ripplenotch/filter/map_fit.hpp"
-#include "ripplenotch/filter/map_keys.hpp"
 
 namespace ripplenotch {
 namespace {

@@ -11,9 +11,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::size_t most_blocks = 16;     // by hand: parts that are left out in turn
-constexpr std::size_t least_block = 3;      ///< windows, of which the middle one shares none of its samples
-constexpr double least_noise_share = 1e-8;  ///< of the energy: a simulation without noise has rounding
+constexpr std::size_t most_blocks = 16;  // by hand: parts that are left out in turn
+constexpr std::size_t least_block = 3;   ///< windows, of which the middle one shares none of its samples
 
 // Amplitudes and mean of what `torque_nm` holds along the log.
 std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& gear,
@@ -33,9 +32,10 @@ std::vector<RippleWindow> windows_of(const TraceView& log, const GearAccount& ge
     return windows.finish();
 }
 
-MapWindow window_of(const RippleWindow& window, const GearAccount& gear, double zero_deg) {
+MapWindow window_of(const RippleWindow& window, const GearAccount& gear, double zero_deg, std::size_t log) {
     const double ratio = gear.ratio.value();
     MapWindow one;
+    one.log = log;
     one.middle = window.middle;
     one.length = window.length;
     one.state = {360.0 * window.speed_turns_s / ratio, 360.0 * window.middle_turns / ratio, window.torque_nm};
@@ -48,9 +48,13 @@ MapWindow window_of(const RippleWindow& window, const GearAccount& gear, double 
     return one;
 }
 
-void widen_span(MapRange& range, double value, bool first) {
-    range.from = first ? value : std::min(range.from, value);
-    range.to = first ? value : std::max(range.to, value);
+template <typename Value>
+MapRange range_seen(const std::vector<MapWindow>& windows, const Value& value) {
+    if (windows.empty()) return {};
+    MapRange range{value(windows.front().state), value(windows.front().state)};
+    for (const MapWindow& window : windows)
+        range = {std::min(range.from, value(window.state)), std::max(range.to, value(window.state))};
+    return range;
 }
 
 // Blocks of a log are alike in size. Windows half overlap: those at the ends of a block may share samples
@@ -75,77 +79,28 @@ void number_blocks(MapData& data) {
 
 }  // namespace
 
-void summarise(MapData& data) {
-    data.mean_noise.assign(data.orders.size(), 0.0);
-    data.energy.assign(data.orders.size(), 0.0);
-    const double each = data.windows.empty() ? 0.0 : 1.0 / static_cast<double>(data.windows.size());
-    for (const MapWindow& window : data.windows) {
-        for (std::size_t i = 0; i < data.orders.size(); ++i) {
-            data.mean_noise[i] += each * window.noise[i];
-            data.energy[i] += each * std::norm(window.value[i]);
-        }
-    }
-    for (std::size_t i = 0; i < data.orders.size(); ++i)
-        data.mean_noise[i] = std::max(data.mean_noise[i], least_noise_share * data.energy[i]);
-}
-
 MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
                  std::span<const std::vector<double>> temperatures_degc) {
     MapData data;
-    data.gear_ratio = gear.ratio;
-    data.orders = gear.orders;
     for (std::size_t l = 0; l < logs.size(); ++l) {
-        const bool warms = !temperatures_degc.empty();
-        const auto windows = windows_of(logs[l], gear, logs[l].torque_nm);
-        const auto warmth =
-            warms ? windows_of(logs[l], gear, temperatures_degc[l]) : std::vector<RippleWindow>();
-        for (std::size_t i = 0; i < windows.size(); ++i) {
-            MapWindow one = window_of(windows[i], gear, zero_deg);
-            one.log = l;
-            if (warms) one.state.temperature_degc = warmth[i].torque_nm;
-            const bool first = data.windows.empty();
-            widen_span(data.speeds_deg_s, std::abs(one.state.speed_deg_s), first);
-            widen_span(data.positions_deg, one.state.position_deg, first);
-            widen_span(data.loads_nm, one.state.load_nm, first);
-            if (warms) widen_span(data.temperatures_degc, *one.state.temperature_degc, first);
-            data.windows.push_back(std::move(one));
-        }
+        for (const RippleWindow& window : windows_of(logs[l], gear, logs[l].torque_nm))
+            data.windows.push_back(window_of(window, gear, zero_deg, l));
+        if (temperatures_degc.empty()) continue;
+        const auto warmth = windows_of(logs[l], gear, temperatures_degc[l]);
+        for (std::size_t i = 0, from = data.windows.size() - warmth.size(); i < warmth.size(); ++i)
+            data.windows[from + i].state.temperature_degc = warmth[i].torque_nm;
     }
+    data.frame.gear_ratio = gear.ratio;
+    data.frame.orders = gear.orders;
+    data.frame.zero_deg = zero_deg;
+    data.frame.speeds_deg_s =
+        range_seen(data.windows, [](const MapState& at) { return std::abs(at.speed_deg_s); });
+    data.frame.positions_deg = range_seen(data.windows, [](const MapState& at) { return at.position_deg; });
+    data.frame.loads_nm = range_seen(data.windows, [](const MapState& at) { return at.load_nm; });
+    data.frame.temperatures_degc =
+        range_seen(data.windows, [](const MapState& at) { return at.temperature_degc.value_or(0.0); });
     number_blocks(data);
-    summarise(data);
     return data;
-}
-
-MapData of_order(const MapData& data, std::size_t order) {
-    MapData part = data;
-    part.orders = {data.orders[order]};
-    for (MapWindow& window : part.windows) {
-        window.value = {window.value[order]};
-        window.noise = {window.noise[order]};
-    }
-    summarise(part);
-    return part;
-}
-
-MapData of_log(const MapData& data, std::size_t log, bool is) {
-    MapData part = data;
-    part.windows.clear();
-    for (const MapWindow& window : data.windows)
-        if ((window.log == log) == is) part.windows.push_back(window);
-    return part;
-}
-
-RippleMap frame_of(const MapData& data, const MapForm& form, double zero_deg) {
-    RippleMap map;
-    map.gear_ratio = data.gear_ratio;
-    map.orders = data.orders;
-    map.form = form;
-    map.zero_deg = zero_deg;
-    map.speeds_deg_s = data.speeds_deg_s;
-    map.positions_deg = data.positions_deg;
-    map.loads_nm = data.loads_nm;
-    map.temperatures_degc = data.temperatures_degc;
-    return map;
 }
 
 }  // namespace ripplenotch

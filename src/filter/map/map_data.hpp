@@ -26,27 +26,12 @@ struct MapWindow {
 /// Blocks are windows in a row, of one log each.
 struct MapData {
     std::vector<MapWindow> windows;
-    GearRatio gear_ratio;
-    std::vector<Order> orders;
+    RippleMap frame;  ///< gear ratio, orders, zero and the ranges of the windows, without values
     std::size_t blocks = 0;
-    std::vector<double> mean_noise, energy;  ///< by order: means over the windows of noise and |value|^2
-    MapRange speeds_deg_s, positions_deg, loads_nm;
-    MapRange temperatures_degc = {};  ///< 0 to 0 where a log has none
 };
 
 /// Angles count from `zero_deg`. Temperatures are of each log's rows, or empty where none is stated.
 [[nodiscard]] MapData map_data(std::span<const TraceView> logs, const GearAccount& gear, double zero_deg,
-                               std::span<const std::vector<double>> temperatures_degc = {});
-
-/// The amplitudes of one order alone.
-[[nodiscard]] MapData of_order(const MapData& data, std::size_t order);
-/// Computes mean_noise and energy.
-void summarise(MapData& data);
-
-/// The windows of `data` that are, or are not, of one log; blocks keep their numbers.
-[[nodiscard]] MapData of_log(const MapData& data, std::size_t log, bool is);
-
-/// A map without values over the range of the data.
-[[nodiscard]] RippleMap frame_of(const MapData& data, const MapForm& form, double zero_deg);
+                               std::span<const std::vector<double>> temperatures_degc);
 
 }  // namespace ripplenotch

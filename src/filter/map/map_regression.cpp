@@ -10,37 +10,37 @@ namespace ripplenotch {
 namespace {
 
 constexpr double independent_share = 2.0 / 3.0;  ///< of half-overlapping windows, the middle counting most
-constexpr double turn_share = 0.5;               ///< of the amplitude, that a turn harmonic may well have
 constexpr double any_share = 3.0;                ///< of the amplitude, that none has
-constexpr double least_energy_share = 0.05;      ///< of the noise: a ripple that cannot be seen is not 0
+constexpr double warm_share = 0.5;           ///< of the amplitude, that half the range of temperatures makes
+constexpr double least_energy_share = 0.05;  ///< of the noise: a ripple that cannot be seen is not 0
+constexpr double least_noise_share = 1e-8;   ///< of the energy: a simulation without noise has rounding
 
 }  // namespace
 
-MapRegression::MapRegression(const MapData& data, const RippleMap& frame, std::size_t order)
-    : data_(data), order_(order) {
-    const auto count = static_cast<Eigen::Index>(data.windows.size());
-    const auto columns = static_cast<Eigen::Index>(frame.form.columns());
-    columns_ = Matrix::Zero(count, columns);
-    blocks_.assign(data.blocks, {Matrix::Zero(columns, columns),
-                                 Matrix::Zero(columns, columns),
-                                 Vector::Zero(columns),
-                                 Vector::Zero(columns),
-                                 {}});
+MapRegression::MapRegression(const MapData& data, const MapForm& form, std::size_t order) {
+    RippleMap frame = data.frame;
+    frame.form = form;
+    for (const MapWindow& window : data.windows) {
+        noise_ += window.noise[order] / static_cast<double>(data.windows.size());
+        energy_ += std::norm(window.value[order]) / static_cast<double>(data.windows.size());
+    }
+    noise_ = std::max(noise_, least_noise_share * energy_);
+    const auto columns = static_cast<Eigen::Index>(form.columns());
+    const Matrix none = Matrix::Zero(columns, columns);
+    blocks_.assign(data.blocks, {none, none, Vector::Zero(columns), Vector::Zero(columns), {}});
     gram_ = penalty(frame);
     right_ = Vector::Zero(columns);
-    std::vector<double> row(frame.form.columns());
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const MapWindow& window = data.windows[static_cast<std::size_t>(i)];
+    std::vector<double> row(form.columns());
+    for (const MapWindow& window : data.windows) {
         map_weights(frame, window.state, row);
-        const std::complex<double> second = second_comb_phasor(frame, order, window.state.position_deg);
+        const std::complex<double> second =
+            std::conj(second_comb_phasor(frame, order, window.state.position_deg));
+        Vector x(columns);
         for (std::size_t c = 0; c < row.size(); ++c)
-            columns_(i, static_cast<Eigen::Index>(c)) =
-                row[c] * (frame.form.is_second_comb(c) ? second : 1.0);
+            x(static_cast<Eigen::Index>(c)) = row[c] * (form.is_second_comb(c) ? second : 1.0);
         // Half of the noise is in each part; that of one window is known from a few numbers only.
-        const double weight = 4.0 * independent_share / (window.noise[order] + data.mean_noise[order]);
-        weight_.push_back(weight);
+        const double weight = 4.0 * independent_share / (window.noise[order] + noise_);
         const std::complex<double> value = window.value[order];
-        const Vector x = columns_.row(i).adjoint();
         const Matrix square = weight * x * x.adjoint();
         Block& block = blocks_[window.block];
         block.gram += square;
@@ -61,48 +61,49 @@ MapRegression::MapRegression(const MapData& data, const RippleMap& frame, std::s
 Eigen::MatrixXd MapRegression::penalty(const RippleMap& frame) const {
     const MapForm& form = frame.form;
     const auto columns = static_cast<Eigen::Index>(form.columns());
-    const auto each = static_cast<Eigen::Index>(form.columns_a_direction());
-    const auto knots = static_cast<Eigen::Index>(form.speeds_deg_s.size());
-    const auto speeds = static_cast<Eigen::Index>(form.speed_columns());
-    const double noise = data_.mean_noise[order_];
     // Of each part.
-    const double energy = 0.5 * std::max(data_.energy[order_] - noise, least_energy_share * noise);
-    Eigen::MatrixXd p = Eigen::MatrixXd::Zero(columns, columns);
+    const double energy = 0.5 * std::max(energy_ - noise_, least_energy_share * noise_);
     if (!(energy > 0.0)) return Eigen::MatrixXd::Identity(columns, columns);
-    const auto alike = [&](Eigen::Index a, Eigen::Index b) {
-        p(a, a) += 1.0 / energy;
-        p(b, b) += 1.0 / energy;
-        p(a, b) -= 1.0 / energy;
-        p(b, a) -= 1.0 / energy;
+    Eigen::MatrixXd p = Eigen::MatrixXd::Zero(columns, columns);
+    const auto alike = [&p](Eigen::Index a, Eigen::Index b, double variance) {
+        p(a, a) += 1.0 / variance;
+        p(b, b) += 1.0 / variance;
+        p(a, b) -= 1.0 / variance;
+        p(b, a) -= 1.0 / variance;
     };
-    const auto load_column = static_cast<Eigen::Index>(form.load_column());
-    const auto temperature_column = static_cast<Eigen::Index>(form.temperature_column());
-    const double load = std::max(std::abs(frame.loads_nm.from), std::abs(frame.loads_nm.to));
-    const double warmer = 0.5 * (frame.temperatures_degc.to - frame.temperatures_degc.from);
-    for (Eigen::Index c = 0; c < columns; ++c) {
-        const Eigen::Index within = c % each;
-        const bool at_speed = within < speeds;
-        double share = at_speed ? any_share : turn_share;
-        if (form.by_load && within == load_column && load > 0.0) share /= load;
-        if (form.by_temperature && within == temperature_column && warmer > 0.0) share /= warmer;
-        p(c, c) += 1.0 / (share * share * energy);
-        if (at_speed && (within + 1) % knots != 0) alike(c, c + 1);
-        if (at_speed && c < each && columns > each) alike(c, c + each);
+    const std::size_t knots = form.speeds_deg_s.size(), each = form.columns_a_direction();
+    const double share_of_each = 1.0 / static_cast<double>(knots * form.directions);
+    const double step = energy / std::max(static_cast<double>(knots) - 1.0, 1.0);
+    const double warmer =
+        warm_share / std::max(0.5 * (frame.temperatures_degc.to - frame.temperatures_degc.from), 1e-9);
+    for (std::size_t k = 0; k < form.columns(); ++k) {
+        const auto c = static_cast<Eigen::Index>(k), across = static_cast<Eigen::Index>(each);
+        const std::size_t within = k % each;
+        if (within >= form.speed_columns()) {
+            p(c, c) += 1.0 / (warmer * warmer * energy);
+            continue;
+        }
+        p(c, c) += share_of_each / (any_share * any_share * energy);
+        if ((within + 1) % knots != 0) alike(c, c + 1, step);
+        if (k < each && form.directions > 1) alike(c, c + across, energy * static_cast<double>(knots));
     }
     return p;
 }
 
-std::vector<std::complex<double>> MapRegression::values() const {
-    const Vector z = HermitianFactors(gram_).solve(right_);
-    return {z.begin(), z.end()};
+Eigen::VectorXcd MapRegression::values(const std::vector<bool>& left_out) const {
+    Matrix gram = gram_;
+    Vector right = right_;
+    for (std::size_t b = 0; b < left_out.size(); ++b) {
+        if (!left_out[b]) continue;
+        gram -= blocks_[b].gram;
+        right -= blocks_[b].right;
+    }
+    return HermitianFactors(gram).solve(right);
 }
 
-std::complex<double> MapRegression::predicted(std::size_t window,
-                                              const std::vector<std::complex<double>>& values) const {
-    std::complex<double> sum = 0.0;
-    for (std::size_t c = 0; c < values.size(); ++c)
-        sum += columns_(static_cast<Eigen::Index>(window), static_cast<Eigen::Index>(c)) * values[c];
-    return sum;
+std::pair<std::complex<double>, double> MapRegression::products(std::size_t block,
+                                                                const Eigen::VectorXcd& values) const {
+    return {values.dot(blocks_[block].right), values.dot(blocks_[block].gram * values).real()};
 }
 
 // Sandwich over the blocks (Liang and Zeger 1986), each part by itself.
@@ -126,14 +127,13 @@ std::vector<std::complex<double>> MapRegression::errors() const {
     return errors;
 }
 
-double MapRegression::residual(const Block& block, const Vector& values) {
-    const std::complex<double> explained = values.dot(2.0 * block.scored_right - block.scored_gram * values);
-    return std::max(block.squares.total - explained.real(), 0.0);
-}
-
 Eigen::MatrixXd MapRegression::residuals() const {
     const auto count = static_cast<Eigen::Index>(blocks_.size());
     Eigen::MatrixXd found(count, count);
+    const auto residual = [](const Block& block, const Vector& values) {
+        const auto explained = values.dot(2.0 * block.scored_right - block.scored_gram * values);
+        return std::max(block.squares.total - explained.real(), 0.0);
+    };
     for (Eigen::Index a = 0; a < count; ++a) {
         for (Eigen::Index b = a; b < count; ++b) {
             const Block &one = blocks_[static_cast<std::size_t>(a)],

@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "core/matrices/linear_algebra.hpp"
@@ -11,34 +12,36 @@
 
 namespace ripplenotch {
 
-/// Sums of squares over the scored windows of one block, in units of the noise variance.
-struct BlockSquares {
+/// Sums of squares over the scored windows, in units of the noise variance.
+struct MapSquares {
     double total = 0.0;    ///< of the amplitudes
     double noise = 0.0;    ///< expected of noise alone
     double weights = 0.0;  ///< a sum of 1 is 1 / weights Nm^2, as a mean over the windows
 };
 
-/// Ridge regression. Its prior: the amplitudes of neighbouring speeds and of the two directions differ by
-/// about the order's own amplitude; those of the joint's turn, of the load and of the temperature are half of
-/// it.
+/// Ridge regression. Its prior is a random walk: from the slowest to the fastest speed, and from one
+/// direction to the other, an amplitude changes by about the order's own amplitude, however many speeds there
+/// are in between.
 class MapRegression {
   public:
-    MapRegression(const MapData& data, const RippleMap& frame, std::size_t order);
+    MapRegression(const MapData& data, const MapForm& form, std::size_t order);
 
-    /// By column, from all windows.
-    [[nodiscard]] std::vector<std::complex<double>> values() const;
+    /// By column, from all blocks but those `left_out` (by number; nothing: from all).
+    [[nodiscard]] Eigen::VectorXcd values(const std::vector<bool>& left_out = {}) const;
     /// Standard errors of both parts: the larger of what noise makes and of what the spread of blocks shows.
     [[nodiscard]] std::vector<std::complex<double>> errors() const;
-    [[nodiscard]] BlockSquares squares(std::size_t block) const { return blocks_[block].squares; }
+    [[nodiscard]] MapSquares squares(std::size_t block) const { return blocks_[block].squares; }
+    /// Of what `values` predict in a block: its weighted product with the amplitudes, and with itself.
+    [[nodiscard]] std::pair<std::complex<double>, double> products(std::size_t block,
+                                                                   const Eigen::VectorXcd& values) const;
     /// Residual squares of block `column` when it and block `row` are left out of the fit. The diagonal is
     /// cross-validation; the other columns of a row choose a form for block `row` without having seen it.
     [[nodiscard]] Eigen::MatrixXd residuals() const;
     /// The Hermitian form Q for which u* Q u is the reduction of the squares of left-out blocks, all
     /// amplitudes of block b turned by the unit phasor u_b.
     [[nodiscard]] Eigen::MatrixXcd reduction() const;
-    [[nodiscard]] std::complex<double> predicted(std::size_t window,
-                                                 const std::vector<std::complex<double>>& values) const;
-    [[nodiscard]] double weight(std::size_t window) const { return weight_[window]; }
+    [[nodiscard]] double noise() const { return noise_; }    ///< mean over the windows, Nm^2
+    [[nodiscard]] double energy() const { return energy_; }  ///< the same of the squared amplitudes
 
   private:
     using Matrix = Eigen::MatrixXcd;
@@ -46,15 +49,11 @@ class MapRegression {
     struct Block {
         Matrix gram, scored_gram;
         Vector right, scored_right;
-        BlockSquares squares;
+        MapSquares squares;
     };
     [[nodiscard]] Eigen::MatrixXd penalty(const RippleMap& frame) const;
-    [[nodiscard]] static double residual(const Block& block, const Vector& values);
 
-    const MapData& data_;
-    std::size_t order_;
-    Matrix columns_;  ///< by window
-    std::vector<double> weight_;
+    double noise_ = 0.0, energy_ = 0.0;
     Matrix gram_;
     Vector right_;
     std::vector<Block> blocks_;

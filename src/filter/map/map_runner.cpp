@@ -3,75 +3,148 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <utility>
 
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/design/rate_edge.hpp"
 
 namespace ripplenotch {
-
 namespace {
 
-// Into rooms that are large enough: nothing is allocated.
-void put_at_temperature(const RippleMap& map, double degc, RippleMap& there) {
-    const MapRange& seen = map.temperatures_degc;
-    const double warmer = std::clamp(degc, seen.from, seen.to) - seen.middle();
-    const std::size_t each = map.form.columns_a_direction(), speeds = map.form.speeds_deg_s.size();
-    for (std::size_t i = 0; i < map.values.size(); ++i) {
-        there.values[i].clear();
-        for (std::size_t c = 0; c < map.values[i].size(); ++c) {
-            const std::size_t within = c % each, column = c - within + map.form.temperature_column();
-            if (within == map.form.temperature_column()) continue;
-            there.values[i].push_back(map.values[i][c] +
-                                      (within < speeds ? warmer * map.values[i][column] : 0.0));
-        }
-    }
-}
+constexpr double sought_turns = 1.0;  ///< of the motor
+constexpr int places_tried = 720;     ///< tried in a turn, before the best is refined
+// The speeds of a map are means over its windows, where the joint moved evenly: peaks of the same motion are
+// a quarter above them on a robot.
+constexpr double faster_than_seen = 1.5;
+
+double radians_of(double cycles) { return 2.0 * std::numbers::pi * (cycles - std::floor(cycles)); }
 
 }  // namespace
 
-RippleMap at_temperature(const RippleMap& map, double degc) {
-    RippleMap there = map;
-    there.form.by_temperature = false;
-    put_at_temperature(map, degc, there);
-    return there;
+double largest_amplitude(const RippleMap& map, std::size_t order) {
+    const std::size_t each = map.form.columns_a_direction(), knots = map.form.speeds_deg_s.size();
+    double largest = 0.0;
+    for (std::size_t from = 0; from < map.form.columns(); from += each) {
+        const auto size = [&](std::size_t column) {
+            const std::complex<double> z = map.values[order][from + column];
+            return portable::hypot(z.real(), z.imag());
+        };
+        double added = 0.0, at_speed = 0.0;
+        for (std::size_t c = map.form.speed_columns(); c < map.form.load_column(); ++c) added += size(c);
+        for (std::size_t k = 0; k < knots; ++k)
+            at_speed = std::max(at_speed, size(k) + (map.form.second_comb == 0 ? 0.0 : size(k + knots)));
+        largest = std::max(largest, at_speed + added);
+    }
+    return largest;
 }
 
-MapRunner::MapRunner(RippleMap map, std::optional<RippleMap> warming)
-    : map_(std::move(map)),
-      warming_(std::move(warming)),
-      weights_(map_.form.columns()),
-      amplitudes_(map_.orders.size()) {}
+MapRunner::MapRunner(StatedMap stated)
+    : stated_(std::move(stated)),
+      weights_(stated_.map.form.columns()),
+      amplitudes_(stated_.map.orders.size()) {}
 
 void MapRunner::warm(double degc) noexcept {
-    const double told = std::round(1000.0 * degc) / 1000.0;
-    if (!warming_ || told == degc_) return;
-    degc_ = told;
-    put_at_temperature(*warming_, told, map_);
+    if (stated_.follows_rows) stated_.degc = std::round(1000.0 * degc) / 1000.0;
 }
 
 void MapRunner::at(double speed_deg_s, double motor_turns, double torque_nm) noexcept {
-    const double position_deg = 360.0 * motor_turns / map_.gear_ratio.value();
-    map_weights(map_, {speed_deg_s, position_deg, torque_nm}, weights_);
+    const RippleMap& map = stated_.map;
+    const double position_deg = 360.0 * motor_turns / map.gear_ratio.value();
+    map_weights(map, {speed_deg_s, position_deg, torque_nm, stated_.degc}, weights_);
     for (std::size_t i = 0; i < amplitudes_.size(); ++i)
-        amplitudes_[i] = map_amplitude(map_, i, weights_, position_deg);
+        amplitudes_[i] = map_amplitude(map, i, weights_, position_deg);
 }
 
 double MapRunner::ripple(double motor_turns, double step_turns) const noexcept {
     double sum = 0.0;
     for (std::size_t i = 0; i < amplitudes_.size(); ++i) {
-        const double order = map_.orders[i].value();
+        const double order = stated_.map.orders[i].value();
         const double share = share_below_rate(order * std::abs(step_turns));
         if (share == 0.0) continue;
-        const double cycles = order * motor_turns;
-        const double phase = 2.0 * std::numbers::pi * (cycles - std::floor(cycles));
-        const std::complex<double> on_circle = portable::phasor(phase);
+        const std::complex<double> on_circle = portable::phasor(radians_of(order * motor_turns));
         sum += share * (amplitudes_[i].real() * on_circle.real() + amplitudes_[i].imag() * on_circle.imag());
     }
     return sum;
+}
+
+MapMean::MapMean(StatedMap stated, double noise_nm)
+    : runner_(std::move(stated)), noise_nm_(noise_nm), found_(runner_.map().orders.size()) {}
+
+void MapMean::restart(bool seek) noexcept {
+    seeks_ = seek;
+    shift_turns_ = turned_ = 0.0;
+}
+
+double MapMean::ripple(double speed_deg_s, double torque_nm, const MotorAngle& angle) noexcept {
+    runner_.at(speed_deg_s, angle.turns(), torque_nm);
+    return seeks_ ? 0.0 : runner_.ripple(angle.turns() + shift_turns_, angle.step_turns());
+}
+
+std::complex<double> MapMean::shifted(std::size_t order, double shift_turns) const noexcept {
+    const double phase = radians_of(runner_.map().orders[order].value() * shift_turns);
+    return runner_.amplitude(order) / noise_nm_ * portable::polar(1.0, -phase);
+}
+
+// Squares between what the filter found and the map at this shift.
+double MapMean::misfit(double shift_turns) const noexcept {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+        const std::complex<double> found(found_[i].cosine, found_[i].sine);
+        sum += found_[i].weight * std::norm(found - shifted(i, shift_turns));
+    }
+    return sum;
+}
+
+void MapMean::seek(RippleKalman& filter, const MotorAngle& angle) noexcept {
+    if (!seeks_) return;
+    turned_ += std::abs(angle.step_turns());
+    if (turned_ < sought_turns) return;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+        const AmplitudePrior one = filter.amplitude(i);
+        const double stray = runner_.map().spread_nm[i] / noise_nm_;
+        found_[i] = {one.cosine, one.sine, 1.0 / (one.deviation * one.deviation + stray * stray + 1.0)};
+    }
+    double best = misfit(0.0);
+    int at = 0;
+    for (int k = 1; k < places_tried; ++k) {
+        const double one = misfit(static_cast<double>(k) / places_tried);
+        if (one < best) {
+            best = one;
+            at = k;
+        }
+    }
+    // The bottom of the parabola through the best place and its neighbours.
+    const double step = 1.0 / places_tried, middle = static_cast<double>(at) * step;
+    const double before = misfit(middle - step), after = misfit(middle + step);
+    const double bend = before - 2.0 * best + after;
+    shift_turns_ = middle + (bend > 0.0 ? 0.5 * step * (before - after) / bend : 0.0);
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+        const std::complex<double> there = shifted(i, shift_turns_);
+        filter.count_from(i, there.real(), there.imag());
+    }
+    seeks_ = false;
+}
+
+MapReach::MapReach(std::string_view method, const Settings& settings, double sample_rate_hz)
+    : method_(method),
+      slowest_deg_s_(settings.number("slowest")),
+      deg_s_a_turn_a_sample_(360.0 / settings.number("gear-ratio") * sample_rate_hz) {
+    if (settings.has("fastest") && settings.text("beyond") == "refuse")
+        fastest_deg_s_ = settings.number("fastest");
+}
+
+void MapReach::judge() {
+    const double speed_deg_s = std::abs(turned_) / samples_ * deg_s_a_turn_a_sample_;
+    if (speed_deg_s > faster_than_seen * fastest_deg_s_) {
+        raise<DataError>(
+            "method {}: its map was made at {:.3g} to {:.3g} deg/s, and this joint moves at {:.3g} deg/s: it "
+            "is the map of another joint, or of too slow logs; beyond=hold takes its edge there",
+            method_, slowest_deg_s_, fastest_deg_s_, speed_deg_s);
+    }
+    restart();
 }
 
 }  // namespace ripplenotch

@@ -1,29 +1,32 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A map along a log, sample by sample.
+// A map along a log, sample by sample: by itself, and beneath a Kalman filter that follows what the ripple is
+// beside the map. Where the motor's angle is not known, the map is laid over what the filter found in the
+// first turn.
 
 #include <complex>
-#include <optional>
+#include <cstddef>
+#include <string_view>
 #include <vector>
 
-#include "ripplenotch/design/ripple_map.hpp"
+#include "filter/map/map_settings.hpp"
+#include "filter/ripple/motor_angle.hpp"
+#include "filter/ripple/ripple_kalman.hpp"
 
 namespace ripplenotch {
 
-/// A map that depends on the temperature, at this one, held where none was seen: a map that does not, with a
-/// part added to the amplitudes at every speed.
-[[nodiscard]] RippleMap at_temperature(const RippleMap& map, double degc);
+/// The largest amplitude that the map has for an order, Nm: of any speed and direction, both combs and all
+/// harmonics of the joint's turn added.
+[[nodiscard]] double largest_amplitude(const RippleMap& map, std::size_t order);
 
 /// The map counts its angles from position 0. Without allocation after construction.
 class MapRunner {
   public:
-    /// `warming`: the same map at any temperature, for rows that tell theirs.
-    explicit MapRunner(RippleMap map, std::optional<RippleMap> warming = std::nullopt);
+    explicit MapRunner(StatedMap stated);
 
     /// Goes to the joint's temperature; a thousandth of a degree counts. Nothing where the map does not
-    /// follow.
+    /// follow the rows.
     void warm(double degc) noexcept;
-
     /// Goes to a joint's speed, motor angle and torque.
     void at(double speed_deg_s, double motor_turns, double torque_nm) noexcept;
     /// Of an order there: cosine and sine part, Nm.
@@ -32,14 +35,68 @@ class MapRunner {
     }
     /// What the map says of the torque there. Orders near half the sample rate are let go.
     [[nodiscard]] double ripple(double motor_turns, double step_turns) const noexcept;
-    [[nodiscard]] const RippleMap& map() const noexcept { return map_; }
+    [[nodiscard]] const RippleMap& map() const noexcept { return stated_.map; }
 
   private:
-    RippleMap map_;
-    std::optional<RippleMap> warming_;
-    std::optional<double> degc_;  ///< that the map is at, once a row has told one
+    StatedMap stated_;
     std::vector<double> weights_;
     std::vector<std::complex<double>> amplitudes_;
+};
+
+class MapMean {
+  public:
+    /// `noise_nm` is the unit of the filter.
+    MapMean(StatedMap stated, double noise_nm);
+    /// Before ripple() of a row that tells the joint's temperature.
+    void warm(double degc) noexcept { runner_.warm(degc); }
+
+    /// Before the first sample of a run. One that seeks says 0 until the motor has turned once.
+    void restart(bool seek) noexcept;
+    /// What the map says at this sample, Nm; to be taken off before the filter sees it.
+    [[nodiscard]] double ripple(double speed_deg_s, double torque_nm, const MotorAngle& angle) noexcept;
+    /// After the filter has seen a sample: once the motor has turned, finds where the map's angle is 0 and
+    /// hands the filter what is beside the map from there on.
+    void seek(RippleKalman& filter, const MotorAngle& angle) noexcept;
+    [[nodiscard]] bool seeks() const noexcept { return seeks_; }
+
+  private:
+    /// In units of the filter, of one order whose angle counts from `shift_turns`.
+    [[nodiscard]] std::complex<double> shifted(std::size_t order, double shift_turns) const noexcept;
+    [[nodiscard]] double misfit(double shift_turns) const noexcept;
+
+    struct Found {
+        double cosine, sine, weight;
+    };
+    MapRunner runner_;
+    double noise_nm_;
+    std::vector<Found> found_;  ///< by the filter, by order
+    double shift_turns_ = 0.0, turned_ = 0.0;
+    bool seeks_ = false;
+};
+
+/// Watches the mean speed over each motor turn, which noise of the velocity or a single bad row does not
+/// move, for how far beyond its logs a map is used.
+class MapReach {
+  public:
+    /// Watches nothing where `settings` has no `fastest`, or say beyond=hold.
+    MapReach(std::string_view method, const Settings& settings, double sample_rate_hz);
+
+    void restart() noexcept { turned_ = samples_ = 0.0; }
+    /// Throws DataError, with both speeds, where the joint turns half as fast again as the map's logs did.
+    void next(double step_turns) {
+        if (!(fastest_deg_s_ > 0.0)) return;
+        turned_ += step_turns;
+        samples_ += 1.0;
+        if (turned_ >= 1.0 || turned_ <= -1.0) judge();
+    }
+
+  private:
+    void judge();
+
+    std::string_view method_;
+    double slowest_deg_s_ = 0.0, fastest_deg_s_ = 0.0;
+    double deg_s_a_turn_a_sample_ = 0.0;
+    double turned_ = 0.0, samples_ = 0.0;  ///< since the last motor turn
 };
 
 }  // namespace ripplenotch

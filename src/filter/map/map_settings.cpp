@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "filter/map/map_runner.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/filter/map_keys.hpp"
+#include "ripplenotch/filter/map_fit.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -30,9 +29,27 @@ std::size_t whole_value(const Settings& settings, std::string_view key) {
     return static_cast<std::size_t>(settings.number(key));
 }
 
-// As the keys state it; empty without cosines.
-std::optional<RippleMap> stated_map(std::string_view method, const Settings& settings,
-                                    const RippleOrders& ripple) {
+}  // namespace
+
+RippleMap StatedMap::at_temperature() const {
+    if (!map.form.by_temperature) return map;
+    RippleMap there = map;
+    there.form.by_temperature = false;
+    const MapRange& seen = map.temperatures_degc;
+    const double warmer = std::clamp(degc, seen.from, seen.to) - seen.middle();
+    const std::size_t each = map.form.columns_a_direction(), last = map.form.temperature_column();
+    for (std::vector<std::complex<double>>& values : there.values) {
+        for (std::size_t d = map.form.directions; d-- > 0;) {
+            const auto from = values.begin() + static_cast<std::ptrdiff_t>(d * each);
+            for (std::size_t k = 0; k < map.form.speeds_deg_s.size(); ++k) from[k] += warmer * from[last];
+            values.erase(from + static_cast<std::ptrdiff_t>(last));
+        }
+    }
+    return there;
+}
+
+std::optional<StatedMap> map_of(std::string_view method, const Settings& settings,
+                                const RippleOrders& ripple) {
     if (!settings.has("cosines") && !settings.has("sines")) return std::nullopt;
     RippleMap map;
     map.gear_ratio = GearRatio(ripple.gear_ratio);
@@ -67,28 +84,16 @@ std::optional<RippleMap> stated_map(std::string_view method, const Settings& set
             map.values.back().emplace_back(cosines[c], sines[c]);
     }
     map.spread_nm = per_order(method, settings, "spread", ripple, 0.0);
-    return map;
-}
-
-}  // namespace
-
-std::optional<RippleMap> map_of(std::string_view method, const Settings& settings,
-                                const RippleOrders& ripple) {
-    std::optional<RippleMap> map = stated_map(method, settings, ripple);
-    if (!map || !map->form.by_temperature) return map;
+    StatedMap stated{std::move(map)};
+    if (!stated.map.form.by_temperature) return stated;
     if (!settings.has("temperature"))
         raise<UsageError>(
             "method {}: its map depends on the joint's temperature, and nobody states it; say it in degC, "
             "temperature=31",
             method);
-    return at_temperature(*map, settings.number("temperature"));
-}
-
-std::optional<RippleMap> warming_map_of(std::string_view method, const Settings& settings,
-                                        const RippleOrders& ripple) {
-    if (settings.text("temperature-of") != "rows") return std::nullopt;
-    std::optional<RippleMap> map = stated_map(method, settings, ripple);
-    return map && map->form.by_temperature ? std::move(map) : std::nullopt;
+    stated.degc = settings.number("temperature");
+    stated.follows_rows = settings.text("temperature-of") == "rows";
+    return stated;
 }
 
 std::vector<std::pair<std::string, std::string>> map_as_keys(const RippleMap& fitted) {

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "filter/map/map_key_list.hpp"
 #include "filter/map/map_runner.hpp"
 #include "filter/methods/list.hpp"
 
@@ -48,16 +47,15 @@ class MapFilter final : public CausalFilter {
     bool has_start_;
 };
 
-RippleMap map_in(const Settings& settings) {
+StatedMap map_in(const Settings& settings) {
     return *map_of("map", settings, ripple_orders("map", settings));  // its cosines are required
 }
 
 std::unique_ptr<CausalFilter> start(const Settings& settings, Hertz sample_rate, const CandidateTable*) {
-    RippleMap map = map_in(settings);
-    const MotorAngle angle(map.gear_ratio.value(), sample_rate.value(), angle_source(settings),
+    StatedMap stated = map_in(settings);
+    const MotorAngle angle(stated.map.gear_ratio.value(), sample_rate.value(), angle_source(settings),
                            settings.has("start") ? settings.number("start") : 0.0);
-    MapRunner runner(std::move(map), warming_map_of("map", settings, ripple_orders("map", settings)));
-    return std::make_unique<MapFilter>(std::move(runner), angle,
+    return std::make_unique<MapFilter>(MapRunner(std::move(stated)), angle,
                                        MapReach("map", settings, sample_rate.value()), settings.has("start"));
 }
 

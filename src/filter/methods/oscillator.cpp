@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "filter/bank/gain_schedule.hpp"
-#include "filter/map/map_mean.hpp"
+#include "filter/map/map_runner.hpp"
 #include "filter/methods/designs.hpp"
 #include "filter/methods/list.hpp"
 #include "filter/ripple/motor_angle.hpp"
@@ -44,8 +44,7 @@ struct Plan {
     double largest_offset_deg_s = 0.0, largest_slip = 0.0;
     double sample_rate_hz = 0.0;
     double noise_nm = 0.0;
-    std::optional<RippleMap> map;      ///< mean of the amplitudes
-    std::optional<RippleMap> warming;  ///< the same at each row's temperature
+    std::optional<StatedMap> map;  ///< mean of the amplitudes
     bool zero_unknown = false;
     std::optional<MapReach> reach;  ///< of the map
 };
@@ -78,15 +77,15 @@ void plan_priors(Plan& p, const Settings& settings) {
 void plan_map(Plan& p, const Settings& settings) {
     p.map = map_of("oscillator", settings, p.ripple);
     if (!p.map) return;
-    p.warming = warming_map_of("oscillator", settings, p.ripple);
+    const RippleMap map = p.map->at_temperature();
     p.zero_unknown = settings.text("zero") == "unknown";
     p.reach.emplace("oscillator", settings, p.sample_rate_hz);
     p.model.return_turns = settings.number("return");
     if (!settings.has("memory")) p.model.memory_turns = memory_turns_beside_map;
     p.largest_offset_deg_s = p.largest_slip = 0.0;
-    for (std::size_t i = 0; i < p.map->orders.size(); ++i) {
-        const double size_nm = largest_amplitude(*p.map, i);
-        const double beside_nm = std::max(p.map->spread_nm[i], settings.number("trust") * size_nm);
+    for (std::size_t i = 0; i < map.orders.size(); ++i) {
+        const double size_nm = largest_amplitude(map, i);
+        const double beside_nm = std::max(map.spread_nm[i], settings.number("trust") * size_nm);
         p.warm[i] = {0.0, 0.0, std::max(beside_nm / p.noise_nm, 1.0)};
         p.cold[i] = {0.0, 0.0, std::max(size_nm / p.noise_nm, 1.0)};
     }
@@ -130,7 +129,7 @@ class OscillatorFilter final : public CausalFilter {
           schedule_(plan_.scheduled ? std::make_unique<GainSchedule>(plan_.model) : nullptr),
           cold_(plan_.model, plan_.cold, schedule_.get()),
           warm_(plan_.model, plan_.warm, schedule_.get()) {
-        if (plan_.map) mean_.emplace(*plan_.map, plan_.noise_nm, plan_.warming);
+        if (plan_.map) mean_.emplace(*plan_.map, plan_.noise_nm);
     }
 
     void process(const Samples& in, std::span<double> out) override {
@@ -236,7 +235,7 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     refuse(p.scheduled, "gain=scheduled");
     refuse(p.source == MotorAngle::Source::velocity, "angle=velocity");
     refuse(p.rest_nm.has_value(), "rest");
-    refuse(p.warming.has_value(), "temperature-of=rows: the code takes one temperature, which");
+    refuse(p.map && p.map->follows_rows, "temperature-of=rows: the code takes one temperature, which");
     for (const double order : p.ripple.orders) {
         if (order == std::floor(order)) continue;
         raise<UsageError>(
@@ -256,7 +255,7 @@ OscillatorDesign oscillator_design(const Settings& settings, Hertz sample_rate) 
     design.jump = p.model.jump;
     design.largest_slip = p.largest_slip;
     design.minus_ripple = p.minus_ripple;
-    design.map = p.map;
+    if (p.map) design.map = p.map->at_temperature();
     return design;
 }
 

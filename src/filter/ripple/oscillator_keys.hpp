@@ -5,7 +5,7 @@
 #include <array>
 #include <string_view>
 
-#include "filter/map/map_key_list.hpp"
+#include "filter/map/map_settings.hpp"
 #include "filter/ripple/ripple_keys.hpp"
 
 namespace ripplenotch {
