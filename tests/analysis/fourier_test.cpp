@@ -2,7 +2,7 @@
 #include <complex>
 #include <numbers>
 
-#include "analysis/kernels/spreading_kernel.hpp"
+#include "analysis/spectrum/spreading_kernel.hpp"
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "support/catch.hpp"

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "analysis/order_signals.hpp"
-#include "ripplenotch/analysis/track_by_speed.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "support/catch.hpp"
 
