@@ -182,7 +182,8 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
     if (levels.windows == 0) {
         result.why_none = levels.windows_too_few_samples > 0
                               ? "too few samples per motor turn for so many orders"
-                              : "the joint nowhere turns four periods of an order in one direction below half the sample rate";
+                              : "the joint nowhere turns four periods of an order in one direction below "
+                                "half the sample rate";
     }
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         MethodFigures figures;

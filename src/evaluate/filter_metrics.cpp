@@ -14,7 +14,7 @@ std::optional<double> attenuation_db(const OrderLevel& level) {
 std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order) {
     if (!metrics.levels) return std::nullopt;
     const OrderLevel& level = metrics.levels->orders[order];
-    if (level.windows == 0 || !level.expected_gain) return std::nullopt;
+    if (!level.expected_gain) return std::nullopt;
     const std::vector<double>& known_nm = metrics.gear->amplitude_nm;
     const double before = known_nm.empty() ? level.amplitude_nm[0] : known_nm[order];
     return before * *level.expected_gain;

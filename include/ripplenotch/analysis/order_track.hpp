@@ -48,8 +48,8 @@ struct OrderTracks {
 };
 
 struct WindowRule {
-    double turns = 8.0;    ///< length in turns of the reference shaft, unless `seconds` is above 0
-    Seconds seconds{0.0};  ///< length in time
+    double turns = 8.0;       ///< length in turns of the reference shaft, unless `seconds` is above 0
+    Seconds seconds{0.0};     ///< length in time
     double hop = 0.25;        ///< windows start so much of a length apart, or a little closer
     int envelope_degree = 2;  ///< amplitude within a window: 0 constant, 1 or 2 polynomial in time
 };

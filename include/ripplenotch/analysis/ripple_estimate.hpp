@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // How large the ripple of a known gear is at each of its orders, how sure that is, and how small a ripple
-// would have been seen: the one answer that every command gives of a log, and of one or several torque signals
-// along the same motion as their rows go by.
+// would have been seen: the one answer that every command gives of a log, and of one or several torque
+// signals along the same motion as their rows go by.
 
 #include <complex>
 #include <cstddef>
@@ -49,10 +49,10 @@ struct RippleEstimate {
 /// under a Hann window in angle. The trend is a line and cosines in angle: 12 terms per output turn, but no
 /// more than one for two periods of the lowest order, and never fewer than three. Of a log with more than
 /// 300,000 rows in segments, which overlap, every second segment is left out, or of longer ones every fourth,
-/// and so on. The noise is the median power of the residual 1.5 to 6.5 periods per window beside the order, so
-/// that noise of any colour counts as it is; a ripple smaller than 1e-4 of the torque's range does not count.
-/// One estimate per order asked for. Throws UsageError for a ratio or an order that is not above 0. Cost
-/// O(n (trend + 2 orders)^2).
+/// and so on. The noise is the median power of the residual 1.5 to 6.5 periods per window beside the order,
+/// so that noise of any colour counts as it is; a ripple smaller than 1e-4 of the torque's range does not
+/// count. One estimate per order asked for. Throws UsageError for a ratio or an order that is not above 0.
+/// Cost O(n (trend + 2 orders)^2).
 [[nodiscard]] std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, GearRatio ratio,
                                                           std::span<const Order> orders);
 
@@ -62,10 +62,11 @@ struct RippleEstimate {
 /// What RippleMeter finds at one order.
 struct OrderLevel {
     double order = 0.0;
-    double mean_hz = 0.0;                 ///< mean of n Kg |v| / 360 over the windows
-    std::vector<double> amplitude_nm;     ///< per signal, zero to peak, rms over windows; nan without any
-    std::optional<double> expected_gain;  ///< what the filter of LineGains leaves of the line, rms over windows
-    std::size_t windows = 0;              ///< that hold the order
+    double mean_hz = 0.0;              ///< mean of n Kg |v| / 360 over the windows
+    std::vector<double> amplitude_nm;  ///< per signal, zero to peak, rms over windows; nan without any
+    std::optional<double>
+        expected_gain;        ///< what the filter of LineGains leaves of the line, rms over windows
+    std::size_t windows = 0;  ///< that hold the order
 };
 
 struct RippleLevels {

@@ -148,7 +148,7 @@ Section lone_line(std::size_t points, double samples_per_point) {
 }
 
 /// |sum of values times a rotation of `turn` a point|.
-double gain_at(const Eigen::VectorXd& values, double turn) {
+double envelope_gain(const Eigen::VectorXd& values, double turn) {
     std::complex<double> sum;
     for (Eigen::Index j = 0; j < values.size(); ++j)
         sum += values[j] * portable::polar(1.0, turn * static_cast<double>(j));
@@ -162,10 +162,10 @@ double half_width(const Eigen::VectorXd& values, double about) {
     do {
         below = above;
         above += 0.05 * about;
-    } while (above < std::numbers::pi && gain_at(values, above) > level);
+    } while (above < std::numbers::pi && envelope_gain(values, above) > level);
     for (int i = 0; i < 50; ++i) {
         const double middle = 0.5 * (below + above);
-        (gain_at(values, middle) > level ? below : above) = middle;
+        (envelope_gain(values, middle) > level ? below : above) = middle;
     }
     return 0.5 * (below + above);
 }
@@ -232,8 +232,8 @@ Envelopes solve_envelopes(const TrackedSignal& signal, const SampleRun& run, con
 EnvelopeResponse envelope_response(EnvelopeSettings settings, double duration_s, Hertz asked_bandwidth) {
     // Twice the overlap: from there on a longer run changes nothing in its middle.
     const double wanted = std::ceil(duration_s / settings.step_s) + 1.0;
-    const auto points = static_cast<Eigen::Index>(
-        std::min(wanted, 2.0 * static_cast<double>(settings.overlap_points) + 1.0));
+    const auto points =
+        static_cast<Eigen::Index>(std::min(wanted, 2.0 * static_cast<double>(settings.overlap_points) + 1.0));
     settings.trend = false;
     const Section section = lone_line(static_cast<std::size_t>(points), settings.samples_per_point);
     const Sparse data = section.data();

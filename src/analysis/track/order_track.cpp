@@ -128,7 +128,8 @@ OrderTracks track_orders(const TrackedSignal& signal, const WindowRule& rule) {
             const auto reference = part(signal.reference_turns);
             std::vector<TrackedLine> lines;
             for (const TrackedLine& line : signal.lines) lines.push_back({line.order, part(line.turns)});
-            WindowFit fit(part(signal.time_s), {}, std::abs(reference.back() - reference.front()) / signal.ratio.value(),
+            WindowFit fit(part(signal.time_s), {},
+                          std::abs(reference.back() - reference.front()) / signal.ratio.value(),
                           std::move(lines), rule.envelope_degree);
             if (!fit.has_enough_samples()) {
                 ++tracks.windows_too_few_samples;

@@ -17,8 +17,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double least_range_share = 1e-4;  // as MotionLinesOptions::least_share
-constexpr double agreeing_share = 0.5;      // of the power that segments have in common, for a phase
+constexpr double least_range_share = 1e-4;        // as MotionLinesOptions::least_share
+constexpr double agreeing_share = 0.5;            // of the power that segments have in common, for a phase
 constexpr double normal_99 = 2.3263478740408408;  // one-sided quantile of 0.99
 constexpr double independent_spacing = 1.5;       // of bins under a Hann window
 // Averages that know a mean as well as one value of a median of them does, as in exceedance().

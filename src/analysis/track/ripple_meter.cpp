@@ -43,7 +43,8 @@ struct RippleMeter::State {
     /// Keeps the rows from one on.
     void keep_from(std::size_t row) {
         const auto cut = [row](std::vector<double>& values) {
-            if (!values.empty()) values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(row));
+            if (!values.empty())
+                values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(row));
         };
         cut(time_s);
         cut(velocity_deg_s);
@@ -112,7 +113,8 @@ RippleLevels RippleMeter::levels() const {
         level.windows = all.of(Order(value)).segments.size();
         levels.windows = std::max(levels.windows, level.windows);
         if (seconds > 0.0) level.mean_hz = value * turns / seconds;
-        for (const double sum : power) level.amplitude_nm.push_back(weight > 0.0 ? std::sqrt(sum / weight) : not_a_number);
+        for (const double sum : power)
+            level.amplitude_nm.push_back(weight > 0.0 ? std::sqrt(sum / weight) : not_a_number);
         if (all.has_gains() && weight > 0.0) level.expected_gain = std::sqrt(expected / weight);
         levels.orders.push_back(std::move(level));
     }

@@ -19,14 +19,14 @@ constexpr double window_turns = 8.0;
 // By hand: bounds cost and memory. Where there are more, every second segment is dropped, and of those that
 // follow as many are left out.
 constexpr std::size_t most_ripple_samples = 300'000;
-constexpr double largest_inflation = 10.0;  // of the variance by neighbouring orders and the trend, by hand
+constexpr double largest_inflation = 10.0;   // of the variance by neighbouring orders and the trend, by hand
 constexpr std::size_t parts_of_window = 16;  ///< in each of which the gain of a filter counts as constant
 // A bin 1.5 resolutions away has 3 % of a Hann line's power.
 constexpr double nearest_probe = 1.5;
 
 template <class Value>
 void drop_every_second(std::vector<Value>& values) {
-    for (std::size_t i = 0; 2 * i < values.size(); ++i) values[i] = std::move(values[2 * i]);
+    for (std::size_t i = 1; 2 * i < values.size(); ++i) values[i] = std::move(values[2 * i]);
     values.resize((values.size() + 1) / 2);
 }
 
@@ -158,7 +158,8 @@ void RippleSegments::measure(const Part& part, const SampleRun& window, std::siz
     }
     fit.factorise();
     std::vector<WindowFit::Torque> torques;
-    for (const auto torque : part.torques) torques.push_back(fit.fit(torque.subspan(window.first, window.size())));
+    for (const auto torque : part.torques)
+        torques.push_back(fit.fit(torque.subspan(window.first, window.size())));
     const std::vector<double> gains = expected_gains(part, window);
     for (std::size_t i = from; i <= last; ++i) {
         const std::size_t line = i - skipped;

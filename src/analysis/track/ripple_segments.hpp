@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the analysis room: the ripple of a known gear in segments of motion, which estimate_ripple() and
-// RippleMeter sum up.
+// Internal to the analysis room: the ripple of a known gear in segments of motion, which estimate_ripple()
+// and RippleMeter sum up.
 
 #include <array>
 #include <complex>
@@ -32,8 +32,8 @@ struct SegmentPlace {
 struct SegmentAmplitude {
     SegmentPlace place;
     std::vector<std::complex<double>> value;  ///< per signal: a - ib of a cos + b sin
-    double inflation = 1.0;     ///< of the variance, since neighbours and trend are fitted along
-    double expected_gain = 0.0; ///< of LineGains; 0 without
+    double inflation = 1.0;      ///< of the variance, since neighbours and trend are fitted along
+    double expected_gain = 0.0;  ///< of LineGains; 0 without
     /// Power beside the order, first signal; nan where the fit took it along, or nobody asked.
     std::array<double, 2 * probes_a_side> noise{};
 };
@@ -47,7 +47,7 @@ struct OrderSegments {
 /// What one segment has of one torque signal, whatever the order.
 struct SegmentResidual {
     double weight = 0.0;
-    double square_nm2 = 0.0;                                      ///< torque minus trend, weighted mean
+    double square_nm2 = 0.0;                                     ///< torque minus trend, weighted mean
     double peak_to_peak_nm = 0.0, ripple_peak_to_peak_nm = 0.0;  ///< of that and of the lines, middle half
 };
 

@@ -22,8 +22,8 @@ constexpr double shortest_run = 1.5;       ///< in 1/bandwidth
 constexpr double widest_share = 0.25;      ///< of the sample rate
 constexpr double worst_condition = 1e13;   // rounding shows in the third digit (docs/theory.md)
 constexpr double trend_widths = 4.0;       ///< the trend's bandwidth over a line's
-constexpr double close_share = 0.5;     ///< lines closer than this share of the bandwidth ...
-constexpr std::size_t near_widths = 8;  ///< ... for most of so many times 1/bandwidth are one
+constexpr double close_share = 0.5;        ///< lines closer than this share of the bandwidth ...
+constexpr std::size_t near_widths = 8;     ///< ... for most of so many times 1/bandwidth are one
 constexpr double fewest_cycles = 1.0;  ///< of a line within 1/bandwidth, or it is one with its mirror image
 
 void check_rule(const TrackedSignal& signal, const VoldKalmanRule& rule) {
@@ -73,8 +73,9 @@ std::vector<bool> stay_together(const std::vector<double>& apart_cycles, std::si
 }
 
 /// Per line and point: true where it cannot be distinguished from the trend or from another line. `cycles`:
-/// turns of each line at the points of one grid, at least `width` + 1 of them. `width`: points in 1/bandwidth.
-/// `fewest`: cycles of a line within them, below which it is one with the trend or its own mirror image.
+/// turns of each line at the points of one grid, at least `width` + 1 of them. `width`: points in
+/// 1/bandwidth. `fewest`: cycles of a line within them, below which it is one with the trend or its own
+/// mirror image.
 std::vector<std::vector<bool>> not_separable(const std::vector<std::vector<double>>& cycles,
                                              std::size_t width, double fewest) {
     std::vector<std::vector<bool>> unknown;
@@ -306,7 +307,8 @@ VoldKalmanTracks track_vold_kalman(const TrackedSignal& signal, const VoldKalman
                                                            : rows_per_width * rule.bandwidth.value();
     const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / (rows * settings.step_s))));
     for (const RunTracker& tracker : trackers) {
-        tracker.add_rows(result.tracks, stride, static_cast<std::size_t>(std::ceil(width_points)), alone.error_factors);
+        tracker.add_rows(result.tracks, stride, static_cast<std::size_t>(std::ceil(width_points)),
+                         alone.error_factors);
     }
     return result;
 }

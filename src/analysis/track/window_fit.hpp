@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to the analysis room: windows of a run of motion, and the least squares of a trend and lines in one
-// of them, which every measure of ripple stands on.
+// Internal to the analysis room: windows of a run of motion, and the least squares of a trend and lines in
+// one of them, which every measure of ripple stands on.
 
 #include <complex>
 #include <cstddef>
