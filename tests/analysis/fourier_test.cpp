@@ -2,6 +2,7 @@
 #include <complex>
 #include <numbers>
 
+#include "analysis/kernels/spreading_kernel.hpp"
 #include "analysis/traces.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "support/catch.hpp"
@@ -43,6 +44,23 @@ TEST_CASE("a fast length is the next one without large prime factors") {
     CHECK(fast_length(11) == 12);
     CHECK(fast_length(97) == 98);
     CHECK(fast_length(1021) == 1024);
+}
+
+TEST_CASE("the spreading kernel's polynomials are the kernel, and nothing lies beyond its points") {
+    const SpreadingKernel polynomials;
+    SpreadingKernel::Row row;
+    for (const double offset : {0.0, 1e-9, 0.13, 0.5, 0.77, 1.0}) {
+        polynomials.at(offset, row);
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            const double x = (static_cast<double>(i) + offset) * 2.0 / SpreadingKernel::width - 1.0;
+            const bool inside = i < SpreadingKernel::width;
+            const double kernel =
+                inside ? std::exp(SpreadingKernel::beta * (std::sqrt(1.0 - std::min(1.0, x * x)) - 1.0))
+                       : 0.0;
+            const bool end = i == 0 || i + 1 == SpreadingKernel::width;
+            CHECK_THAT(row[i], WithinAbs(kernel, end ? 1e-10 : 1e-14));
+        }
+    }
 }
 
 TEST_CASE("the non-uniform transform equals the direct sum to 1e-9 of the sum of magnitudes") {

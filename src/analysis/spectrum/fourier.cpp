@@ -12,6 +12,8 @@
 #include <mutex>
 #include <new>
 
+#include "analysis/kernels/point_kernel.hpp"
+#include "analysis/spectrum/piece.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "core/vectors/dot.hpp"
 #include "ripplenotch/core/phasor.hpp"
@@ -59,47 +61,31 @@ std::complex<double> unit_phasor(double angle) { return portable::phasor(angle);
 /// Places of samples, looked at once for sums at several frequencies.
 class Places {
   public:
-    explicit Places(std::span<const double> where) {
+    explicit Places(std::span<const double> where) : where_(where) {
         if (where.empty()) return;
         // Places are taken from the middle so that the derivatives stay well conditioned.
         middle_ = 0.5 * (where.front() + where.back());
-        for (const double place : where) place_.push_back(place - middle_);
         if (where.size() > 1) step_ = (where.back() - where.front()) / static_cast<double>(where.size() - 1);
-        for (std::size_t k = 0; k < where.size(); ++k)
-            off_grid_ =
-                std::max(off_grid_, std::abs(place_[k] - place_.front() - step_ * static_cast<double>(k)));
+        off_grid_ = look_at_even(where, where, step_).worst;
     }
 
     /// Sums whose phase is that of places from the middle.
     [[nodiscard]] FourierPoint centred(std::span<const double> value, double frequency) const {
-        const double turn = -full_turn * frequency;
+        // No place is off an even grid by more than a ten-thousandth of a cycle.
+        if (off_grid_ * std::abs(frequency) <= 1e-4)
+            return even_point(where_, value, middle_, step_, frequency);
         FourierPoint point;
-        Block angle{}, cosine{}, sine{}, step_cosine{}, step_sine{}, weight{};
-        // On an even grid each block is the first one turned. No place is off it by more than a
-        // ten-thousandth of a cycle.
-        const bool even = off_grid_ * std::abs(frequency) <= 1e-4;
-        for (std::size_t i = 0; even && i < angle.size(); ++i)
-            angle[i] = turn * step_ * static_cast<double>(i);
-        if (even) portable::phasors(angle, step_cosine, step_sine);
-        for (std::size_t first = 0; first < place_.size(); first += angle.size()) {
-            const std::span<const double> place =
-                std::span(place_).subspan(first, std::min(angle.size(), place_.size() - first));
-            if (even) {
-                const std::complex<double> start =
-                    portable::phasor(turn * (place_.front() + step_ * static_cast<double>(first)));
-                for (std::size_t i = 0; i < angle.size(); ++i) {
-                    cosine[i] = start.real() * step_cosine[i] - start.imag() * step_sine[i];
-                    sine[i] = start.real() * step_sine[i] + start.imag() * step_cosine[i];
-                }
-            } else {
-                for (std::size_t i = 0; i < place.size(); ++i) angle[i] = turn * place[i];
-                portable::phasors(std::span(angle).first(place.size()), cosine, sine);
-            }
-            std::copy_n(value.begin() + static_cast<std::ptrdiff_t>(first), place.size(), weight.begin());
+        std::array<double, 256> angle{}, cosine{}, sine{}, weight{};
+        for (std::size_t first = 0; first < where_.size(); first += angle.size()) {
+            const std::size_t count = std::min(angle.size(), where_.size() - first);
+            for (std::size_t i = 0; i < count; ++i)
+                angle[i] = -full_turn * frequency * (where_[first + i] - middle_);
+            portable::phasors(std::span(angle).first(count), cosine, sine);
+            std::copy_n(value.begin() + static_cast<std::ptrdiff_t>(first), count, weight.begin());
             for (std::complex<double>* const sum : {&point.value, &point.first, &point.second}) {
-                *sum += std::complex<double>(dot(weight.data(), cosine.data(), place.size()),
-                                             dot(weight.data(), sine.data(), place.size()));
-                for (std::size_t i = 0; i < place.size(); ++i) weight[i] *= place[i];
+                *sum += std::complex<double>(dot(weight.data(), cosine.data(), count),
+                                             dot(weight.data(), sine.data(), count));
+                for (std::size_t i = 0; i < count; ++i) weight[i] *= where_[first + i] - middle_;
             }
         }
         return point;
@@ -113,8 +99,7 @@ class Places {
     }
 
   private:
-    using Block = std::array<double, 256>;
-    std::vector<double> place_;
+    std::span<const double> where_;
     double middle_ = 0.0, step_ = 0.0, off_grid_ = 0.0;
 };
 

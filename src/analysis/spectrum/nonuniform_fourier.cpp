@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "analysis/spectrum/spreading_kernel.hpp"
+#include "analysis/kernels/spreading_kernel.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
