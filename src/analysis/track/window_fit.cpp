@@ -14,8 +14,8 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double trend_terms_per_turn = 12.0;
-constexpr double periods_per_trend_term = 2.0;
+constexpr double trend_terms_per_turn = 12.0;   // by hand: of the joint, whose torque follows its angle
+constexpr double periods_per_trend_term = 2.0;  // of the slowest line: no term comes near it
 constexpr double fewest_cosines = 3.0, fewest_polynomials = 2.0;  // of which the latter make a cubic
 
 double cycles_of(const TrackedLine& line) {
