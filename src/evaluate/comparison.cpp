@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ripplenotch/analysis/ripple_meter.hpp"
+#include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/median.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/evaluate/bench.hpp"
@@ -27,7 +27,7 @@ double ripple_rms_nm(const RippleLevels& levels, std::size_t signal) {
     double power = 0.0;
     for (const OrderLevel& level : levels.orders) {
         const double a = level.amplitude_nm[signal];
-        power += 0.5 * a * a;
+        if (level.windows > 0) power += 0.5 * a * a;
     }
     return std::sqrt(power);
 }
@@ -181,8 +181,9 @@ LogLevels measure_on_log(std::span<const Contender> contenders, const ComparedLo
     LogLevels result{{}, levels.windows, levels.measured_share, ""};
     if (levels.windows == 0) {
         result.why_none = levels.windows_too_few_samples > 0
-                              ? "the highest order has fewer than three samples a period"
-                              : "the joint does not turn far enough in one direction, or too slowly";
+                              ? "too few samples per motor turn for so many orders"
+                              : "the joint nowhere turns four periods of an order in one direction below "
+                                "half the sample rate";
     }
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         MethodFigures figures;

@@ -12,7 +12,7 @@ std::optional<double> attenuation_db(const OrderLevel& level) {
 }
 
 std::optional<double> predicted_nm(const FilterMetrics& metrics, std::size_t order) {
-    if (!metrics.levels || metrics.levels->windows == 0) return std::nullopt;
+    if (!metrics.levels) return std::nullopt;
     const OrderLevel& level = metrics.levels->orders[order];
     if (!level.expected_gain) return std::nullopt;
     const std::vector<double>& known_nm = metrics.gear->amplitude_nm;

@@ -4,9 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "analysis/kernels/piece_kernel.hpp"
 #include "analysis/kernels/point_kernel.hpp"
-#include "analysis/kernels/power_kernel.hpp"
 #include "analysis/kernels/spreading_kernel.hpp"
 #include "support/catch.hpp"
 #include "support/vectors.hpp"
@@ -24,13 +22,6 @@ Results noise(std::size_t count, std::mt19937_64& random) {
     Results values(count);
     for (double& value : values) value = between(random);
     return values;
-}
-
-std::vector<std::complex<double>> complex_noise(std::size_t count, std::mt19937_64& random) {
-    const Results real = noise(count, random), imaginary = noise(count, random);
-    std::vector<std::complex<double>> sums(count);
-    for (std::size_t k = 0; k < count; ++k) sums[k] = {real[k], imaginary[k]};
-    return sums;
 }
 
 /// Times that are nearly even.
@@ -56,23 +47,8 @@ void check_widths(const char* name, std::size_t length, Work work) {
     CHECK(std::memcmp(made.front().data(), made.back().data(), made.front().size() * sizeof(double)) == 0);
 }
 
-void check_pieces(std::size_t n, std::mt19937_64& random) {
-    const Results time = times(n, random), value = noise(n, random), place = noise(n, random);
-    const Results cosine = noise(n, random), sine = noise(n, random);
-    for (const std::size_t from : {std::size_t{0}, n / 3, n}) {
-        check_widths("look_at_even", n, [&](Results& into) {
-            const EvenPart part = look_at_even(time, value, 0.25, from);
-            into.insert(into.end(), {part.worst, part.sum, part.tilt});
-        });
-    }
-    check_widths("subtract_line_and_window", n, [&](Results& into) {
-        into.resize(n);
-        subtract_line_and_window(value, {0.3, -0.01}, place, into);
-    });
-    check_widths("turned_moments", n, [&](Results& into) {
-        for (const auto& moment : turned_moments(value, place, cosine, sine))
-            into.insert(into.end(), {moment.real(), moment.imag()});
-    });
+void check_point(std::size_t n, std::mt19937_64& random) {
+    const Results time = times(n, random), value = noise(n, random);
     check_widths("even_point", n, [&](Results& into) {
         const FourierPoint point = even_point(time, value, time[n / 2], 0.25, 0.37);
         for (const auto& sum : {point.value, point.first, point.second})
@@ -80,32 +56,12 @@ void check_pieces(std::size_t n, std::mt19937_64& random) {
     });
 }
 
-void check_powers(std::size_t n, std::mt19937_64& random) {
-    const auto sums = complex_noise(n, random);
-    const Results before = noise(n + 1, random);
-    check_widths("add_power", n, [&](Results& into) {
-        into = before;
-        add_power(sums, 0.7, into);
-    });
-    if (n < 2) return;
-    check_widths("HalfPower", n, [&](Results& into) {
-        into = before;
-        HalfPower(2 * n).add(sums, 0.7, into);
-    });
-}
-
 }  // namespace
 
 TEST_CASE("kernels over samples give the same bits on every width of vectors, at any length") {
     std::mt19937_64 random(17);
-    for (std::size_t n = 1; n < 70; ++n) {
-        check_pieces(n, random);
-        check_powers(n, random);
-    }
-    for (const std::size_t n : {255U, 256U, 257U, 1000U, 4096U, 10007U}) {
-        check_pieces(n, random);
-        check_powers(n, random);
-    }
+    for (std::size_t n = 1; n < 70; ++n) check_point(n, random);
+    for (const std::size_t n : {255U, 256U, 257U, 1000U, 4096U, 10007U}) check_point(n, random);
 }
 
 TEST_CASE("the spreading kernel gives the same bits on every width of vectors, wherever a sample lies") {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/spectrum/piece.hpp"
 
-#include "analysis/kernels/piece_kernel.hpp"
-#include "analysis/kernels/power_kernel.hpp"
 #include "analysis/spectrum/line_meter.hpp"
 #include "analysis/traces.hpp"
 #include "support/catch.hpp"
@@ -63,60 +61,6 @@ TEST_CASE("two parts of a piece tell together what a look at all of it tells") {
     CHECK(both.worst == 0.125);
     CHECK_THAT(both.sum, WithinAbs(whole.sum, 1e-12));
     CHECK_THAT(both.tilt, WithinAbs(whole.tilt, 1e-10));
-}
-
-TEST_CASE("power and moments are sums over all samples, the last few included") {
-    const std::size_t n = GENERATE(1U, 4U, 7U, 33U);
-    const auto value = noise_of(n, 1), place = noise_of(n, 2), cosine = noise_of(n, 3), sine = noise_of(n, 4);
-    const Moments moments = turned_moments(value, place, cosine, sine);
-    for (std::size_t d = 0; d < moments.size(); ++d) {
-        std::complex<double> sum;
-        for (std::size_t k = 0; k < n; ++k)
-            sum += value[k] * std::pow(place[k], static_cast<double>(d)) *
-                   std::complex<double>(cosine[k], sine[k]);
-        CHECK(std::abs(moments[d] - sum) <= 1e-12 * (1.0 + std::abs(sum)) * std::pow(4.0, d));
-    }
-    std::vector<std::complex<double>> sums(n);
-    for (std::size_t k = 0; k < n; ++k) sums[k] = {value[k], place[k]};
-    std::vector<double> power(n, 1.0);
-    add_power(sums, 2.0, power);
-    for (std::size_t k = 0; k < n; ++k)
-        CHECK_THAT(power[k], WithinAbs(1.0 + 2.0 * std::norm(sums[k]), 1e-12));
-}
-
-TEST_CASE("powers are those of the sums, at the lengths that go by half and at others") {
-    const std::size_t n = GENERATE(2U, 31U, 64U, 96U, 128U, 512U, 4096U, 8192U);
-    RealTransform transform(n);
-    const std::vector<double> values = noise_of(n, 6);
-    std::copy(values.begin(), values.end(), transform.in().begin());
-    std::vector<double> power(n / 2 + 1, 1.0);
-    transform.add_power(0.5, power);
-    const auto sums = transform.run();
-    for (std::size_t k = 0; k < sums.size(); ++k)
-        CHECK_THAT(power[k], WithinAbs(1.0 + 0.5 * std::norm(sums[k]), 1e-13 * static_cast<double>(n)));
-}
-
-TEST_CASE("powers by half are right at every even length, the last few sums included") {
-    const std::size_t n = GENERATE(4U, 6U, 8U, 10U, 12U, 14U, 16U, 18U, 30U, 32U, 34U);
-    const std::vector<double> x = noise_of(n, 8);
-    const auto sum = [&](std::size_t k, std::size_t count, auto value) {
-        std::complex<double> total;
-        for (std::size_t j = 0; j < count; ++j)
-            total +=
-                value(j) * std::polar(1.0, -tau * static_cast<double>(k * j) / static_cast<double>(count));
-        return total;
-    };
-    std::vector<std::complex<double>> half;
-    for (std::size_t k = 0; k < n / 2; ++k) {
-        half.push_back(
-            sum(k, n / 2, [&](std::size_t j) { return std::complex<double>(x[2 * j], x[2 * j + 1]); }));
-    }
-    std::vector<double> power(n / 2 + 1, 3.0);
-    HalfPower(n).add(half, 2.0, power);
-    for (std::size_t k = 0; k <= n / 2; ++k) {
-        const double expected = 3.0 + 2.0 * std::norm(sum(k, n, [&](std::size_t j) { return x[j]; }));
-        CHECK_THAT(power[k], WithinAbs(expected, 1e-11));
-    }
 }
 
 TEST_CASE("an even piece is detrended, windowed and transformed as an uneven one") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ripplenotch/analysis/ripple_meter.hpp"
+#include "ripplenotch/analysis/ripple_estimate.hpp"
 
 #include <array>
 #include <cmath>
@@ -98,21 +98,21 @@ TEST_CASE("noise alone gives amplitudes of the size that least squares gives noi
     plant.first_nm = plant.second_nm = 0.0;
     plant.noise_nm = 0.1;
     const RippleLevels levels = measure(constant, 60.0, plant, true);
-    // Over N rows each coefficient has variance 2 sigma^2 / N, the squared amplitude twice that; N is 8
-    // turns, 320 rows.
-    const double expected = 0.1 * std::sqrt(4.0 / 321.0);
+    // Over N rows that count alike each coefficient has variance 2 sigma^2 / N, under a Hann window 1.5 times
+    // that, the squared amplitude twice that; N is 8 turns, 320 rows.
+    const double expected = 0.1 * std::sqrt(1.5 * 4.0 / 321.0);
     CHECK(levels.orders[0].amplitude_nm[0] == Approx(expected).epsilon(0.2));
     CHECK(levels.orders[1].amplitude_nm[0] == Approx(expected).epsilon(0.2));
     CHECK(levels.residual_rms_nm[0] == Approx(0.1).epsilon(0.02));
 }
 
-TEST_CASE("a trend of the third degree leaves nothing in the residual") {
+TEST_CASE("a trend of the third degree leaves a ten-thousandth of itself in the residual, and no ripple") {
     Plant plant;
     plant.first_nm = plant.second_nm = 0.0;
     plant.trend = [](double t) { return 100.0 - 20.0 * t + 3.0 * t * t - 0.5 * t * t * t; };
     const RippleLevels levels = measure(constant, 5.0, plant, false);
-    CHECK(levels.residual_rms_nm[0] < 1e-9);
-    CHECK(levels.orders[0].amplitude_nm[0] < 1e-9);
+    CHECK(levels.residual_rms_nm[0] < 1e-2);
+    CHECK(levels.orders[0].amplitude_nm[0] < 1e-3);
 }
 
 TEST_CASE("an encoder of 16 bits costs less than a tenth of a per cent") {
@@ -133,26 +133,48 @@ TEST_CASE("a position that wraps around is unwrapped") {
     CHECK(meter.levels().orders[0].amplitude_nm[0] == Approx(1.0).epsilon(1e-3));
 }
 
-TEST_CASE("what cannot be measured is dropped and counted: too slow, too few samples, no motion") {
+TEST_CASE("slow motion is measured, but neither rest nor an order above half the sample rate") {
     const RippleLevels still = measure([](double) { return 0.0; }, 10.0, {}, true);
     CHECK(still.windows == 0);
-    CHECK(still.windows_too_slow == 0);
     CHECK(still.measured_share == 0.0);
-    // Eight turns take 6.4 s: a window ends with four of them.
-    const RippleLevels slower = measure([](double) { return 4.5; }, 20.0, {}, true);
-    CHECK(slower.windows == 6);
-    CHECK(slower.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(0.01));
     const RippleLevels slow = measure([](double) { return 1.5; }, 20.0, {}, true);  // 8 turns take 19 s
-    CHECK(slow.windows == 0);
-    CHECK(slow.windows_too_slow > 0);
+    CHECK(slow.windows > 0);
+    CHECK(slow.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(0.01));
     Plant sparse;
     sparse.rate_hz = 100.0;
     const RippleLevels fast = measure([](double) { return 150.0; }, 20.0, sparse, true);  // order 2 at 83 Hz
-    CHECK(fast.windows == 0);
-    CHECK(fast.windows_too_few_samples > 0);
+    CHECK(fast.orders[0].windows > 0);
+    CHECK(fast.orders[1].windows == 0);
+    CHECK(std::isnan(fast.orders[1].amplitude_nm[0]));
 }
 
-TEST_CASE("a gap starts a new window, and a run that ends with four turns or more still counts") {
+TEST_CASE("rests before, between and after motions move no amplitude") {
+    // Poly6 from rest to rest, of 180 deg in 2 s, with the torque of its acceleration, between rests of 1 s.
+    const auto speed = [](double t) {
+        const double s = std::fmod(t, 4.0) - 1.0;
+        if (s < 0.0 || s > 2.0) return 0.0;
+        return (t < 4.0 ? 180.0 : -180.0) / 2.0 * 30.0 * std::pow(s / 2.0 * (1.0 - s / 2.0), 2);
+    };
+    Plant plant;
+    plant.trend = [&speed](double t) { return 0.05 * (speed(t + 1e-4) - speed(t - 1e-4)) / 2e-4; };
+    const RippleLevels levels = measure(speed, 8.0, plant, true);
+    CHECK(levels.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(0.01));
+    CHECK(levels.orders[1].amplitude_nm[0] == Approx(0.3).epsilon(0.01));
+}
+
+TEST_CASE("a log longer than what is held, and than what is fitted, has the amplitude of its parts") {
+    Plant plant;
+    plant.rate_hz = 500.0;
+    plant.noise_nm = 0.2;
+    const RippleLevels levels =
+        measure([](double t) { return 90.0 * std::sin(0.1 * t); }, 800.0, plant, true);
+    CHECK(levels.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(0.01));
+    CHECK(levels.orders[1].amplitude_nm[0] == Approx(0.3).epsilon(0.03));
+    CHECK(levels.measured_share > 0.9);
+    CHECK(levels.measured_share <= 1.0);
+}
+
+TEST_CASE("a gap starts a new window, and a run counts for the orders of which it holds four periods") {
     // 8 turns at 90 deg/s take 0.32 s; a gap every 0.2 s leaves 5 turns each.
     std::vector<double> gaps;
     for (int i = 1; i < 40; ++i) gaps.push_back(0.2 * i);
@@ -161,7 +183,9 @@ TEST_CASE("a gap starts a new window, and a run that ends with four turns or mor
     CHECK(levels.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(0.01));
     gaps.clear();
     for (int i = 1; i < 80; ++i) gaps.push_back(0.1 * i);
-    CHECK(measure(constant, 8.0, {}, true, gaps).windows == 0);
+    const RippleLevels shorter = measure(constant, 8.0, {}, true, gaps);
+    CHECK(shorter.orders[0].windows == 0);
+    CHECK(shorter.orders[1].windows == 80);
 }
 
 TEST_CASE("asking for levels does not disturb the measurement") {
@@ -187,8 +211,7 @@ TEST_CASE("a meter refuses what it cannot measure") {
 
 TEST_CASE("the expected gain is that of the speeds of the windows, phase and all") {
     const auto expected = [](const std::function<double(double)>& speed, const LineGains& gains) {
-        RippleMeter meter(GearRatio(ratio), orders, Hertz(1000.0), 1);
-        meter.expect(gains);
+        RippleMeter meter(GearRatio(ratio), orders, Hertz(1000.0), 1, gains);
         double angle_deg = 0.0;
         for (int k = 0; k < 8000; ++k) {
             const double v = speed(k / 1000.0);
@@ -207,17 +230,16 @@ TEST_CASE("the expected gain is that of the speeds of the windows, phase and all
     const auto steady = expected([](double) { return 60.0; }, by_speed);
     CHECK(steady[0] == Approx(0.6).epsilon(1e-6));
     CHECK(steady[1] == Approx(0.25));
-    // Along a ramp from 40 to 80 deg/s the gain is the root of the mean square speed, over rows.
+    // Along a ramp from 40 to 80 deg/s the gain is the root of the mean square speed, over the angle.
     const auto ramp = expected([](double t) { return 40.0 + 5.0 * t; }, by_speed);
-    CHECK(ramp[0] ==
-          Approx(std::sqrt((40.0 * 40.0 + 40.0 * 80.0 + 80.0 * 80.0) / 3.0) / 100.0).epsilon(0.02));
+    CHECK(ramp[0] == Approx(std::sqrt((40.0 * 40.0 + 80.0 * 80.0) / 2.0) / 100.0).epsilon(0.02));
     // A line whose sign turns in the middle of a window is one that the window's fit sees as nothing.
     int calls = 0;
     const auto turning = expected([](double) { return 60.0; },
                                   [&calls](double, std::span<std::complex<double>> gains) {
                                       gains[0] = gains[1] = calls++ % 16 < 8 ? 1.0 : -1.0;
                                   });
-    CHECK(turning[0] == Approx(0.0).margin(1e-12));
+    CHECK(turning[0] == Approx(0.0).margin(0.01));
     RippleMeter plain(GearRatio(ratio), orders, Hertz(1000.0), 1);
     CHECK_FALSE(plain.levels().orders[0].expected_gain.has_value());
 }

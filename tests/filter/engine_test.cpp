@@ -237,7 +237,7 @@ TEST_CASE("the meter sees raw and filtered torque of every run") {
         std::abs(response(lowpass.frozen(settings, Hertz(1000.0), nullptr, DegPerSec(90.0)).cascade,
                           Hertz(25.0), SampledAt(Hertz(1000.0))));
     const RippleLevels levels = meter.levels();
-    CHECK(levels.windows == 24);
+    CHECK(levels.windows == 48);
     CHECK(levels.orders[0].amplitude_nm[0] == Approx(1.0).epsilon(1e-3));
     CHECK(levels.orders[0].amplitude_nm[1] == Approx(gain).epsilon(0.01));
 }

@@ -49,7 +49,7 @@ DOORS = {
     r"lzma\.h": {"src/log/unpack/xz_unpacker.cpp"},
     r"hdf5\.h": {"src/log/containers/hdf5_handles.hpp"},
     r"sqlite3": {"src/log/messages/rosbag2_messages.cpp"},
-    r"Eigen/Sparse": {"src/analysis/kernels/envelope_kernel.cpp", "src/analysis/track/envelope_solver.cpp"},
+    r"Eigen/Sparse": {"src/analysis/track/envelope_solver.cpp"},
     r"Eigen/(?!Sparse)": {"src/core/matrices/linear_algebra.hpp"},
 }
 

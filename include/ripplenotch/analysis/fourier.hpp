@@ -26,9 +26,6 @@ class RealTransform {
     [[nodiscard]] std::span<double> in();
     /// length / 2 + 1 sums, valid until the next run; in() stays as it is.
     std::span<const std::complex<double>> run();
-    /// Adds to power[k] the squared magnitude of sum k, times `scale`, without making the sums where that is
-    /// quicker; in() stays as it is.
-    void add_power(double scale, std::span<double> power);
 
   private:
     struct Arrays;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // How large the ripple of a known gear is at each of its orders, how sure that is, and how small a ripple
-// would have been seen: the one answer that every command gives of a log.
+// would have been seen: the one answer that every command gives of a log, and of one or several torque
+// signals along the same motion as their rows go by.
 
+#include <complex>
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,14 +47,66 @@ struct RippleEstimate {
 /// motor turns, or of as many as separate the orders (separating_window_turns). In each, all orders that it
 /// holds four periods of and a trend are fitted at once, so that neighbours do not leak into each other,
 /// under a Hann window in angle. The trend is a line and cosines in angle: 12 terms per output turn, but no
-/// more than one for two periods of the lowest order, and never fewer than three. The noise is the median
-/// power of the residual 1.5 to 6.5 periods per window beside the order, so that noise of any colour counts
-/// as it is; a ripple smaller than 1e-4 of the torque's range does not count. One estimate per order asked
-/// for. Throws UsageError for a ratio or an order that is not above 0. Cost O(n (trend + 2 orders)^2).
+/// more than one for two periods of the lowest order, and never fewer than three. Of a log with more than
+/// 300,000 rows in segments, which overlap, every second segment is left out, or of longer ones every fourth,
+/// and so on. The noise is the median power of the residual 1.5 to 6.5 periods per window beside the order,
+/// so that noise of any colour counts as it is; a ripple smaller than 1e-4 of the torque's range does not
+/// count. One estimate per order asked for. Throws UsageError for a ratio or an order that is not above 0.
+/// Cost O(n (trend + 2 orders)^2).
 [[nodiscard]] std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, GearRatio ratio,
                                                           std::span<const Order> orders);
 
 /// What is there, or how small it is at most, order by order, with the speeds it was searched at.
 [[nodiscard]] std::string ripple_text(std::span<const RippleEstimate> estimates);
+
+/// What RippleMeter finds at one order.
+struct OrderLevel {
+    double order = 0.0;
+    double mean_hz = 0.0;              ///< mean of n Kg |v| / 360 over the windows
+    std::vector<double> amplitude_nm;  ///< per signal, zero to peak, rms over windows; nan without any
+    std::optional<double>
+        expected_gain;        ///< what the filter of LineGains leaves of the line, rms over windows
+    std::size_t windows = 0;  ///< that hold the order
+};
+
+struct RippleLevels {
+    std::vector<OrderLevel> orders;
+    std::vector<double> residual_rms_nm;           ///< per signal: torque minus the window's trend
+    std::vector<double> residual_peak_to_peak_nm;  ///< per signal: the same, median over windows
+    std::vector<double> ripple_peak_to_peak_nm;    ///< per signal: of the fitted orders alone, largest window
+    std::size_t windows = 0;                       ///< in which at least one order was measured
+    std::size_t windows_too_few_samples = 0;       ///< left out: fewer than two samples per unknown
+    double measured_share = 0.0;                   ///< rows in windows / rows seen
+};
+
+/// Complex gains of a filter for the lines of all orders at one joint speed, in the order of the meter's
+/// orders.
+using LineGains = std::function<void(double speed_deg_s, std::span<std::complex<double>> gains)>;
+
+/// The segments and the fit of estimate_ripple(), for rows that go by. Signals are measured in the same
+/// segments, so that ratios are attenuations; noise is not subtracted. Holds 65,536 rows at most: a run of
+/// motion that is longer goes on in the next ones, half a window before their end.
+class RippleMeter {
+  public:
+    /// `gains`: works out what a filter should leave at the speeds of the windows that are measured. Throws
+    /// UsageError unless ratio, sample_rate and all orders are above 0 and signals is at least 1.
+    RippleMeter(GearRatio ratio, std::span<const Order> orders, Hertz sample_rate, std::size_t signals,
+                LineGains gains = {});
+    ~RippleMeter();
+    RippleMeter(RippleMeter&&) noexcept;
+    RippleMeter& operator=(RippleMeter&&) noexcept;
+
+    /// position_deg may be nullptr: then the angle is integrated velocity. `torque_nm` has one value per
+    /// signal.
+    void add(Seconds time, double velocity_deg_s, const double* position_deg,
+             std::span<const double> torque_nm);
+    /// A gap: what comes next does not continue the window under way.
+    void split();
+    [[nodiscard]] RippleLevels levels() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 }  // namespace ripplenotch

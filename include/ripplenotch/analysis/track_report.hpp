@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "ripplenotch/analysis/order_track.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
-#include "ripplenotch/analysis/track_by_speed.hpp"
 #include "ripplenotch/core/gear_account.hpp"
 
 namespace ripplenotch {
@@ -58,11 +58,6 @@ struct TrackColumn {
 /// phase_deg and standard_error_nm; or speed_deg_s, rows, and per line amplitude, phase_deg and spread_nm.
 /// nan where a line was not measured.
 [[nodiscard]] std::vector<TrackColumn> track_columns(const TrackReport& report);
-
-/// Rows that do not follow on the row before, since there are no data between: the joint turns round or
-/// rests, or the log has a gap. Rising, never 0; over speed those with an empty range before them.
-[[nodiscard]] std::vector<std::size_t> track_breaks(const OrderTracks& tracks);
-[[nodiscard]] std::vector<std::size_t> track_breaks(const SpeedTrack& tracks);
 
 /// One line over the rows in which it was measured, amplitudes in the kind of the report. Median, least and
 /// greatest of Vold-Kalman leave out rows within 1 / bandwidth of the log's ends, where an envelope rests on

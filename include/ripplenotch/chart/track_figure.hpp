@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "ripplenotch/analysis/track_by_speed.hpp"
+#include "ripplenotch/analysis/order_track.hpp"
 #include "ripplenotch/figure/figure.hpp"
 
 namespace ripplenotch {

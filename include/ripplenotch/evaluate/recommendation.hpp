@@ -56,8 +56,8 @@ struct Recommendation {
     [[nodiscard]] const JudgedMethod* runner_up() const;
 };
 
-/// Fewer windows of eight motor turns are too few to judge anything by.
-inline constexpr std::size_t fewest_judged_windows = 4;
+/// Fewer windows of eight motor turns are too few to judge anything by. They overlap by half: four lengths.
+inline constexpr std::size_t fewest_judged_windows = 7;
 
 /// Rms rate of the mean torque from one motor turn to the next; of half a second where the motor is slower.
 [[nodiscard]] double torque_rate_nm_s(const TraceView& trace, GearRatio ratio);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/analysis/ripple_meter.hpp"
+#include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/units.hpp"
 #include "ripplenotch/filter/method.hpp"
 #include "ripplenotch/log/format.hpp"

@@ -5,20 +5,17 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <complex>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <new>
-#include <optional>
-#include <utility>
 
-#include "analysis/kernels/piece_kernel.hpp"
 #include "analysis/kernels/point_kernel.hpp"
-#include "analysis/kernels/power_kernel.hpp"
+#include "analysis/spectrum/piece.hpp"
 #include "core/functions/many_numbers.hpp"
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -37,36 +34,25 @@ FftwArray<T> checked(T* allocated) {
 FftwArray<double> real_array(std::size_t n) { return checked(fftw_alloc_real(n)); }
 FftwArray<fftw_complex> complex_array(std::size_t n) { return checked(fftw_alloc_complex(n)); }
 
-/// A real signal of even length may be transformed as a complex one of half the length. Plans are estimated,
-/// and among powers of two up to here those of complex signals are the better ones: measured, 10 to 30 % with
-/// untangling, where longer ones gain nothing and other factors lose as often as they win.
-constexpr std::size_t longest_by_half = 4096;
-bool goes_by_half(std::size_t n) { return n >= 64 && n <= longest_by_half && std::has_single_bit(n); }
-
-enum class PlanKind { whole, half };
-
 struct Plan {
     fftw_plan plan = nullptr;
-    Plan(std::size_t n, PlanKind kind) {
+    explicit Plan(std::size_t n) {
         // The arrays only shape the plan: it is always executed on others, of the same alignment.
         const auto in = real_array(n);
         const auto out = complex_array(n / 2 + 1);
-        plan = kind == PlanKind::whole
-                   ? fftw_plan_dft_r2c_1d(static_cast<int>(n), in.get(), out.get(), FFTW_ESTIMATE)
-                   : fftw_plan_dft_1d(static_cast<int>(n / 2), reinterpret_cast<fftw_complex*>(in.get()),
-                                      out.get(), FFTW_FORWARD, FFTW_ESTIMATE);
+        plan = fftw_plan_dft_r2c_1d(static_cast<int>(n), in.get(), out.get(), FFTW_ESTIMATE);
     }
     ~Plan() { fftw_destroy_plan(plan); }
     Plan(const Plan&) = delete;
     Plan& operator=(const Plan&) = delete;
 };
 
-fftw_plan plan_for(std::size_t n, PlanKind kind) {
+fftw_plan plan_for(std::size_t n) {
     static std::mutex mutex;
-    static std::map<std::pair<std::size_t, PlanKind>, std::unique_ptr<Plan>> plans;
+    static std::map<std::size_t, std::unique_ptr<Plan>> plans;
     const std::lock_guard lock(mutex);
-    auto& entry = plans[{n, kind}];
-    if (!entry) entry = std::make_unique<Plan>(n, kind);
+    auto& entry = plans[n];
+    if (!entry) entry = std::make_unique<Plan>(n);
     return entry->plan;
 }
 
@@ -89,19 +75,17 @@ class Places {
         if (off_grid_ * std::abs(frequency) <= 1e-4)
             return even_point(where_, value, middle_, step_, frequency);
         FourierPoint point;
-        std::array<double, 256> angle{}, cosine{}, sine{};
-        for (std::size_t first_row = 0; first_row < where_.size(); first_row += angle.size()) {
-            const std::size_t count = std::min(angle.size(), where_.size() - first_row);
+        std::array<double, 256> angle{}, cosine{}, sine{}, weight{};
+        for (std::size_t first = 0; first < where_.size(); first += angle.size()) {
+            const std::size_t count = std::min(angle.size(), where_.size() - first);
             for (std::size_t i = 0; i < count; ++i)
-                angle[i] = -full_turn * frequency * (where_[first_row + i] - middle_);
+                angle[i] = -full_turn * frequency * (where_[first + i] - middle_);
             portable::phasors(std::span(angle).first(count), cosine, sine);
-            for (std::size_t i = 0; i < count; ++i) {
-                const std::complex<double> phasor(cosine[i], sine[i]);
-                const double place = where_[first_row + i] - middle_;
-                const double weight = value[first_row + i], first = weight * place;
-                point.value += weight * phasor;
-                point.first += first * phasor;
-                point.second += first * place * phasor;
+            std::copy_n(value.begin() + static_cast<std::ptrdiff_t>(first), count, weight.begin());
+            for (std::complex<double>* const sum : {&point.value, &point.first, &point.second}) {
+                *sum += std::complex<double>(dot(weight.data(), cosine.data(), count),
+                                             dot(weight.data(), sine.data(), count));
+                for (std::size_t i = 0; i < count; ++i) weight[i] *= where_[first + i] - middle_;
             }
         }
         return point;
@@ -125,13 +109,7 @@ struct RealTransform::Arrays {
     std::size_t length;
     FftwArray<double> in = real_array(length);
     FftwArray<fftw_complex> out = complex_array(length / 2 + 1);
-    fftw_plan whole = nullptr, half = nullptr;  // when first needed
-    std::optional<HalfPower> untangle = std::nullopt;
-
-    /// A std::complex<double> is laid out as two doubles, the real part first; so says the standard.
-    [[nodiscard]] std::span<const std::complex<double>> sums(std::size_t count) const {
-        return {reinterpret_cast<const std::complex<double>*>(out.get()), count};
-    }
+    fftw_plan plan = nullptr;  // when first needed
 };
 
 RealTransform::RealTransform(std::size_t length) : arrays_(new Arrays{length}) {}
@@ -143,23 +121,10 @@ std::span<double> RealTransform::in() { return {arrays_->in.get(), arrays_->leng
 
 std::span<const std::complex<double>> RealTransform::run() {
     Arrays& arrays = *arrays_;
-    if (arrays.whole == nullptr) arrays.whole = plan_for(arrays.length, PlanKind::whole);
-    fftw_execute_dft_r2c(arrays.whole, arrays.in.get(), arrays.out.get());
-    return arrays.sums(arrays.length / 2 + 1);
-}
-
-void RealTransform::add_power(double scale, std::span<double> power) {
-    Arrays& arrays = *arrays_;
-    if (!goes_by_half(arrays.length)) {
-        ripplenotch::add_power(run(), scale, power);
-        return;
-    }
-    if (arrays.half == nullptr) {
-        arrays.half = plan_for(arrays.length, PlanKind::half);
-        arrays.untangle.emplace(arrays.length);
-    }
-    fftw_execute_dft(arrays.half, reinterpret_cast<fftw_complex*>(arrays.in.get()), arrays.out.get());
-    arrays.untangle->add(arrays.sums(arrays.length / 2), scale, power);
+    if (arrays.plan == nullptr) arrays.plan = plan_for(arrays.length);
+    fftw_execute_dft_r2c(arrays.plan, arrays.in.get(), arrays.out.get());
+    // A std::complex<double> is laid out as two doubles, the real part first; so says the standard.
+    return {reinterpret_cast<const std::complex<double>*>(arrays.out.get()), arrays.length / 2 + 1};
 }
 
 std::vector<std::complex<double>> real_fourier(std::span<const double> x) {

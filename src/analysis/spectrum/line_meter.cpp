@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "analysis/spectrum/line_meter.hpp"
 
+#include <array>
 #include <cmath>
 
-#include "analysis/kernels/piece_kernel.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -12,6 +12,25 @@ namespace {
 constexpr double reach_bins = 0.5;     // of the moments
 constexpr int most_rounds = 8;         // by hand
 constexpr double settled_bins = 1e-9;  // bins
+
+/// sum over k of value[k] place[k]^d exp(i angle) for d = 0 .. 7, by the angles' cosines and sines.
+using Moments = std::array<std::complex<double>, 8>;
+
+Moments turned_moments(std::span<const double> value, std::span<const double> place,
+                       std::span<const double> cosine, std::span<const double> sine) {
+    constexpr std::size_t orders = std::tuple_size_v<Moments>;
+    std::array<double, orders> real{}, imaginary{};
+    for (std::size_t k = 0; k < value.size(); ++k) {
+        double weight = value[k];
+        for (std::size_t d = 0; d < orders; ++d, weight *= place[k]) {
+            real[d] += weight * cosine[k];
+            imaginary[d] += weight * sine[k];
+        }
+    }
+    Moments moments;
+    for (std::size_t d = 0; d < orders; ++d) moments[d] = {real[d], imaginary[d]};
+    return moments;
+}
 
 /// S(x) = sum over d of (-i x)^d / d! M_d with its first two derivatives; x is 2 pi (f - start) half a piece.
 struct Point {

@@ -11,7 +11,7 @@
 #include "core/matrices/factorisations.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
-#include "ripplenotch/analysis/track_by_speed.hpp"
+#include "ripplenotch/analysis/order_track.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 

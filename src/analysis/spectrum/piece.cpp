@@ -2,11 +2,12 @@
 #include "analysis/spectrum/piece.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <numeric>
 
-#include "analysis/kernels/power_kernel.hpp"
 #include "core/functions/many_numbers.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
@@ -16,8 +17,13 @@ namespace {
 /// A clock counts as even when no sample is off it by more than this share of a step: then the plain
 /// transform is the same sum.
 constexpr double even_share = 1e-3;
-constexpr double most_steps = 3.0;     // that one sample stands for, beside a gap
-constexpr std::size_t most_ahead = 8;  // pieces; those of usual lengths stay in the processor's cache
+constexpr double most_steps = 3.0;       // that one sample stands for, beside a gap
+constexpr std::size_t most_ahead = 8;    // pieces; those of usual lengths stay in the processor's cache
+constexpr std::size_t side_by_side = 8;  // sums, so that an addition need not wait for the one before
+
+using Sums = std::array<double, side_by_side>;
+
+double total(const Sums& sums) { return std::accumulate(sums.begin(), sums.end(), 0.0); }
 
 /// Of which the cosine is the window's; at a place and for a length in the same unit.
 double hann_angle(double place, double length) { return 2.0 * std::numbers::pi * place / length; }
@@ -38,6 +44,47 @@ void remove_line(std::span<const double> t, std::vector<double>& x) {
 }
 
 }  // namespace
+
+EvenPart look_at_even(std::span<const double> time, std::span<const double> values, double step,
+                      std::size_t from) {
+    const std::size_t n = time.size();
+    const double begin = n > from ? time[0] : 0.0;
+    const double middle = 0.5 * (static_cast<double>(n + from) - 1.0);
+    Sums worst{}, sums{}, tilts{};
+    const auto look = [&](std::size_t k, std::size_t i) {
+        const auto at = static_cast<double>(k);
+        const double off = std::abs(time[k] - begin - at * step);
+        worst[i] = worst[i] < off ? off : worst[i];
+        sums[i] += values[k];
+        tilts[i] += (at - middle) * values[k];
+    };
+    std::size_t k = from;
+    for (; k + side_by_side <= n; k += side_by_side)
+        for (std::size_t i = 0; i < side_by_side; ++i) look(k + i, i);
+    for (std::size_t i = 0; k + i < n; ++i) look(k + i, i);
+    return {*std::max_element(worst.begin(), worst.end()), total(sums), total(tilts), n - from};
+}
+
+EvenPart together(const EvenPart& early, const EvenPart& late) {
+    const auto before = static_cast<double>(early.count), behind = static_cast<double>(late.count);
+    // Each part's middle lies half the other part away from the middle of both.
+    return {std::max(early.worst, late.worst), early.sum + late.sum,
+            early.tilt - 0.5 * behind * early.sum + late.tilt + 0.5 * before * late.sum,
+            early.count + late.count};
+}
+
+EvenLine even_line(const EvenPart& values) {
+    const auto count = static_cast<double>(values.count);
+    const double squares = count * (count * count - 1.0) / 12.0;
+    return {values.sum / count, squares > 0.0 ? values.tilt / squares : 0.0};
+}
+
+void subtract_line_and_window(std::span<const double> values, const EvenLine& line,
+                              std::span<const double> window, std::span<double> to) {
+    const double middle = 0.5 * (static_cast<double>(values.size()) - 1.0);
+    for (std::size_t k = 0; k < values.size(); ++k)
+        to[k] = (values[k] - ((static_cast<double>(k) - middle) * line.slope + line.mean)) * window[k];
+}
 
 PieceMaker::PieceMaker(std::size_t length, Hertz rate)
     : length_(length),
@@ -133,13 +180,13 @@ bool PieceMaker::even_at(Hertz rate) const {
 }
 
 void PieceMaker::add_power(double scale, std::span<double> power) {
-    if (piece_.even) {
-        transform_.add_power(scale, power);
-        return;
-    }
-    const auto sums = nonuniform_fourier(piece_.time_s, piece_.value, rate_ / static_cast<double>(length_),
-                                         length_ / 2 + 1);
-    ripplenotch::add_power(sums, scale, power);
+    std::vector<std::complex<double>> uneven;
+    if (!piece_.even)
+        uneven = nonuniform_fourier(piece_.time_s, piece_.value, rate_ / static_cast<double>(length_),
+                                    length_ / 2 + 1);
+    const auto sums = piece_.even ? transform_.run() : std::span<const std::complex<double>>(uneven);
+    for (std::size_t k = 0; k < sums.size(); ++k)
+        power[k] += scale * (sums[k].real() * sums[k].real() + sums[k].imag() * sums[k].imag());
 }
 
 }  // namespace ripplenotch

@@ -3,7 +3,6 @@
 
 #include <Eigen/Sparse>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -11,9 +10,13 @@
 #include "core/matrices/linear_algebra.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/phasor.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+using Factors = Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
 constexpr std::size_t section_points = 8000;  ///< without overlap
 /// Pull towards 0 against a sample's own weight: decides only what no sample says, as where the joint rests.
@@ -52,31 +55,11 @@ class Section {
         right_.segment(place + count(), count()) += share * torque * row;
     }
 
-    [[nodiscard]] Eigen::VectorXd solve(const EnvelopeSettings& settings) const {
+    /// Half of the normal equations of the samples, the lower one.
+    [[nodiscard]] Sparse data() const {
         std::vector<Eigen::Triplet<double>> entries;
-        add_data(entries, settings.samples_per_point);
-        add_smoothness(entries, settings);
-        Eigen::SparseMatrix<double> matrix(right_.size(), right_.size());
-        matrix.setFromTriplets(entries.begin(), entries.end());
-        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
-            solver(matrix);
-        const Eigen::VectorXd found = solver.solve(right_);
-        if (solver.info() != Eigen::Success || !found.allFinite()) {
-            raise<DataError>(
-                "the Vold-Kalman equations of this log have no unique solution: lines that are alike, or "
-                "too few samples; leave lines out or use a wider bandwidth");
-        }
-        return found;
-    }
-
-  private:
-    [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(components_); }
-
-    void add_data(std::vector<Eigen::Triplet<double>>& entries, double samples_per_point) const {
         for (std::size_t j = 0; j < same_.size(); ++j) {
             const auto place = static_cast<Eigen::Index>(j) * count();
-            for (Eigen::Index c = 0; c < count(); ++c)
-                push(entries, place + c, place + c, ridge * samples_per_point);
             for (Eigen::Index c = 0; c < count(); ++c) {
                 for (Eigen::Index d = 0; d < count(); ++d) {
                     if (d <= c) push(entries, place + c, place + d, same_[j](c, d));
@@ -84,11 +67,15 @@ class Section {
                 }
             }
         }
+        return lower_half(entries);
     }
 
-    void add_smoothness(std::vector<Eigen::Triplet<double>>& entries,
-                        const EnvelopeSettings& settings) const {
+    /// The same with smoothness and ridge.
+    [[nodiscard]] Sparse equations(const EnvelopeSettings& settings) const {
         const std::vector<double> row = difference_row(settings.poles);
+        std::vector<Eigen::Triplet<double>> entries;
+        for (Eigen::Index i = 0; i < right_.size(); ++i)
+            push(entries, i, i, ridge * settings.samples_per_point);
         for (std::size_t j = 0; j + row.size() <= same_.size(); ++j) {
             for (std::size_t c = 0; c < components_; ++c) {
                 const bool trend = settings.trend && c + 1 == components_;
@@ -103,6 +90,27 @@ class Section {
                 }
             }
         }
+        return data() + lower_half(entries);
+    }
+
+    [[nodiscard]] Eigen::VectorXd solve(const EnvelopeSettings& settings) const {
+        const Factors solver(equations(settings));
+        const Eigen::VectorXd found = solver.solve(right_);
+        if (solver.info() != Eigen::Success || !found.allFinite()) {
+            raise<DataError>(
+                "the Vold-Kalman equations of this log have no unique solution: lines that are alike, or "
+                "too few samples; leave lines out or use a wider bandwidth");
+        }
+        return found;
+    }
+
+  private:
+    [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(components_); }
+
+    [[nodiscard]] Sparse lower_half(const std::vector<Eigen::Triplet<double>>& entries) const {
+        Sparse matrix(right_.size(), right_.size());
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        return matrix;
     }
 
     static void push(std::vector<Eigen::Triplet<double>>& entries, Eigen::Index i, Eigen::Index j,
@@ -125,6 +133,41 @@ void fill_row(const TrackedSignal& signal, std::size_t sample, bool trend, Eigen
         row[static_cast<Eigen::Index>(2 * i + 1)] = -phasor.imag();
     }
     if (trend) row[row.size() - 1] = 1.0;
+}
+
+/// The equations of one line that is alone: each sample of its shaft's turning counts half, in the mean.
+Section lone_line(std::size_t points, double samples_per_point) {
+    Section section(points, 1);
+    const Eigen::VectorXd row = Eigen::VectorXd::Constant(1, std::sqrt(0.5));
+    for (std::size_t point = 0; point < points; ++point) {
+        for (double sample = 0.0; sample < samples_per_point; sample += 1.0)
+            if (point + 1 < points || sample == 0.0)
+                section.add_sample(point, sample / samples_per_point, row, 0.0);
+    }
+    return section;
+}
+
+/// |sum of values times a rotation of `turn` a point|.
+double envelope_gain(const Eigen::VectorXd& values, double turn) {
+    std::complex<double> sum;
+    for (Eigen::Index j = 0; j < values.size(); ++j)
+        sum += values[j] * portable::polar(1.0, turn * static_cast<double>(j));
+    return std::abs(sum);
+}
+
+/// First turn a point at which the gain falls to 1 / sqrt 2, searched upwards from 0.
+double half_width(const Eigen::VectorXd& values, double about) {
+    const double level = 1.0 / std::numbers::sqrt2;
+    double below = 0.0, above = 0.0;
+    do {
+        below = above;
+        above += 0.05 * about;
+    } while (above < std::numbers::pi && envelope_gain(values, above) > level);
+    for (int i = 0; i < 50; ++i) {
+        const double middle = 0.5 * (below + above);
+        (envelope_gain(values, middle) > level ? below : above) = middle;
+    }
+    return 0.5 * (below + above);
 }
 
 struct Place {
@@ -184,6 +227,40 @@ Envelopes solve_envelopes(const TrackedSignal& signal, const SampleRun& run, con
         }
     }
     return envelopes;
+}
+
+EnvelopeResponse envelope_response(EnvelopeSettings settings, double duration_s, Hertz asked_bandwidth) {
+    // Twice the overlap: from there on a longer run changes nothing in its middle.
+    const double wanted = std::ceil(duration_s / settings.step_s) + 1.0;
+    const auto points =
+        static_cast<Eigen::Index>(std::min(wanted, 2.0 * static_cast<double>(settings.overlap_points) + 1.0));
+    settings.trend = false;
+    const Section section = lone_line(static_cast<std::size_t>(points), settings.samples_per_point);
+    const Sparse data = section.data();
+    const Factors solver(section.equations(settings));
+    // What a point makes of samples, and how samples see that, straight lines between points included.
+    const auto kernel_of = [&](Eigen::Index point) {
+        Eigen::VectorXd unit = Eigen::VectorXd::Zero(points);
+        unit[point] = 0.5 * settings.samples_per_point;
+        return Eigen::VectorXd(solver.solve(unit));
+    };
+    const auto seen = [&](const Eigen::VectorXd& kernel) {
+        return Eigen::VectorXd(data.selfadjointView<Eigen::Lower>() * kernel /
+                               (0.5 * settings.samples_per_point));
+    };
+    EnvelopeResponse response;
+    const Eigen::VectorXd middle = kernel_of(points / 2);
+    const double about = std::numbers::pi * asked_bandwidth.value() * settings.step_s;
+    response.bandwidth = Hertz(half_width(seen(middle), about) / (std::numbers::pi * settings.step_s));
+    response.freedom_per_sample = seen(middle)[points / 2] / settings.samples_per_point;
+    const Eigen::Index ends = std::min<Eigen::Index>(
+        points / 2, static_cast<Eigen::Index>(2.0 / (asked_bandwidth.value() * settings.step_s)));
+    for (Eigen::Index j = 0; j <= ends; ++j) {
+        const Eigen::VectorXd kernel = j == ends ? middle : kernel_of(j);
+        response.error_factors.push_back(
+            std::sqrt(2.0 / settings.samples_per_point * kernel.dot(seen(kernel))));
+    }
+    return response;
 }
 
 }  // namespace ripplenotch

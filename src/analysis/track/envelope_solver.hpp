@@ -40,4 +40,16 @@ struct Envelopes {
 [[nodiscard]] Envelopes solve_envelopes(const TrackedSignal& signal, const SampleRun& run,
                                         const EnvelopeGrid& grid, const EnvelopeSettings& settings);
 
+/// What the equations of an envelope do to a signal when one line is alone, the data at their mean.
+struct EnvelopeResponse {
+    Hertz bandwidth;  ///< -3 dB width in the middle of the run, both sides together
+    /// Standard error of an amplitude per unit of rms noise on the samples, by the distance to an end of the
+    /// run in points; the last entry holds beyond.
+    std::vector<double> error_factors;
+    double freedom_per_sample = 0.0;  ///< degrees of freedom that one component takes from the data
+};
+/// Of a run of `duration_s`.
+[[nodiscard]] EnvelopeResponse envelope_response(EnvelopeSettings settings, double duration_s,
+                                                 Hertz asked_bandwidth);
+
 }  // namespace ripplenotch

@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
-#include <numbers>
+#include <map>
 
-#include "analysis/shared_limits.hpp"
-#include "analysis/track/cut_windows.hpp"
-#include "core/matrices/factorisations.hpp"
+#include "analysis/track/window_fit.hpp"
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
-#include "ripplenotch/core/phasor.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
@@ -21,9 +18,6 @@ namespace {
 /// Smallest pivot of the normal equations with unit columns. Below, a line is what the others already say, to
 /// within rounding times the torque's range.
 constexpr double least_pivot = 1e-9;
-
-/// A window of half the turns may last so many times WindowRule::longest, as in RippleMeter.
-constexpr double slowest_halves = 4.0;
 
 void check_signal(const TrackedSignal& signal, const WindowRule& rule) {
     if (signal.lines.empty()) raise<UsageError>("there is no order to track");
@@ -38,113 +32,68 @@ void check_signal(const TrackedSignal& signal, const WindowRule& rule) {
     }
 }
 
-/// The middle of a window, of so much of its length.
-SampleRun middle_of(const SampleRun& window, std::span<const double> place, double length) {
-    const double middle = 0.5 * (place[window.first] + place[window.end - 1]);
-    SampleRun part = window;
-    while (part.first + 2 < part.end && std::abs(place[part.first] - middle) > 0.5 * length) ++part.first;
-    while (part.first + 2 < part.end && std::abs(place[part.end - 1] - middle) > 0.5 * length) --part.end;
-    return part;
-}
-
-class WindowFit {
-  public:
-    WindowFit(const TrackedSignal& signal, const WindowRule& rule)
-        : signal_(signal), degree_(rule.envelope_degree) {}
-
-    [[nodiscard]] Eigen::Index unknowns() const {
-        return window_trend_terms + 2 * (degree_ + 1) * static_cast<Eigen::Index>(signal_.lines.size());
-    }
-
-    /// False when the lines cannot be told apart within the window.
-    bool fit(const SampleRun& window) {
-        fill_basis(window);
-        const Eigen::VectorXd scale = basis_.colwise().norm().cwiseMax(1e-300).cwiseInverse();
-        normal_.setZero(unknowns(), unknowns());
-        normal_.selfadjointView<Eigen::Lower>().rankUpdate(basis_.transpose());
-        normal_ =
-            scale.asDiagonal() * normal_.selfadjointView<Eigen::Lower>().toDenseMatrix() * scale.asDiagonal();
-        solver_.compute(normal_);
-        if (!(solver_.least_pivot() > least_pivot)) return false;
-        const Eigen::VectorXd right = scale.asDiagonal() * (basis_.transpose() * torque_);
-        const Eigen::VectorXd scaled = solver_.solve(right);
-        coefficients_ = scale.asDiagonal() * scaled;
-        const double freedom = static_cast<double>(basis_.rows() - unknowns());
-        residual_square_ = (torque_ - basis_ * coefficients_).squaredNorm();
-        covariance_ = solver_.solve(Eigen::MatrixXd(scale.asDiagonal()));
-        covariance_ = (residual_square_ / freedom) * (scale.asDiagonal() * covariance_);
-        return true;
-    }
-
-    [[nodiscard]] double residual_square() const { return residual_square_; }
-
-    void report(std::size_t line, LineTrack& track) const {
-        const Eigen::Index c = window_trend_terms + 2 * (degree_ + 1) * static_cast<Eigen::Index>(line);
-        const double a = coefficients_[c], b = coefficients_[c + 1];
-        const double amplitude = portable::hypot(a, b);
-        const double ua = amplitude > 0.0 ? a / amplitude : 1.0, ub = amplitude > 0.0 ? b / amplitude : 0.0;
-        const double variance = ua * ua * covariance_(c, c) + 2.0 * ua * ub * covariance_(c, c + 1) +
-                                ub * ub * covariance_(c + 1, c + 1);
-        track.amplitude_nm.push_back(amplitude);
-        track.standard_error_nm.push_back(std::sqrt(std::max(variance, 0.0)));
-        track.phase_deg.push_back(portable::atan2(-b, a) * degrees_per_radian);
-    }
-
-  private:
-    void fill_basis(const SampleRun& window) {
-        const auto n = static_cast<Eigen::Index>(window.size());
-        const double start = signal_.time_s[window.first], end = signal_.time_s[window.end - 1];
-        basis_.resize(n, unknowns());
-        torque_.resize(n);
-        for (Eigen::Index k = 0; k < n; ++k) {
-            const std::size_t at = window.first + static_cast<std::size_t>(k);
-            const double s = (2.0 * signal_.time_s[at] - start - end) / (end - start);
-            torque_[k] = signal_.torque_nm[at];
-            double power = 1.0;
-            for (Eigen::Index i = 0; i < window_trend_terms; ++i, power *= s) basis_(k, i) = power;
-            Eigen::Index column = window_trend_terms;
-            for (const TrackedLine& line : signal_.lines) {
-                const double angle = 2.0 * std::numbers::pi * line.order * line.turns[at];
-                const std::complex<double> phasor = portable::phasor(angle);
-                const double cosine = phasor.real(), sine = phasor.imag();
-                power = 1.0;
-                for (int i = 0; i <= degree_; ++i, power *= s) {
-                    basis_(k, column++) = cosine * power;
-                    basis_(k, column++) = sine * power;
-                }
-            }
-        }
-    }
-
-    const TrackedSignal& signal_;
-    int degree_;
-    Eigen::MatrixXd basis_, normal_, covariance_;
-    Eigen::VectorXd torque_, coefficients_;
-    SymmetricFactors solver_;
-    double residual_square_ = 0.0;
-};
-
-void add_row(const TrackedSignal& signal, const SampleRun& window, const WindowFit& fit,
-             OrderTracks& tracks) {
-    const double start = signal.time_s[window.first], end = signal.time_s[window.end - 1];
-    const double middle = 0.5 * (start + end);
-    const auto first = signal.time_s.begin() + static_cast<std::ptrdiff_t>(window.first);
-    const auto nearest =
-        std::lower_bound(first, signal.time_s.begin() + static_cast<std::ptrdiff_t>(window.end), middle);
-    tracks.time_s.push_back(middle);
-    tracks.speed_deg_s.push_back(
-        signal.speed_deg_s[static_cast<std::size_t>(nearest - signal.time_s.begin())]);
+void add_row(const TrackedSignal& signal, const SampleRun& window, OrderTracks& tracks) {
+    const auto times = signal.time_s.subspan(window.first, window.size());
+    const double middle_s = 0.5 * (times.front() + times.back());
+    const auto nearest = std::lower_bound(times.begin(), times.end(), middle_s) - times.begin();
+    tracks.time_s.push_back(middle_s);
+    tracks.speed_deg_s.push_back(signal.speed_deg_s[window.first + static_cast<std::size_t>(nearest)]);
+    const double duration_s = times.back() - times.front();
     bool folded = false;
     for (std::size_t i = 0; i < signal.lines.size(); ++i) {
         const TrackedLine& line = signal.lines[i];
         const double hz =
-            line.order * std::abs(line.turns[window.end - 1] - line.turns[window.first]) / (end - start);
-        fit.report(i, tracks.lines[i]);
+            line.order * std::abs(line.turns[window.end - 1] - line.turns[window.first]) / duration_s;
         tracks.lines[i].hz.push_back(hz);
         folded = folded || hz > 0.5 * signal.sample_rate.value();
     }
     tracks.rows_folded += folded ? 1 : 0;
 }
+
+/// Amplitude, phase and error of each line, from the variance of the residual.
+void add_amplitudes(const WindowFit& fit, const WindowFit::Torque& torque, double variance,
+                    OrderTracks& tracks) {
+    for (std::size_t i = 0; i < tracks.lines.size(); ++i) {
+        const std::complex<double> found = fit.amplitude(torque, i);
+        const double amplitude = std::abs(found);
+        const std::complex<double> along = amplitude > 0.0 ? found / amplitude : 1.0;
+        tracks.lines[i].amplitude_nm.push_back(amplitude);
+        tracks.lines[i].standard_error_nm.push_back(
+            std::sqrt(std::max(variance * fit.variance(i, along), 0.0)));
+        tracks.lines[i].phase_deg.push_back(portable::arg(found) * degrees_per_radian);
+    }
+}
+
+constexpr double ranges_wanted = 24.0;  // by hand: rows that a person reads
+constexpr double finest_share =
+    0.01;  ///< of the highest speed: a steady log is not cut up by its speed noise
+
+void gather_line(const LineTrack& track, const std::vector<std::size_t>& rows, SpeedTrack::Line& line) {
+    double sum = 0.0, square = 0.0, hz = 0.0, error = not_a_number;
+    std::complex<double> arrow;
+    std::size_t count = 0;
+    for (const std::size_t row : rows) {
+        const double amplitude = track.amplitude_nm[row];
+        if (!std::isfinite(amplitude)) continue;
+        ++count;
+        sum += amplitude;
+        square += amplitude * amplitude;
+        hz += track.hz[row];
+        error = track.standard_error_nm[row];
+        arrow += portable::polar(amplitude, track.phase_deg[row] / degrees_per_radian);
+    }
+    const double n = static_cast<double>(count);
+    const double mean = count > 0 ? sum / n : not_a_number;
+    const double variance = count > 1 ? std::max(0.0, (square - sum * mean) / (n - 1.0)) : error * error;
+    line.amplitude_nm.push_back(mean);
+    line.spread_nm.push_back(std::sqrt(variance));
+    line.phase_deg.push_back(count > 0 ? portable::arg(arrow) * degrees_per_radian : not_a_number);
+    line.hz.push_back(count > 0 ? hz / n : not_a_number);
+}
+
+// A step so much longer than its neighbours holds no data: windows grow and shrink with the speed, but
+// slowly.
+constexpr double longest_step = 3.0;
 
 }  // namespace
 
@@ -168,31 +117,98 @@ OrderTracks track_orders(const TrackedSignal& signal, const WindowRule& rule) {
     const bool by_time = rule.seconds.value() > 0.0;
     const auto place = by_time ? signal.time_s : signal.reference_turns;
     const double length = by_time ? rule.seconds.value() : rule.turns;
-    WindowFit fit(signal, rule);
     double squares = 0.0;
-    std::size_t samples = 0;
+    std::size_t freedom = 0;
     for (const SampleRun& run : directed_runs(signal.speed_deg_s, signal.run_starts, {})) {
-        for (const SampleRun& whole : cut_windows(run, place, length, 0.5 * length, rule.hop)) {
-            const auto lasts_longer = [&](const SampleRun& window, double seconds) {
-                return !by_time && signal.time_s[window.end - 1] - signal.time_s[window.first] > seconds;
+        for (const SampleRun& window : cut_windows(run, place, length, 0.5 * length, rule.hop)) {
+            const auto part = [&](std::span<const double> all) {
+                return all.subspan(window.first, window.size());
             };
-            const SampleRun window =
-                lasts_longer(whole, rule.longest.value()) ? middle_of(whole, place, 0.5 * length) : whole;
-            if (lasts_longer(window, slowest_halves * rule.longest.value())) {
-                ++tracks.windows_too_slow;
-            } else if (window.size() < 2 * static_cast<std::size_t>(fit.unknowns())) {
+            if (window.size() < 2) continue;
+            const auto reference = part(signal.reference_turns);
+            std::vector<TrackedLine> lines;
+            for (const TrackedLine& line : signal.lines) lines.push_back({line.order, part(line.turns)});
+            WindowFit fit(part(signal.time_s), {},
+                          std::abs(reference.back() - reference.front()) / signal.ratio.value(),
+                          std::move(lines), rule.envelope_degree);
+            if (!fit.has_enough_samples()) {
                 ++tracks.windows_too_few_samples;
-            } else if (!fit.fit(window)) {
-                ++tracks.rows_not_separable;
-            } else {
-                add_row(signal, window, fit, tracks);
-                squares += fit.residual_square();
-                samples += window.size() - static_cast<std::size_t>(fit.unknowns());
+                continue;
             }
+            fit.factorise();
+            if (!(fit.least_pivot() > least_pivot)) {
+                ++tracks.rows_not_separable;
+                continue;
+            }
+            const WindowFit::Torque torque = fit.fit(part(signal.torque_nm));
+            const std::size_t free = window.size() - fit.unknowns();
+            const double square = dot(torque.residual.data(), torque.residual.data(), window.size());
+            add_row(signal, window, tracks);
+            add_amplitudes(fit, torque, square / static_cast<double>(free), tracks);
+            squares += square;
+            freedom += free;
         }
     }
-    if (samples > 0) tracks.residual_rms_nm = std::sqrt(squares / static_cast<double>(samples));
+    if (freedom > 0) tracks.residual_rms_nm = std::sqrt(squares / static_cast<double>(freedom));
     return tracks;
+}
+
+double speed_step(const SpeedSpan& speeds) {
+    const double slowest_deg_s = speeds.from.value(), fastest_deg_s = speeds.to.value();
+    const double fastest = std::max(std::abs(slowest_deg_s), std::abs(fastest_deg_s));
+    const double least = std::max((fastest_deg_s - slowest_deg_s) / ranges_wanted, finest_share * fastest);
+    if (!(least > 0.0)) return 1.0;
+    const double power = portable::pow(10.0, std::floor(portable::log10(least)));
+    for (const double step : {1.0, 2.0, 5.0}) {
+        if (step * power >= least) return step * power;
+    }
+    return 10.0 * power;
+}
+
+SpeedTrack gather_by_speed(const OrderTracks& tracks, DegPerSec step) {
+    SpeedTrack result;
+    result.lines.resize(tracks.lines.size());
+    if (tracks.speed_deg_s.empty()) return result;
+    const auto [low, high] = std::minmax_element(tracks.speed_deg_s.begin(), tracks.speed_deg_s.end());
+    result.step_deg_s = step.value() > 0.0 ? step.value() : speed_step({DegPerSec(*low), DegPerSec(*high)});
+    std::map<long long, std::vector<std::size_t>> ranges;
+    for (std::size_t row = 0; row < tracks.speed_deg_s.size(); ++row) {
+        ranges[std::llround(tracks.speed_deg_s[row] / result.step_deg_s)].push_back(row);
+    }
+    for (const auto& [range, rows] : ranges) {
+        double speed = 0.0;
+        for (const std::size_t row : rows) speed += tracks.speed_deg_s[row];
+        result.speed_deg_s.push_back(speed / static_cast<double>(rows.size()));
+        result.rows.push_back(rows.size());
+        for (std::size_t i = 0; i < tracks.lines.size(); ++i)
+            gather_line(tracks.lines[i], rows, result.lines[i]);
+    }
+    return result;
+}
+
+std::vector<std::size_t> track_breaks(const OrderTracks& tracks) {
+    const std::vector<double>& time_s = tracks.time_s;
+    const std::vector<double>& speed = tracks.speed_deg_s;
+    const auto step = [&](std::size_t row) { return time_s[row] - time_s[row - 1]; };
+    std::vector<std::size_t> breaks;
+    for (std::size_t row = 1; row < time_s.size(); ++row) {
+        const bool turned = speed[row] * speed[row - 1] < 0.0;
+        double beside = 0.0;
+        if (row > 1) beside = std::max(beside, step(row - 1));
+        if (row + 1 < time_s.size()) beside = std::max(beside, step(row + 1));
+        if (turned || (beside > 0.0 && step(row) > longest_step * beside)) breaks.push_back(row);
+    }
+    return breaks;
+}
+
+std::vector<std::size_t> track_breaks(const SpeedTrack& tracks) {
+    const std::vector<double>& speed = tracks.speed_deg_s;
+    std::vector<std::size_t> breaks;
+    for (std::size_t row = 1; row < speed.size(); ++row) {
+        // The mean of a range lies anywhere in it, so that neighbours are less than two widths apart.
+        if (speed[row] - speed[row - 1] > 2.0 * tracks.step_deg_s) breaks.push_back(row);
+    }
+    return breaks;
 }
 
 }  // namespace ripplenotch

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -12,6 +13,18 @@
 
 namespace ripplenotch {
 namespace {
+
+struct WrittenKind {
+    double factor;
+    std::string_view name, words;
+};
+
+const WrittenKind& written(AmplitudeKind kind) {
+    static constexpr std::array kinds = {WrittenKind{1.0, "amplitude_nm", "zero to peak"},
+                                         WrittenKind{1.0 / std::numbers::sqrt2, "rms_nm", "rms"},
+                                         WrittenKind{2.0, "peak_to_peak_nm", "peak to peak"}};
+    return kinds[static_cast<std::size_t>(kind)];
+}
 
 // Six significant digits, and no negative zero: more would be rounding noise of the fit.
 std::vector<double> rounded_to_factor(std::vector<double> values, double factor) {
@@ -55,52 +68,18 @@ const std::vector<double>& speeds_of(const TrackReport& report) {
 
 }  // namespace
 
-double amplitude_factor(AmplitudeKind kind) {
-    switch (kind) {
-        case AmplitudeKind::peak:
-            return 1.0;
-        case AmplitudeKind::rms:
-            return 1.0 / std::numbers::sqrt2;
-        case AmplitudeKind::peak_to_peak:
-            return 2.0;
-    }
-    return 1.0;
-}
-
-std::string_view amplitude_name(AmplitudeKind kind) {
-    switch (kind) {
-        case AmplitudeKind::peak:
-            return "amplitude_nm";
-        case AmplitudeKind::rms:
-            return "rms_nm";
-        case AmplitudeKind::peak_to_peak:
-            return "peak_to_peak_nm";
-    }
-    return "";
-}
+double amplitude_factor(AmplitudeKind kind) { return written(kind).factor; }
+std::string_view amplitude_name(AmplitudeKind kind) { return written(kind).name; }
+std::string_view amplitude_words(AmplitudeKind kind) { return written(kind).words; }
 
 std::string TrackLabel::column() const {
-    switch (kind) {
-        case Kind::order:
-            return fmt::format("order_{}", shortest(value));
-        case Kind::order_output:
-            return fmt::format("order_output_{}", shortest(value));
-        case Kind::tone:
-            return fmt::format("tone_{}hz", shortest(value));
-    }
-    return "";
+    if (kind == Kind::tone) return fmt::format("tone_{}hz", shortest(value));
+    return (kind == Kind::order ? "order_" : "order_output_") + shortest(value);
 }
 
 std::string TrackLabel::words() const {
-    switch (kind) {
-        case Kind::order:
-            return fmt::format("order {}", shortest(value));
-        case Kind::order_output:
-            return fmt::format("output order {}", shortest(value));
-        case Kind::tone:
-            return fmt::format("{} Hz", shortest(value));
-    }
-    return "";
+    if (kind == Kind::tone) return fmt::format("{} Hz", shortest(value));
+    return (kind == Kind::order ? "order " : "output order ") + shortest(value);
 }
 
 std::vector<TrackColumn> track_columns(const TrackReport& report) {
@@ -117,33 +96,19 @@ std::vector<TrackColumn> track_columns(const TrackReport& report) {
     }
     for (std::size_t i = 0; i < report.labels.size(); ++i) {
         const std::string prefix = report.labels[i].column() + "_";
-        columns.push_back({prefix + std::string(amplitude_name(report.kind)),
-                           rounded_to_factor(amplitudes(report, i), factor)});
+        const auto add = [&](std::string_view name, const std::vector<double>& values, double scale) {
+            columns.push_back({prefix + std::string(name), rounded_to_factor(values, scale)});
+        };
+        add(amplitude_name(report.kind), amplitudes(report, i), factor);
         if (report.by_speed) {
-            columns.push_back(
-                {prefix + "phase_deg", rounded_to_factor(report.by_speed->lines[i].phase_deg, 1.0)});
-            columns.push_back(
-                {prefix + "spread_nm", rounded_to_factor(report.by_speed->lines[i].spread_nm, factor)});
+            add("phase_deg", report.by_speed->lines[i].phase_deg, 1.0);
+            add("spread_nm", report.by_speed->lines[i].spread_nm, factor);
         } else {
-            columns.push_back(
-                {prefix + "phase_deg", rounded_to_factor(report.tracks.lines[i].phase_deg, 1.0)});
-            columns.push_back({prefix + "standard_error_nm",
-                               rounded_to_factor(report.tracks.lines[i].standard_error_nm, factor)});
+            add("phase_deg", report.tracks.lines[i].phase_deg, 1.0);
+            add("standard_error_nm", report.tracks.lines[i].standard_error_nm, factor);
         }
     }
     return columns;
-}
-
-std::string_view amplitude_words(AmplitudeKind kind) {
-    switch (kind) {
-        case AmplitudeKind::peak:
-            return "zero to peak";
-        case AmplitudeKind::rms:
-            return "rms";
-        case AmplitudeKind::peak_to_peak:
-            return "peak to peak";
-    }
-    return "";
 }
 
 TrackSummary track_summary(const TrackReport& report, std::size_t line) {

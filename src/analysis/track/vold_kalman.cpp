@@ -6,9 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "analysis/kernels/envelope_kernel.hpp"
 #include "analysis/track/envelope_solver.hpp"
-#include "analysis/track/line_separation.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/core/number.hpp"
@@ -24,6 +22,8 @@ constexpr double shortest_run = 1.5;       ///< in 1/bandwidth
 constexpr double widest_share = 0.25;      ///< of the sample rate
 constexpr double worst_condition = 1e13;   // rounding shows in the third digit (docs/theory.md)
 constexpr double trend_widths = 4.0;       ///< the trend's bandwidth over a line's
+constexpr double close_share = 0.5;        ///< lines closer than this share of the bandwidth ...
+constexpr std::size_t near_widths = 8;     ///< ... for most of so many times 1/bandwidth are one
 constexpr double fewest_cycles = 1.0;  ///< of a line within 1/bandwidth, or it is one with its mirror image
 
 void check_rule(const TrackedSignal& signal, const VoldKalmanRule& rule) {
@@ -37,6 +37,62 @@ void check_rule(const TrackedSignal& signal, const VoldKalmanRule& rule) {
             "a bandwidth of {} Hz is not above 0 and at most a quarter of the sample rate, {:.6g} Hz",
             shortest(width), rate);
     }
+}
+
+/// True at the points around which a line turns by fewer than `fewest` cycles within `width` points.
+std::vector<bool> stands(const std::vector<double>& cycles, std::size_t width, double fewest) {
+    std::vector<double> travelled(cycles.size(), 0.0);
+    for (std::size_t j = 1; j < cycles.size(); ++j) {
+        travelled[j] = travelled[j - 1] + std::abs(cycles[j] - cycles[j - 1]);
+    }
+    std::vector<bool> still(cycles.size());
+    for (std::size_t j = 0; j < cycles.size(); ++j) {
+        const std::size_t from = std::min(j > width / 2 ? j - width / 2 : 0, cycles.size() - 1 - width);
+        still[j] = travelled[from + width] - travelled[from] < fewest;
+    }
+    return still;
+}
+
+/// True at the points around which two lines stay together. They may cross: what each is before and after
+/// tells them apart while they do.
+std::vector<bool> stay_together(const std::vector<double>& apart_cycles, std::size_t width) {
+    const std::size_t n = apart_cycles.size(), reach = std::max<std::size_t>(1, width / 16);
+    std::vector<std::size_t> near(n + 1, 0);  // how many points before this one are near
+    for (std::size_t j = 0; j < n; ++j) {
+        const std::size_t from = j > reach ? j - reach : 0, to = std::min(j + reach, n - 1);
+        const double rate = std::abs(apart_cycles[to] - apart_cycles[from]) / static_cast<double>(to - from);
+        near[j + 1] = near[j] + (rate * static_cast<double>(width) < close_share ? 1 : 0);
+    }
+    const std::size_t window = std::min(near_widths * width, n);
+    std::vector<bool> together(n);
+    for (std::size_t j = 0; j < n; ++j) {
+        const std::size_t from = std::min(j > window / 2 ? j - window / 2 : 0, n - window);
+        together[j] = 2 * (near[from + window] - near[from]) > window;
+    }
+    return together;
+}
+
+/// Per line and point: true where it cannot be distinguished from the trend or from another line. `cycles`:
+/// turns of each line at the points of one grid, at least `width` + 1 of them. `width`: points in
+/// 1/bandwidth. `fewest`: cycles of a line within them, below which it is one with the trend or its own
+/// mirror image.
+std::vector<std::vector<bool>> not_separable(const std::vector<std::vector<double>>& cycles,
+                                             std::size_t width, double fewest) {
+    std::vector<std::vector<bool>> unknown;
+    for (const auto& line : cycles) unknown.push_back(stands(line, width, fewest));
+    for (std::size_t i = 0; i < cycles.size(); ++i) {
+        for (std::size_t other = 0; other < i; ++other) {
+            for (const double sign : {-1.0, 1.0}) {  // a real line is a pair of turning ones
+                std::vector<double> between(cycles[i]);
+                for (std::size_t j = 0; j < between.size(); ++j) between[j] += sign * cycles[other][j];
+                const auto still = stay_together(between, width);
+                for (std::size_t j = 0; j < still.size(); ++j) {
+                    if (still[j]) unknown[i][j] = unknown[other][j] = true;
+                }
+            }
+        }
+    }
+    return unknown;
 }
 
 /// Where the cycles that a line has turned, against nothing or against another one, stand at each point.
@@ -239,20 +295,20 @@ VoldKalmanTracks track_vold_kalman(const TrackedSignal& signal, const VoldKalman
         samples += run.size();
         longest_s = std::max(longest_s, signal.time_s[run.end - 1] - signal.time_s[run.first]);
     }
-    const EnvelopeKernel kernel(settings, longest_s, rule.bandwidth);
+    EnvelopeResponse alone = envelope_response(settings, longest_s, rule.bandwidth);
     const double unknowns = static_cast<double>(2 * signal.lines.size()) + (rule.trend ? trend_widths : 0.0);
     const double freedom =
-        static_cast<double>(samples) * (1.0 - std::min(0.9, unknowns * kernel.freedom_per_sample()));
+        static_cast<double>(samples) * (1.0 - std::min(0.9, unknowns * alone.freedom_per_sample));
     result.tracks.residual_rms_nm = std::sqrt(squares / freedom);
-    result.bandwidth = kernel.bandwidth();
-    std::vector<double> errors = kernel.error_factors();
-    for (double& error : errors) error *= result.tracks.residual_rms_nm;
+    result.bandwidth = alone.bandwidth;
+    for (double& error : alone.error_factors) error *= result.tracks.residual_rms_nm;
     const double width_points = 1.0 / (rule.bandwidth.value() * settings.step_s);
     const double rows = rule.rows_per_second.value() > 0.0 ? rule.rows_per_second.value()
                                                            : rows_per_width * rule.bandwidth.value();
     const auto stride = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / (rows * settings.step_s))));
     for (const RunTracker& tracker : trackers) {
-        tracker.add_rows(result.tracks, stride, static_cast<std::size_t>(std::ceil(width_points)), errors);
+        tracker.add_rows(result.tracks, stride, static_cast<std::size_t>(std::ceil(width_points)),
+                         alone.error_factors);
     }
     return result;
 }

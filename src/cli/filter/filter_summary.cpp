@@ -14,6 +14,8 @@ namespace {
 
 std::string ripple_line(const FilterMetrics& metrics, std::size_t order) {
     const OrderLevel& level = metrics.levels->orders[order];
+    if (level.windows == 0)
+        return fmt::format("order {:g}: not measured, nowhere four periods in one direction", level.order);
     const auto attenuation = attenuation_db(level), predicted = predicted_nm(metrics, order);
     return fmt::format("order {:g} (mean {:.4g} Hz): {:.3g} Nm before, {:.3g} Nm after{}{}", level.order,
                        level.mean_hz, level.amplitude_nm[0], level.amplitude_nm[1],
@@ -86,10 +88,10 @@ std::vector<std::string> filter_warnings(const FilterMetrics& metrics) {
     }
     if (metrics.levels && metrics.levels->windows == 0) {
         warnings.push_back(fmt::format(
-            "{}: ripple could not be measured: no stretch of four motor turns within two seconds with three "
-            "samples a "
-            "period ({} too slow, {} with too few samples)",
-            metrics.source, metrics.levels->windows_too_slow, metrics.levels->windows_too_few_samples));
+            "{}: ripple could not be measured: no four periods of an order in one direction, slow enough for "
+            "two samples a period ({} too few samples)",
+            metrics.source,
+            how_many(metrics.levels->windows_too_few_samples, "window with", "windows with")));
     }
     return warnings;
 }

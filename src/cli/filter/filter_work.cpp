@@ -68,8 +68,8 @@ JointWork start_work(const FilterRequest& request, const FilterJob& job, const L
     metrics.gear = gear;
     if (gear) say(request.common, about(work, gear_in_words(*gear)));
     if (measures(request, job) && gear) {
-        work.meter.emplace(gear->ratio, gear->orders, stream.design_rate(), 2);
-        if (predictable(method)) work.meter->expect(gains_of(method, stream.design_rate()));
+        work.meter.emplace(gear->ratio, gear->orders, stream.design_rate(), 2,
+                           predictable(method) ? gains_of(method, stream.design_rate()) : LineGains{});
     }
     if (tells(request, job)) {
         metrics.crossover = request.crossover;

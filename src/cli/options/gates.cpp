@@ -82,7 +82,7 @@ std::vector<std::string> filter_violations(const Gates& gates, const Contender& 
     std::vector<OrderAttenuation> orders;
     for (const OrderLevel& level : metrics.levels->orders) {
         OrderAttenuation entry{level.order, level.mean_hz, std::nullopt};
-        if (metrics.levels->windows > 0) entry.db = attenuation_db(level).value_or(most_attenuation_db);
+        if (level.windows > 0) entry.db = attenuation_db(level).value_or(most_attenuation_db);
         orders.push_back(entry);
     }
     for (std::string& sentence : attenuation_violations(gates, metrics.method, orders))

@@ -100,8 +100,8 @@ std::unique_ptr<Prepared> prepare(const TrackRequest& request, const TraceView& 
     const double ratio = request.gear ? request.gear->ratio.value() : 1.0;
     p->motor_turns = p->angle.turns;
     for (double& turns : p->motor_turns) turns *= ratio;
-    p->signal = {trace.sample_rate, trace.time_s, trace.torque_nm, p->speed,
-                 p->motor_turns,    {},           trace.run_starts};
+    p->signal = {trace.sample_rate, trace.time_s, trace.torque_nm,  p->speed,
+                 p->motor_turns,    {},           trace.run_starts, GearRatio(ratio)};
     const auto add = [&](TrackLabel::Kind kind, double value, std::span<const double> turns) {
         p->labels.push_back({kind, value});
         p->signal.lines.push_back({value, turns});

@@ -15,11 +15,6 @@ std::vector<std::string> track_warnings(const TrackReport& report) {
         warnings.emplace_back(
             "no usable position: the angle is integrated velocity, and phases count from the first sample");
     }
-    if (tracks.windows_too_slow > 0) {
-        warnings.push_back(
-            fmt::format("{} left out: slower than half a turn per second; --window gives them in seconds",
-                        how_many(tracks.windows_too_slow, "window")));
-    }
     if (tracks.windows_too_few_samples > 0) {
         warnings.push_back(fmt::format("{} left out: too few samples for so many lines; use a longer window",
                                        how_many(tracks.windows_too_few_samples, "window")));

@@ -117,14 +117,6 @@ RIPPLENOTCH_INLINED void fill(TwoAndTwo& lanes, double value) {
     lanes = {Two{value, value}, Two{value, value}};
 }
 
-/// From `first` on by ones.
-template <class Lanes>
-RIPPLENOTCH_INLINED void count_up(Lanes& lanes, double first) {
-    constexpr double ones[lane_count] = {0.0, 1.0, 2.0, 3.0};
-    load(lanes, ones);
-    lanes += first;
-}
-
 RIPPLENOTCH_INLINED double sum(const Four& lanes) { return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]); }
 RIPPLENOTCH_INLINED double sum(const TwoAndTwo& lanes) {
     return (lanes.low[0] + lanes.low[1]) + (lanes.high[0] + lanes.high[1]);
@@ -208,31 +200,6 @@ RIPPLENOTCH_INLINED void spread(TwoAndTwo (&to)[4], const TwoAndTwo& from) {
     fill(to[1], from.low[1]);
     fill(to[2], from.high[0]);
     fill(to[3], from.high[1]);
-}
-
-/// Eight doubles, real and imaginary parts in turn, four of each.
-RIPPLENOTCH_INLINED void load_complex(Four& real, Four& imaginary, const double* from) {
-    Four low, high;
-    load(low, from);
-    load(high, from + lane_count);
-    real = __builtin_shufflevector(low, high, 0, 2, 4, 6);
-    imaginary = __builtin_shufflevector(low, high, 1, 3, 5, 7);
-}
-RIPPLENOTCH_INLINED void load_complex(TwoAndTwo& real, TwoAndTwo& imaginary, const double* from) {
-    TwoAndTwo low, high;
-    load(low, from);
-    load(high, from + lane_count);
-    real = {__builtin_shufflevector(low.low, low.high, 0, 2),
-            __builtin_shufflevector(high.low, high.high, 0, 2)};
-    imaginary = {__builtin_shufflevector(low.low, low.high, 1, 3),
-                 __builtin_shufflevector(high.low, high.high, 1, 3)};
-}
-
-/// The last lane first.
-RIPPLENOTCH_INLINED void reverse(Four& lanes) { lanes = __builtin_shufflevector(lanes, lanes, 3, 2, 1, 0); }
-RIPPLENOTCH_INLINED void reverse(TwoAndTwo& lanes) {
-    lanes = {__builtin_shufflevector(lanes.high, lanes.high, 1, 0),
-             __builtin_shufflevector(lanes.low, lanes.low, 1, 0)};
 }
 
 template <class Kernel, class... Arguments>

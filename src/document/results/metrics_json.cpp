@@ -54,7 +54,6 @@ void add_levels(Json& json, const FilterMetrics& metrics) {
     }
     json["windows"] = {{"measured", metrics.levels->windows},
                        {"measured_share", metrics.levels->measured_share},
-                       {"too_slow", metrics.levels->windows_too_slow},
                        {"too_few_samples", metrics.levels->windows_too_few_samples}};
 }
 

@@ -60,7 +60,6 @@ std::string track_text(const TrackReport& report, const Provenance& provenance) 
     json["residual_rms_nm"] = report.tracks.residual_rms_nm;
     json["rows_folded"] = report.tracks.rows_folded;
     json["rows_not_separable"] = report.tracks.rows_not_separable;
-    json["windows_too_slow"] = report.tracks.windows_too_slow;
     json["windows_too_few_samples"] = report.tracks.windows_too_few_samples;
     json["lines"] = Json::array();
     for (std::size_t i = 0; i < report.labels.size(); ++i)

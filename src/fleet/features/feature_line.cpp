@@ -4,12 +4,30 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <span>
+#include <string_view>
 
-#include "fleet/features/descriptor_list.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
+
+struct DescriptorKind {
+    std::string_view stem;  ///< "ripple_N_amplitude": with an order in the place of N
+    std::string_view unit;
+    bool scales_with_torque = false;
+    std::string_view what;
+};
+
+/// In the order of descriptors.def, which is that of a line.
+std::span<const DescriptorKind> descriptor_kinds() {
+    static constexpr std::array kinds = {
+#define DESCRIPTOR(stem, unit, torque, what) DescriptorKind{stem, unit, torque, what},
+#include "fleet/features/descriptors.def"
+#undef DESCRIPTOR
+    };
+    return kinds;
+}
 
 // "ripple_2_amplitude" or "ripple_0.5_phase" -> "ripple_N_amplitude"
 std::string without_order(const std::string& stem) {
@@ -30,15 +48,6 @@ const Descriptor* FeatureLine::find(const std::string& name) const {
     const auto found = std::find_if(descriptors.begin(), descriptors.end(),
                                     [&](const Descriptor& one) { return one.name() == name; });
     return found == descriptors.end() ? nullptr : &*found;
-}
-
-std::span<const DescriptorKind> descriptor_kinds() {
-    static constexpr std::array kinds = {
-#define DESCRIPTOR(stem, unit, torque, what) DescriptorKind{stem, unit, torque, what},
-#include "fleet/features/descriptors.def"
-#undef DESCRIPTOR
-    };
-    return kinds;
 }
 
 Descriptor descriptor_named(const std::string& name) {

@@ -8,7 +8,6 @@
 
 #include "core/matrices/normal_errors.hpp"
 #include "fleet/features/joint_fit.hpp"
-#include "fleet/features/known_motion.hpp"
 #include "ripplenotch/analysis/ripple_estimate.hpp"
 #include "ripplenotch/core/number.hpp"
 #include "ripplenotch/model/measured_motion.hpp"

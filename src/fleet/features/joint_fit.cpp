@@ -42,7 +42,6 @@ FitOptions fit_options(std::size_t samples, int most_iterations) {
 struct JointFit::Wanted {
     std::string stem, unit, effect, parameter;
     double carrier = 1.0;  ///< rms torque in Nm of a value of 1
-    std::size_t turn = 0;  ///< which term of that effect
 };
 
 JointFit::JointFit(const FittedSamples& samples, const MotionFacts& facts, std::optional<GearAccount> gear)
@@ -149,10 +148,9 @@ void JointFit::build() {
         add_term(fmt::format("ripple,order={}", shortest(order.value())));
 }
 
-const FittedValue* JointFit::fitted(const std::string& effect, const std::string& parameter,
-                                    std::size_t turn) const {
+const FittedValue* JointFit::fitted(const std::string& effect, const std::string& parameter) const {
     for (std::size_t t = 0; t < model_.terms.size(); ++t) {
-        if (model_.terms[t].effect->name != effect || turn-- > 0) continue;
+        if (model_.terms[t].effect->name != effect) continue;
         const auto place = find_parameter(*model_.terms[t].effect, parameter);
         for (const FittedValue& value : fit_.values)
             if (value.term == t && value.parameter == place) return &value;
@@ -164,7 +162,7 @@ const FittedValue* JointFit::fitted(const std::string& effect, const std::string
 Descriptor JointFit::told(const Wanted& wanted, std::string reason) const {
     Descriptor one{wanted.stem, wanted.unit, {}, {}, std::move(reason)};
     if (!one.reason.empty()) return one;
-    const FittedValue* value = fitted(wanted.effect, wanted.parameter, wanted.turn);
+    const FittedValue* value = fitted(wanted.effect, wanted.parameter);
     if (value == nullptr) {
         one.reason = "the motion of this log does not show it";
     } else if (!value->standard_error || !value->ci95 || !std::isfinite(value->value)) {
@@ -214,17 +212,16 @@ std::vector<Descriptor> JointFit::torques() const {
                        fitted("load-friction", "torque_nm") != nullptr || !one_way.empty()
                            ? one_way
                            : "the joint carries too little beside its friction"));
-    all.push_back(lost_motion());
+    const FittedValue* const width = no_wind_.empty() ? fitted("hysteresis", "width_deg") : nullptr;
+    all.push_back({"lost_motion", "deg", {}, {}, no_wind_});
+    if (width != nullptr) {
+        all.back().value = width->value;
+        all.back().ci95 = width->ci95;
+    }
     all.push_back(told({"inertia", "kgm2", "inertia", "inertia_kgm2", facts_.acceleration_rms_rad_s2}, ""));
     all.push_back(told({"gravity", "nm", "gravity", "amplitude_nm", std::sqrt(0.5)}, short_way));
     all.push_back(told({"sensor_zero", "nm", "offset", "torque_nm", 1.0}, one_way));
     return all;
-}
-
-Descriptor JointFit::lost_motion() const {
-    if (!no_wind_.empty()) return {"lost_motion", "deg", {}, {}, no_wind_};
-    const FittedValue* width = fitted("hysteresis", "width_deg");
-    return {"lost_motion", "deg", width->value, width->ci95, {}};
 }
 
 // Second differences, of which the few at reversals and jumps do not count: their median.

@@ -35,9 +35,7 @@ class JointFit {
     [[nodiscard]] bool winds(std::size_t place, double friction_nm, FitOptions options);
     [[nodiscard]] std::vector<unsigned char> near_samples() const;
     [[nodiscard]] Descriptor told(const Wanted& wanted, std::string reason) const;
-    [[nodiscard]] Descriptor lost_motion() const;
-    [[nodiscard]] const FittedValue* fitted(const std::string& effect, const std::string& parameter,
-                                            std::size_t turn = 0) const;
+    [[nodiscard]] const FittedValue* fitted(const std::string& effect, const std::string& parameter) const;
 
     const Motion& motion_;
     const std::vector<double>& torque_nm_;

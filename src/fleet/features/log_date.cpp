@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 
@@ -19,23 +20,14 @@ struct Calendar {
     std::array<int, 6> number = {1970, 1, 1, 0, 0, 0};  // in the order of `letters`
 };
 
-bool leap(int year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
-
-int days_in(int year, int month) {
-    constexpr std::array days = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-    return days[static_cast<std::size_t>(month - 1)] + (month == 2 && leap(year) ? 1 : 0);
-}
-
 std::optional<double> seconds_of(const Calendar& when) {
     const auto [year, month, day, hour, minute, second] = when.number;
-    if (year < 1900 || year > 2200 || month < 1 || month > 12 || day < 1 || day > days_in(year, month) ||
-        hour > 23 || minute > 59 || second > 60)
+    const std::chrono::year_month_day date{std::chrono::year(year),
+                                           std::chrono::month(static_cast<unsigned>(month)),
+                                           std::chrono::day(static_cast<unsigned>(day))};
+    if (year < 1900 || year > 2200 || !date.ok() || hour > 23 || minute > 59 || second > 60)
         return std::nullopt;
-    std::int64_t days = 0;
-    for (int y = 1970; y < year; ++y) days += leap(y) ? 366 : 365;
-    for (int y = year; y < 1970; ++y) days -= leap(y) ? 366 : 365;
-    for (int m = 1; m < month; ++m) days += days_in(year, m);
-    days += day - 1;
+    const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
     return static_cast<double>(days * 86400 + hour * 3600 + minute * 60 + second);
 }
 
@@ -87,14 +79,12 @@ bool fits(std::string_view pattern, std::string_view name, Matched& found) {
 }  // namespace
 
 std::string date_text(double seconds) {
-    auto left = static_cast<std::int64_t>(std::floor(seconds));
-    std::int64_t days = left >= 0 ? left / 86400 : -((86399 - left) / 86400);
-    left -= days * 86400;
-    int year = 1970, month = 1;
-    for (; days < 0; --year) days += leap(year - 1) ? 366 : 365;
-    for (; days >= (leap(year) ? 366 : 365); ++year) days -= leap(year) ? 366 : 365;
-    for (; days >= days_in(year, month); ++month) days -= days_in(year, month);
-    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", year, month, days + 1, left / 3600,
+    const std::chrono::sys_seconds time(std::chrono::seconds(static_cast<std::int64_t>(std::floor(seconds))));
+    const auto midnight = std::chrono::floor<std::chrono::days>(time);
+    const std::chrono::year_month_day date(midnight);
+    const auto left = (time - midnight).count();
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()),
+                       static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), left / 3600,
                        left / 60 % 60, left % 60);
 }
 

@@ -4,9 +4,45 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+
+#include "core/matrices/least_squares.hpp"
+#include "core/rows/rms.hpp"
+#include "core/vectors/dot.hpp"
+#include "model/motion/local_motion.hpp"
+#include "ripplenotch/core/median.hpp"
+#include "ripplenotch/model/measured_motion.hpp"
 
 namespace ripplenotch {
 namespace {
+
+constexpr double jump_deviations = 8.0, jump_part = 0.02;  // by hand
+constexpr double least_over_noise = 5.0;                   // of accelerations, rms
+constexpr double least_change = 1e-3;                      // of the speed within a window, or it is rounding
+
+double mean_square(const std::vector<double>& values) {
+    const double size = rms(values);
+    return size * size;
+}
+
+// sample_noise() with a median in the place of the rms, which jumps do not change.
+double usual_noise(std::span<const double> values) {
+    std::vector<double> fourth;
+    for (std::size_t k = 4; k < values.size(); ++k)
+        fourth.push_back(std::abs(values[k] - 4.0 * values[k - 1] + 6.0 * values[k - 2] -
+                                  4.0 * values[k - 3] + values[k - 4]));
+    const double usual = deviations_of_median * median_in(fourth) / std::sqrt(70.0);
+    return usual > 0.0 ? usual : sample_noise(values);
+}
+
+// Share of the squares of `values` that no sum of the columns makes.
+double share_beside(std::vector<double> values, const std::vector<std::vector<double>>& columns) {
+    const double whole = mean_square(values);
+    const std::vector<double> factors = least_squares(columns, values);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        add_scaled(-factors[c], columns[c].data(), values.data(), values.size());
+    return whole > 0.0 ? mean_square(values) / whole : 0.0;
+}
 
 constexpr double moving_most_deg_s = 0.5, moving_part = 0.01;  // as a diagnosis counts
 constexpr std::size_t fewest_moving = 100;                     // by hand
@@ -25,13 +61,6 @@ std::vector<Value> every_nth(std::span<const Value> values, std::size_t step) {
     return some;
 }
 
-double rms_beside_mean(std::span<const double> values) {
-    double mean = 0.0, squares = 0.0;
-    for (const double value : values) mean += value / static_cast<double>(values.size());
-    for (const double value : values) squares += (value - mean) * (value - mean);
-    return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 std::size_t reversals_of(const Motion& motion, double moving_deg_s) {
     std::size_t reversals = 0;
     int before = 0;
@@ -45,6 +74,50 @@ std::size_t reversals_of(const Motion& motion, double moving_deg_s) {
 }
 
 }  // namespace
+
+std::vector<unsigned char> rows_of_known_motion(const TraceView& log, const Motion& motion) {
+    std::vector<double> speeds;
+    for (const double speed : motion.velocity_deg_s) speeds.push_back(std::abs(speed));
+    const double most_deg_s =
+        std::max(jump_deviations * usual_noise(log.velocity_deg_s), jump_part * median_in(speeds));
+    std::vector<unsigned char> known(log.size(), 1);
+    const double window_s = default_smoothing.value();
+    std::size_t from = 0, until = 0;  // `until`: rows before it are settled
+    for (std::size_t k = 0; k < log.size(); ++k) {
+        if (!(std::abs(log.velocity_deg_s[k] - motion.velocity_deg_s[k]) > most_deg_s)) continue;
+        while (log.time_s[k] - log.time_s[from] > window_s) ++from;
+        until = std::max(until, from);
+        while (until < log.size() && log.time_s[until] - log.time_s[k] <= window_s) known[until++] = 0;
+    }
+    return known;
+}
+
+Accelerations accelerations_of(const TraceView& log, const Motion& motion,
+                               const std::vector<unsigned char>& rows) {
+    std::vector<double> acceleration, ones, direction, speed;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (rows[k] == 0) continue;
+        acceleration.push_back(motion.acceleration_deg_s2[k]);
+        ones.push_back(1.0);
+        speed.push_back(motion.velocity_deg_s[k]);
+        direction.push_back(speed.back() > 0.0 ? 1.0 : speed.back() < 0.0 ? -1.0 : 0.0);
+    }
+    const double samples = std::max(1.0, default_smoothing.value() * log.sample_rate.value());
+    // Of the slope of a cubic in the middle of so many samples.
+    const double noise = usual_noise(log.velocity_deg_s) * log.sample_rate.value() *
+                         std::sqrt(75.0 / (samples * samples * samples));
+    const auto count = static_cast<double>(std::max<std::size_t>(acceleration.size(), 1));
+    const double whole = mean_square(acceleration);
+    const double beside = share_beside(acceleration, {ones, direction, speed});
+    const double alone = std::sqrt(whole * beside), along = std::sqrt(whole * std::max(0.0, 1.0 - beside));
+    const double rounding = least_change * rms(speed) / default_smoothing.value();
+    // What noise leaves along three columns, of accelerations that are alike for a window.
+    const double noise_along = noise * std::sqrt(3.0 * samples / count);
+    Accelerations found;
+    found.known = alone > std::max(least_over_noise * noise, rounding);
+    found.like_friction = !found.known && along > std::max(least_over_noise * noise_along, rounding);
+    return found;
+}
 
 bool MotionFacts::both_directions() const {
     return mix.moving_share > least_share && mix.forward_share > least_share &&
@@ -69,17 +142,11 @@ FittedSamples thinned(const Motion& motion, std::span<const double> torque_nm,
 MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm, bool has_position) {
     MotionFacts facts;
     facts.has_position = has_position;
-    double fastest = 0.0, speed_squares = 0.0, squares = 0.0;
-    for (std::size_t k = 0; k < motion.size(); ++k) {
-        const double speed = motion.velocity_deg_s[k];
-        const double rad_s2 = motion.acceleration_deg_s2[k] * std::numbers::pi / 180.0;
-        fastest = std::max(fastest, std::abs(speed));
-        speed_squares += speed * speed;
-        squares += rad_s2 * rad_s2;
-    }
+    double fastest = 0.0;
+    for (const double speed : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(speed));
     const auto samples = static_cast<double>(std::max<std::size_t>(motion.size(), 1));
-    facts.speed_rms_deg_s = std::sqrt(speed_squares / samples);
-    facts.acceleration_rms_rad_s2 = std::sqrt(squares / samples);
+    facts.speed_rms_deg_s = rms(motion.velocity_deg_s);
+    facts.acceleration_rms_rad_s2 = rms(motion.acceleration_deg_s2) * std::numbers::pi / 180.0;
     facts.moving_deg_s = std::min(moving_most_deg_s, moving_part * fastest);
     std::vector<double> speeds;
     std::size_t forward = 0;
@@ -99,7 +166,10 @@ MotionFacts motion_facts(const Motion& motion, std::span<const double> torque_nm
     const auto ends = std::minmax_element(motion.position_deg.begin(), motion.position_deg.end());
     if (ends.first != motion.position_deg.end()) mix.travel_deg = *ends.second - *ends.first;
     mix.reversals = reversals_of(motion, facts.moving_deg_s);
-    mix.torque_rms_nm = rms_beside_mean(torque_nm);
+    std::vector<double> swing(torque_nm.begin(), torque_nm.end());
+    const double mean = std::accumulate(swing.begin(), swing.end(), 0.0) / samples;
+    for (double& torque : swing) torque -= mean;
+    mix.torque_rms_nm = rms(swing);
     return facts;
 }
 
