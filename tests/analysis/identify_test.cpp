@@ -47,7 +47,7 @@ TEST_CASE("the paper's four logs give ratio 100, orders 1 and 2, and no line at 
     CHECK(found.gear_ratio.ci95_low <= 100.0);
     CHECK(found.gear_ratio.ci95_high >= 100.0);
     CHECK(found.conclusive);
-    CHECK(found.evidence == LineEvidence::sweeps);
+    CHECK(found.evidence == "order spectrum");
     CHECK_THAT(found.verdict, Contains("orders 1 and 2 of the motor: gear ratio "));
     CHECK_THAT(found.verdict,
                Contains("from 3 sweeps over 5 output turns at 60 to 180 deg/s; no line at rest"));
@@ -171,7 +171,7 @@ TEST_CASE("the paper's move alone gives the ratio within 0.05 %") {
     const Identification found = identify_all({log});
     REQUIRE(found.gear_ratio.value.has_value());
     CHECK_THAT(*found.gear_ratio.value, WithinAbs(100.0, 0.05));
-    CHECK(found.evidence == LineEvidence::sweeps);
+    CHECK(found.evidence == "order spectrum");
     CHECK(found.conclusive);
 }
 
