@@ -141,8 +141,8 @@ class Scoring {
     double unnamed_motor_cost(const MotionReading& reading) const {
         const auto& speed =
             question_.columns.velocity ? question_.columns.velocity : question_.columns.position;
-        if (speed->unit_is_stated || speed->convention != nullptr || reading.velocity.side == Shaft::joint)
-            return motor_side_unnamed;
+        const bool one_side = reading.velocity.side == reading.position.side;
+        if (speed->unit_is_stated || speed->convention != nullptr || !one_side) return motor_side_unnamed;
         const double deg_s = question_.evidence.fastest * reading.velocity.unit_factor;
         if (deg_s < slowest_motor_deg_s || deg_s > fastest_motor_deg_s) return motor_out_of_range;
         return motor_without_unit + (family_of(reading.velocity) == Family::degrees ? motor_in_degrees : 0.0);
@@ -178,7 +178,8 @@ class Scoring {
         const bool motor_units = reading.velocity.side == Shaft::motor && !reading.ratio;
         const double by_motor =
             question_.gear_ratio ? fastest_motor_deg_s / *question_.gear_ratio : fastest_joint_deg_s;
-        if (!motor_units && evidence.fastest * reading.velocity.factor > std::max(by_motor, fastest_joint_deg_s))
+        if (!motor_units &&
+            evidence.fastest * reading.velocity.factor > std::max(by_motor, fastest_joint_deg_s))
             cost += too_fast;
         if (evidence.wrap && question_.columns.position && reading.position.side == Shaft::joint) {
             const double turn = *evidence.wrap * reading.position.unit_factor;
