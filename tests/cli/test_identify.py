@@ -184,10 +184,10 @@ class Doubts(unittest.TestCase):
                 "--noise", "0.05Nm", "-o", "log.csv", folder=folder)
             done = run("identify", "log.csv", "-o", "joint.json", "--require-conclusive", "-q", folder=folder)
             self.assertEqual(done.returncode, 5, done.stdout)
-            self.assertIn("cannot tell which of 200 and 100 is the gear ratio", done.stdout)
+            self.assertIn("cannot tell which of 100 and 200 is the gear ratio", done.stdout)
             refused = run("design", "joint.json", "-q", folder=folder)
             self.assertEqual(refused.returncode, 3)
-            self.assertIn("identify could not decide between 200 or 100; give --gear-ratio", refused.stderr)
+            self.assertIn("identify could not decide between 100 or 200; give --gear-ratio", refused.stderr)
 
     def test_a_motor_in_radians_without_a_unit_is_asked_for_its_unit(self):
         noise = random.Random(5)

@@ -19,11 +19,11 @@ namespace {
 
 /// Component sets with the flexspline as output (Harmonic Drive SE, series CSG, CSF, SHG, HFUC: catalogue
 /// pages "ratio"), and by how much likelier each is than a ratio that nobody lists. By hand: most arms that
-/// publish theirs have 100, with the circular spline as output 101; then 120 and 160; 30 and 50 are rare.
+/// publish theirs have 100, with the circular spline as output 101; then 120 and 160; 30 is rare.
 struct SoldRatio {
     double ratio, factor;
 };
-constexpr std::array sold{SoldRatio{30.0, 2.0},   SoldRatio{50.0, 3.0},  SoldRatio{80.0, 4.0},
+constexpr std::array sold{SoldRatio{30.0, 2.0},   SoldRatio{50.0, 5.0},  SoldRatio{80.0, 4.0},
                           SoldRatio{100.0, 11.0}, SoldRatio{120.0, 6.0}, SoldRatio{160.0, 5.0}};
 /// With the circular spline as output each has one more, and fewer joints are built so.
 constexpr double other_output = 0.5;

@@ -181,7 +181,7 @@ class Scoring {
         if (!motor_units &&
             evidence.fastest * reading.velocity.factor > std::max(by_motor, fastest_joint_deg_s))
             cost += too_fast;
-        if (evidence.wrap && question_.columns.position && reading.position.side == Shaft::joint) {
+        if (evidence.wrap && question_.columns.position) {
             const double turn = *evidence.wrap * reading.position.unit_factor;
             if (std::abs(turn / 360.0 - 1.0) > scale_agreement) cost += against_wrap;
         }
