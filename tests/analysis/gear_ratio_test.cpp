@@ -94,7 +94,7 @@ TEST_CASE(
     REQUIRE(of(16.0, GearRatio(16.0)).value.has_value());
     CHECK_THAT(*of(16.0, GearRatio(16.0)).value, WithinRel(16.0, 1e-6));
     CHECK_FALSE(of(6.0, {}).value.has_value());
-    CHECK(undecided_ratios(of(6.0, {})) == std::vector{6.0, 1.0});
+    CHECK(undecided_ratios(of(6.0, {})) == std::vector{6.0, 1.0, 3.0});
     REQUIRE(of(6.0, GearRatio(6.0)).value.has_value());
     CHECK_THAT(*of(6.0, GearRatio(6.0)).value, WithinRel(6.0, 1e-6));
     REQUIRE(of(6.0, GearRatio(1.0)).value.has_value());

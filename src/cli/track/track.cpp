@@ -193,7 +193,7 @@ std::vector<std::optional<RippleEstimate>> ripple_of_lines(const TrackRequest& r
 }
 
 /// A reading under which something turns with the shaft is confirmed by that, unless another one has it, too.
-std::string doubt_of(const TrackRequest& request, const Prepared& prepared, const Log& log) {
+std::string unit_doubt(const TrackRequest& request, const Prepared& prepared, const Log& log) {
     const auto shows = [&](const Prepared& of, const TraceView& trace) {
         const auto found = ripple_of_lines(request, of, trace);
         return std::any_of(found.begin(), found.end(), [](const auto& one) { return one && one->present(); });
@@ -244,7 +244,7 @@ ExitCode run_track(TrackRequest& request, const std::string& command_line) {
     const auto prepared = prepare(request, log.trace.view());
     TrackReport report = track_report_of(request, *prepared, log.trace);
     say_warnings(request.common, track_warnings(report));
-    report.doubt = doubt_of(request, *prepared, log);
+    report.doubt = unit_doubt(request, *prepared, log);
     if (report.tracks.time_s.empty())
         raise<DataError>("{}: no row could be measured: {}", request.path, why_nothing_tracked(report));
     if (request.against == "speed")
