@@ -81,7 +81,7 @@ def exceeded(row, rows):
             continue
         for line in other["answer"].lines:
             order = line["order_output"]
-            if order and searched[0] <= order <= searched[1] and line["kind"] != "alias" and line["amplitude_nm"] > 1.3 * bound and \
+            if order and searched[0] <= order <= searched[1] and line["amplitude_nm"] > 1.3 * bound and \
                     (worst is None or line["amplitude_nm"] > worst[1]):
                 worst = order, line["amplitude_nm"]
     return worst

@@ -37,17 +37,6 @@ double short_move(double t, double top) {
 
 }  // namespace
 
-TEST_CASE("2 Kg at 60 deg/s sampled at 25 Hz is seen at output order 50, and order 50 unfolds to it") {
-    const double hz = 200.0 * 60.0 / 360.0;
-    CHECK_THAT(folded_hz({.hz = hz, .rate_hz = 25.0}) * 360.0 / 60.0, WithinAbs(50.0, 1e-9));
-    const std::vector<double> orders =
-        unfolded_orders({.seen = 50.0, .highest = 420.0}, Hertz(25.0), DegPerSec(60.0));
-    CHECK(orders == std::vector<double>{100.0, 200.0, 250.0, 350.0, 400.0});
-    for (const double order : orders)
-        CHECK_THAT(folded_hz({.hz = order * 60.0 / 360.0, .rate_hz = 25.0}),
-                   WithinAbs(folded_hz({.hz = hz, .rate_hz = 25.0}), 1e-9));
-}
-
 TEST_CASE("an order above half the sample rate is found at its own place from three steady speeds") {
     std::vector<Trace> logs;
     std::uint32_t seed = 1;
@@ -89,27 +78,6 @@ TEST_CASE("in motion of varying speed an order beyond half the sample rate is fo
         60.0, [](double t) { return 55.0 + 20.0 * std::sin(0.7 * t); }, 3)});
     REQUIRE(found.lines.size() == 1);
     CHECK_THAT(*found.lines[0].order_output, WithinAbs(202.0, 0.5));
-}
-
-TEST_CASE(
-    "images that explain a line alike are listed, and a hint chooses among them, but not against the "
-    "samples") {
-    const std::vector<Fold> folds{{250.0, 18.3}, {100.5, 18.0}, {199.6, 18.2}};
-    const FoldQuestion question{49.5, 2.0, 17.8, 19.0, folds};
-    const FoldAnswer open = answer_fold(question, std::nullopt);
-    CHECK_FALSE(open.order_output.has_value());
-    CHECK(open.could_be == std::vector<double>{100.5, 199.6, 250.0});
-    const FoldAnswer hinted = answer_fold(question, GearRatio(101.0));
-    CHECK(hinted.by_hint);
-    CHECK(hinted.order_output == 199.6);
-    CHECK_FALSE(answer_fold(question, GearRatio(77.0)).order_output.has_value());
-    // The seen order lies on the hinted comb itself.
-    CHECK_FALSE(answer_fold(question, GearRatio(49.6)).order_output.has_value());
-    const std::vector<Fold> poor{{250.0, 3.0}, {199.6, 2.0}};
-    CHECK_FALSE(answer_fold({49.5, 2.0, 30.0, 12.0, poor}, GearRatio(101.0)).order_output.has_value());
-    const std::vector<Fold> clear{{199.6, 60.0}, {250.0, 20.0}};
-    // The search asks at orders above half the sample rate itself; images are listed, never taken.
-    CHECK_FALSE(answer_fold({49.5, 2.0, 22.0, 25.0, clear}, std::nullopt).order_output.has_value());
 }
 
 TEST_CASE("a short log of 65 samples shows its order within 2 %") {

@@ -16,15 +16,8 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-/// A line seen at each speed, each observation with its own error of `error` orders.
-OrderLine line_at(double order_output, double amplitude, double error = 0.01,
-                  std::vector<double> speeds = {60, 120, 180}) {
-    OrderLine line{order_output, error, 50.0, amplitude, true, {}};
-    for (std::size_t i = 0; i < speeds.size(); ++i) {
-        line.observations.push_back(
-            {order_output, error, speeds[i], 0.0, order_output * speeds[i] / 360.0, i});
-    }
-    return line;
+OrderLine line_at(double order_output, double amplitude, double error = 0.01, double speed = 120.0) {
+    return {order_output, error, 50.0, amplitude, true, speed};
 }
 
 double best(const GearRatioResult& result) { return result.fit.candidates.at(0).value; }
@@ -90,15 +83,18 @@ TEST_CASE("strong lines off the comb of a multiple decide for the ratio that exp
 }
 
 TEST_CASE(
-    "a low ratio is found as any other: 16, not 32, and 6 is what a shaft without a gear may show, too") {
+    "a low ratio is found as any other: 16 or its half, not 32, and 6 is what a shaft without a gear may "
+    "show, "
+    "too") {
     const auto of = [](double ratio, std::optional<GearRatio> hint) {
         const std::vector lines{line_at(ratio, 0.4, 0.002), line_at(2.0 * ratio, 0.3, 0.002)};
         return fit_gear_ratio(lines, {hint}).fit;
     };
-    REQUIRE(of(16.0, {}).value.has_value());
-    CHECK_THAT(*of(16.0, {}).value, WithinRel(16.0, 1e-6));
+    CHECK(undecided_ratios(of(16.0, {})) == std::vector{16.0, 8.0});
+    REQUIRE(of(16.0, GearRatio(16.0)).value.has_value());
+    CHECK_THAT(*of(16.0, GearRatio(16.0)).value, WithinRel(16.0, 1e-6));
     CHECK_FALSE(of(6.0, {}).value.has_value());
-    CHECK(undecided_ratios(of(6.0, {})) == std::vector{6.0, 1.0});
+    CHECK(undecided_ratios(of(6.0, {})) == std::vector{6.0, 1.0, 3.0});
     REQUIRE(of(6.0, GearRatio(6.0)).value.has_value());
     CHECK_THAT(*of(6.0, GearRatio(6.0)).value, WithinRel(6.0, 1e-6));
     REQUIRE(of(6.0, GearRatio(1.0)).value.has_value());
@@ -158,24 +154,6 @@ TEST_CASE("80 is not taken for 160 where a line at 6 times 81 shows the second c
     if (result.fit.value) CHECK_THAT(*result.fit.value, WithinRel(80.0, 0.01));
 }
 
-TEST_CASE("without a stated unit, whole orders of a shaft in radians are no gear ratio") {
-    // Orders 12, 18 and 36 of a motor, read as if rad were deg: 171.887 would explain them as n = 4, 6, 12.
-    std::vector<OrderLine> lines;
-    for (const int n : {12, 18, 36}) lines.push_back(line_at(n * degrees_per_radian, 0.03, 0.02));
-    RatioQuestion question;
-    question.unit_stated = false;
-    const auto result = fit_gear_ratio(lines, question);
-    CHECK_FALSE(result.fit.value.has_value());
-    CHECK(result.fit.candidates[0].other_unit);
-    CHECK(result.fit.candidates[0].value == 1.0);
-    CHECK_THAT(result.fit.candidates[0].reason,
-               Contains("the speed is in rad/s, not deg/s, the lines are whole"));
-    // A ratio that no unit explains stays one.
-    const auto gear = fit_gear_ratio(std::vector{line_at(100.0, 0.8), line_at(200.0, 0.5)}, question);
-    REQUIRE(gear.fit.value.has_value());
-    CHECK_THAT(*gear.fit.value, WithinRel(100.0, 1e-6));
-}
-
 TEST_CASE("a lone line that nothing explains leaves the ratio open and lists what it could be") {
     const std::vector lines{line_at(1768.0, 0.06)};
     const auto result = fit_gear_ratio(lines, {});
@@ -228,31 +206,13 @@ TEST_CASE("a speed in the wrong unit is the likeliest explanation of its lines, 
     }
 }
 
-TEST_CASE("where only the clock makes an angle of the speed, a clock that is off is a scored rival") {
-    const std::vector lines{line_at(147.0, 0.8), line_at(294.0, 0.5)};
-    RatioQuestion question{GearRatio(100.0), {}, true};
-    const auto result = fit_gear_ratio(lines, question);
+TEST_CASE("one line that is off hardly moves the ratio") {
+    std::vector<OrderLine> lines;
+    for (int n = 1; n <= 8; ++n) lines.push_back(line_at(100.0 * n + (n == 3 ? 0.1 : 0.0), 0.8, 0.02));
+    const auto result = fit_gear_ratio(lines, {});
     REQUIRE(result.fit.value.has_value());
-    CHECK_THAT(*result.fit.value, WithinRel(147.0, 1e-6));
-    const auto& candidates = result.fit.candidates;
-    const auto rival = std::find_if(candidates.begin(), candidates.end(),
-                                    [](const RatioCandidate& one) { return one.value == 100.0; });
-    REQUIRE(rival != candidates.end());
-    CHECK_THAT(rival->reason, Contains("runs 1.47 times too fast"));
-    CHECK(rival->score > 0.05);
-    CHECK(rival->score < candidates[0].score);
-    question.clock_in_doubt = false;  // a position says how far the joint turned, whatever the clock
-    for (const RatioCandidate& one : fit_gear_ratio(lines, question).fit.candidates)
-        CHECK(one.value != 100.0);
-}
-
-TEST_CASE("one stretch with a wrong speed hardly moves the ratio") {
-    OrderLine line = line_at(100.0, 0.8, 0.01, {20, 40, 60, 80, 100, 120, 140, 160});
-    line.observations[3].order_output = 100.4;
-    const auto result = fit_gear_ratio(std::vector{line, line_at(200.0, 0.5)}, {});
-    REQUIRE(result.fit.value.has_value());
-    CHECK_THAT(*result.fit.value, WithinAbs(100.0, 0.02));  // a plain mean is off by 0.05
-    CHECK(result.fit.residuals.size() == 11);
+    CHECK_THAT(*result.fit.value, WithinAbs(100.0, 0.001));  // a plain mean is off by 0.0015
+    CHECK(result.fit.residuals.size() == 8);
 }
 
 TEST_CASE("the 95 % interval covers the truth in 93 to 97 of a hundred fits") {
@@ -261,9 +221,7 @@ TEST_CASE("the 95 % interval covers the truth in 93 to 97 of a hundred fits") {
     constexpr int runs = 1000;
     for (int run = 0; run < runs; ++run) {
         std::vector<OrderLine> lines{line_at(100.0, 0.8, 0.05), line_at(200.0, 0.5, 0.08)};
-        for (OrderLine& line : lines) {
-            for (auto& seen : line.observations) seen.order_output += seen.error * noise();
-        }
+        for (OrderLine& line : lines) line.order_output += line.error * noise();
         const auto result = fit_gear_ratio(lines, {});
         REQUIRE(result.fit.value.has_value());
         covered += result.fit.ci95_low <= 100.0 && 100.0 <= result.fit.ci95_high;
@@ -278,8 +236,7 @@ TEST_CASE("the comb of five published peaks has its base at 40.26 Hz") {
     // a joint at 720 deg/s.
     std::vector<OrderLine> lines;
     for (const double hz : {39.01628, 81.93419, 120.95047, 159.96675, 241.90094})
-        lines.push_back(line_at(0.5 * hz, 1.0, 0.4, {720}));
-    for (std::size_t i = 0; i < lines.size(); ++i) lines[i].observations[0].source = 0;
+        lines.push_back(line_at(0.5 * hz, 1.0, 0.6, 720.0));
     // So coarse, half of it stays possible: which of the two is stated.
     const auto result = fit_gear_ratio(lines, {.hint = GearRatio(20.1)});
     CHECK_THAT(best(result), WithinRel(0.5 * 40.2577, 1e-4));
@@ -319,21 +276,4 @@ TEST_CASE("a ratio half a per cent off a hint names the scale error, one within 
     CHECK(odd.fit.candidates[1].score > 0.2);
     const std::vector right{line_at(100.0, 0.8), line_at(200.0, 0.5)};
     CHECK(fit_gear_ratio(right, {GearRatio(100.0)}).notes.empty());
-}
-
-TEST_CASE(
-    "a lone line that may be an image leaves the ratio open, and what it could be stands among the "
-    "candidates") {
-    OrderLine line = line_at(49.5, 0.03, 0.3);
-    line.certain = false;
-    line.could_be = {100.6, 199.6, 250.5};
-    const auto result = fit_gear_ratio(std::vector{line}, {});
-    CHECK_FALSE(result.fit.value.has_value());
-    CHECK_THAT(result.fit.candidates.front().value, WithinRel(99.8, 0.01));  // 2 of it is 199.6
-    CHECK_THAT(result.fit.candidates.front().reason, Contains("folded from order"));
-    CHECK(std::any_of(result.fit.candidates.begin(), result.fit.candidates.end(),
-                      [](const RatioCandidate& one) { return std::abs(one.value - 49.5) < 0.1; }));
-    double total = 0.0;
-    for (const RatioCandidate& one : result.fit.candidates) total += one.score;
-    CHECK(total <= 1.0 + 1e-12);
 }

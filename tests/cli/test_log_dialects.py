@@ -162,7 +162,7 @@ DIALECTS = {
     "CR line ends": (table("time_s|velocity_deg_s|torque_nm", "t|deg/s|Nm", end="\r"), None),
     "blanks": (table("time_s velocity_rad_s torque_Nm".split(), "t|rad/s|Nm", delimiter=" "), None),
     "savetxt comment": (table(None, "t|deg/s|Nm", delimiter=" ", head="# time_s velocity_deg_s torque_nm\n"), None),
-    "no header": (table(None, "t|deg/s|Nm|deg"), ["--columns", "time,velocity,torque,position"]),
+    "no header": (table(None, "t|deg/s|Nm|deg"), ["--columns", "time,velocity,torque,position", "--unit", "velocity=deg/s,position=deg"]),
     "no time": (table("velocity_deg_s|torque_nm", "deg/s|Nm"), ["--sample-rate", "500Hz"]),
     "pandas index": (table("|time_s|velocity_deg_s|torque_nm", "k|t|deg/s|Nm"), None),
     "counter called time": (table("time|velocity_deg_s|torque_nm", "k|deg/s|Nm"), ["--sample-rate", "500Hz"]),
@@ -174,7 +174,8 @@ DIALECTS = {
                       delimiter=" "), None),
     "plain words": (table("time|velocity|torque|position", RAD), REFUSED_RAD),
     "plain words, no position": (table("time|velocity|torque", "t|rad/s|Nm"), REFUSED_RAD),
-    "plain words in degrees": (table("time|velocity|torque|position", "t|deg/s|Nm|deg"), None),
+    "plain words in degrees": (table("time|velocity|torque|position", "t|deg/s|Nm|deg"),
+                               ["--unit", "velocity=deg/s,position=deg"]),
     "plain words in degrees, no position": (table("time|velocity|torque", "t|deg/s|Nm"),
                                             ["--unit", "velocity=deg/s"]),
     "plain words in rpm, no position": (table("time|speed|torque", "t|rpm|Nm"), ["--unit", "velocity=rpm"]),
@@ -219,7 +220,7 @@ DIALECTS = {
     "both of the motor": (table("time_s|motor_velocity_rpm|torque_nm|motor_position_deg", "t|motor rpm|Nm|motor deg"),
                           ["--gear-ratio", "100"]),
     # Heads and formats.
-    "LabVIEW": (lvm(), None),
+    "LabVIEW": (lvm(), ["--unit", "velocity=deg/s,position=deg"]),  # what Y_Unit_Label says is not read
     "TwinCAT Scope": (twincat("ms"), None),
     "TwinCAT Scope, FILETIME": (twincat("filetime"), None),
     "TwinCAT Scope, one column of times": (twincat_shared(), None),

@@ -41,7 +41,7 @@ class LabView(Case):
     def test_the_head_is_the_clock_of_a_file_without_one(self):
         for x_value in (True, False):
             with self.subTest(x_value=x_value):
-                recording, ratio = self.recording(lvm_without_times(x_value))
+                recording, ratio = self.recording(lvm_without_times(x_value), "--unit", "velocity=deg/s,position=deg")
                 self.assertEqual((recording["nominal_rate_hz"], recording["rate_stated"], recording["gap_count"]), (500, True, 0))
                 self.assertAlmostEqual(ratio, 100, delta=0.5)
                 told = [one for one in recording["inferences"] if one["about"] == "time"]

@@ -12,7 +12,7 @@ Identification example() {
     Identification found;
     found.joint = "j4";
     found.sample_rate = Hertz(999.5);
-    found.evidence = LineEvidence::stretches;
+    found.evidence = "order spectrum";
     found.finding = RippleFinding::ratio;
     found.verdict = "Ripple at orders 1 and 2 of the motor";
     found.conclusive = true;

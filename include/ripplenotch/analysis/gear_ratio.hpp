@@ -11,25 +11,15 @@
 
 namespace ripplenotch {
 
-/// One measurement of a line: at one speed, or over a whole motion.
-struct OrderObservation {
-    double order_output = 0.0;
-    double error = 0.0;  ///< standard error of order_output from the line's own noise
-    double speed_deg_s = 0.0;
-    double speed_share_error = 0.0;  ///< relative standard error of the speed it was divided by
-    double hz = 0.0;
-    std::size_t source = 0;  ///< observations of one source share the speed, and its error
-};
-
-/// A line that turns with the joint, by all its observations.
+/// A line that turns with the joint.
 struct OrderLine {
     double order_output = 0.0;
-    double error = 0.0;
+    double error = 0.0;  ///< standard error of order_output from the line's own noise
     double snr = 0.0;
     double amplitude_nm = 0.0;
-    bool certain = true;  ///< false: it may also be a fixed tone
-    std::vector<OrderObservation> observations;
-    std::vector<double> could_be = {};  ///< orders beyond half the sample rate that would look the same
+    bool certain = true;        ///< false: it may also be a fixed tone
+    double speed_deg_s = 0.0;   ///< mean, at which the residual is stated
+    double shared_error = 0.0;  ///< relative standard error of the angle, which all lines have in common
 };
 
 struct GearRatioResult {
@@ -44,9 +34,6 @@ struct GearRatioResult {
 struct RatioQuestion {
     std::optional<GearRatio> hint{};
     std::span<const int> hinted_orders{};  ///< n at which the strongest line is believed to stand
-    bool clock_in_doubt = false;  ///< the angle is velocity times time: a wrong clock scales every order
-    double shared_error = 0.0;    ///< relative standard error that all orders have in common
-    bool unit_stated = true;      ///< false: nothing says what unit the motion is in
 };
 
 /// Ratios are compared by their posterior probability. A line lies on a tooth of a comb within its error, or
@@ -55,10 +42,10 @@ struct RatioQuestion {
 /// equal prior probability in the logarithm from 1 to 320, more where a catalogue has them, and more near the
 /// hint. Compared as well: no gear at all (whole orders of the shaft that was measured), no connection
 /// between the lines, and a mistaken unit. The scores are these probabilities. The value is left empty unless
-/// one ratio has at least 0.85 and explains two lines, or one and the hint. Fit: per source the weighted mean
-/// over its lines, then over sources by Huber's weights (k = 1.345); where sources scatter more than their
-/// errors make likely (1 %), that widens the interval, by Student's t. Lines that both combs make up, too
-/// close together to be separated, count with the distance between the combs as their error.
+/// one ratio has at least 0.8 and explains two lines, or one and the hint. Fit: over the lines, by Huber's
+/// weights (k = 1.345); where they scatter more than their errors make likely (1 %), that widens the
+/// interval, by Student's t; the error that they share comes on top. Lines that both combs make up, too close
+/// together to be separated, count with the distance between the combs as their error.
 [[nodiscard]] GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQuestion& question);
 
 }  // namespace ripplenotch

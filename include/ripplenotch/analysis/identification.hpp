@@ -17,7 +17,7 @@
 
 namespace ripplenotch {
 
-enum class LineKind { order, tone, alias, unknown };
+enum class LineKind { order, tone, unknown };
 [[nodiscard]] std::string_view line_kind_name(LineKind kind);
 
 /// Amplitude (zero to peak) of a line in one steady stretch or speed range.
@@ -31,9 +31,8 @@ struct AmplitudeAtSpeed {
 struct Line {
     LineKind kind = LineKind::unknown;
     std::optional<double> order;         ///< cycles per motor revolution; only with a gear ratio
-    std::optional<double> order_output;  ///< cycles per output revolution; for kind order and alias
+    std::optional<double> order_output;  ///< cycles per output revolution; not for tones
     std::optional<double> order_output_stderr;
-    std::optional<double> order_output_seen;  ///< for kind alias: where the folded line is seen
     std::vector<double> could_be;  ///< other output orders that explain the line about as well, by folding
     std::optional<double> hz;      ///< for kind tone, and the seen frequency of a single-speed line
     double amplitude_nm = 0.0;     ///< zero to peak, mean over the stretches that show it
@@ -66,8 +65,9 @@ struct GearRatioFit {
     /// Turns of the wave generator against the other spline, value + 1 or value - 1, where lines lie on its
     /// multiples as well.
     std::optional<double> second_comb;
+    bool coarse = false;  ///< ci95 holds ratios one apart, as those of both splines are; not in joint.json
     std::vector<RatioCandidate> candidates;  ///< likeliest first
-    /// One entry per line observation used: its speed, frequency and what the fit leaves, in hertz.
+    /// One entry per line used: its mean speed, its frequency there and what the fit leaves, in hertz.
     struct Residual {
         double speed_deg_s = 0.0, hz = 0.0, order = 0.0, residual_hz = 0.0, weight = 1.0;
     };
@@ -122,7 +122,7 @@ struct SearchedOrders {
 struct Identification {
     std::string joint;
     Hertz sample_rate;
-    LineEvidence evidence = LineEvidence::none;
+    std::string evidence;     ///< "order spectrum"; empty without motion
     std::vector<Line> lines;  ///< strongest first
     GearRatioFit gear_ratio;
     /// Of a log without position, where ripple in changing motion tells it; the orders are without it.
@@ -157,7 +157,6 @@ void cast_doubt(Identification& found, Doubt doubt);
 struct IdentifyOptions {
     std::optional<GearRatio> hint;   ///< checked against the lines
     std::vector<int> hinted_orders;  ///< n at which the strongest line is expected
-    bool unit_stated = true;         ///< false: nothing says what unit the motion is in
     double false_alarm = 0.01;       ///< chance that a log of noise gives any line
     std::vector<Doubt> doubts;       ///< what is known against these logs before they are looked at
 };

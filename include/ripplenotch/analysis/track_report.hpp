@@ -34,6 +34,7 @@ struct TrackLabel {
 
 struct TrackReport {
     std::string joint;
+    std::string doubt;  ///< why these orders may be others: a sentence that the verdict begins with, or empty
     std::string method;  ///< "ls" or "vold-kalman"
     AmplitudeKind kind = AmplitudeKind::peak;
     std::optional<GearAccount> gear;

@@ -44,12 +44,6 @@ struct Doubt {
     bool operator==(const Doubt&) const = default;
 };
 
-/// The way of looking that gave the lines.
-enum class LineEvidence { none, stretches, sweeps, both };
-[[nodiscard]] std::string_view evidence_name(LineEvidence evidence);
-/// Empty where nothing has this name.
-[[nodiscard]] std::optional<LineEvidence> evidence_of(std::string_view name);
-
 /// What a verdict rests on.
 struct Grounds {
     std::size_t sweeps = 0, rests = 0;  ///< pieces of motion in one direction, and of standstill

@@ -24,6 +24,7 @@ struct StretchSpectrum {
 struct OrderSpectrum {
     Stack stack;
     MotionLines lines;
+    std::string doubt;  ///< why these orders may be others: half a sentence; empty where nothing says so
 };
 
 [[nodiscard]] std::string spectra_text(const std::string& joint, const std::vector<StretchSpectrum>& spectra,

@@ -113,7 +113,6 @@ struct Layout {
     bool velocity_from_position = false;      ///< no velocity is logged: it is the slope of the position
     std::optional<DegPerSec> constant_speed;  ///< no motion is logged: it was stated (--constant-speed)
     bool motor_units = false;             ///< motion is the motor's, and no ratio was known to divide it by
-    bool unit_by_size = false;            ///< only how large the values are decided on the unit of the motion
     std::optional<Hertz> stated_rate;     ///< from --sample-rate, or from the head of a file without a clock
     std::string options;                  ///< the option line that would force this reading
     std::vector<LogWarning> warnings;     ///< about columns, units and the time

@@ -2,24 +2,18 @@
 #include "ripplenotch/analysis/alias.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
-#include "analysis/shared_limits.hpp"
 #include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr double comb_share = 0.006;         // as wide as the fit of the ratio takes its combs
 constexpr std::size_t most_samples = 20000;  // by hand: bounds the time
 constexpr std::size_t most_folds = 40;       // by hand: bounds the time
 constexpr double most_grid = 300.0;          // by hand: bounds the time
-constexpr int most_comb = 4;  // n beyond which a hinted comb is so dense that images lie on it by chance
-// How often the leading line of a drive stands at n = 1 to 4.
-constexpr std::array<double, most_comb> share_of_n{0.25, 0.55, 0.02, 0.06};
 
 double rate_in_orders(Hertz rate, DegPerSec speed) {
     return 360.0 * rate.value() / std::max(std::abs(speed.value()), 1e-9);
@@ -79,31 +73,7 @@ Fold best_between(std::span<const Witness> witnesses, double from, double to, do
     return best;
 }
 
-/// n of the comb of `ratio` nearest to an order, where it lies on it.
-std::optional<int> on_comb(double order, double ratio, double tolerance) {
-    const int n = static_cast<int>(std::lround(order / ratio));
-    if (n < 1 || n > most_comb || std::abs(order - n * ratio) > tolerance + comb_share * order)
-        return std::nullopt;
-    return n;
-}
-
 }  // namespace
-
-double folded_hz(const SampledLine& line) {
-    return std::abs(line.hz - line.rate_hz * std::round(line.hz / line.rate_hz));
-}
-
-std::vector<double> unfolded_orders(const SeenOrder& order, Hertz rate_of_log, DegPerSec speed) {
-    const auto [seen, highest] = order;
-    const double rate = rate_in_orders(rate_of_log, speed);
-    std::vector<double> orders;
-    for (double k = 1.0; k * rate - seen <= highest && orders.size() < most_folds; k += 1.0) {
-        if (k * rate - seen > 0.0) orders.push_back(k * rate - seen);
-        if (k * rate + seen <= highest) orders.push_back(k * rate + seen);
-    }
-    std::sort(orders.begin(), orders.end());
-    return orders;
-}
 
 std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, const SeenOrder& order) {
     const auto [seen, highest] = order;
@@ -125,39 +95,6 @@ std::vector<Fold> folds_of(std::span<const Sweep> sweeps, const Stack& angle, co
     std::stable_sort(folds.begin(), folds.end(),
                      [](const Fold& a, const Fold& b) { return a.gain > b.gain; });
     return folds;
-}
-
-FoldAnswer answer_fold(const FoldQuestion& question, std::optional<GearRatio> hint) {
-    FoldAnswer answer;
-    if (question.folds.empty()) return answer;
-    const double best = std::max(question.folds.front().gain, question.gain_seen);
-    const double decisive = std::max(decisive_nats, floor_doubt * std::max(best, question.gain_time));
-    std::vector<Fold> likely;
-    for (const Fold& fold : question.folds) {
-        if (fold.gain > best - decisive) likely.push_back(fold);
-    }
-    const bool seen_itself = question.gain_seen > best - decisive;
-    for (const Fold& fold : likely) answer.could_be.push_back(fold.order_output);
-    std::sort(answer.could_be.begin(), answer.could_be.end());
-    if (!hint || question.gain_time > best + decisive) return answer;
-    const double ratio = hint->value();
-    if (seen_itself && on_comb(question.seen, ratio, question.tolerance)) return answer;
-    const Fold* chosen = nullptr;
-    double most = -1e300;
-    for (const Fold& fold : likely) {
-        const auto n = on_comb(fold.order_output, ratio, question.tolerance);
-        const double nats =
-            n ? fold.gain + portable::log(share_of_n[static_cast<std::size_t>(*n - 1)]) : most;
-        if (nats > most) {
-            most = nats;
-            chosen = &fold;
-        }
-    }
-    if (chosen == nullptr) return answer;
-    answer.order_output = chosen->order_output;
-    answer.by_hint = true;
-    std::erase(answer.could_be, chosen->order_output);
-    return answer;
 }
 
 }  // namespace ripplenotch

@@ -36,14 +36,15 @@ RippleFinding finding_in(const Identification& result) {
     return result.searched ? RippleFinding::nothing : RippleFinding::too_little;
 }
 
-/// A ratio from lines of one speed alone is the likeliest, and not settled; nor is one of several.
+/// A ratio from lines of one speed alone is the likeliest, and not settled; nor is one of several, or one
+/// that is not told from that of the other spline.
 bool settled(const Identification& result) {
     const bool two_ratios =
         std::any_of(result.disagreements.begin(), result.disagreements.end(),
                     [](const Disagreement& one) { return one.about == Disagreement::About::ratio; });
     if (two_ratios) return false;
     if (result.finding == RippleFinding::nothing) return true;
-    return result.finding == RippleFinding::ratio &&
+    return result.finding == RippleFinding::ratio && !result.gear_ratio.coarse &&
            std::any_of(result.lines.begin(), result.lines.end(), [](const Line& line) {
                return line.kind == LineKind::order && line.order.has_value();
            });

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "analysis/lines/excess_scatter.hpp"
 #include "analysis/lines/ratio_hypothesis.hpp"
@@ -15,7 +14,7 @@
 namespace ripplenotch {
 namespace {
 
-constexpr double least_score = 0.85;          // for a ratio to be reported: a judgement
+constexpr double least_score = 0.8;           // for a ratio to be reported: a judgement
 constexpr double least_listed_score = 0.005;  // for a candidate to be listed
 constexpr std::size_t most_candidates = 8;    // by hand: a list that a person reads
 
@@ -26,39 +25,24 @@ double student_95(double freedom) {
     return 1.960 + 2.4 / freedom + 3.5 / (freedom * freedom);
 }
 
-/// What one source (a stretch of one speed, or a line over a whole motion) says about the ratio.
+/// What one line says about the ratio; weight 0 where it lies off the combs.
 struct Estimate {
-    double ratio = 0.0, variance = 0.0, weight = 1.0;
+    double ratio = 0.0, variance = 1.0, weight = 0.0;
 };
 
-std::map<std::size_t, Estimate> by_source(std::span<const OrderLine> lines, const RatioHypothesis& best) {
-    std::map<std::size_t, Estimate> estimates;
-    std::map<std::size_t, double> bottom, speed_error;
+std::vector<Estimate> estimates_of(std::span<const OrderLine> lines, const RatioHypothesis& best) {
     // Where some lines are made up by both combs, the other comb pulls at those on one comb, too: by about a
     // tenth of the distance of the combs, rms over the lines of six joints of an arm.
     constexpr double pull_deviation = 0.12;
     const bool close_combs = std::any_of(best.position.begin(), best.position.end(),
                                          [](const auto& at) { return at && at->of_both(); });
+    std::vector<Estimate> estimates(lines.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (!best.position[i]) continue;
-        const int n = best.position[i]->n;
-        const double shift = best.position[i]->shift;
-        const double spread = std::max(best.position[i]->spread, close_combs ? pull_deviation : 0.0);
-        for (const OrderObservation& seen : lines[i].observations) {
-            const double ratio = seen.order_output / n - shift;
-            const double noise = std::max(seen.error, 1e-7 * seen.order_output) / n;
-            // Observations of one line share where it lies between the combs.
-            const double error =
-                portable::hypot(noise, spread * std::sqrt(static_cast<double>(lines[i].observations.size())));
-            estimates[seen.source].ratio += ratio / (error * error);
-            bottom[seen.source] += 1.0 / (error * error);
-            speed_error[seen.source] = std::max(speed_error[seen.source], seen.speed_share_error);
-        }
-    }
-    for (auto& [source, estimate] : estimates) {
-        estimate.ratio /= bottom[source];
-        const double shared = estimate.ratio * speed_error[source];
-        estimate.variance = 1.0 / bottom[source] + shared * shared;
+        const CombPosition& at = *best.position[i];
+        const double error = portable::hypot(std::max(lines[i].error, 1e-7 * lines[i].order_output) / at.n,
+                                             std::max(at.spread, close_combs ? pull_deviation : 0.0));
+        estimates[i] = {lines[i].order_output / at.n - at.shift, error * error, 1.0};
     }
     return estimates;
 }
@@ -68,31 +52,36 @@ double order_of_motor(const CombPosition& at, double ratio) {
     return at.of_both() || at.shift == 0.0 ? at.n : at.n * (1.0 + at.shift / ratio);
 }
 
-/// Value, standard error and interval; returns what each source says, with its weight.
-std::map<std::size_t, Estimate> fit(std::span<const OrderLine> lines, const RatioHypothesis& best,
-                                    double shared_error, GearRatioFit& result) {
-    auto estimates = by_source(lines, best);
+/// Value, standard error and interval; returns what each line says, with its weight.
+std::vector<Estimate> fit(std::span<const OrderLine> lines, const RatioHypothesis& best,
+                          GearRatioFit& result) {
+    std::vector<Estimate> estimates = estimates_of(lines, best);
     constexpr double huber = 1.345;  // 95 % efficient where errors are normal (Huber 1964)
-    double ratio = best.ratio, scale = 1.0, bottom = 0.0;
-    const auto freedom = static_cast<double>(estimates.size()) - 1.0;
+    double ratio = best.ratio, scale = 1.0, bottom = 0.0, freedom = -1.0, shared = 0.0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        freedom += estimates[i].weight;
+        shared = std::max(shared, lines[i].shared_error);
+    }
     for (int round = 0; round < 30; ++round) {
         double top = 0.0, misfit = 0.0;
         bottom = 0.0;
-        for (auto& [source, e] : estimates) {
+        for (Estimate& e : estimates) {
+            if (e.weight == 0.0) continue;
             const double off = std::abs(e.ratio - ratio) / (scale * std::sqrt(e.variance));
             e.weight = round == 0 || off <= huber ? 1.0 : huber / off;
             top += e.weight * e.ratio / e.variance;
             bottom += e.weight / e.variance;
         }
         ratio = top / bottom;
-        for (const auto& [source, e] : estimates)
+        for (const Estimate& e : estimates)
             misfit += e.weight * (e.ratio - ratio) * (e.ratio - ratio) / e.variance;
         scale = excess_scatter(misfit, freedom);
     }
     result.value = ratio;
-    const double own = scale / std::sqrt(bottom), shared = shared_error * ratio;
-    result.standard_error = portable::hypot(own, shared);
-    const double reach = portable::hypot((scale > 1.0 ? student_95(freedom) : 1.960) * own, 1.960 * shared);
+    const double own = scale / std::sqrt(bottom);
+    result.standard_error = portable::hypot(own, shared * ratio);
+    const double reach =
+        portable::hypot((scale > 1.0 ? student_95(freedom) : 1.960) * own, 1.960 * shared * ratio);
     result.ci95_low = ratio - reach;
     result.ci95_high = ratio + reach;
     return estimates;
@@ -104,6 +93,7 @@ bool mirrors(const RatioHypothesis& one, const RatioHypothesis& other) {
            std::abs(one.ratio + one.second_comb - other.ratio) < 0.5;
 }
 
+constexpr double between_combs = 1.0;    // turns of the wave generator a turn of the joint
 constexpr double interval_share = 0.95;  // the probability that an interval is stated with
 
 double share_of(const RatioHypothesis& form, const RatioHypothesis& best) {
@@ -121,14 +111,14 @@ const RatioHypothesis& reported_form(const RatioHypothesis& best) {
 
 /// The interval covers all forms of the ratio that together have 0.95 of its probability.
 void widen_interval(std::span<const OrderLine> lines, const RatioHypothesis& best,
-                    const RatioHypothesis& reported, double shared_error, GearRatioFit& result) {
+                    const RatioHypothesis& reported, GearRatioFit& result) {
     double share = share_of(reported, best);
     const auto add = [&](const RatioHypothesis& form) {
         if (share >= interval_share || &form == &reported) return;
         share += share_of(form, best);
         if (mirrors(reported, form)) return;
         GearRatioFit other;
-        fit(lines, form, shared_error, other);
+        fit(lines, form, other);
         result.ci95_low = std::min(result.ci95_low, other.ci95_low);
         result.ci95_high = std::max(result.ci95_high, other.ci95_high);
         result.standard_error = std::max(result.standard_error, 0.25 * (result.ci95_high - result.ci95_low));
@@ -137,18 +127,16 @@ void widen_interval(std::span<const OrderLine> lines, const RatioHypothesis& bes
     for (const RatioHypothesis& form : best.forms) add(form);
 }
 
-/// What the fit leaves of each observation.
+/// What the fit leaves of each line, at its mean speed.
 void add_residuals(std::span<const OrderLine> lines, const RatioHypothesis& best,
-                   const std::map<std::size_t, Estimate>& estimates, GearRatioFit& result) {
-    const double ratio = *result.value;
+                   const std::vector<Estimate>& estimates, GearRatioFit& result) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (!best.position[i]) continue;
-        const double order = order_of_motor(*best.position[i], ratio);
-        for (const OrderObservation& seen : lines[i].observations) {
-            const double expected = order * ratio * std::abs(seen.speed_deg_s) / 360.0;
-            result.residuals.push_back(
-                {seen.speed_deg_s, seen.hz, order, seen.hz - expected, estimates.at(seen.source).weight});
-        }
+        const double order = order_of_motor(*best.position[i], *result.value);
+        const double hz_of_order = std::abs(lines[i].speed_deg_s) / 360.0;
+        const double hz = lines[i].order_output * hz_of_order;
+        result.residuals.push_back(
+            {lines[i].speed_deg_s, hz, order, hz - order * *result.value * hz_of_order, estimates[i].weight});
     }
 }
 
@@ -160,40 +148,9 @@ void check_hint(const std::vector<RatioHypothesis>& all, std::span<const OrderLi
     const double off = 100.0 * (first.order_output / (n * hint.value()) - 1.0);
     notes.push_back(fmt::format(
         "the hint {:.6g} is not supported: output order {:.5g} is {:+.2f} % from {:.0f} times it, more than "
-        "its error allows; a speed or position scale wrong by that much would explain it",
+        "its error allows; a scale of speed or position, or a clock, that is wrong by as much would explain "
+        "it",
         hint.value(), first.order_output, off, n));
-}
-
-/// Ratios of what a single line would be if it were folded at half the sample rate.
-void add_folded(std::span<const OrderLine> lines, const RatioQuestion& question,
-                std::vector<RatioHypothesis>& all) {
-    if (lines.size() != 1) return;
-    for (const double order : lines[0].could_be) {
-        OrderLine image = lines[0];
-        image.order_output = order;
-        for (RatioHypothesis& one : ratio_hypotheses(std::span(&image, 1), question)) {
-            if (!one.as_read) continue;
-            one.as_read = false;
-            one.reason = fmt::format("if folded from order {:.4g}; {}", order, one.reason);
-            all.push_back(std::move(one));
-        }
-    }
-}
-
-/// A clock that is off, where only the clock makes an angle of the speed, and the hint would then hold. A
-/// clock may be off by any factor, so that one always fits.
-std::optional<RatioHypothesis> wrong_clock(const RatioHypothesis& best, GearRatio hint) {
-    constexpr double log_wrong_clock =
-        -2.7;  // by hand: the factor of the hint and the rarity of such clocks together
-    const double factor = best.ratio / hint.value();
-    if (std::abs(factor - 1.0) < hint_tolerance) return std::nullopt;
-    RatioHypothesis one = best;
-    one.value = hint.value();
-    one.as_read = false;
-    one.log_evidence += log_wrong_clock;
-    one.reason = fmt::format("if the clock (the nominal sample rate) runs {:.3g} times too {}",
-                             factor > 1.0 ? factor : 1.0 / factor, factor > 1.0 ? "fast" : "slow");
-    return one;
 }
 
 /// A ratio is a ratio of teeth: where the lines lie off the expected one by more than their errors allow and
@@ -213,8 +170,8 @@ std::optional<RatioHypothesis> wrong_scale(const RatioHypothesis& best, const Ge
     one.log_evidence += log_wrong_scale;
     one.reason = "if " + what;
     // 100 and 101 are both sold.
-    const auto listed = catalogue_ratio(best.ratio);
-    const bool another_gear = listed && *listed != catalogue_ratio(hint.value());
+    const auto listed = catalogue_ratio(best.ratio, best.error);
+    const bool another_gear = listed && *listed != catalogue_ratio(hint.value(), 0.0);
     notes.push_back(fmt::format(
         "the ratio {:.6g} is {:+.2f} % from the hint {:.6g}, more than its error of {:.2f} %: {}", *fit.value,
         100.0 * share, hint.value(), 100.0 * uncertainty,
@@ -270,15 +227,6 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
         result.notes.push_back("no ratio puts the strongest line at a hinted order");
     if (all.empty()) return result;
     const RatioHypothesis best = all.front();
-    add_folded(lines, question, all);
-    if (hint && question.clock_in_doubt && best.as_read) {
-        if (auto one = wrong_clock(best, *hint)) {
-            result.notes.push_back(
-                fmt::format("the log has no position: {}, the lines at {:.4g} are those of {:.6g}",
-                            one->reason, best.ratio, hint->value()));
-            all.push_back(std::move(*one));
-        }
-    }
     const double log_chance = log_evidence_of_chance(lines);
     result.fit.candidates = scored(all, log_chance);
     if (!best.as_read && best.value != 1.0)
@@ -289,10 +237,11 @@ GearRatioResult fit_gear_ratio(std::span<const OrderLine> lines, const RatioQues
                        result.fit.candidates.front().score >= least_score;
     if (!best.as_read || no_gear || !clear || !enough_lines(lines, best)) return result;
     const RatioHypothesis& form = reported_form(best);
-    const auto estimates = fit(lines, form, question.shared_error, result.fit);
+    const auto estimates = fit(lines, form, result.fit);
     if (form.second_comb != 0) result.fit.second_comb = *result.fit.value + form.second_comb;
     add_residuals(lines, form, estimates, result.fit);
-    widen_interval(lines, best, form, question.shared_error, result.fit);
+    widen_interval(lines, best, form, result.fit);
+    result.fit.coarse = !best.hinted && result.fit.ci95_high - result.fit.ci95_low >= between_combs;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (form.position[i]) result.order_of_line[i] = order_of_motor(*form.position[i], *result.fit.value);
     }

@@ -4,9 +4,8 @@
 
 #include "analysis/lines/conclude.hpp"
 #include "analysis/lines/disagreement.hpp"
-#include "analysis/lines/hums.hpp"
 #include "analysis/lines/reported_line.hpp"
-#include "analysis/lines/tone_family.hpp"
+#include "analysis/lines/tones_and_hums.hpp"
 #include "ripplenotch/analysis/gear_ratio.hpp"
 #include "ripplenotch/analysis/identification.hpp"
 #include "ripplenotch/analysis/motion_lines.hpp"
@@ -28,7 +27,6 @@ void add_ratio(std::vector<Reported>& reported, const RatioQuestion& question, I
     for (std::size_t i = 0; i < reported.size(); ++i) {
         if (!reported[i].order || is_once_a_turn(*reported[i].order)) continue;
         orders.push_back(*reported[i].order);
-        if (!reported[i].line.order_output_seen) orders.back().could_be = reported[i].line.could_be;
         owner.push_back(i);
     }
     GearRatioResult ratio = fit_gear_ratio(orders, question);
@@ -53,15 +51,6 @@ Hertz mean_sample_rate(std::span<const TraceView> logs) {
     return Hertz(seconds > 0.0 ? samples / seconds : 0.0);
 }
 
-std::vector<ToneFamily> families_among(const std::vector<Reported>& reported) {
-    std::vector<Tone> tones;
-    for (const Reported& one : reported) {
-        if (one.line.kind == LineKind::tone && one.line.hz) tones.push_back({*one.line.hz, one.hz_error});
-    }
-    const auto family = family_of(tones);
-    return family ? std::vector{*family} : std::vector<ToneFamily>{};
-}
-
 /// What the logs say together, without asking whether each says so.
 Identification identify_together(std::span<const TraceView> logs, const IdentifyOptions& options) {
     Identification result;
@@ -71,13 +60,10 @@ Identification identify_together(std::span<const TraceView> logs, const Identify
     const MotionLines motion = find_motion_lines(logs, search);
     std::vector<Reported> reported;
     for (std::size_t i = 0; i < motion.lines.size(); ++i)
-        reported.push_back(from_motion(motion, i, options, result.sample_rate.value()));
+        reported.push_back(from_motion(motion, i, result.sample_rate.value()));
     result.velocity_error = motion.velocity_error;
-    result.evidence = motion.sweeps > 0 ? LineEvidence::sweeps : LineEvidence::none;
-    const bool without_position =
-        std::any_of(logs.begin(), logs.end(), [](const TraceView& log) { return !log.has_position(); });
-    add_ratio(reported, {options.hint, options.hinted_orders, without_position, 0.0, options.unit_stated},
-              result);
+    if (motion.sweeps > 0) result.evidence = "order spectrum";
+    add_ratio(reported, {options.hint, options.hinted_orders}, result);
     result.families = families_among(reported);
     name_mains(reported);
     for (Reported& r : reported) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <numeric>
 #include <set>
 #include <string_view>
@@ -16,10 +17,30 @@
 namespace ripplenotch {
 namespace {
 
-// Component sets with the flexspline as output (Harmonic Drive SE, series CSG, CSF, SHG, HFUC: catalogue
-// pages "ratio"); with the circular spline as output each has one more, and fewer joints are built so.
-constexpr std::array sold{30.0, 50.0, 80.0, 100.0, 120.0, 160.0};
-constexpr double listed_tolerance = 0.004, listed_factor = 10.0, other_output_factor = 3.0;
+/// Component sets with the flexspline as output (Harmonic Drive SE, series CSG, CSF, SHG, HFUC: catalogue
+/// pages "ratio"), and by how much likelier each is than a ratio that nobody lists. By hand: most arms that
+/// publish theirs have 100, with the circular spline as output 101; then 120 and 160; 30 is rare.
+struct SoldRatio {
+    double ratio, factor;
+};
+constexpr std::array sold{SoldRatio{30.0, 2.0},   SoldRatio{50.0, 5.0},  SoldRatio{80.0, 4.0},
+                          SoldRatio{100.0, 11.0}, SoldRatio{120.0, 6.0}, SoldRatio{160.0, 5.0}};
+/// With the circular spline as output each has one more, and fewer joints are built so.
+constexpr double other_output = 0.5;
+constexpr double listed_tolerance = 0.001;  // by hand: scales of logs are not known better
+
+/// The likeliest entry within this error or the scale's.
+std::optional<SoldRatio> catalogue_entry(double ratio, double error) {
+    std::optional<SoldRatio> best;
+    for (const SoldRatio& one : sold) {
+        for (const SoldRatio listed : {one, {one.ratio + 1.0, other_output * one.factor}}) {
+            const double reach = std::max(listed_tolerance * listed.ratio, std::min(3.0 * error, 0.5));
+            if (std::abs(ratio - listed.ratio) < reach && (!best || best->factor < listed.factor))
+                best = listed;
+        }
+    }
+    return best;
+}
 
 constexpr double lowest_ratio = 0.99, highest_ratio = 321.0;  // of joints and their gears
 constexpr double outside_factor = 0.007;                      // by hand: hardly any joint has another
@@ -31,36 +52,37 @@ constexpr double hint_factor = 3000.0;  // an expected ratio outweighs nearly al
 
 constexpr int highest_n = 32, highest_of_shaft = 64;  // by hand: lines seldom reach so far
 constexpr std::size_t most_proposing = 8;             // lines, the most clearly seen, that propose ratios
-constexpr double same_ratio_share = 0.008;            // by hand: twice listed_tolerance
+constexpr double same_ratio_share = 0.008;            // by hand
 
 /// Probability of each n. The wave generator is an ellipse, so that what the gear does repeats twice a turn
 /// of the motor: n = 2 leads, and its multiples follow; n = 1 comes from eccentric parts (Tuttle and Seering,
-/// IEEE Trans. Robotics and Automation 12, 1996). Some joints show 1 and 2 and little else, some many orders,
-/// and some, half of those with lines of both splines, nearly all even orders and no odd one: 4 of 100, so
-/// that scripts/prove-identify --ratio concludes fewest doubled ratios and still those of orders 1 and 2. The
-/// other shares are a judgement: no statistics of joints are published.
+/// IEEE Trans. Robotics and Automation 12, 1996). Most joints show 1 and 2 and little else, some many orders,
+/// and some, nearly half of those with lines of both splines, even orders alone, few or many. A judgement: no
+/// statistics of joints are published. Lines at one and two times a ratio are orders 2 and 4 of its half a
+/// quarter of the time, so that they alone settle no ratio unless a catalogue has one of the two.
 struct OrderPrior {
     std::array<double, highest_n + 1> share{};
     double one_comb = 0.0, two_combs = 0.0;  ///< how many joints are so
 };
 
-OrderPrior order_prior(double one_comb, double two_combs, int step, double first, double second,
-                       double others) {
+/// `named` are the shares of n = 1 on; what they leave is shared by the multiples of `step` above them.
+OrderPrior order_prior(double one_comb, double two_combs, int step, std::initializer_list<double> named) {
     OrderPrior prior{{}, one_comb, two_combs};
-    const auto weight = [](int n) { return n <= 8 ? 1.0 : 64.0 / (n * n); };
-    double sum = 0.0;
-    for (int n = 3; n <= highest_n; ++n) sum += n % step == 0 ? weight(n) : 0.0;
-    for (int n = 3; n <= highest_n; ++n)
-        prior.share[static_cast<std::size_t>(n)] = n % step == 0 ? others * weight(n) / sum : 0.0;
-    prior.share[1] = first;
-    prior.share[2] = second;
+    std::copy(named.begin(), named.end(), prior.share.begin() + 1);
+    const auto weight = [step](int n) { return n % step != 0 ? 0.0 : n <= 8 ? 1.0 : 64.0 / (n * n); };
+    double left = 1.0, sum = 0.0;
+    for (const double share : named) left -= share;
+    const int first = static_cast<int>(named.size()) + 1;
+    for (int n = first; n <= highest_n; ++n) sum += weight(n);
+    for (int n = first; n <= highest_n; ++n)
+        prior.share[static_cast<std::size_t>(n)] = left * weight(n) / sum;
     return prior;
 }
 
-const std::array<OrderPrior, 3>& order_priors() {
-    static const std::array priors{order_prior(0.76, 0.25, 1, 0.45, 0.45, 0.1),
-                                   order_prior(0.2, 0.25, 1, 0.2, 0.25, 0.55),
-                                   order_prior(0.04, 0.5, 2, 0.0, 0.4, 0.6)};
+const std::array<OrderPrior, 4>& order_priors() {
+    static const std::array priors{
+        order_prior(0.6, 0.3, 1, {0.4, 0.4, 0.06, 0.04}), order_prior(0.2, 0.25, 1, {0.2, 0.25}),
+        order_prior(0.17, 0.2, 2, {0.0, 0.47, 0.0, 0.3, 0.0, 0.15}), order_prior(0.03, 0.25, 2, {0.0, 0.4})};
     return priors;
 }
 
@@ -74,7 +96,8 @@ constexpr double log_range = 7.0;  // orders from 1 to about 1000, a line by cha
 
 double line_error(const OrderLine& line) {
     constexpr double scale = 2e-4;  // positions of lines are not known better, whatever noise would allow
-    return std::max(portable::hypot(line.error, scale * line.order_output), 1e-9);
+    return std::max(
+        portable::hypot(line.error, portable::hypot(scale, line.shared_error) * line.order_output), 1e-9);
 }
 
 /// Student's t with three degrees of freedom: errors of lines have heavier tails than normal ones.
@@ -202,9 +225,7 @@ double log_prior(double ratio, double error, int second_comb, const OrderPrior& 
         factor *= broken_factor;
     factor *= second_comb == 0 ? prior.one_comb : prior.two_combs;
     if (!one_line) factor *= second_comb > 0 ? plus_share : second_comb < 0 ? minus_share : one_comb_share;
-    if (const auto listed = catalogue_ratio(ratio))
-        factor *=
-            std::find(sold.begin(), sold.end(), *listed) != sold.end() ? listed_factor : other_output_factor;
+    if (const auto listed = catalogue_entry(ratio, error)) factor *= listed->factor;
     return portable::log(factor);
 }
 
@@ -232,7 +253,7 @@ void describe(std::span<const OrderLine> lines, const RatioQuestion& question, R
                             one.ratio + one.second_comb);
     if (!odd && first.size() + second.size() > 0)
         text += fmt::format("; no odd order: cannot be distinguished from {:.4g}", 2.0 * one.ratio);
-    if (const auto listed = catalogue_ratio(one.value))
+    if (const auto listed = catalogue_ratio(one.value, one.error))
         text += fmt::format("; {:.0f} is a catalogue ratio", *listed);
     if (question.hint &&
         std::abs(one.value - question.hint->value()) < hint_tolerance * question.hint->value()) {
@@ -244,7 +265,7 @@ void describe(std::span<const OrderLine> lines, const RatioQuestion& question, R
         text += "; its strongest line is at a hinted order";
     }
     if (one.hinted) one.log_evidence += portable::log(hint_factor);
-    one.listed = catalogue_ratio(one.value).has_value();
+    one.listed = catalogue_ratio(one.value, one.error).has_value();
     one.reason = std::move(text);
 }
 
@@ -281,6 +302,7 @@ RatioHypothesis nearest_maximum(std::span<const OrderLine> lines, double ratio, 
         if (round < 2) std::tie(one.ratio, error) = fitted_ratio(lines, one);
     }
     one.value = one.ratio;
+    one.error = error;
     one.log_evidence += log_prior(one.ratio, error, second_comb, prior, lines.size() == 1);
     return one;
 }
@@ -342,10 +364,9 @@ constexpr std::array unit_mistakes{UnitMistake{degrees_per_radian, "the speed is
                                    UnitMistake{1.0 / 360.0, "the speed is in deg/s, not turns/s"},
                                    UnitMistake{1000.0, "the speed is off by 1000"},
                                    UnitMistake{1e-3, "the speed is off by 1000"}};
-/// Of each: rare where the log states its unit.
-constexpr double mistaken = 0.01, unstated = 0.05;
+constexpr double mistaken = 0.01;  // by hand: of each
 
-/// Where the unit is stated, a ratio as gears have it is no reason to doubt that.
+/// A ratio as gears have it is no reason to doubt the unit.
 bool credible(double ratio) {
     constexpr double whole = 0.005;  // by hand
     return (ratio >= few_teeth && ratio <= highest_ratio) ||
@@ -387,25 +408,20 @@ void add_fixed(std::span<const OrderLine> lines, const RatioQuestion& question, 
 void add_units(std::span<const OrderLine> lines, const RatioQuestion& question,
                std::vector<RatioHypothesis>& all) {
     for (const UnitMistake& unit : unit_mistakes) {
-        std::vector<double> ratios(sold.begin(), sold.end());
-        if (!question.unit_stated) ratios.push_back(1.0);
+        std::vector<double> ratios;
+        for (const SoldRatio& one : sold) ratios.push_back(one.ratio);
         if (question.hint && question.hint->value() != 1.0) ratios.push_back(question.hint->value());
-        const double share =
-            (question.unit_stated ? mistaken : unstated) / (2.0 * static_cast<double>(sold.size()));
+        const double share = mistaken / (2.0 * static_cast<double>(sold.size()));
         for (const double ratio : ratios) {
             RatioHypothesis one;
             one.ratio = unit.factor * ratio;
             const bool expected = question.hint && ratio == question.hint->value();
-            if (question.unit_stated && !expected && credible(one.ratio)) continue;
+            if (!expected && credible(one.ratio)) continue;
             one.value = ratio;
             one.as_read = false;
             one.other_unit = true;
-            one.reason =
-                fmt::format("if {}{}", unit.reason,
-                            ratio == 1.0 ? ", the lines are whole orders of the shaft itself (no gear)" : "");
-            const bool shaft = ratio == 1.0;
-            add_fixed(lines, question, one,
-                      portable::log(shaft ? share * static_cast<double>(sold.size()) : share), all);
+            one.reason = fmt::format("if {}", unit.reason);
+            add_fixed(lines, question, one, portable::log(share), all);
         }
     }
 }
@@ -440,13 +456,9 @@ std::vector<RatioHypothesis> merged(std::vector<RatioHypothesis> all) {
 
 }  // namespace
 
-std::optional<double> catalogue_ratio(double ratio) {
-    for (const double one : sold) {
-        for (const double listed : {one, one + 1.0}) {
-            if (std::abs(ratio - listed) < listed_tolerance * listed) return listed;
-        }
-    }
-    return std::nullopt;
+std::optional<double> catalogue_ratio(double ratio, double error) {
+    const auto listed = catalogue_entry(ratio, error);
+    return listed ? std::optional(listed->ratio) : std::nullopt;
 }
 
 std::vector<RatioHypothesis> ratio_hypotheses(std::span<const OrderLine> lines,

@@ -25,6 +25,7 @@ struct CombPosition {
 struct RatioHypothesis {
     double ratio = 0.0;       ///< as the log is read
     double value = 0.0;       ///< of the gear: differs from ratio where a unit is mistaken
+    double error = 0.0;       ///< standard error of the ratio
     int second_comb = 0;      ///< lines also at n (ratio + 1) or n (ratio - 1); 0: none
     bool as_read = true;      ///< false: only if the log is not what it says it is
     bool other_unit = false;  ///< a unit is mistaken
@@ -41,8 +42,8 @@ struct RatioHypothesis {
 
 inline constexpr double hint_tolerance = 0.015;  ///< an expected ratio agrees with one as near as this
 
-/// The catalogue's ratio near this one.
-[[nodiscard]] std::optional<double> catalogue_ratio(double ratio);
+/// The catalogue's ratio that this one may be, by its standard error.
+[[nodiscard]] std::optional<double> catalogue_ratio(double ratio, double error);
 
 /// Explanations that at least one line supports, the most probable first, no two of one value.
 [[nodiscard]] std::vector<RatioHypothesis> ratio_hypotheses(std::span<const OrderLine> lines,

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 
 #include "ripplenotch/analysis/gear_ratio.hpp"
 #include "ripplenotch/analysis/identification.hpp"
@@ -20,11 +19,6 @@ struct Reported {
 };
 
 /// Line number `source` of a motion; folds are told with the rate of the samples.
-[[nodiscard]] Reported from_motion(const MotionLines& motion, std::size_t source,
-                                   const IdentifyOptions& options, double rate_hz);
-
-/// Notes at tones that they are the mains frequency or a multiple of it: 50 or 60 Hz, whichever accounts for
-/// more of the tones of these logs, lower multiples counting more.
-void name_mains(std::span<Reported> reported);
+[[nodiscard]] Reported from_motion(const MotionLines& motion, std::size_t source, double rate_hz);
 
 }  // namespace ripplenotch

@@ -79,19 +79,13 @@ MapFit fitted_map(const Read& read, const OtherReading& reading, const MapReques
 MapFit fitted_by_readings(const Read& read, const MapRequest& request, const GearAccount& gear) {
     const std::vector<Log>& logs = read.logs;
     MapFit fit = fitted_map(read, {}, request, gear);
-    std::vector<std::string> rivals;
-    for (const OtherReading& reading : open_readings(logs)) {
-        if (reading.changes_side) continue;
-        const MapFit other = fitted_map(read, reading, request, gear);
-        if (other.finding == MapFinding::mapped || fit.finding != MapFinding::mapped)
-            rivals.push_back(reading.words);
-    }
-    if (rivals.empty()) return fit;
-    std::string others;
-    for (const std::string& words : rivals)
-        others += fmt::format("{}if {}", others.empty() ? "" : ", ", words);
-    fit.doubt = fmt::format("Cannot tell: it may be otherwise {}; {} settles it. {}:", others,
-                            settling_options(logs), assumed_reading(logs));
+    const std::string doubt = reading_doubt(logs, [&](const OtherReading& reading) {
+        return !reading.changes_side &&
+               (fit.finding != MapFinding::mapped ||
+                fitted_map(read, reading, request, gear).finding == MapFinding::mapped);
+    });
+    if (doubt.empty()) return fit;
+    fit.doubt = fmt::format("Cannot tell: {}. {}:", doubt, assumed_reading(logs));
     fit.conclusive = false;
     return fit;
 }

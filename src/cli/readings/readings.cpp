@@ -51,14 +51,6 @@ std::vector<OtherReading> readings_of(std::span<const Log> logs, std::vector<Ass
     return found;
 }
 
-// A motor in rad/s is as fast as a joint in deg/s: where only that decided on the unit, it is not known.
-// Units that are open anyhow are compared reading by reading.
-bool motor_unit_possible(std::span<const Log> logs, const OtherReading& reading) {
-    const bool as_taken = reading.velocity_factor == 1.0 && !reading.changes_side;
-    return as_taken && open_readings(logs).empty() && !in_motor_units(logs) &&
-           std::any_of(logs.begin(), logs.end(), [](const Log& log) { return log.layout.unit_by_size; });
-}
-
 // Lines at orders of a joint behind a gear of this ratio are lines at orders of the motor, and the speeds are
 // those of the log again.
 Identification of_the_motor(Identification found, double ratio) {
@@ -91,27 +83,6 @@ Identification of_the_motor(Identification found, double ratio) {
     return found;
 }
 
-// Nothing but the size of the numbers says in which unit the motion is, and the lines suit another as well.
-void doubt_unit(std::span<const Log> logs, Identification& found) {
-    constexpr double enough = 0.15;  // what a ratio that is reported leaves to everything else
-    double share = 0.0;
-    const RatioCandidate *other = nullptr, *as_read = nullptr;
-    for (const RatioCandidate& one : found.gear_ratio.candidates) {
-        if (one.other_unit) share += one.score;
-        const RatioCandidate*& first = one.other_unit ? other : as_read;
-        if (first == nullptr) first = &one;
-    }
-    if (share < enough || found.gear_ratio.value) return;
-    std::string readings = other->reason;
-    if (other->value != 1.0) readings += fmt::format(", the gear ratio would be {:.5g}", other->value);
-    if (as_read != nullptr)
-        readings +=
-            fmt::format("; {}, the gear ratio would be {:.5g}", assumed_reading(logs), as_read->value);
-    cast_doubt(found, {DoubtReason::unit,
-                       fmt::format("the log does not state the unit of its motion: {}; {} settles it",
-                                   readings, settling_options(logs))});
-}
-
 Identification identified(std::span<const Log> logs, const IdentifyOptions& options,
                           const OtherReading& reading) {
     const bool motor = in_motor_units(logs) != reading.changes_side;
@@ -130,25 +101,30 @@ Identification identified(std::span<const Log> logs, const IdentifyOptions& opti
     for (std::size_t i = 0; i < logs.size(); ++i)
         views.push_back(as_taken ? logs[i].trace.view() : traces[i].view());
     IdentifyOptions doubting = options;
-    doubting.unit_stated = !motor_unit_possible(logs, reading);
     for (const Log& log : logs) {
         for (Doubt& doubt : log_doubts(log, read)) doubting.doubts.push_back(std::move(doubt));
     }
     Identification found = identify(views, doubting);
-    if (!doubting.unit_stated) doubt_unit(logs, found);
     return motor ? of_the_motor(std::move(found), stand_in_ratio) : found;
 }
 
-bool shows_order(const Identification& found) {
-    return std::any_of(found.lines.begin(), found.lines.end(),
-                       [](const Line& line) { return line.kind == LineKind::order; });
+// The order of the strongest line that may turn with the joint, 0 where there is none; empty where it is
+// stated per turn of the motor, by no known ratio.
+std::optional<double> stated_order(const Identification& found) {
+    for (const Line& line : found.lines) {
+        if (line.kind == LineKind::tone) continue;
+        if (line.order_output || line.order) return line.order_output;
+    }
+    return 0.0;
 }
 
 bool agree(const Identification& a, const Identification& b) {
+    if (a.finding == RippleFinding::nothing && b.finding == RippleFinding::nothing) return true;
     if (a.conclusive != b.conclusive || a.gear_ratio.value.has_value() != b.gear_ratio.value.has_value())
         return false;
     if (a.gear_ratio.value) return std::abs(*a.gear_ratio.value / *b.gear_ratio.value - 1.0) < same_ratio;
-    return shows_order(a) == shows_order(b);
+    const auto first = stated_order(a), second = stated_order(b);
+    return first && second && std::abs(*first - *second) <= same_ratio * *first;
 }
 
 Identification cannot_tell(Identification found, const std::string& assumed,
@@ -162,9 +138,12 @@ Identification cannot_tell(Identification found, const std::string& assumed,
     found.notes.insert(found.notes.end() - static_cast<std::ptrdiff_t>(others.size()),
                        fmt::format("{}: {}", assumed, found.verdict));
     found.verdict = fmt::format("{}; {} settles it.", verdict, options);
+    found.doubts.push_back(
+        {DoubtReason::unit, fmt::format("the log does not say its units; {} settles it", options)});
     found.conclusive = false;
     found.gear_ratio = {};
     found.lines.clear();
+    found.searched.reset();
     return found;
 }
 
@@ -205,6 +184,17 @@ std::string settling_options(std::span<const Log> logs) {
     return fmt::format("{}", fmt::join(options, " or "));
 }
 
+std::string reading_doubt(std::span<const Log> logs,
+                          const std::function<bool(const OtherReading&)>& may_hold) {
+    std::string rivals;
+    for (const OtherReading& reading : open_readings(logs)) {
+        if (may_hold(reading)) rivals += (rivals.empty() ? "if " : ", or if ") + reading.words;
+    }
+    if (rivals.empty()) return "";
+    return fmt::format("the log does not say its units, and its orders are others {}; {} settles it", rivals,
+                       settling_options(logs));
+}
+
 Trace read_otherwise(const Trace& trace, const OtherReading& reading) {
     Trace read = trace;
     for (double& value : read.time_s) value *= reading.time_factor;
@@ -216,8 +206,6 @@ Trace read_otherwise(const Trace& trace, const OtherReading& reading) {
 
 Identification identify_readings(std::span<const Log> logs, const IdentifyOptions& options) {
     Identification taken = identified(logs, options, {});
-    const auto is_unit = [](const Doubt& doubt) { return doubt.reason == DoubtReason::unit; };
-    if (std::any_of(taken.doubts.begin(), taken.doubts.end(), is_unit)) return taken;
     std::vector<OtherReading> readings = open_readings(logs);
     const bool open = !readings.empty();
     // What a rule decided is doubted only where nothing came of it.

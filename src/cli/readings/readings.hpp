@@ -2,6 +2,7 @@
 #pragma once
 // Verdicts under everything that a log may mean: one that another reading of the log would change is none.
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,11 @@ inline constexpr double stand_in_ratio = 100.0;
 [[nodiscard]] std::string assumed_reading(std::span<const Log> logs);
 /// Options that settle them, those for what was assumed first.
 [[nodiscard]] std::string settling_options(std::span<const Log> logs);
+
+/// Why nothing is known of orders, in half a sentence: the readings that may hold as well as the one taken,
+/// and what settles it. Empty where none of them may.
+[[nodiscard]] std::string reading_doubt(std::span<const Log> logs,
+                                        const std::function<bool(const OtherReading&)>& may_hold);
 
 /// The trace as it would be under another reading.
 [[nodiscard]] Trace read_otherwise(const Trace& trace, const OtherReading& reading);

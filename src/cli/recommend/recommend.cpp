@@ -141,15 +141,12 @@ void doubt_readings(const Parts& parts, const GearAccount& gear, Recommendation&
         const auto orders = ripple_of(trace, gear);
         return std::any_of(orders.begin(), orders.end(), std::mem_fn(&RippleEstimate::present));
     };
-    std::string others;
-    for (const OtherReading& reading : open_readings({&parts.whole, 1})) {
-        if (!reading.changes_side && shows(reading))
-            others += (others.empty() ? "if " : ", if ") + reading.words;
-    }
-    if (others.empty()) return;
+    const std::string doubt = reading_doubt({&parts.whole, 1}, [&](const OtherReading& reading) {
+        return !reading.changes_side && shows(reading);
+    });
+    if (doubt.empty()) return;
     found.finding = RecommendationFinding::cannot_tell;
-    found.why =
-        fmt::format("there is ripple {}, too; {} settles it", others, settling_options({&parts.whole, 1}));
+    found.why = doubt;
     found.methods.clear();
     found.orders.clear();  // of the one reading alone
 }

@@ -11,6 +11,7 @@
 #include "cli/gear/joint_facts.hpp"
 #include "cli/given/residual.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/readings/readings.hpp"
 #include "cli/spectrum/spectrum_text.hpp"
 #include "cli/spectrum/speed_map_request.hpp"
 #include "cli/spectrum/streamed_spectrum.hpp"
@@ -80,14 +81,14 @@ struct Result {
 };
 
 Result order_result(const SpectrumRequest& request, const TraceView& trace, const std::string& joint,
-                    const Provenance& provenance) {
+                    const std::string& doubt, const Provenance& provenance) {
     if (request.stretch || request.segment)
         raise<UsageError>("--stretch and --segment belong to --domain frequency");
     MotionLinesOptions options;
     options.false_alarm = request.false_alarm;
     OrderSpectrum result{
         stack_sweeps(cut_sweeps({&trace, 1}, options.sweeps).pieces, Axis::angle, options.stack),
-        find_motion_lines({&trace, 1}, options)};
+        find_motion_lines({&trace, 1}, options), doubt};
     if (result.lines.sweeps == 0) {
         raise<DataError>(
             "{}: the joint nowhere moves {} output turns in one direction, so there is no order spectrum",
@@ -203,10 +204,14 @@ Made whole_result(const SpectrumRequest& request, const std::string& command_lin
     say_warnings(request.common, log.recording.warnings);
     provenance.inputs.insert(provenance.inputs.begin(), input_record(request.path));
     provenance.recordings.push_back({log.recording});
+    const bool by_order = request.domain == "order" || request.map.map == "order";
+    const std::string doubt =
+        by_order ? reading_doubt({&log, 1}, [](const OtherReading&) { return true; }) : "";
+    if (!doubt.empty()) say_warnings(request.common, std::vector{doubt});
     if (request.map.map) return {map_result(request, lines, log.trace, provenance), provenance};
     const TraceView trace = log.trace.view();
     if (request.domain == "order")
-        return {order_result(request, trace, log.trace.joint, provenance), provenance};
+        return {order_result(request, trace, log.trace.joint, doubt, provenance), provenance};
     return {frequency_result(request, frequency_spectra(request, trace), log.trace.joint, provenance),
             provenance};
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "cli/command.hpp"
 #include "cli/gear/gear_choice.hpp"
 #include "cli/options/plot_request.hpp"
+#include "cli/readings/readings.hpp"
 #include "cli/talk.hpp"
 #include "cli/track/track_words.hpp"
 #include "ripplenotch/analysis/motion_runs.hpp"
@@ -173,7 +175,7 @@ Figure figure_of(const TrackRequest& request, const TrackReport& report) {
     const std::string source = joint_in_words(request.path, report.joint);
     Figure figure = report.by_speed ? track_figure(source, *report.by_speed, names, scale)
                                     : track_figure(source, report.tracks, names, scale);
-    figure.sentence = track_verdict(report);
+    figure.sentence = report.doubt + track_verdict(report);
     return figure;
 }
 
@@ -188,6 +190,23 @@ std::vector<std::optional<RippleEstimate>> ripple_of_lines(const TrackRequest& r
         found.emplace_back(std::move(one));
     found.resize(prepared.labels.size());  // tones come last
     return found;
+}
+
+/// A reading under which something turns with the shaft is confirmed by that, unless another one has it, too.
+std::string unit_doubt(const TrackRequest& request, const Prepared& prepared, const Log& log) {
+    const auto shows = [&](const Prepared& of, const TraceView& trace) {
+        const auto found = ripple_of_lines(request, of, trace);
+        return std::any_of(found.begin(), found.end(), [](const auto& one) { return one && one->present(); });
+    };
+    if (prepared.reference_orders.empty()) return "";
+    const bool confirmed = shows(prepared, log.trace.view());
+    const std::string doubt = reading_doubt({&log, 1}, [&](const OtherReading& reading) {
+        const Trace trace = read_otherwise(log.trace, reading);
+        return !confirmed || (!reading.changes_side && shows(*prepare(request, trace.view()), trace.view()));
+    });
+    if (doubt.empty()) return "";
+    say_warnings(request.common, std::vector{doubt});
+    return fmt::format("Cannot tell: {}. ", doubt);
 }
 
 TrackReport track_report_of(const TrackRequest& request, const Prepared& prepared, const Trace& trace) {
@@ -225,6 +244,7 @@ ExitCode run_track(TrackRequest& request, const std::string& command_line) {
     const auto prepared = prepare(request, log.trace.view());
     TrackReport report = track_report_of(request, *prepared, log.trace);
     say_warnings(request.common, track_warnings(report));
+    report.doubt = unit_doubt(request, *prepared, log);
     if (report.tracks.time_s.empty())
         raise<DataError>("{}: no row could be measured: {}", request.path, why_nothing_tracked(report));
     if (request.against == "speed")
@@ -232,7 +252,7 @@ ExitCode run_track(TrackRequest& request, const std::string& command_line) {
     if (request.common.json) {
         write_text(request.common.output, track_text(report, provenance), request.common.overwrite());
     } else {
-        say(request.common, track_verdict(report));
+        say(request.common, report.doubt + track_verdict(report));
         if (!request.plot.instead_of(request.common.output)) write_columns(request, report);
     }
     draw_plot(request.plot, request.common, provenance, [&] { return figure_of(request, report); });

@@ -21,10 +21,10 @@ std::array<double, 2> pair_at(Fields& fields, std::string_view name) {
 
 LineKind kind_at(Fields& fields) {
     const std::string text = fields.text("kind");
-    for (const LineKind kind : {LineKind::order, LineKind::tone, LineKind::alias, LineKind::unknown}) {
+    for (const LineKind kind : {LineKind::order, LineKind::tone, LineKind::unknown}) {
         if (line_kind_name(kind) == text) return kind;
     }
-    raise<DataError>("{} is \"{}\", expected one of order, tone, alias, unknown", fields.where("kind"), text);
+    raise<DataError>("{} is \"{}\", expected one of order, tone, unknown", fields.where("kind"), text);
 }
 
 Line line_from_json(Fields& fields) {
@@ -33,7 +33,6 @@ Line line_from_json(Fields& fields) {
     line.order = fields.number_if_any("order");
     line.order_output = fields.number_if_any("order_output");
     line.order_output_stderr = fields.number_if_any("order_output_stderr");
-    line.order_output_seen = fields.number_if_any("order_output_seen");
     if (fields.has("could_be")) line.could_be = fields.numbers("could_be");
     line.hz = fields.number_if_any("hz");
     line.amplitude_nm = fields.number("amplitude_nm");
@@ -156,7 +155,7 @@ Identification identification_from_json(std::string_view text, const std::string
         raise<DataError>("{} is {}, expected a positive number", fields.where("sample_rate_hz"),
                          found.sample_rate.value());
     }
-    found.evidence = fields.named("evidence", evidence_of);
+    found.evidence = fields.text("evidence");
     if (fields.has("searched")) {
         Fields searched = fields.object("searched");
         found.searched = {searched.number("lowest_order"),

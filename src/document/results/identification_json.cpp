@@ -22,7 +22,6 @@ Json line_to_json(const Line& line) {
     json["order"] = optional_to_json(line.order);
     json["order_output"] = optional_to_json(line.order_output);
     json["order_output_stderr"] = optional_to_json(line.order_output_stderr);
-    json["order_output_seen"] = optional_to_json(line.order_output_seen);
     json["could_be"] = line.could_be;
     json["hz"] = optional_to_json(line.hz);
     json["amplitude_nm"] = line.amplitude_nm;
@@ -123,7 +122,7 @@ void add_fields(Json& json, const Identification& identification) {
     json["conclusive"] = identification.conclusive;
     json["joint"] = identification.joint;
     json["sample_rate_hz"] = identification.sample_rate.value();
-    json["evidence"] = evidence_name(identification.evidence);
+    json["evidence"] = identification.evidence;
     json["searched"] = nullptr;
     if (const auto& searched = identification.searched) {
         json["searched"] = {{"lowest_order", searched->lowest_order},

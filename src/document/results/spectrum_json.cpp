@@ -94,6 +94,7 @@ std::string spectra_text(const std::string& joint, const std::vector<StretchSpec
 std::string order_spectrum_text(const std::string& joint, const OrderSpectrum& spectrum, double false_alarm,
                                 const Provenance& provenance) {
     Json json = head("order", joint, false_alarm, provenance);
+    json["doubt"] = spectrum.doubt;
     json["sweeps"] = spectrum.lines.sweeps;
     json["output_turns"] = spectrum.lines.turns;
     json["speed_range_deg_s"] = {spectrum.lines.slowest_deg_s, spectrum.lines.fastest_deg_s};

@@ -43,7 +43,7 @@ Json tracked_line_to_json(const TrackReport& report, std::size_t i) {
 
 std::string track_text(const TrackReport& report, const Provenance& provenance) {
     Json json = document_head("track", provenance);
-    json["verdict"] = track_verdict(report);
+    json["verdict"] = report.doubt + track_verdict(report);
     json["joint"] = report.joint;
     json["method"] = report.method;
     json["against"] = report.by_speed ? "speed" : "time";

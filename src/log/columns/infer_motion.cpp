@@ -29,10 +29,10 @@ class Inference {
         std::vector<MotionReading> fitting = motion_readings(question, true);
         const bool fits = !fitting.empty() && !fitting.front().against_header;
         std::vector<MotionReading> readings = fits ? fitting : motion_readings(question, false);
-        drop_unnamed_motors(readings);
-        if (readings.empty()) return;  // --side says what cannot be
+        const auto best = likeliest(readings);
+        if (best == readings.end()) return;  // --side says what cannot be
+        best_ = *best;
         if (!fits) readings.insert(readings.end(), fitting.begin(), fitting.end());
-        best_ = readings.front();
         settle_on_best();
         refuse_motor_units();
         const std::vector<OtherReading> possible = others(readings, open_margin);
@@ -110,23 +110,20 @@ class Inference {
         layout_.motor_units = motor && !best_.ratio;
     }
 
-    // A speed alone, without a name that says so, is no reason to refuse a log.
-    void drop_unnamed_motors(std::vector<MotionReading>& readings) const {
-        bool named = false;
+    // A speed alone, without a name that says so, is no reason to refuse a log: a motor's stays possible
+    // then.
+    std::vector<MotionReading>::const_iterator likeliest(const std::vector<MotionReading>& readings) const {
+        bool named = options_.takes_motor_units;
         for (const auto* column : {&subject_->velocity, &subject_->position}) {
             named = named ||
                     (*column &&
                      ((*column)->named_motor || (*column)->stated_side.has_value() ||
                       ((*column)->convention != nullptr && (*column)->convention->side == Shaft::motor)));
         }
-        if (named || options_.takes_motor_units) return;
-        readings.erase(std::remove_if(readings.begin(), readings.end(),
-                                      [](const MotionReading& one) {
-                                          const bool motor = one.velocity.side == Shaft::motor ||
-                                                             one.position.side == Shaft::motor;
-                                          return motor && !one.ratio;
-                                      }),
-                       readings.end());
+        return std::find_if(readings.begin(), readings.end(), [named](const MotionReading& one) {
+            const bool motor = one.velocity.side == Shaft::motor || one.position.side == Shaft::motor;
+            return named || !motor || one.ratio;
+        });
     }
 
     void refuse_motor_units() const {
@@ -175,7 +172,7 @@ class Inference {
 
     std::string words_of(const MotionReading& reading) const {
         if (reading.velocity.side == Shaft::motor && best_.velocity.side != Shaft::motor)
-            return "the speed is the motor's, before the gear";
+            return fmt::format("the speed is the motor's, before the gear, in {}", speed_unit(reading));
         if (reading.velocity.side != Shaft::motor && best_.velocity.side == Shaft::motor)
             return fmt::format("the speed is the joint's, in {}", speed_unit(reading));
         return fmt::format("the speed is in {}", speed_unit(reading));
@@ -187,8 +184,15 @@ class Inference {
     }
 
     std::string option_of(const MotionReading& reading) const {
-        if (reading.velocity.side != best_.velocity.side)
-            return reading.velocity.side == Shaft::motor ? "--side motor" : "--side joint";
+        const std::string side = reading.velocity.side == best_.velocity.side ? ""
+                                 : reading.velocity.side == Shaft::motor      ? "--side motor"
+                                                                              : "--side joint";
+        const bool same_unit = speed_unit(reading) == speed_unit(best_);
+        if (!side.empty()) return same_unit ? side : unit_option_of(reading) + " " + side;
+        return unit_option_of(reading);
+    }
+
+    std::string unit_option_of(const MotionReading& reading) const {
         if (!subject_->velocity) return fmt::format("--unit position={}", reading.position.unit);
         std::string option = fmt::format("--unit velocity={}", reading.velocity.unit);
         const bool position_too = subject_->position && !evidence_.scale &&
@@ -220,7 +224,6 @@ class Inference {
         if (option.empty() && !possible.empty()) option = possible.front().option;
         Assumption read{fmt::format("unit{} of {}", motor ? " and side" : "", about), assumed,
                         reason(possible, without_position), option, possible.empty() ? thinkable : possible};
-        layout_.unit_by_size = !stated() && !by_convention() && !evidence_.wrap && !best_.ratio;
         if (possible.empty()) {
             layout_.inferences.push_back(std::move(read));
             return;

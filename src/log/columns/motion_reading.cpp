@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "ripplenotch/core/units.hpp"
 
@@ -17,6 +18,10 @@ constexpr double lowest_ratio = 20.0, highest_ratio = 400.0;  // of gears that a
 constexpr double fastest_joint_deg_s = 1200.0;                // 200 rpm behind the gear
 // What speaks against a reading; below open_margin alone, it settles nothing.
 constexpr double unusual_size = 0.25, motor_side_unnamed = 1.5, joint_side_of_motor_name = 1.0;
+// Whoever states no unit does not state the side either: a motor is as likely, where it turns as motors do
+// (100 to 12000 rpm) and its speed is not in degrees, which are those of joints.
+constexpr double slowest_motor_deg_s = 600.0, fastest_motor_deg_s = 72000.0;
+constexpr double motor_without_unit = 0.75, motor_in_degrees = 1.0, motor_out_of_range = 3.0;
 // By hand: what each costs, in nats.
 constexpr double against_convention = 2.0, against_wrap = 3.0, too_fast = 3.0, header_wrong = 1.5;
 constexpr double families_mixed = 1.0;  // by hand
@@ -71,12 +76,8 @@ Family family_of(const ReadColumn& column) {
                                                         : Family::turns;
 }
 
-double side_cost(const std::optional<MotionColumn>& column, Shaft side) {
-    if (!column) return 0.0;
-    const bool named =
-        column->named_motor || (column->convention != nullptr && column->convention->side == Shaft::motor);
-    if (side == Shaft::motor) return named ? 0.0 : motor_side_unnamed;
-    return named ? joint_side_of_motor_name : 0.0;
+bool names_motor(const MotionColumn& column) {
+    return column.named_motor || (column.convention != nullptr && column.convention->side == Shaft::motor);
 }
 
 bool allowed(const std::optional<MotionColumn>& column, Shaft side) {
@@ -120,10 +121,31 @@ class Scoring {
         for (ReadColumn* column : {&reading.velocity, &reading.position})
             column->factor =
                 column->unit_factor / (column->side == Shaft::motor ? reading.ratio.value_or(1.0) : 1.0);
-        reading.cost = v.unit.cost + q.unit.cost + side_cost(columns.velocity, vs) +
-                       side_cost(columns.position, qs) + mixture(v, q, vs != qs) +
+        reading.cost = v.unit.cost + q.unit.cost + side_cost(reading) + mixture(v, q, vs != qs) +
                        magnitude_cost(reading, v, q);
         found_.push_back(reading);
+    }
+
+    double side_cost(const MotionReading& reading) const {
+        double cost = 0.0;
+        bool unnamed = false;
+        for (const auto& [column, side] : {std::pair(&question_.columns.velocity, reading.velocity.side),
+                                           std::pair(&question_.columns.position, reading.position.side)}) {
+            if (!*column) continue;
+            if (side == Shaft::joint && names_motor(**column)) cost += joint_side_of_motor_name;
+            unnamed = unnamed || (side == Shaft::motor && !names_motor(**column));
+        }
+        return unnamed ? cost + unnamed_motor_cost(reading) : cost;
+    }
+
+    double unnamed_motor_cost(const MotionReading& reading) const {
+        const auto& speed =
+            question_.columns.velocity ? question_.columns.velocity : question_.columns.position;
+        const bool one_side = reading.velocity.side == reading.position.side;
+        if (speed->unit_is_stated || speed->convention != nullptr || !one_side) return motor_side_unnamed;
+        const double deg_s = question_.evidence.fastest * reading.velocity.unit_factor;
+        if (deg_s < slowest_motor_deg_s || deg_s > fastest_motor_deg_s) return motor_out_of_range;
+        return motor_without_unit + (family_of(reading.velocity) == Family::degrees ? motor_in_degrees : 0.0);
     }
 
     /// False where the scale is neither 1 nor a gear's.
@@ -154,16 +176,20 @@ class Scoring {
         const MotionEvidence& evidence = question_.evidence;
         double cost = 0.0;
         const bool motor_units = reading.velocity.side == Shaft::motor && !reading.ratio;
-        if (!motor_units && evidence.fastest * reading.velocity.factor > fastest_joint_deg_s)
+        const double by_motor =
+            question_.gear_ratio ? fastest_motor_deg_s / *question_.gear_ratio : fastest_joint_deg_s;
+        if (!motor_units &&
+            evidence.fastest * reading.velocity.factor > std::max(by_motor, fastest_joint_deg_s))
             cost += too_fast;
-        if (evidence.wrap && question_.columns.position && reading.position.side == Shaft::joint) {
+        if (evidence.wrap && question_.columns.position) {
             const double turn = *evidence.wrap * reading.position.unit_factor;
             if (std::abs(turn / 360.0 - 1.0) > scale_agreement) cost += against_wrap;
         }
         const bool small = evidence.fastest <= usual_rad_s && evidence.farthest <= usual_rad;
         const Family family = question_.columns.velocity ? v.unit.family : q.unit.family;
         if (family == Family::degrees && small) cost += unusual_size;
-        if (family == Family::radians && !small) cost += unusual_size;
+        if (family == Family::radians && !small && reading.velocity.side == Shaft::joint)
+            cost += unusual_size;
         return cost;
     }
 

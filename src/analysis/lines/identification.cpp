@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Names of what an identification holds, and what is read off it.
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -20,10 +22,8 @@ constexpr std::array doubt_reasons{Named<DoubtReason>{DoubtReason::clock, "clock
 constexpr std::array abouts{Named<Disagreement::About>{Disagreement::About::ratio, "gear ratio"},
                             Named<Disagreement::About>{Disagreement::About::amplitude, "amplitude"},
                             Named<Disagreement::About>{Disagreement::About::phase, "phase"}};
-constexpr std::array ways{Named<LineEvidence>{LineEvidence::none, ""},
-                          Named<LineEvidence>{LineEvidence::stretches, "steady stretches"},
-                          Named<LineEvidence>{LineEvidence::sweeps, "order spectrum"},
-                          Named<LineEvidence>{LineEvidence::both, "steady stretches and order spectrum"}};
+constexpr std::array kinds{Named<LineKind>{LineKind::order, "order"}, Named<LineKind>{LineKind::tone, "tone"},
+                           Named<LineKind>{LineKind::unknown, "unknown"}};
 
 template <class Table, class Value>
 std::string_view name_in(const Table& table, Value value) {
@@ -55,7 +55,41 @@ std::string_view about_name(Disagreement::About about) { return name_in(abouts, 
 std::optional<Disagreement::About> about_of(std::string_view name) {
     return value_in<Disagreement::About>(abouts, name);
 }
-std::string_view evidence_name(LineEvidence evidence) { return name_in(ways, evidence); }
-std::optional<LineEvidence> evidence_of(std::string_view name) { return value_in<LineEvidence>(ways, name); }
+std::string_view line_kind_name(LineKind kind) { return name_in(kinds, kind); }
+
+std::optional<SeenFrequencies> seen_frequencies(const Line& line) {
+    if (line.hz) return SeenFrequencies{*line.hz, *line.hz};
+    if (line.by_speed.empty()) return std::nullopt;
+    const auto [lowest, highest] =
+        std::minmax_element(line.by_speed.begin(), line.by_speed.end(),
+                            [](const AmplitudeAtSpeed& a, const AmplitudeAtSpeed& b) { return a.hz < b.hz; });
+    return SeenFrequencies{lowest->hz, highest->hz};
+}
+
+std::optional<double> motor_order(const Line& line) {
+    const bool follows = line.kind == LineKind::order || line.kind == LineKind::unknown;
+    return follows ? line.order : std::nullopt;
+}
+
+std::vector<double> undecided_ratios(const GearRatioFit& fit) {
+    constexpr double probable = 0.2, beside_it = 0.1;  // by hand: the first of all, the others of the first
+    std::vector<double> ratios;
+    if (fit.value || fit.candidates.empty() || fit.candidates.front().score < probable) return ratios;
+    for (const RatioCandidate& one : fit.candidates) {
+        if (one.score > beside_it * fit.candidates.front().score) ratios.push_back(one.value);
+    }
+    return ratios.size() > 1 ? ratios : std::vector<double>{};
+}
+
+std::optional<GearAccount> found_gear(const Identification& found) {
+    if (!found.gear_ratio.value) return std::nullopt;
+    std::vector<Order> orders;
+    for (const Line& line : found.lines) {
+        if (const auto order = motor_order(line)) orders.emplace_back(*order);
+    }
+    std::sort(orders.begin(), orders.end());
+    orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
+    return GearAccount{GearRatio(*found.gear_ratio.value), std::move(orders), {}, {}, "found in the log"};
+}
 
 }  // namespace ripplenotch
