@@ -49,9 +49,11 @@ TEST_CASE("an odd line decides between a ratio and its double") {
 TEST_CASE("a missing fundamental does not halve or double the ratio: lines at 2, 4 and 6 with a weak 1") {
     const std::vector lines{line_at(240.6, 0.39, 0.1), line_at(481.0, 0.23, 0.1), line_at(721.0, 0.07, 0.2),
                             line_at(120.0, 0.14, 0.2)};
+    // 2, 4, 8 and 12 times 60 are not excluded, and neither has an odd order that is clear: 120 leads by far.
     const auto result = fit_gear_ratio(lines, {});
-    REQUIRE(result.fit.value.has_value());
-    CHECK_THAT(*result.fit.value, WithinRel(120.2, 0.003));
+    REQUIRE(result.fit.candidates.size() > 1);
+    CHECK_THAT(result.fit.candidates[0].value, WithinRel(120.2, 0.003));
+    CHECK(result.fit.candidates[0].score > 2.0 * result.fit.candidates[1].score);
 }
 
 TEST_CASE("a line on its own settles no ratio: at 202, 101 as n = 2 is the most probable") {
@@ -217,15 +219,19 @@ TEST_CASE("one line that is off hardly moves the ratio") {
 
 TEST_CASE("the 95 % interval covers the truth in 93 to 97 of a hundred fits") {
     tests::Noise noise(21);
-    int covered = 0;
+    int covered = 0, given = 0;
     constexpr int runs = 1000;
     for (int run = 0; run < runs; ++run) {
         std::vector<OrderLine> lines{line_at(100.0, 0.8, 0.05), line_at(200.0, 0.5, 0.08)};
         for (OrderLine& line : lines) line.order_output += line.error * noise();
         const auto result = fit_gear_ratio(lines, {});
-        REQUIRE(result.fit.value.has_value());
+        // Where the errors put the lines on combs of their own, several ratios are possible and none is
+        // given.
+        if (!result.fit.value) continue;
+        ++given;
         covered += result.fit.ci95_low <= 100.0 && 100.0 <= result.fit.ci95_high;
     }
+    CHECK(given >= 990);
     CHECK(covered >= 930);
     CHECK(covered <= 970);
 }

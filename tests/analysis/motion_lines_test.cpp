@@ -52,7 +52,8 @@ TEST_CASE("orders are found in a motion that is never steady, with amplitude and
     }
 }
 
-TEST_CASE("lines that stand four resolutions apart in short sweeps are all found, though each hides the others") {
+TEST_CASE(
+    "lines that stand four resolutions apart in short sweeps are all found, though each hides the others") {
     // To and fro over 30 deg: orders 96, 192, 288, 384 are 8, 16, 24 and 32 cycles in a sweep.
     const auto speed = [](double t) { return 15.0 * std::numbers::pi * std::sin(std::numbers::pi * t); };
     for (const std::uint32_t seed : {1U, 2U, 3U}) {
@@ -67,8 +68,12 @@ TEST_CASE("lines that stand four resolutions apart in short sweeps are all found
         for (const auto& [order, amplitude] :
              {std::pair{96.0, 0.5}, {192.0, 0.4}, {288.0, 0.3}, {384.0, 0.3}}) {
             CAPTURE(seed, order);
-            const MotionLine* line = nearest_order(found, order);
-            REQUIRE(line != nullptr);
+            // Of eight cycles in a sweep it may stay open whether they follow the angle.
+            const auto line =
+                std::find_if(found.lines.begin(), found.lines.end(), [&](const MotionLine& one) {
+                    return one.kind != LineKind::tone && std::abs(one.order_output - order) < 0.02 * order;
+                });
+            REQUIRE(line != found.lines.end());
             CHECK_THAT(line->amplitude_nm, WithinRel(amplitude, 0.15));
         }
         CHECK(found.lines.size() == 4);

@@ -93,8 +93,8 @@ TEST_CASE("a line that is restored leaves what only the others explain") {
                     apart += std::pow(with[i].value[k] - alone.value[k], 2);
                     size += std::pow(alone.value[k], 2);
                 }
-                // Lines ten cycles apart have a thousandth of each other in them.
-                CHECK(apart < 1e-5 * size);
+                // Lines ten cycles apart have a few thousandths of each other's amplitude in them.
+                CHECK(apart < 5e-5 * size);
             }
         }
     }

@@ -29,10 +29,11 @@ struct Stack {
     std::vector<double> floor_nm;       ///< what noise alone shows, rms over sweeps
     std::vector<double> sweep_weights;  ///< effective samples
     std::vector<std::vector<float>> floors;  ///< per sweep and bin: mean noise power |S|^2; 0 where not used
-    std::vector<char> removed;  ///< by bin, not 0 where a line was removed from the sweeps; see mark_removed()
-    std::size_t first = 0;      ///< lowest bin in use
-    std::size_t searched = 0;                ///< lowest bin at which lines are looked for
-    double lowest = 0.0;                     ///< the lowest order, or hertz, that is claimed to be searched
+    std::vector<char>
+        removed;               ///< by bin, not 0 where a line was removed from the sweeps; see mark_removed()
+    std::size_t first = 0;     ///< lowest bin in use
+    std::size_t searched = 0;  ///< lowest bin at which lines are looked for
+    double lowest = 0.0;       ///< the lowest order, or hertz, that is claimed to be searched
 
     [[nodiscard]] PowerSpectrum tested() const;
     /// States that the sweeps hold no line at a place, and no noise there.

@@ -22,8 +22,9 @@ constexpr std::array doubt_reasons{Named<DoubtReason>{DoubtReason::clock, "clock
 constexpr std::array abouts{Named<Disagreement::About>{Disagreement::About::ratio, "gear ratio"},
                             Named<Disagreement::About>{Disagreement::About::amplitude, "amplitude"},
                             Named<Disagreement::About>{Disagreement::About::phase, "phase"}};
-constexpr std::array kinds{Named<LineKind>{LineKind::order, "order"}, Named<LineKind>{LineKind::tone, "tone"},
-                           Named<LineKind>{LineKind::unknown, "unknown"}};
+constexpr std::array line_kinds{Named<LineKind>{LineKind::order, "order"},
+                                Named<LineKind>{LineKind::tone, "tone"},
+                                Named<LineKind>{LineKind::unknown, "unknown"}};
 
 template <class Table, class Value>
 std::string_view name_in(const Table& table, Value value) {
@@ -55,7 +56,7 @@ std::string_view about_name(Disagreement::About about) { return name_in(abouts, 
 std::optional<Disagreement::About> about_of(std::string_view name) {
     return value_in<Disagreement::About>(abouts, name);
 }
-std::string_view line_kind_name(LineKind kind) { return name_in(kinds, kind); }
+std::string_view line_kind_name(LineKind kind) { return name_in(line_kinds, kind); }
 
 std::optional<SeenFrequencies> seen_frequencies(const Line& line) {
     if (line.hz) return SeenFrequencies{*line.hz, *line.hz};

@@ -97,7 +97,8 @@ double half_rate_of_most(std::span<const Sweep> sweeps, const Stack& stack) {
 /// The orders at which a line would have been found, and the largest amplitude that it needs there, to be
 /// found in 95 of 100 logs: it has to be significant, and to recur. Bins near found lines are theirs.
 std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, const Stack& stack,
-                                              double false_alarm, std::span<const double> taken) {
+                                              double false_alarm, std::span<const double> taken,
+                                              std::span<const SearchedOrders::Bound> unreported) {
     constexpr double step = 1.1;  // by hand: the floor varies slowly along the orders
     const PowerSpectrum spectrum = stack.tested();
     const std::vector<double> floor = noise_floor(spectrum);
@@ -123,6 +124,12 @@ std::optional<SearchedOrders> searched_orders(std::span<const Sweep> sweeps, con
         searched.detectable_nm = std::max(searched.detectable_nm, here_nm);
         for (auto& bound : searched.bounds) bound.detectable_nm = std::max(bound.detectable_nm, here_nm);
         searched.bounds.push_back({place, here_nm});
+    }
+    for (const auto& [order, amplitude_nm] : unreported) {
+        if (order < searched.lowest_order || order > searched.highest_order) continue;
+        searched.detectable_nm = std::max(searched.detectable_nm, amplitude_nm);
+        for (auto& bound : searched.bounds)
+            if (bound.from_order <= order) bound.detectable_nm = std::max(bound.detectable_nm, amplitude_nm);
     }
     // Of the bounds from each order on those that say less than half of the one before.
     std::vector<SearchedOrders::Bound> steps;
@@ -186,7 +193,8 @@ LineKind judged(std::span<const Sweep> sweeps, const Stacks& stacks, const Rival
 struct CandidateLine {
     KnownLine known;
     Rivals rivals;
-    bool by_angle = false;  ///< the axis on which it was seen first
+    bool by_angle = false;              ///< the axis on which it was seen first
+    LineKind kind = LineKind::unknown;  ///< when it was seen
 };
 
 /// Lines hide each other: each adds to the noise that is measured near the others. So whatever is prominent
@@ -222,9 +230,15 @@ class LineSearch {
         for (std::size_t i = 0; i < out_.size(); ++i) {
             const std::vector<Sweep> sweeps = with_line(sweeps_, out_, i);
             const auto& [axis, place] = out_[i];
-            if (!(shares_of_threshold(sweeps, i).line > 1.0) || !recurs(sweeps, stack_of(axis), place))
-                continue;
             MotionLine line = measured(sweeps, i);
+            if (!(shares_of_threshold(sweeps, i).line > 1.0) || !recurs(sweeps, stack_of(axis), place)) {
+                const double order = axis == Axis::angle ? place : line.order_seen;
+                double largest_nm = 0.0;
+                for (const AmplitudeAtSpeed& seen : line.by_speed)
+                    largest_nm = std::max(largest_nm, seen.amplitude_nm);
+                unreported_.push_back({order, largest_nm});
+                continue;
+            }
             if (line.amplitude_nm < least_amplitude_) continue;
             if (axis == Axis::angle) orders_.push_back(place);
             lines.push_back(std::move(line));
@@ -233,6 +247,8 @@ class LineSearch {
     }
     /// Of the lines that lines() gave.
     [[nodiscard]] std::span<const double> orders() const { return orders_; }
+    /// What lines() left out, by order: nothing smaller is claimed to be absent there.
+    [[nodiscard]] std::span<const SearchedOrders::Bound> unreported() const { return unreported_; }
 
     [[nodiscard]] Stacks& stacks() { return stacks_; }
     [[nodiscard]] const SpeedRange& range() const { return range_; }
@@ -258,8 +274,9 @@ class LineSearch {
         CandidateLine line;
         line.by_angle = order && (!tone || order->gain >= tone->gain);
         line.rivals = rivals_of(line.by_angle ? order->peak.bin : tone->peak.bin, line.by_angle);
-        LineKind kind = judged(sweeps_, stacks_, line.rivals, line.by_angle);
-        const bool as_order = kind == LineKind::order || (kind == LineKind::unknown && line.rivals.has_order);
+        line.kind = judged(sweeps_, stacks_, line.rivals, line.by_angle);
+        const bool as_order =
+            line.kind == LineKind::order || (line.kind == LineKind::unknown && line.rivals.has_order);
         const Stack& stack = as_order ? angle : time;
         auto& taken = as_order ? taken_orders_ : taken_hz_;
         line.known = {stack.axis, as_order ? line.rivals.order : line.rivals.hz};
@@ -355,12 +372,19 @@ class LineSearch {
     }
 
     [[nodiscard]] MotionLine measured(std::span<const Sweep> sweeps, std::size_t candidate) const {
-        const auto& [known, rivals, by_angle] = candidates_[candidate];
+        const auto& [known, rivals, by_angle, kind] = candidates_[candidate];
         const Stack &angle = stacks_.angle, &time = stacks_.time;
         MotionLine line;
         line.gain_angle = rivals.has_order ? gain_of(sweeps, angle, rivals.order) : 0.0;
         line.gain_time = rivals.has_hz ? gain_of(sweeps, time, rivals.hz) : 0.0;
         line.kind = judged(sweeps, stacks_, rivals, by_angle);
+        // A removed line may have taken with it what would be evidence for the other axis.
+        const KnownLine rival = known.axis == Axis::angle ? KnownLine{Axis::time, rivals.hz}
+                                                          : KnownLine{Axis::angle, rivals.order};
+        bool contested = false;
+        for (std::size_t i = 0; i < out_.size(); ++i)
+            contested = contested || (i != candidate && !apart(sweeps, rival, out_[i]));
+        if (contested && line.kind != kind) line.kind = LineKind::unknown;
         const bool as_order = known.axis == Axis::angle;
         if (line.kind == (as_order ? LineKind::tone : LineKind::order)) line.kind = LineKind::unknown;
         if (line.kind == LineKind::tone && !at_two_speeds(sweeps, time, rivals.hz))
@@ -389,6 +413,7 @@ class LineSearch {
     double least_amplitude_;
     Stacks stacks_;
     std::vector<double> taken_orders_, taken_hz_, orders_;
+    std::vector<SearchedOrders::Bound> unreported_;
     std::vector<KnownLine> out_;             ///< removed from the sweeps
     std::vector<CandidateLine> candidates_;  ///< the same, with what is known of each
 };
@@ -420,7 +445,8 @@ MotionSearch search_sweeps(Sweeps cut, std::span<const TraceView> logs, const Mo
     const Stack& angle = search_of.stacks().angle;
     found.resolution_orders = angle.resolution;
     found.highest_spectrum_order = static_cast<double>(angle.ratio.size()) * angle.spacing;
-    found.searched = searched_orders(sweeps, angle, 0.5 * options.false_alarm, search_of.orders());
+    found.searched =
+        searched_orders(sweeps, angle, 0.5 * options.false_alarm, search_of.orders(), search_of.unreported());
     if (found.searched) {
         const double least_nm = search_of.least_amplitude();
         found.searched->detectable_nm = std::max(found.searched->detectable_nm, least_nm);

@@ -73,7 +73,7 @@ struct Floors {
     std::vector<Floor> every, either;
 };
 
-constexpr double normal_quartile = 0.6745;
+constexpr double normal_quartile = 0.6745;  // of the normal distribution, upper
 
 /// A quantile of a mean of `averages` exponentials over its expectation; `normal` is that of the normal
 /// distribution. The cube root is nearly normal (Wilson and Hilferty 1931).
