@@ -275,8 +275,12 @@ class LineSearch {
         line.by_angle = order && (!tone || order->gain >= tone->gain);
         line.rivals = rivals_of(line.by_angle ? order->peak.bin : tone->peak.bin, line.by_angle);
         line.kind = judged(sweeps_, stacks_, line.rivals, line.by_angle);
-        const bool as_order =
-            line.kind == LineKind::order || (line.kind == LineKind::unknown && line.rivals.has_order);
+        // Of two tones at two speeds an order may explain half of each: what is seen at both speeds is a
+        // tone.
+        const bool as_tone = line.kind == LineKind::tone ||
+                             (line.kind == LineKind::unknown && line.rivals.hz >= options_.lowest_tone_hz &&
+                              at_two_speeds(sweeps_, time, line.rivals.hz));
+        const bool as_order = line.rivals.has_order && !as_tone;
         const Stack& stack = as_order ? angle : time;
         auto& taken = as_order ? taken_orders_ : taken_hz_;
         line.known = {stack.axis, as_order ? line.rivals.order : line.rivals.hz};
