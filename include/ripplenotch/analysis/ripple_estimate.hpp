@@ -49,10 +49,10 @@ struct RippleEstimate {
 /// under a Hann window in angle. The trend is a line and cosines in angle: 12 terms per output turn, but no
 /// more than one for two periods of the lowest order, and never fewer than three. Of a log with more than
 /// 300,000 rows in segments, which overlap, every second segment is left out, or of longer ones every fourth,
-/// and so on. The noise is the median power of the residual 1.5 to 6.5 periods per window beside the order,
-/// so that noise of any colour counts as it is; a ripple smaller than 1e-4 of the torque's range does not
-/// count. One estimate per order asked for. Throws UsageError for a ratio or an order that is not above 0.
-/// Cost O(n (trend + 2 orders)^2).
+/// and so on. The noise is the median power of the residual 1.5 to 6.5 periods per window away from the
+/// order, so that noise of any colour counts as it is; a ripple smaller than 1e-4 of the torque's range does
+/// not count. One estimate per order asked for. Throws UsageError for a ratio or an order that is not above
+/// 0. Cost O(n (trend + 2 orders)^2).
 [[nodiscard]] std::vector<RippleEstimate> estimate_ripple(std::span<const TraceView> logs, GearRatio ratio,
                                                           std::span<const Order> orders);
 

@@ -37,7 +37,7 @@ RippleFinding finding_in(const Identification& result) {
 }
 
 /// A ratio from lines of one speed alone is the likeliest, and not settled; nor is one of several, or one
-/// that is not told from that of the other spline.
+/// that cannot be distinguished from that of the other spline.
 bool settled(const Identification& result) {
     const bool two_ratios =
         std::any_of(result.disagreements.begin(), result.disagreements.end(),

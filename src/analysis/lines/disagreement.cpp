@@ -135,7 +135,7 @@ std::optional<Disagreement> about_ratio(const Identification& together,
 struct Phasor {
     double speed_deg_s = 0.0, middle_turns = 0.0;
     std::complex<double> value;
-    double noise_power = 0.0;  ///< of |value|^2, from what stands beside the line
+    double noise_power = 0.0;  ///< of |value|^2, from the cells near the line
 };
 
 /// The line in one recording near a speed.
@@ -189,9 +189,9 @@ Phasor phasor_of(const Sweep& sweep, double order_output) {
     // The window of a line ends two cells from it.
     double count = 0.0;
     for (const double cells : {-5.0, -4.0, -3.0, 3.0, 4.0, 5.0}) {
-        const double beside = order_output + cells / sweep.length_turns;
-        if (beside < 1.0 / sweep.length_turns) continue;
-        seen.noise_power += std::norm(at(beside));
+        const double near = order_output + cells / sweep.length_turns;
+        if (near < 1.0 / sweep.length_turns) continue;
+        seen.noise_power += std::norm(at(near));
         count += 1.0;
     }
     seen.noise_power /= std::max(count, 1.0);

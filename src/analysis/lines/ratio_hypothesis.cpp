@@ -18,7 +18,7 @@ namespace ripplenotch {
 namespace {
 
 /// Component sets with the flexspline as output (Harmonic Drive SE, series CSG, CSF, SHG, HFUC: catalogue
-/// pages "ratio"), and by how much likelier each is than a ratio that nobody lists. By hand: most arms that
+/// pages "ratio"), and by how much likelier each is than a ratio of no catalogue. By hand: most arms that
 /// publish theirs have 100, with the circular spline as output 101; then 120 and 160; 30 is rare.
 struct SoldRatio {
     double ratio, factor;

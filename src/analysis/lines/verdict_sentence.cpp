@@ -168,7 +168,8 @@ std::string with_ratio(const Identification& found) {
     const GearRatioFit& ratio = found.gear_ratio;
     if (ratio.coarse)
         doubt +=
-            "; ratios one apart, as those of both splines are, cannot be told apart: record longer sweeps to "
+            "; ratios one apart, as those of both splines are, cannot be distinguished: record longer sweeps "
+            "to "
             "decide";
     const double half = 0.5 * (ratio.ci95_high - ratio.ci95_low);
     const int decimals = half < 0.005 ? 4 : half < 0.05 ? 3 : half < 0.5 ? 2 : 1;

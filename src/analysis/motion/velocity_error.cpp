@@ -66,7 +66,7 @@ class RipplePower {
     }
 
     /// Covariance of the slope at the maximum: of noise of the torque, and of what the orders have in common,
-    /// noise of the velocity and what was believed beforehand.
+    /// noise of the velocity and the prior.
     struct SlopeVariance {
         Eigen::MatrixXd own, common;
     };

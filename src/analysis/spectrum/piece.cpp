@@ -17,7 +17,7 @@ namespace {
 /// A clock counts as even when no sample is off it by more than this share of a step: then the plain
 /// transform is the same sum.
 constexpr double even_share = 1e-3;
-constexpr double most_steps = 3.0;       // that one sample stands for, beside a gap
+constexpr double most_steps = 3.0;       // that one sample stands for, next to a gap
 constexpr std::size_t most_ahead = 8;    // pieces; those of usual lengths stay in the processor's cache
 constexpr std::size_t side_by_side = 8;  // sums, so that an addition need not wait for the one before
 

@@ -20,7 +20,7 @@ constexpr double overlap_correlation =
 constexpr double smeared_cells = 20.0;      // by hand
 constexpr double folds_searched = 2.5;      // by hand: of the sample rate at the highest speed
 constexpr double used_cycles = 3.0;         // in a sweep: half a cycle beyond what the trend follows
-constexpr double fewest_sweep_cells = 6.0;  // of a sweep's spectrum: a line's main lobe and four beside it
+constexpr double fewest_sweep_cells = 6.0;  // of a sweep's spectrum: a line's main lobe and four more
 
 struct Reach {
     std::size_t first = 0, end = 0;  // bins

@@ -193,10 +193,10 @@ std::vector<std::size_t> track_breaks(const OrderTracks& tracks) {
     std::vector<std::size_t> breaks;
     for (std::size_t row = 1; row < time_s.size(); ++row) {
         const bool turned = speed[row] * speed[row - 1] < 0.0;
-        double beside = 0.0;
-        if (row > 1) beside = std::max(beside, step(row - 1));
-        if (row + 1 < time_s.size()) beside = std::max(beside, step(row + 1));
-        if (turned || (beside > 0.0 && step(row) > longest_step * beside)) breaks.push_back(row);
+        double neighbour = 0.0;
+        if (row > 1) neighbour = std::max(neighbour, step(row - 1));
+        if (row + 1 < time_s.size()) neighbour = std::max(neighbour, step(row + 1));
+        if (turned || (neighbour > 0.0 && step(row) > longest_step * neighbour)) breaks.push_back(row);
     }
     return breaks;
 }

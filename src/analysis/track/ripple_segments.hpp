@@ -34,7 +34,7 @@ struct SegmentAmplitude {
     std::vector<std::complex<double>> value;  ///< per signal: a - ib of a cos + b sin
     double inflation = 1.0;      ///< of the variance, since neighbours and trend are fitted along
     double expected_gain = 0.0;  ///< of LineGains; 0 without
-    /// Power beside the order, first signal; nan where the fit took it along, or nobody asked.
+    /// Power near the order, first signal; nan where it was not measured.
     std::array<double, 2 * probes_a_side> noise{};
 };
 
