@@ -275,11 +275,14 @@ class LineSearch {
         line.by_angle = order && (!tone || order->gain >= tone->gain);
         line.rivals = rivals_of(line.by_angle ? order->peak.bin : tone->peak.bin, line.by_angle);
         line.kind = judged(sweeps_, stacks_, line.rivals, line.by_angle);
-        // Of two tones at two speeds an order may explain half of each: what is seen at both speeds is a
-        // tone.
-        const bool as_tone = line.kind == LineKind::tone ||
-                             (line.kind == LineKind::unknown && line.rivals.hz >= options_.lowest_tone_hz &&
-                              at_two_speeds(sweeps_, time, line.rivals.hz));
+        // Slow tones are not looked for, since the motion makes them: what is seen over the angle is an order
+        // or such a tone. Of two tones at two speeds an order may explain half of each: what is seen at both
+        // speeds is a tone.
+        const bool slow = line.rivals.hz < options_.lowest_tone_hz;
+        if (slow && line.kind == LineKind::tone) line.kind = LineKind::unknown;
+        const bool as_tone = line.kind == LineKind::tone || (line.kind == LineKind::unknown && !slow &&
+                                                             at_two_speeds(sweeps_, time, line.rivals.hz) &&
+                                                             recurs(sweeps_, time, line.rivals.hz));
         const bool as_order = line.rivals.has_order && !as_tone;
         const Stack& stack = as_order ? angle : time;
         auto& taken = as_order ? taken_orders_ : taken_hz_;
@@ -289,8 +292,7 @@ class LineSearch {
         const std::size_t seen_bin = line.by_angle ? order->peak.bin : tone->peak.bin;
         (line.by_angle ? taken_orders_ : taken_hz_)
             .push_back(static_cast<double>(seen_bin) * (line.by_angle ? angle : time).spacing);
-        const bool of_the_motion = !as_order && line.known.place < options_.lowest_tone_hz;
-        if (rest_of_known || of_the_motion) return true;
+        if (rest_of_known) return true;
         taken.push_back(line.known.place);
         candidates_.push_back(line);
         out_.push_back(line.known);
