@@ -243,9 +243,6 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
     const auto stride = static_cast<std::size_t>(std::max(1.0, reach_bins / 8.0));
     const auto reach = static_cast<std::size_t>(std::ceil(reach_bins));
     RunningMedian median_around(spectrum.power);
-    // A line and its main lobe are a large part of so few cells: their lower quartile stands instead of the
-    // median.
-    const bool few = static_cast<double>(n - spectrum.first) < far_cells * spectrum.bins_per_cell;
     std::vector<double> values;
     const auto quartile = [&](std::size_t from, std::size_t count) {
         values.assign(spectrum.power.begin() + static_cast<std::ptrdiff_t>(from),
@@ -260,6 +257,9 @@ std::vector<double> noise_floor(const PowerSpectrum& spectrum) {
         const std::size_t middle = std::max(inside, spectrum.first);
         // Both sides alike: one flank of a steep floor would stand for too little or too much.
         const std::size_t half = std::min({reach, middle - spectrum.first, n - 1 - middle});
+        // A strong line and its side lobes are more than half of few cells: their lower quartile stands for
+        // the median.
+        const bool few = static_cast<double>(half) < 0.5 * reach_bins;
         const std::size_t from = middle - half, count = 2 * half + 1;
         const double averages = spectrum.averages_at(bin);
         return std::max(few ? quartile(from, count) / quantile_over_mean(averages, -normal_quartile)
