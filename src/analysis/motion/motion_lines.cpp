@@ -390,7 +390,8 @@ class LineSearch {
         bool contested = false;
         for (std::size_t i = 0; i < out_.size(); ++i)
             contested = contested || (i != candidate && !apart(sweeps, rival, out_[i]));
-        if (contested && line.kind != kind) line.kind = LineKind::unknown;
+        // Nor is a line that was open called a tone because it was removed as one.
+        if (line.kind != kind && (contested || line.kind == LineKind::tone)) line.kind = LineKind::unknown;
         const bool as_order = known.axis == Axis::angle;
         if (line.kind == (as_order ? LineKind::tone : LineKind::order)) line.kind = LineKind::unknown;
         if (line.kind == LineKind::tone && !at_two_speeds(sweeps, time, rivals.hz))

@@ -60,11 +60,12 @@ struct StackGrid {
 Reach reach_of(const Sweep& sweep, const StackGrid& grid, const StackRule& rule) {
     const double length = length_of(sweep, grid.axis);
     if (!(length > 0.0)) return {};
-    // Below the lowest line that is looked for, down to the trend: its noise on that side.
+    // Below the lowest line that is looked for, down to the trend: its noise on that side. Next to half the
+    // sample rate a tone and its image are one, and noise is real: it scatters twice as much.
     const double lowest = used_cycles / length;
     const double highest = grid.axis == Axis::angle
                                ? std::min(rule.highest_order, highest_order(sweep, grid.speeds))
-                               : 0.5 * sweep.rate_hz;
+                               : 0.5 * sweep.rate_hz - hann_cell / length;
     const auto end = static_cast<std::size_t>(highest / grid.spacing) + 1;
     return {static_cast<std::size_t>(std::ceil(lowest / grid.spacing)), std::min(end, grid.bins)};
 }
