@@ -236,7 +236,7 @@ RipplePower::SlopeVariance RipplePower::slope_variance(const VectorXd& unknown) 
     return variance;
 }
 
-/// Where a velocity in coarse steps turns, it stays at one value while the joint is up to a step beside it: a
+/// Where a velocity in coarse steps turns, it stays at one value while the joint is up to a step away: a
 /// parabola that reaches a share h of the step, anything from 0 to 1, is off by 2 h / 3 - 1 / 2 in the mean.
 constexpr double square_off = 1.0 / 27.0 + 1.0 / 36.0;
 constexpr std::size_t fewest_alike = 3;  // by hand: noise alone makes two alike now and then

@@ -17,9 +17,9 @@ namespace ripplenotch {
 /// its noise or a fiftieth of the usual speed; else 0. `motion` is motion_along(log).
 [[nodiscard]] std::vector<unsigned char> rows_of_known_motion(const TraceView& log, const Motion& motion);
 
-/// What the acceleration in the rows of known motion lets be told.
+/// What the acceleration in the rows of known motion determines.
 struct Accelerations {
-    bool known = false;  ///< beside direction and speed, and beyond noise, which makes an inertia too small
+    bool known = false;          ///< separable from direction and speed, and above the noise
     bool like_friction = false;  ///< known only along with direction and speed: inertia and friction alike
 };
 [[nodiscard]] Accelerations accelerations_of(const TraceView& log, const Motion& motion,
