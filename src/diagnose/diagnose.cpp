@@ -10,7 +10,7 @@
 #include "diagnose/beside/finding/told.hpp"
 #include "diagnose/case/faults.hpp"
 #include "diagnose/examined.hpp"
-#include "diagnose/given_diagnosis.hpp"
+#include "core/vectors/dot.hpp"
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/judging/leftover.hpp"
 #include "diagnose/judging/reproduction.hpp"
@@ -232,19 +232,39 @@ void tell_model(Diagnosis& diagnosis, const Candidate& last, std::size_t own) {
 
 }  // namespace
 
-Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
+namespace {
+
+// The known torque of the rows of a case; what is not certain of it stays to be fitted.
+void take_known(Case& c, std::span<const GivenTerm> given) {
+    if (given.empty()) return;
+    c.motion.known_nm.assign(c.size(), 0.0);
+    for (const GivenTerm& term : given) {
+        for (std::size_t i = 0; i < term.torque_nm.size(); ++i) {
+            add_scaled(term.mean[i], term.torque_nm[i].data(), c.motion.known_nm.data(), c.size());
+            if (term.deviation[i] > stated_deviation && term.name != "simulated")
+                c.uncertain.push_back({term.torque_nm[i], term.deviation[i]});
+        }
+    }
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Model& given_model, const TraceView& log, const TraceView* validation,
                    const DiagnosisOptions& options) {
+    Model model = given_model;
+    model.beside_simulation = is_given(options.given, "simulated");
     const DiagnosisRules& rules = options.rules;
     check(rules);
     for (const std::string& name : options.without) (void)find_effect(name);
-    if (!options.given.empty()) return diagnose_given(model, log, validation, options);
     const std::size_t own = model.terms.size();
     Case whole = whole_case(log, options.smoothing, rules.recording);
+    take_known(whole, options.given);
     const auto effects =
         examined(model, options.without, log.has_position() || tells_position(whole.motion, rules.recording));
     std::optional<Case> other;
     if (validation != nullptr) {
         other = whole_case(*validation, options.smoothing, rules.recording);
+        take_known(*other, options.validation_given);
         (void)find_faults(*other, rules.faults);
     }
     Work work(rules.search.most_evaluations);

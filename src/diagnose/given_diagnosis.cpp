@@ -45,7 +45,7 @@ struct GivenLog {
         Case rest = c;
         const auto brought = brought_nm(columns, values, 0, columns.stated);
         add_scaled(-1.0, brought.data(), rest.torque_nm.data(), rest.torque_nm.size());
-        rest.motion.carried_nm = carried_nm(columns, values);
+        rest.motion.known_nm = carried_nm(columns, values);
         return rest;
     }
 };

@@ -18,7 +18,8 @@ std::vector<double> evaluate(const Model& model, const Motion& logged, std::span
     const Motion& motion = changed ? *changed : logged;
     const auto load = load_nm(model, {.motion = motion, .ratio = ratio});
     const Situation situation{.motion = motion, .ratio = ratio, .load_nm = load};
-    std::vector<double> torque_nm(motion.size(), 0.0);
+    std::vector<double> torque_nm = motion.known_nm;
+    torque_nm.resize(motion.size());
     add_joint_torque(model, situation, torque_nm);
     const auto transform = [&](const Effect& effect, const std::vector<double>& values) {
         if (chance == Chance::acts || !effect.chance) effect.apply(situation, values, torque_nm);

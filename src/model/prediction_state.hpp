@@ -55,7 +55,8 @@ struct Prediction::State {
             if (side_of(term) == Side::ripple) ++changes;
         }
         applied = model.terms.size();
-        joint_nm.assign(motion.size(), 0.0);
+        joint_nm = motion.known_nm;
+        joint_nm.resize(motion.size());
         for (const Term& term : model.terms) {
             if (term.effect->side == Side::joint) add(term, situation(load), gain(term), joint_nm);
         }
@@ -88,7 +89,8 @@ struct Prediction::State {
 
     const std::vector<double>& plain() {
         if (!plain_nm.empty()) return plain_nm;
-        plain_nm.assign(joint_nm.size(), 0.0);
+        plain_nm = logged.known_nm;
+        plain_nm.resize(joint_nm.size());
         for (std::size_t i = 0; i < model.terms.size(); ++i) {
             if (model.terms[i].effect->side != Side::joint || model.terms[i].effect->ripple_order) continue;
             const std::vector<double>& torque = own(i);

@@ -37,7 +37,7 @@ std::vector<double> load_nm(const Model& model, const Situation& situation) {
     std::vector<double> load;
     if (std::ranges::none_of(model.terms, [](const Term& term) { return term.effect->uses_load; }))
         return load;
-    load = situation.motion.carried_nm;
+    load = situation.motion.known_nm;
     load.resize(situation.motion.size());
     each(model, Side::joint, [&](const Effect& effect, const std::vector<double>& values) {
         if (effect.bears_load) effect.apply(situation, values, load);

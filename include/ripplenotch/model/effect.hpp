@@ -22,9 +22,9 @@ namespace ripplenotch {
 struct Motion {
     Hertz sample_rate;
     std::vector<double> time_s, position_deg, velocity_deg_s, acceleration_deg_s2;
-    /// Torque that gear and bearings carry besides what the model's own effects bring: of a given term.
-    /// size() entries, or none.
-    std::vector<double> carried_nm = {};
+    /// Torque at the joint that is known besides the model's effects: of the user's simulation, of an arm's
+    /// rigid bodies. The sensor's effects act on it, and gear and bearings carry it. size() entries, or none.
+    std::vector<double> known_nm = {};
     [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 

@@ -36,8 +36,8 @@ Motion motion_of(const DiagnoseRequest& request, const JointDiagnosis& one) {
     Motion motion = motion_along(one.log.trace.view(), request.smoothing);
     const std::vector<double>& beside = one.diagnosis.beside_given_nm;
     if (beside.empty()) return motion;
-    motion.carried_nm = one.log.trace.torque_nm;
-    for (std::size_t k = 0; k < beside.size(); ++k) motion.carried_nm[k] -= beside[k];
+    motion.known_nm = one.log.trace.torque_nm;
+    for (std::size_t k = 0; k < beside.size(); ++k) motion.known_nm[k] -= beside[k];
     return motion;
 }
 

@@ -36,7 +36,7 @@ std::vector<double> predicted_torque(const ResidualOptions& residual, const Mode
     }
     GivenTorque given = given_torque(terms, log.log.trace.size());
     Motion motion = motion_along(log.log.trace.view(), default_smoothing);
-    motion.carried_nm = std::move(given.carried_nm);
+    motion.known_nm = std::move(given.carried_nm);
     through_sensors(model.model, motion, given.torque_nm);
     std::vector<double> sum = predict_nm(model.model, motion);
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += given.torque_nm[k];

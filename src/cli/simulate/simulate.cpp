@@ -85,7 +85,7 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
                                             {options.log, log}, options.smoothing);
     say_warnings(options.common, log.recording.warnings);
     Motion motion = motion_along(log.trace.view(), options.smoothing);
-    if (!given.carried_nm.empty()) motion.carried_nm = std::move(given.carried_nm);
+    if (!given.carried_nm.empty()) motion.known_nm = std::move(given.carried_nm);
     if (!given.torque_nm.empty()) through_sensors(model.model, motion, given.torque_nm);
     return {std::move(motion),          log.trace.velocity_deg_s,        log.trace.torque_nm,
             std::move(given.torque_nm), log.trace.view().has_position(), {{log.recording}}};

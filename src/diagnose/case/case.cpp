@@ -34,7 +34,9 @@ Case rows_of(const Case& whole, const std::vector<std::size_t>& rows, Hertz samp
     Case some;
     some.motion = {sample_rate, picked(motion.time_s, rows), picked(motion.position_deg, rows),
                    picked(motion.velocity_deg_s, rows), picked(motion.acceleration_deg_s2, rows)};
-    if (!motion.carried_nm.empty()) some.motion.carried_nm = picked(motion.carried_nm, rows);
+    if (!motion.known_nm.empty()) some.motion.known_nm = picked(motion.known_nm, rows);
+    for (const Nuisance& column : whole.uncertain)
+        some.uncertain.push_back({picked(column.torque_nm, rows), column.usual_size});
     some.torque_nm = picked(whole.torque_nm, rows);
     some.row = picked(whole.row, rows);
     some.rough_deg_s2 = picked(whole.rough_deg_s2, rows);
@@ -187,8 +189,11 @@ bool carries_errors(const Term& term) {
 std::vector<Nuisance> acceleration_errors(const Case& looked_at, const Model& model) {
     Model sensors{model.gear_ratio, {}};
     std::ranges::copy_if(model.terms, std::back_inserter(sensors.terms), carries_errors);
-    return {{sensed_nm(sensors, looked_at.motion, looked_at.rough_deg_s2), 0.0},
-            {sensed_nm(sensors, looked_at.motion, looked_at.blunted_deg_s2), 0.0}};
+    std::vector<Nuisance> errors = {{sensed_nm(sensors, looked_at.motion, looked_at.rough_deg_s2), 0.0},
+                                    {sensed_nm(sensors, looked_at.motion, looked_at.blunted_deg_s2), 0.0}};
+    for (const Nuisance& column : looked_at.uncertain)
+        errors.push_back({sensed_nm(model, looked_at.motion, column.torque_nm), column.usual_size});
+    return errors;
 }
 
 std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {

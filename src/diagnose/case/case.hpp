@@ -22,6 +22,8 @@ struct Case {
     /// The acceleration less one of three times the smoothing, its noise; and one of half the smoothing less
     /// it, what smoothing made of its kinks.
     std::vector<double> rough_deg_s2, blunted_deg_s2;
+    /// Columns of the known torque whose factors are not certain, and by how much: an arm's masses.
+    std::vector<Nuisance> uncertain;
     std::vector<unsigned char> edge;  ///< 1: so near to a start or stop that noise decides what the speed is
     double walk_deg =
         0.0;               ///< rms error of the position after 1 s, where it is the integral of a noisy speed

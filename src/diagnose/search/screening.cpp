@@ -157,7 +157,7 @@ class Screening {
                     term.values[effect.polar->phase] = *term.values[effect.polar->phase] + 90.0;
                     add(term);
                 } else {
-                    least = parameter.lower >= 0.0 ? 0.0 : least;
+                    least = least_in(model_.open, effect, p) >= 0.0 ? 0.0 : least;
                 }
             } else if (effect.side != Side::joint && parameter.left_out == LeftOut::fitted &&
                        parameter.tried.empty() && !(effect.polar && effect.polar->phase == p)) {

@@ -56,7 +56,7 @@ class SensorSearch {
         if (log_.given.empty() || !names_load(*found)) return found;
         // The load was fitted without the friction that it brings: once more with it.
         Case loaded = log_.looked_at;
-        loaded.motion.carried_nm = carried_beside(*found, model);
+        loaded.motion.known_nm = carried_beside(*found, model);
         return std::make_unique<Look>(GivenCase{loaded, log_.given}, validation_, model, effects_, rules_,
                                       work_);
     }

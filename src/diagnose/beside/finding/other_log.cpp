@@ -73,7 +73,7 @@ class OtherLog {
     }
 
   private:
-    void carry(const std::vector<double>& values) { case_.motion.carried_nm = carried_nm(columns_, values); }
+    void carry(const std::vector<double>& values) { case_.motion.known_nm = carried_nm(columns_, values); }
     const Lens& lens_;
     const Candidate& model_;
     Case case_;

@@ -30,7 +30,7 @@ std::vector<double> swelled(const std::vector<double>& column, const Motion& mot
 Lens::Lens(const Case& looked_at, const Candidate& model, std::span<const GivenTerm> given,
            std::span<const Effect* const> effects, const DiagnosisRules& rules, Work& work)
     : Lens(looked_at, rules, work, model) {
-    if (!given.empty() && case_.motion.carried_nm.empty()) carry(given, model);
+    if (!given.empty() && case_.motion.known_nm.empty()) carry(given, model);
     begin(model, columns_of(model, given), effects);
     const std::vector<double> left = left_by_all();
     left_nm_ = rms(left);
@@ -134,7 +134,7 @@ void Lens::carry(std::span<const GivenTerm> given, const Candidate& model) {
     std::vector<double> values =
         Ridge(beside, deviation, rules_.beside.first_noise * rms(open_nm)).solve(ground_.bridged(open_nm));
     for (std::size_t i = 0; i < columns.mean.size(); ++i) values[i] += columns.mean[i];
-    case_.motion.carried_nm = carried_nm(columns, values);
+    case_.motion.known_nm = carried_nm(columns, values);
 }
 
 std::vector<double> Lens::left_by_all() const {
