@@ -7,17 +7,18 @@
 #include <optional>
 
 #include "diagnose/angle/angle.hpp"
-#include "diagnose/beside/finding/told.hpp"
 #include "diagnose/case/faults.hpp"
 #include "diagnose/examined.hpp"
-#include "core/vectors/dot.hpp"
+#include "diagnose/judging/doubt.hpp"
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/judging/leftover.hpp"
 #include "diagnose/judging/reproduction.hpp"
 #include "diagnose/judging/values.hpp"
+#include "diagnose/known_torque.hpp"
 #include "diagnose/search/search.hpp"
 #include "diagnose/telling/summary.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/core/error.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
@@ -66,19 +67,26 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
     return found;
 }
 
+// rms of the residual, with the best values of what is uncertain of the known torque.
+double gap_nm(const ModelBench& bench, const Model& stated) {
+    const Case& c = bench.looked_at();
+    if (c.uncertain.empty()) return rms_of(bench.raw_residual(stated), c.use);
+    return left_rms(with_known_values(c, fit_known_values(c, stated, bench.noise())), stated);
+}
+
 // The gap after each addition, in the order of adoption.
 void tell_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candidate& last, std::size_t own) {
     Candidate now = last;
     now.open.terms.resize(own);
     now.stated.terms.resize(own);
-    double before = rms_of(bench.raw_residual(diagnosis.baseline), bench.looked_at().use);
+    double before = gap_nm(bench, diagnosis.baseline);
     for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
         Finding& finding = diagnosis.rounds[i];
         now.open.terms.push_back(last.open.terms[own + i]);
         now.stated.terms.push_back(last.stated.terms[own + i]);
         now = bench.fitted(now.open, now.stated, {}, 4);
         finding.gap_before_nm = before;
-        finding.gap_after_nm = before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
+        finding.gap_after_nm = before = gap_nm(bench, now.stated);
     }
 }
 
@@ -92,7 +100,7 @@ bool set_aside(Case& c, const std::vector<Leftover>& left, const DiagnosisRules&
                 if (c.motion.time_s[k] < span.from - margin_s || c.motion.time_s[k] > span.to + margin_s)
                     continue;
                 any = any || c.use[k] != 0;
-                c.use[k] = 0;
+                c.use[k] = c.valid[k] = 0;
             }
         }
     }
@@ -171,13 +179,29 @@ Searched search_straight(Case& whole, Case& part, const Model& model, std::span<
     return found;
 }
 
+// Where more than noise is left: the same search in a log that is whitened by what was left.
+void look_again(Searched& found, const Case& c, const Model& model, std::span<const Effect* const> effects,
+                Work& work, const DiagnosisRules& rules) {
+    const std::size_t own = model.terms.size();
+    std::vector<double> left(c.size(), 0.0);
+    const auto cleared = found.bench->cleared_residual(found.last.stated);
+    for (std::size_t r = 0; r < cleared.size(); ++r) left[found.bench->rows()[r]] = cleared[r];
+    found.noise = noise_of_residual(c, left, found.noise, rules);
+    found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules);
+    found.bench->settle_on(found.first.stated);
+    found.first = found.bench->fitted(found.first.open, found.first.stated, found.first.prices);
+    found.refused.clear();
+    found.last = search(*found.bench, found.first, own, effects, found.refused);
+}
+
 // What of the findings is believed, and what is left then. `other`: the validation log, if there is one;
 // it may begin at an angle that only the model tells.
 Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
                  std::span<const Effect* const> effects, Case* other, bool begins_anywhere) {
     const ModelBench& bench = *found.bench;
     diagnosis.unexplained = leftovers(bench, found.last.stated);
-    diagnosis.rounds = judge(bench, found.last, own, effects, diagnosis.unexplained);
+    diagnosis.rounds = judge(bench, found.last, own, effects,
+                             bench.beside_residual() ? std::vector<Leftover>() : diagnosis.unexplained);
     diagnosis.refused = found.refused;
     diagnosis.baseline = found.first.stated;
     diagnosis.evaluations =
@@ -213,12 +237,7 @@ void tell_model(Diagnosis& diagnosis, const Candidate& last, std::size_t own) {
     for (Finding& finding : diagnosis.rounds) {
         if (is_doubtful(finding)) continue;
         finding.term = last.stated.terms[place];
-        // Values beside a leftover are their own.
-        for (FittedValue& value : finding.values) value.term = place;
-        if (finding.out_of_fold)
-            diagnosis.values.insert(diagnosis.values.end(), finding.values.begin(), finding.values.end());
-        else
-            finding.values.clear();
+        finding.values.clear();
         for (const FittedValue& value : last.values) {
             if (value.term == place) finding.values.push_back(value);
         }
@@ -234,37 +253,58 @@ void tell_model(Diagnosis& diagnosis, const Candidate& last, std::size_t own) {
 
 namespace {
 
-// The known torque of the rows of a case; what is not certain of it stays to be fitted.
-void take_known(Case& c, std::span<const GivenTerm> given) {
-    if (given.empty()) return;
-    c.motion.known_nm.assign(c.size(), 0.0);
+void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_view log) {
     for (const GivenTerm& term : given) {
-        for (std::size_t i = 0; i < term.torque_nm.size(); ++i) {
-            add_scaled(term.mean[i], term.torque_nm[i].data(), c.motion.known_nm.data(), c.size());
-            if (term.deviation[i] > stated_deviation && term.name != "simulated")
-                c.uncertain.push_back({term.torque_nm[i], term.deviation[i]});
+        for (const auto& column : term.torque_nm) {
+            if (column.size() != rows)
+                raise<UsageError>("{}: {} values for the {} rows of {}", term.name, column.size(), rows, log);
         }
     }
+}
+
+// Whether a simulation is there of which nobody states the scale.
+bool is_scale_open(std::span<const GivenTerm> given) {
+    return std::ranges::any_of(given, [](const GivenTerm& term) {
+        return term.name == "simulated" && term.deviation[0] > stated_deviation;
+    });
+}
+
+// What the known torque brings into the model: friction that a simulation has too much of is below 0, and the
+// zero of the sensor is fitted beside an arm's weight, which it looks like.
+Model with_known_terms(Model model, std::span<const GivenTerm> given) {
+    model.beside_simulation = is_given(given, "simulated");
+    const bool has_offset = std::ranges::any_of(
+        model.terms, [](const Term& term) { return term.effect->name == "offset"; });
+    if (is_given(given, "arm") && !has_offset) model.terms.push_back(parse_term("offset"));
+    return model;
 }
 
 }  // namespace
 
 Diagnosis diagnose(const Model& given_model, const TraceView& log, const TraceView* validation,
                    const DiagnosisOptions& options) {
-    Model model = given_model;
-    model.beside_simulation = is_given(options.given, "simulated");
+    check_rows(options.given, log.size(), "the log");
+    if (validation != nullptr) {
+        if (options.validation_given.size() != options.given.size())
+            raise<UsageError>("{} terms are given for the log and {} for the validation log",
+                              options.given.size(), options.validation_given.size());
+        check_rows(options.validation_given, validation->size(), "the validation log");
+    }
+    const Model model = with_known_terms(given_model, options.given);
     const DiagnosisRules& rules = options.rules;
     check(rules);
     for (const std::string& name : options.without) (void)find_effect(name);
     const std::size_t own = model.terms.size();
     Case whole = whole_case(log, options.smoothing, rules.recording);
-    take_known(whole, options.given);
+    take_known_torque(whole, options.given);
+    std::vector<std::string> without(options.without.begin(), options.without.end());
+    if (!is_scale_open(options.given)) without.emplace_back("simulation-scale");
     const auto effects =
-        examined(model, options.without, log.has_position() || tells_position(whole.motion, rules.recording));
+        examined(model, without, log.has_position() || tells_position(whole.motion, rules.recording));
     std::optional<Case> other;
     if (validation != nullptr) {
         other = whole_case(*validation, options.smoothing, rules.recording);
-        take_known(*other, options.validation_given);
+        take_known_torque(*other, options.validation_given);
         (void)find_faults(*other, rules.faults);
     }
     Work work(rules.search.most_evaluations);
@@ -282,8 +322,19 @@ Diagnosis diagnose(const Model& given_model, const TraceView& log, const TraceVi
     found.ground = {};  // nobody asks for the noise again
     if (other && !(log.has_position() && validation->has_position())) before.of_other(*other);
     Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr, before.has_other());
+    const bool doubtful = std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), is_doubtful);
+    if (doubtful || !diagnosis.unexplained.empty()) {
+        const double left_nm = rms(found.bench->cleared_residual(found.last.stated));
+        if (left_nm > rules.beside.least_left * found.noise.rms_nm) {
+            const ModelBench plain = *found.bench;
+            look_again(found, part, model, effects, work, rules);
+            last = judged(diagnosis, found, own, effects, other ? &*other : nullptr, before.has_other());
+            diagnosis.unexplained = leftovers(plain, last.stated);
+            diagnosis.gap.noise_floor_nm = plain.floor_nm(last.stated);
+            diagnosis.residual_in_noise = true;
+        }
+    }
     diagnosis.angle = before.account(whole, other ? &*other : nullptr);
-    last = with_findings_beside(diagnosis, *found.bench, last, other ? &*other : nullptr, effects);
     if (!log.has_position())
         diagnosis.undecidable = undecidable(*found.bench, last, effects, options.without);
     measure_at_samples(spoiled, whole, last.stated);
@@ -298,9 +349,20 @@ Diagnosis diagnose(const Model& given_model, const TraceView& log, const TraceVi
     tell_model(diagnosis, last, own);
     name_findings(diagnosis, rules);
     diagnosis.samples_used = all.used();
-    const GapCase log_gap{whole, whole};
-    const std::optional<GapCase> other_gap = other ? std::optional<GapCase>({*other, *other}) : std::nullopt;
+    const KnownValues known = fit_known_values(all, last.stated, found.noise);
+    diagnosis.given = reported_values(options.given, known);
+    const Case improved = with_known_values(whole, known);
+    const std::optional<Case> other_improved =
+        other ? std::optional(with_known_values(*other, known)) : std::nullopt;
+    const GapCase log_gap{whole, improved};
+    const std::optional<GapCase> other_gap =
+        other ? std::optional<GapCase>({*other, *other_improved}) : std::nullopt;
     measure_gap(diagnosis, log_gap, other_gap ? &*other_gap : nullptr, rules);
+    if (!options.given.empty()) {
+        diagnosis.residual_before_nm = residual_nm(whole, diagnosis.baseline);
+        diagnosis.residual_after_nm = residual_nm(improved, diagnosis.model);
+        diagnosis.beside_given_nm = residual_nm(improved, {diagnosis.model.gear_ratio, {}});
+    }
     diagnosis.verdict = verdict_of(diagnosis);
     return diagnosis;
 }

@@ -23,7 +23,6 @@ std::vector<const Effect*> examined(const Model& model, std::span<const std::str
             ripple_comes || std::any_of(model.terms.begin(), model.terms.end(), [](const Term& term) {
                 return term.effect->ripple_order.has_value();
             });
-        if (effect->name == "simulation-scale" && !model.beside_simulation) continue;
         if (left_out || effect->side == Side::converter ||
             (effect->side == Side::ripple && !effect->whole && !ripple) ||
             (!of_position && needs_position(*effect)))

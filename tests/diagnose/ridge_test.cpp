@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What least squares with drawn values leaves of several targets at once.
-#include "diagnose/beside/weighing/ridge.hpp"
+#include "diagnose/ridge.hpp"
 
 #include <random>
 

@@ -70,6 +70,8 @@ struct Evidence {
     double own_nm = 0.0;       ///< rms of its whole torque, of which others might explain a part as well
     double raw_gain = 0.0;     ///< fall of the sum of squares of the residual, Nm^2
     double elsewhere = 0.0;    ///< part of the gain that is left without its best stretch of the log
+    double t = 0.0;            ///< the gain in units of its own standard error over blocks of the log
+    std::size_t blocks = 0, blocks_positive = 0;  ///< of a second or more; those in which there is a gain
 };
 
 struct RivalFinding {
@@ -91,17 +93,6 @@ struct RefusedCandidate {
     std::vector<Decision> decisions;
 };
 
-/// Why a finding is believed beside a leftover that nothing explains: in blocks of the log that its size was
-/// not fitted to, made white by the leftover's own colour.
-struct OutOfFold {
-    double gain = 0.0;  ///< fall of the sum of squares there, in units of what is left of the white noise
-    double t = 0.0;     ///< the same in units of its own deviation from block to block
-    std::size_t blocks = 0, blocks_positive = 0;
-    double evenness = 0.0;      ///< spread of the size from fold to fold beyond its own noise, of the size
-    std::string_view rival;     ///< the best in its place; empty when there is none
-    double rival_margin = 0.0;  ///< gain by which the finding is ahead of it
-};
-
 /// One effect that was added, in the order of adoption.
 struct Finding {
     Term term;  ///< with its values
@@ -115,8 +106,6 @@ struct Finding {
     std::optional<double> validation_before_nm, validation_after_nm;
     std::string reason;                         ///< of a status other than confirmed, in words
     std::vector<Decision> decisions;            ///< in the order in which the rules were asked
-    std::optional<OutOfFold> out_of_fold = {};  ///< of a finding beside a leftover
-    bool size_uncertain = false;                ///< the leftover may be part of its size
 };
 
 /// Effects between which this log does not decide.
@@ -152,12 +141,6 @@ struct Fault {
     std::string words;
 };
 
-/// Part of the residual in a band of frequencies.
-struct BandLeft {
-    double from_hz = 0.0, to_hz = 0.0;  ///< 0: up to half the sample rate
-    double rms_nm = 0.0;
-};
-
 /// The torque of a log in a band of frequencies: all of it less its mean, what the given terms leave of it,
 /// and what they and the improved model leave.
 struct BandGap {
@@ -173,9 +156,9 @@ struct AcceptedFinding {
     std::vector<FittedValue> values;
 };
 
-/// A value of a given term, or of what mends it.
+/// A value of a given term.
 struct GivenValue {
-    std::string name;  ///< of the term; "inertia_kgm2", "gravity_cosine_nm", "gravity_sine_nm", "offset_nm"
+    std::string name;  ///< of the term
     double value = 0.0;
     std::optional<Interval> ci95;
 };
@@ -208,7 +191,7 @@ struct Diagnosis {
     std::vector<Leftover> unexplained;
     std::vector<Undecidable> undecidable;
     DiagnosisGap gap;
-    std::vector<GivenValue> given;  ///< values of the given terms, in their order, then what mends them
+    std::vector<GivenValue> given;  ///< values of the given terms, in their order
     /// Beside given terms: measured less predicted torque of the model as given and of the improved one, an
     /// entry per row of the log. Empty without given terms: a model's own prediction tells it then.
     std::vector<double> residual_before_nm, residual_after_nm;
@@ -217,7 +200,7 @@ struct Diagnosis {
     std::vector<AcceptedFinding> accepted;
     std::vector<std::string> not_accepted;  ///< why a name is not, a sentence each
     std::vector<std::string> next;          ///< what to do where something is in doubt, a sentence each
-    std::vector<BandLeft> leftover;      ///< of the improved model, where something is left beside findings
+    bool residual_in_noise = false;  ///< names were weighed against noise that holds what nothing explains
     std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
     /// Evaluations of a model along the samples searched, and whether the search was ended for their number.

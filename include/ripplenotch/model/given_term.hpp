@@ -23,7 +23,6 @@ struct GivenTerm {
     /// What is known of each value before the log: drawn towards `mean` as by a measurement with this
     /// standard deviation, in the value's own unit. A deviation of infinity leaves it free.
     std::vector<double> mean, deviation;
-    bool bears_load = true;  ///< gear and bearings carry this torque
 };
 
 /// True when one of these, terms or values of them, has the name.

@@ -43,90 +43,67 @@ std::string where_text(const Place& place) {
     return text.empty() ? "all over the log" : text;
 }
 
-// What a finding beside a leftover rests on.
-std::string beside_text(const Finding& finding) {
-    if (!finding.out_of_fold) return {};
-    const OutOfFold& outside = *finding.out_of_fold;
-    std::string text =
-        fmt::format("  out of fold in {} of {} blocks; gain {}, price {}", outside.blocks_positive,
-                    outside.blocks, short_number(outside.gain), short_number(finding.evidence.price));
-    if (!outside.rival.empty())
-        text +=
-            fmt::format("; next best {}, {} {}", outside.rival, short_number(std::abs(outside.rival_margin)),
-                        outside.rival_margin < 0.0 ? "ahead" : "behind");
-    return text + "\n";
-}
-
-// A scale that is not 1 is a finding of its own, and no name.
-std::string scale_text(const GivenValue& scale) {
-    constexpr double least = 0.95, most = 1.05;
-    std::string text = fmt::format("simulated: {}", short_number(scale.value));
-    if (scale.ci95)
-        text += fmt::format(" [{}, {}]", short_number(scale.ci95->low), short_number(scale.ci95->high));
-    text += " of the simulation's torque is measured";
-    const bool off = (scale.value < least && (!scale.ci95 || scale.ci95->high < least)) ||
-                     (scale.value > most && (!scale.ci95 || scale.ci95->low > most));
-    return text + (off ? ": torque constant, gear ratio or unit\n" : "\n");
-}
-
-// Frictions of the user's own model beside a simulation: what that has too little of, or too much. A fitted
-// scale acts on its friction as well.
-std::string own_friction_text(const Diagnosis& diagnosis, const GivenValue& scale) {
-    const std::string simulation =
-        scale.ci95 ? fmt::format("{} times the simulation's torque", short_number(scale.value))
-                   : "the simulation";
+std::string joined(const std::vector<std::string>& words, std::string_view between) {
     std::string text;
-    for (std::size_t place = 0; place < diagnosis.baseline.terms.size(); ++place) {
-        const Term& term = diagnosis.model.terms[place];
-        if (!term.effect->resists) continue;
-        std::string values, off = "whether it has too much or too little is not told";
-        for (const FittedValue& value : diagnosis.values) {
-            if (value.term != place) continue;
-            values += fmt::format("{}{}", values.empty() ? "" : ", ", value_text(term, value));
-            if (value.parameter != 0 || !value.ci95) continue;
-            if (value.ci95->low > 0.0) off = simulation + " has too little of it";
-            if (value.ci95->high < 0.0) off = simulation + " has too much of it";
-        }
-        if (!values.empty()) text += fmt::format("simulated: {}, {}: {}\n", term.effect->name, values, off);
-    }
+    for (const std::string& word : words) text += fmt::format("{}{}", text.empty() ? "" : between, word);
     return text;
 }
 
-// What is given, with the values that were fitted to it.
-std::string given_text(const Diagnosis& diagnosis) {
+// "1.500 +/- 0.010 Nm": the size of a finding with half of its 95 % interval.
+std::string size_text(const Finding& finding) {
+    const Effect& effect = *finding.term.effect;
     std::string text;
-    std::string mended;
-    const GivenValue* scale = nullptr;
-    for (const GivenValue& value : diagnosis.given) {
-        if (value.name == "arm" || value.name == "nuisance") continue;
-        if (value.name != "simulated") {
-            mended +=
-                fmt::format("{}{} = {}", mended.empty() ? "" : ", ", value.name, short_number(value.value));
-        } else if (scale == nullptr) {
-            scale = &value;
-            text += scale_text(value);
-        } else {
-            text += fmt::format("simulated: {} ms later than the log\n",
-                                short_number(1e3 * value.value / scale->value));
-        }
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+        if (effect.parameters[p].left_out == LeftOut::refused)
+            text += fmt::format(" {} {}", effect.parameters[p].name, short_number(*finding.term.values[p]));
     }
-    if (scale != nullptr) text += own_friction_text(diagnosis, *scale);
-    if (!mended.empty()) text += fmt::format("  mended beside it, by nobody's name: {}\n", mended);
-    return text;
+    const FittedValue* size = nullptr;
+    for (const FittedValue& value : finding.values) {
+        const bool larger = size == nullptr || (effect.parameters[value.parameter].linear &&
+                                                !effect.parameters[size->parameter].linear);
+        if (larger) size = &value;
+    }
+    if (size == nullptr) return text;
+    const Parameter& parameter = effect.parameters[size->parameter];
+    text += fmt::format(" {}", short_number(size->value));
+    if (size->ci95)
+        text += fmt::format(" +/- {}", fmt::format("{:.2g}", 0.5 * (size->ci95->high - size->ci95->low)));
+    return text + unit_after(parameter.unit);
 }
 
-std::string bands_text(const std::vector<BandLeft>& bands) {
-    if (bands.empty()) return {};
-    return fmt::format("left by frequency: {} Nm rms below 1 Hz, {} from 1 to 10 Hz, {} above\n",
-                       short_number(bands[0].rms_nm), short_number(bands[1].rms_nm),
-                       short_number(bands[2].rms_nm));
+bool is_doubtful(const Finding& finding) {
+    return finding.status == FindingStatus::tentative || finding.status == FindingStatus::unidentifiable ||
+           finding.status == FindingStatus::not_reproduced;
+}
+
+// A friction below 0 is what a simulation has too much of.
+bool drives(const Finding& finding) {
+    return finding.term.effect->resists && finding.term.values.front().value_or(0.0) < 0.0;
+}
+
+// The verdict in one sentence, with names, sizes and what is left.
+std::string answer(const Diagnosis& diagnosis) {
+    std::string names;
+    const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+    for (const Fault& fault : diagnosis.faults) add(std::string(fault.term.effect->name));
+    for (const Finding& finding : diagnosis.rounds) {
+        if (finding.status != FindingStatus::confirmed) continue;
+        add(fmt::format("{}{}{}", finding.term.effect->name, size_text(finding),
+                        drives(finding) ? " (the simulation has too much of it)" : ""));
+    }
+    for (const Tie& tie : diagnosis.ambiguous) add(joined(tie.effects, " or "));
+    const DiagnosisGap& gap = diagnosis.gap;
+    const std::string head = !names.empty()                ? "Missing: " + names
+                             : diagnosis.unexplained.empty() ? "Nothing is missing"
+                                                             : "Unexplained";
+    return fmt::format("{}; residual {} to {} Nm rms, noise {} Nm rms.\n", head, short_number(gap.before_nm),
+                       short_number(gap.after_nm), short_number(gap.noise_floor_nm));
 }
 
 std::string round_text(const Finding& finding, std::size_t number) {
     const Term& term = finding.term;
-    std::string text = fmt::format(
-        "round {}: {}, {}{}\n", number, term.effect->name, status_name(finding.status),
-        finding.out_of_fold && finding.status == FindingStatus::confirmed ? " beside a leftover" : "");
+    std::string text =
+        fmt::format("round {}: {}, {}\n", number, term.effect->name, status_name(finding.status));
     if (!finding.reason.empty()) text += fmt::format("  {}\n", finding.reason);
     for (std::size_t p = 0; p < term.values.size(); ++p) {
         if (term.effect->parameters[p].left_out == LeftOut::refused)
@@ -134,21 +111,28 @@ std::string round_text(const Finding& finding, std::size_t number) {
                 fmt::format("  {} = {}\n", term.effect->parameters[p].name, short_number(*term.values[p]));
     }
     for (const FittedValue& value : finding.values) text += fmt::format("  {}\n", value_text(term, value));
-    text += beside_text(finding);
+    if (drives(finding))
+        text += "  negative friction is not physical: the simulation includes too much friction already\n";
     text += fmt::format("  acts {}\n", where_text(finding.where));
-    text +=
-        fmt::format("  gap {} -> {} Nm; alone it explains {} Nm rms\n", short_number(finding.gap_before_nm),
-                    short_number(finding.gap_after_nm), short_number(finding.evidence.share_nm));
+    text += fmt::format(
+        "  gap {} -> {} Nm; alone it explains {} Nm rms; improves {} of {} blocks\n",
+        short_number(finding.gap_before_nm), short_number(finding.gap_after_nm),
+        short_number(finding.evidence.share_nm), finding.evidence.blocks_positive, finding.evidence.blocks);
     if (finding.validation_before_nm) {
         text += fmt::format("  on the validation log {} -> {} Nm with it\n",
                             short_number(*finding.validation_before_nm),
                             short_number(*finding.validation_after_nm));
     }
-    if (finding.out_of_fold) return text;
     for (const RivalFinding& rival : finding.alternatives)
         text += fmt::format("  instead of it, {} would leave {} more (a tie below 12)\n", rival.effect,
                             short_number(rival.margin));
     return text;
+}
+
+// What was tried and is not confirmed, in a line.
+std::string doubtful_text(const Finding& finding) {
+    return fmt::format("not confirmed: {}{}, {}: {}\n", finding.term.effect->name, size_text(finding),
+                       status_name(finding.status), finding.reason);
 }
 
 // The last rule that spoke against decided; without one, all are told.
@@ -191,12 +175,6 @@ std::string leftovers_text(const std::vector<Leftover>& leftovers, std::string_v
     return text;
 }
 
-std::string joined(const std::vector<std::string>& words, std::string_view between) {
-    std::string text;
-    for (const std::string& word : words) text += fmt::format("{}{}", text.empty() ? "" : between, word);
-    return text;
-}
-
 std::string closing(const Diagnosis& diagnosis) {
     switch (diagnosis.verdict) {
         case DiagnosisVerdict::matches:
@@ -218,8 +196,9 @@ std::string closing(const Diagnosis& diagnosis) {
 std::string findings_text(const Diagnosis& diagnosis, bool explain) {
     std::string text;
     for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
-        text += round_text(diagnosis.rounds[i], i + 1);
-        if (explain) text += decisions_text(diagnosis.rounds[i].decisions);
+        const Finding& finding = diagnosis.rounds[i];
+        text += explain || !is_doubtful(finding) ? round_text(finding, i + 1) : doubtful_text(finding);
+        if (explain) text += decisions_text(finding.decisions);
     }
     if (!explain) return text;
     for (const RefusedCandidate& candidate : diagnosis.refused)
@@ -263,12 +242,15 @@ std::string angle_text(const Diagnosis& diagnosis) {
 std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     if (diagnosis.verdict == DiagnosisVerdict::undecided) return diagnosis.doubt + "\n";
     const DiagnosisGap& gap = diagnosis.gap;
-    std::string text = fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,
-                                   diagnosis.samples_used, short_number(gap.noise_floor_nm));
+    std::string text = answer(diagnosis);
+    text += fmt::format("verdict: {}\n", closing(diagnosis));
+    text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
+    text += fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,
+                        diagnosis.samples_used, short_number(gap.noise_floor_nm));
     text += fmt::format("gap of the model as given: {} Nm rms\n", short_number(gap.before_nm));
     for (std::size_t i = 0; i < std::min<std::size_t>(diagnosis.disagreement.size(), 3); ++i)
         text += fmt::format("  disagrees {}\n", leftover_text(diagnosis.disagreement[i]));
-    text += angle_text(diagnosis) + given_text(diagnosis);
+    text += angle_text(diagnosis);
     for (const Fault& fault : diagnosis.faults)
         text += fmt::format("fault of the log: {}, {}\n", fault.term.effect->name, fault.words);
     text += findings_text(diagnosis, explain);
@@ -282,15 +264,12 @@ std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
                                 short_number(entry.would_explain_nm));
         text += "\n";
     }
-    text += bands_text(diagnosis.leftover);
     text += accepted_text(diagnosis);
     text += gap_text(gap);
     if (diagnosis.search_ended)
         text += fmt::format(
             "the search was ended after {:.0f} evaluations of the model; what is left is unexplained\n",
             diagnosis.evaluations);
-    text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
-    text += fmt::format("verdict: {}\n", closing(diagnosis));
     return text + band_table(diagnosis.bands) + next_text(diagnosis.next);
 }
 

@@ -56,13 +56,7 @@ void add_given(JointMjcf& parts, const JointDiagnosis& one, const std::optional<
     if (one.given.arm && !tree)
         parts.not_held.push_back({"arm", "its bodies are not in this file; --arm mjcf,file=FILE has them"});
     if (one.given.simulated)
-        parts.not_held.push_back({"simulated", "its torque, and what mends it, are not in this file"});
-    for (const GivenValue& value : one.diagnosis.given)
-        if (value.name == "offset_nm")
-            parts.not_held.push_back(
-                {"offset", fmt::format("{} Nm beside what is given; it is no torque on the "
-                                       "joint",
-                                       short_number(value.value))});
+        parts.not_held.push_back({"simulated", "its torque is not in this file"});
 }
 
 std::vector<std::string> mjcf_heading(const JointDiagnosis& one, const MjcfAccount& account) {

@@ -111,16 +111,6 @@ GivenTerms given_of(const DiagnoseRequest& request, const ModelWithGiven& model,
     return given;
 }
 
-// Coulomb friction of the simulation, whose error is a value of the model.
-void add_friction(Model& model) {
-    const Term own = parse_term("coulomb-friction");
-    if (std::ranges::find(model.terms, own.effect, &Term::effect) != model.terms.end())
-        raise<UsageError>(
-            "--simulated: friction=fit, and the model has coulomb-friction already; leave its torque_nm out "
-            "there, and it is fitted");
-    model.terms.push_back(own);
-}
-
 }  // namespace
 
 bool JointDiagnosis::is_conclusive() const {
@@ -148,11 +138,9 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     std::optional<Log> other;
     if (request.validate) other = read(request, most, reading, *request.validate, one.provenance);
     one.given = given_of(request, model, reading, most, source, one, other);
-    if (one.given.simulated && one.given.simulated->fit_friction) add_friction(model.model);
     for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
-    add_stated_nuisance(one.given, one.diagnosis);
     return one;
 }
 

@@ -4,14 +4,14 @@
 #include <algorithm>
 
 #include "cli/gear/joint_methods.hpp"
-#include "cli/given/nuisance.hpp"
 #include "cli/options/simulated_option.hpp"
+#include "core/vectors/dot.hpp"
 #include "ripplenotch/core/error.hpp"
 
 namespace ripplenotch {
 namespace {
 
-constexpr std::string_view arm_name = "arm",
+constexpr std::string_view arm_name = "arm", nuisance_name = "nuisance",
                            once = "arm: standard input cannot be read twice; give the log as a file";
 
 // The term's rows that the log still has; both are in order of time and come from one file.
@@ -33,8 +33,8 @@ GivenTerm at_rows_of(const Log& log, const Log& whole, GivenTerm term) {
     return term;
 }
 
-GivenTerm stated_term(std::string_view name, std::vector<double> torque_nm, bool bears_load) {
-    return {std::string(name), {std::move(torque_nm)}, {1.0}, {stated_deviation}, bears_load};
+GivenTerm stated_term(std::string_view name, std::vector<double> torque_nm) {
+    return {std::string(name), {std::move(torque_nm)}, {1.0}, {stated_deviation}};
 }
 
 // The terms of an arm along one log: its torque, and what is stated beside it.
@@ -45,12 +45,12 @@ void add_arm_terms(std::vector<GivenTerm>& terms, GivenArm& arm, const StatedArm
         stated.values
             ? stated_term(
                   arm_name,
-                  stated_torque(arm.chain(), *stated.values, *stated.smoothing, reading.view(), joint), true)
+                  stated_torque(arm.chain(), *stated.values, *stated.smoothing, reading.view(), joint))
             : arm.term(joint, reading);
     terms.push_back(at_rows_of(log, whole, std::move(term)));
     if (!stated.nuisance.any()) return;
     auto beside_nm = nuisance_torque(arm.chain(), stated.nuisance, whole.trace.view(), joint);
-    terms.push_back(at_rows_of(log, whole, stated_term(nuisance_name, std::move(beside_nm), false)));
+    terms.push_back(at_rows_of(log, whole, stated_term(nuisance_name, std::move(beside_nm))));
 }
 
 ArmOption option_of(const StatedArm& arm) { return {arm.chain, arm.stated_joints(), "of the model"}; }
@@ -64,9 +64,6 @@ void attach_given(Options& options, GivenOptions& given) {
 
 std::vector<std::string> GivenTerms::open() const {
     std::vector<std::string> names;
-    if (simulated && !simulated->scale) names.emplace_back("simulated.scale");
-    if (simulated && simulated->fit_delay) names.emplace_back("simulated.delay_s");
-    if (simulated && simulated->fit_friction) names.emplace_back("simulated.friction");
     if (fitted_arm) names.emplace_back("arm.links");
     return names;
 }
@@ -99,10 +96,8 @@ void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated,
     terms.simulated = simulated.term();
     if (simulated.file()) terms.files.push_back(*simulated.file());
     terms.log.push_back(simulated.read(reading, log.path, log.log));
-    add_nuisance(terms.log, *terms.simulated, log.log, smoothing_);
     if (validation == nullptr) return;
     terms.validation.push_back(simulated.read_validation(reading, validation->path, validation->log));
-    add_nuisance(terms.validation, *terms.simulated, validation->log, smoothing_);
 }
 
 void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
@@ -129,16 +124,11 @@ void GivenSource::add_arm(GivenTerms& terms, const ModelWithGiven& stated, const
                   validation->log, joint);
 }
 
-GivenTorque given_torque(const std::vector<GivenTerm>& terms, std::size_t rows) {
-    GivenTorque sum{std::vector<double>(rows, 0.0), std::vector<double>(rows, 0.0)};
+std::vector<double> known_torque_nm(const std::vector<GivenTerm>& terms, std::size_t rows) {
+    std::vector<double> sum(terms.empty() ? 0 : rows, 0.0);
     for (const GivenTerm& term : terms) {
-        for (std::size_t c = 0; c < term.torque_nm.size(); ++c) {
-            for (std::size_t k = 0; k < rows; ++k) {
-                const double torque_nm = term.mean[c] * term.torque_nm[c][k];
-                sum.torque_nm[k] += torque_nm;
-                if (term.bears_load) sum.carried_nm[k] += torque_nm;
-            }
-        }
+        for (std::size_t c = 0; c < term.torque_nm.size(); ++c)
+            add_scaled(term.mean[c], term.torque_nm[c].data(), sum.data(), rows);
     }
     return sum;
 }

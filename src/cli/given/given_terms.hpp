@@ -27,9 +27,9 @@ struct GivenOptions {
     [[nodiscard]] bool any() const { return simulated || arm; }
 };
 inline constexpr std::string_view simulated_option_help =
-    "torque of your own simulation, beside which is searched: a column of the log, tau_model, or "
-    "of another file, log,file=sim.csv,column=torque; scale=1 keeps it as it is, delay=2ms or delay=fit says "
-    "how much later it is, friction=fit that it has friction of its own, which may be too much";
+    "torque of your own simulation, as a known part of the model: a column of the log, tau_model, or "
+    "of another file, log,file=sim.csv,column=torque; scale=1 states that its size is right, delay=2ms how "
+    "much later it is";
 void attach_given(Options& options, GivenOptions& given);
 
 /// A log of one joint as a command reads it.
@@ -80,16 +80,11 @@ class GivenSource {
     std::map<std::size_t, std::shared_ptr<GivenArm>> arms_;  ///< by the most rows held
 };
 
-/// The sum of terms whose values are all stated, an entry a row: at the joint, before any sensor.
-struct GivenTorque {
-    std::vector<double> torque_nm, carried_nm;  ///< all of it; what gear and bearings carry
-};
-[[nodiscard]] GivenTorque given_torque(const std::vector<GivenTerm>& terms, std::size_t rows);
+/// The sum of terms with their values as given, a number a row: torque at the joint, before any sensor. Empty
+/// without terms.
+[[nodiscard]] std::vector<double> known_torque_nm(const std::vector<GivenTerm>& terms, std::size_t rows);
 
-/// What was stated of a nuisance is told with what was found beside it.
-void add_stated_nuisance(const GivenTerms& given, Diagnosis& diagnosis);
-
-/// The improved model with the values of what is given. The diagnosis tells whole nuisances.
+/// The improved model with the values of what is given.
 [[nodiscard]] ModelWithGiven improved_model(const GivenTerms& given, const Diagnosis& diagnosis);
 
 /// The joint whose log a model needs, where it says so and the user does not.

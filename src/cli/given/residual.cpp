@@ -9,7 +9,6 @@
 #include "ripplenotch/core/error.hpp"
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
-#include "ripplenotch/model/sensors.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -34,13 +33,9 @@ std::vector<double> predicted_torque(const ResidualOptions& residual, const Mode
         settle_simulation(given.log, log.log.trace);
         terms = std::move(given.log);
     }
-    GivenTorque given = given_torque(terms, log.log.trace.size());
     Motion motion = motion_along(log.log.trace.view(), default_smoothing);
-    motion.known_nm = std::move(given.carried_nm);
-    through_sensors(model.model, motion, given.torque_nm);
-    std::vector<double> sum = predict_nm(model.model, motion);
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += given.torque_nm[k];
-    return sum;
+    motion.known_nm = known_torque_nm(terms, log.log.trace.size());
+    return predict_nm(model.model, motion);
 }
 
 }  // namespace

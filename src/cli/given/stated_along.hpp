@@ -9,12 +9,12 @@ namespace ripplenotch {
 /// The sum of what the model and the options state; rows of the log that it does not span are taken out.
 /// Nothing given: empty. Throws UsageError for a value that is still to be fitted, and what GivenSource
 /// throws.
-[[nodiscard]] GivenTorque stated_torque_along(const GivenOptions& options, const ModelWithGiven& model,
+[[nodiscard]] std::vector<double> stated_torque_along(const GivenOptions& options, const ModelWithGiven& model,
                                               const ReadOptions& reading, const GivenLog& log,
                                               Seconds smoothing);
 
-/// The scale, and the delay if it is open, that leave least of the log's torque beside an offset, as if they
-/// had been stated. What is in the torque besides may move them a little.
+/// The scale that leaves least of the log's torque beside an offset, where it is not stated. What is in the
+/// torque besides may move it a little.
 void settle_simulation(std::vector<GivenTerm>& terms, const Trace& log);
 
 }  // namespace ripplenotch

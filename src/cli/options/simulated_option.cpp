@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,30 +18,19 @@
 namespace ripplenotch {
 namespace {
 
-// Of a scale that is fitted; hardly ever is a simulation in other units by more.
-constexpr double usual_scale = 10.0;
-// Of a delay that is fitted.
-constexpr double usual_delay_s = 0.02;
-
-constexpr std::array<std::string_view, 1> aligns = {"start"}, frictions = {"fit"};
-constexpr Key friction_key = {.name = "friction",
-                              .kind = KeyKind::choice,
-                              .choices = frictions,
-                              .help = "fit: it has Coulomb friction of its own, which may be too much"};
+constexpr std::array<std::string_view, 1> aligns = {"start"};
 constexpr Key column_keys[] = {
     {.name = "name", .kind = KeyKind::text, .required = true, .help = "of the column"},
-    {.name = "scale", .kind = KeyKind::number, .help = "factor; left out: fitted"},
-    {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, or 'fit'"},
-    friction_key,
+    {.name = "scale", .kind = KeyKind::number, .help = "factor that is known; left out: 1, unless the log shows another"},
+    {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, if it is known"},
 };
 constexpr Key log_keys[] = {
     {.name = "file", .kind = KeyKind::text, .required = true, .help = "the simulation's log"},
     {.name = "column", .kind = KeyKind::text, .required = true, .help = "of its torque"},
     {.name = "validate", .kind = KeyKind::text, .help = "its log for the validation log"},
     {.name = "align", .kind = KeyKind::choice, .choices = aligns, .help = "start: both logs begin together"},
-    {.name = "scale", .kind = KeyKind::number, .help = "factor; left out: fitted"},
-    {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, or 'fit'"},
-    friction_key,
+    {.name = "scale", .kind = KeyKind::number, .help = "factor that is known; left out: 1, unless the log shows another"},
+    {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, if it is known"},
 };
 
 // The cubic through the four samples about a time.
@@ -117,17 +107,10 @@ void keep_within(Log& log, double from_s, double to_s, const std::string& path) 
          fmt::format("{} rows of the log are outside what {} spans and do not count", outside, path), true});
 }
 
-GivenTerm term_of(std::vector<double> at_log, std::vector<double> slope, const SimulatedTerm& stated_term) {
-    GivenTerm term{"simulated", {}, {}, {}};
-    term.torque_nm.push_back(std::move(at_log));
-    term.mean.push_back(stated_term.scale.value_or(1.0));
-    term.deviation.push_back(stated_term.scale ? stated_deviation : usual_scale);
-    if (!slope.empty()) {
-        term.torque_nm.push_back(std::move(slope));
-        term.mean.push_back(0.0);
-        term.deviation.push_back(usual_delay_s);
-    }
-    return term;
+// A scale that is not stated is 1 until something shows another.
+GivenTerm term_of(std::vector<double> at_log, const SimulatedTerm& stated) {
+    const double deviation = stated.scale ? stated_deviation : std::numeric_limits<double>::infinity();
+    return {"simulated", {std::move(at_log)}, {stated.scale.value_or(1.0)}, {deviation}};
 }
 
 bool states(const Spec& spec, std::string_view key) {
@@ -168,14 +151,15 @@ SimulatedOption::SimulatedOption(std::string_view text, const std::optional<Simu
         const std::string column = std::exchange(term_.column, {});
         term_ = *stated;
         term_.column = column;
-        term_.fit_friction = settings.has("friction");
         return;
     }
-    term_.fit_friction = settings.has("friction");
     if (settings.has("scale")) term_.scale = settings.number("scale");
     const std::string delay = settings.text("delay");
-    term_.fit_delay = delay == "fit";
-    if (!term_.fit_delay) term_.delay_s = parse_quantity(delay, Dimension::time, "--simulated: delay");
+    if (delay == "fit")
+        raise<UsageError>(
+            "--simulated: delay=fit is not needed: a delay is one of the effects that are tried; leave it "
+            "out");
+    term_.delay_s = parse_quantity(delay, Dimension::time, "--simulated: delay");
 }
 
 GivenTerm SimulatedOption::read(const ReadOptions& reading, const std::string& path, Log& log) const {
@@ -217,20 +201,11 @@ GivenTerm SimulatedOption::from(ReadOptions reading, const std::string& path, Lo
         raise<DataError>("simulated: '{}' of {} has {} rows that can be read, the log {}", term_.column, path,
                          simulated.trace.size(), log.trace.size());
     if (file_) keep_within(log, time_s.front() - term_.delay_s, time_s.back() - term_.delay_s, path);
-    const auto at = [&](double later_s) {
-        std::vector<double> values;
-        for (const double t : log.trace.time_s)
-            values.push_back(cubic_at(time_s, simulated.trace.torque_nm, t + term_.delay_s + later_s));
-        return values;
-    };
-    std::vector<double> here = term_.delay_s == 0.0 && !file_ ? simulated.trace.torque_nm : at(0.0), slope;
-    if (term_.fit_delay) {
-        const double step_s = 1.0 / log.trace.sample_rate.value();
-        slope = at(step_s);
-        const auto before = at(-step_s);
-        for (std::size_t k = 0; k < slope.size(); ++k) slope[k] = (slope[k] - before[k]) / (2.0 * step_s);
-    }
-    return term_of(std::move(here), std::move(slope), term_);
+    if (term_.delay_s == 0.0 && !file_) return term_of(simulated.trace.torque_nm, term_);
+    std::vector<double> at_log;
+    for (const double t : log.trace.time_s)
+        at_log.push_back(cubic_at(time_s, simulated.trace.torque_nm, t + term_.delay_s));
+    return term_of(std::move(at_log), term_);
 }
 
 }  // namespace ripplenotch

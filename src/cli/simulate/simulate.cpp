@@ -21,7 +21,6 @@
 #include "ripplenotch/model/measured_motion.hpp"
 #include "ripplenotch/model/motion.hpp"
 #include "ripplenotch/model/noise.hpp"
-#include "ripplenotch/model/sensors.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -52,7 +51,6 @@ struct Course {
     Motion motion;
     std::vector<double> velocity_deg_s;  ///< of a log: as logged, not smoothed
     std::vector<double> measured_nm;     ///< empty without a log
-    std::vector<double> given_nm;        ///< beside the model's effects; empty without a log
     bool has_position = true;
     std::vector<Recording> recordings = {};  ///< of a log
 };
@@ -73,7 +71,7 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     if (!options.along_log()) {
         Motion motion = make_motion(options.motions, *options.sample_rate);
         std::vector<double> velocity_deg_s = motion.velocity_deg_s;
-        return {std::move(motion), std::move(velocity_deg_s), {}, {}, true};
+        return {std::move(motion), std::move(velocity_deg_s), {}, true};
     }
     LogOptions words = options.log_options;
     words.sample_rate = options.sample_rate;
@@ -81,18 +79,13 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     const ReadOptions reading = read_options(words, assembled_gear(options.joint, model.model));
     Log log = read_log(options.log, reading);
     say_layout(options.common, log.layout);
-    GivenTorque given = stated_torque_along({options.simulated, std::nullopt}, model, reading,
+    std::vector<double> known_nm = stated_torque_along({options.simulated, std::nullopt}, model, reading,
                                             {options.log, log}, options.smoothing);
     say_warnings(options.common, log.recording.warnings);
     Motion motion = motion_along(log.trace.view(), options.smoothing);
-    if (!given.carried_nm.empty()) motion.known_nm = std::move(given.carried_nm);
-    if (!given.torque_nm.empty()) through_sensors(model.model, motion, given.torque_nm);
-    return {std::move(motion),          log.trace.velocity_deg_s,        log.trace.torque_nm,
-            std::move(given.torque_nm), log.trace.view().has_position(), {{log.recording}}};
-}
-
-void add_given_torque(const Course& course, std::vector<double>& torque_nm) {
-    for (std::size_t k = 0; k < course.given_nm.size(); ++k) torque_nm[k] += course.given_nm[k];
+    motion.known_nm = std::move(known_nm);
+    return {std::move(motion), log.trace.velocity_deg_s, log.trace.torque_nm, log.trace.view().has_position(),
+            {{log.recording}}};
 }
 
 // Along a log the result is a prediction, and which samples spikes and dropouts hit cannot be predicted.
@@ -106,7 +99,6 @@ std::vector<NumberColumn> make_columns(const SimulateOptions& options, const Mod
     add_noise(noise_nm, {.rms = options.noise.value(), .correlation = options.noise_correlation}, seed,
               NoiseChannel::torque);
     std::vector<double> torque_nm = measure_nm(model, course.motion, noise_nm, chance_of(options));
-    add_given_torque(course, torque_nm);
     add_white_noise(course.velocity_deg_s, options.velocity_noise.value(), seed, NoiseChannel::velocity);
     std::vector<NumberColumn> columns;
     columns.push_back({"time_s", std::move(course.motion.time_s)});
@@ -122,7 +114,6 @@ std::optional<Followed> followed(const SimulateOptions& options, const Model& mo
     if (!options.along_log()) return std::nullopt;
     std::vector<double> residual_nm = course.measured_nm;
     auto predicted_nm = predict_nm(model, course.motion);
-    add_given_torque(course, predicted_nm);
     for (std::size_t k = 0; k < residual_nm.size(); ++k) residual_nm[k] -= predicted_nm[k];
     return Followed{options.smoothing, rms(course.measured_nm), rms(residual_nm)};
 }

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/vectors/dot.hpp"
-#include "diagnose/beside/weighing/ridge.hpp"
+#include "diagnose/ridge.hpp"
 #include "diagnose/case/lines.hpp"
 #include "diagnose/case/undecidable.hpp"
 #include "model/fit/fit_coordinates.hpp"

@@ -46,6 +46,7 @@ Case rows_of(const Case& whole, const std::vector<std::size_t>& rows, Hertz samp
     some.moving_deg_s = whole.moving_deg_s;
     for (const std::size_t row : rows) {
         some.use.push_back(whole.use[row]);
+        some.valid.push_back(whole.valid[row]);
         some.edge.push_back(whole.edge[row]);
     }
     some.from = {0};
@@ -120,6 +121,7 @@ Case whole_case(const TraceView& log, Seconds smoothing, const RecordingRules& r
     whole.moving_deg_s = slowest_moving(whole.motion, rules);
     whole.edge = edges_of(whole.motion, rules.edge_s);
     leave_out_kinks(whole, smoothing, rules);
+    whole.valid = whole.use;
     if (!log.has_position()) {
         double squares = 0.0;
         for (std::size_t k = 0; k < log.size(); ++k) {
@@ -189,11 +191,15 @@ bool carries_errors(const Term& term) {
 std::vector<Nuisance> acceleration_errors(const Case& looked_at, const Model& model) {
     Model sensors{model.gear_ratio, {}};
     std::ranges::copy_if(model.terms, std::back_inserter(sensors.terms), carries_errors);
-    std::vector<Nuisance> errors = {{sensed_nm(sensors, looked_at.motion, looked_at.rough_deg_s2), 0.0},
-                                    {sensed_nm(sensors, looked_at.motion, looked_at.blunted_deg_s2), 0.0}};
+    return {{sensed_nm(sensors, looked_at.motion, looked_at.rough_deg_s2), 0.0},
+            {sensed_nm(sensors, looked_at.motion, looked_at.blunted_deg_s2), 0.0}};
+}
+
+std::vector<Nuisance> uncertain_torques(const Case& looked_at, const Model& model) {
+    std::vector<Nuisance> columns;
     for (const Nuisance& column : looked_at.uncertain)
-        errors.push_back({sensed_nm(model, looked_at.motion, column.torque_nm), column.usual_size});
-    return errors;
+        columns.push_back({sensed_nm(model, looked_at.motion, column.torque_nm), column.usual_size});
+    return columns;
 }
 
 std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
@@ -224,6 +230,7 @@ std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model, con
 
 std::vector<Nuisance> motion_errors(const Case& looked_at, const Model& model, const RecordingRules& rules) {
     std::vector<Nuisance> errors = acceleration_errors(looked_at, model);
+    for (Nuisance& column : uncertain_torques(looked_at, model)) errors.push_back(std::move(column));
     for (Nuisance& walk : walk_errors(looked_at, model, rules)) errors.push_back(std::move(walk));
     return errors;
 }

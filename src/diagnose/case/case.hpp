@@ -18,7 +18,8 @@ using RecordingRules = DiagnosisRules::RecordingRules;
 struct Case {
     Motion motion;
     std::vector<double> torque_nm;
-    std::vector<unsigned char> use;  ///< 0: this sample does not count
+    std::vector<unsigned char> use;    ///< 0: this sample does not count
+    std::vector<unsigned char> valid;  ///< 0: it holds no torque of the joint; `use` is 0 there
     /// The acceleration less one of three times the smoothing, its noise; and one of half the smoothing less
     /// it, what smoothing made of its kinks.
     std::vector<double> rough_deg_s2, blunted_deg_s2;
@@ -56,6 +57,8 @@ struct Case {
 /// Shapes that errors of the measured acceleration leave in the torque: what smoothing made of it, as the
 /// sensors of the model show it. Of the model nothing else counts.
 [[nodiscard]] std::vector<Nuisance> acceleration_errors(const Case& looked_at, const Model& model);
+/// The columns of the known torque that are not certain, as the sensors of the model show them.
+[[nodiscard]] std::vector<Nuisance> uncertain_torques(const Case& looked_at, const Model& model);
 /// Shapes that the walk of an integrated position leaves in the torque of a model; none where the log has a
 /// position.
 [[nodiscard]] std::vector<Nuisance> walk_errors(const Case& looked_at, const Model& model,

@@ -113,7 +113,7 @@ std::vector<Fault> find_faults(Case& looked_at, const FaultRules& rules) {
         const auto found = effect->detect(log, rules);
         if (!found) continue;
         faults.push_back(fault_of(*effect, *found, looked_at.motion));
-        for (const std::size_t k : found->spoiled) looked_at.use[k] = 0;
+        for (const std::size_t k : found->spoiled) looked_at.use[k] = looked_at.valid[k] = 0;
         looked_at.step_nm = std::max(looked_at.step_nm, found->bends_nm);
     }
     return faults;

@@ -23,13 +23,17 @@ void add_slopes(NoiseColumns& columns, const Case& c, const Model& model, const 
     }
 }
 
+struct Autoregression {
+    std::vector<double> color;
+    double white_nm = 0.0;
+};
+
 // Levinson's recursion; the order that the length of the log supports.
-void color_of(const std::vector<double>& covariance, double samples, double lag_price, NoiseFloor& floor) {
+Autoregression autoregression_of(const std::vector<double>& covariance, double samples, double lag_price) {
     std::vector<double> a;  // e(k) = sum a[i] e(k-1-i) + white
     double variance = covariance[0];
     double best = samples * portable::log(variance);
-    floor.color.clear();
-    floor.white_nm = std::sqrt(variance);
+    Autoregression chosen{{}, std::sqrt(variance)};
     for (std::size_t p = 1; p < covariance.size(); ++p) {
         double reflection = covariance[p];
         for (std::size_t i = 0; i < a.size(); ++i) reflection -= a[i] * covariance[p - 1 - i];
@@ -43,10 +47,10 @@ void color_of(const std::vector<double>& covariance, double samples, double lag_
         const double score = samples * portable::log(variance) + lag_price * static_cast<double>(p);
         if (score < best) {
             best = score;
-            floor.color = a;
-            floor.white_nm = std::sqrt(variance);
+            chosen = {a, std::sqrt(variance)};
         }
     }
+    return chosen;
 }
 
 // rms of a stretch of the log that is quieter than most.
@@ -106,12 +110,40 @@ std::vector<double> autocovariance(const std::vector<double>& left, const Case& 
             sum += left[k] * left[k - lag];
             count += 1.0;
         }
-        covariance.push_back(sum / std::max(count, 1.0));
+        // The taper keeps every power spectrum above 0.
+        const double taper = 1.0 - static_cast<double>(lag) / static_cast<double>(left.size());
+        covariance.push_back(taper * sum / std::max(count, 1.0));
     }
     return covariance;
 }
 
 }  // namespace
+
+namespace {
+
+// `spent`: by how much the columns that were fitted have made the variance smaller.
+NoiseFloor modelled(std::vector<double> covariance, double samples, double lag_price, double spent) {
+    for (double& value : covariance) value *= spent;
+    Autoregression found = autoregression_of(covariance, samples, lag_price);
+    NoiseFloor floor{std::sqrt(covariance[0]), found.white_nm, std::move(found.color)};
+    floor.covariance_nm2 = std::move(covariance);
+    return floor;
+}
+
+}  // namespace
+
+NoiseFloor::Thinned NoiseFloor::thinned(std::size_t step, std::size_t most_lags, double samples,
+                                        double lag_price) const {
+    std::vector<double> covariance;
+    for (std::size_t lag = 0; lag < covariance_nm2.size() && covariance.size() <= most_lags; lag += step)
+        covariance.push_back(covariance_nm2[lag]);
+    if (covariance.empty()) covariance.push_back(rms_nm * rms_nm);
+    Autoregression found = autoregression_of(covariance, samples, lag_price);
+    double sum = 1.0;
+    for (const double a : found.color) sum -= a;
+    const double density = found.white_nm * found.white_nm * static_cast<double>(step) / std::max(sum * sum, 1e-6);
+    return {std::move(found.color), found.white_nm, density};
+}
 
 NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
                        const DiagnosisRules& rules, NoiseGround& ground) {
@@ -128,16 +160,26 @@ NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& o
     const double samples = static_cast<double>(c.used());
     const double spent = samples / std::max(samples - static_cast<double>(columns.count()), 0.2 * samples);
     covariance[0] = std::max(covariance[0], 1e-24);
-    NoiseFloor floor;
-    color_of(covariance, samples, rules.noise_floor.lag_price, floor);
-    floor.rms_nm = std::sqrt(covariance[0] * spent);
-    floor.white_nm *= std::sqrt(spent);
+    NoiseFloor floor = modelled(std::move(covariance), samples, rules.noise_floor.lag_price, spent);
+    floor.material_nm = floor.rms_nm;
     // What is loud in some stretches only is not noise but something that none of these columns can follow,
     // such as a resonance. Its colour would hide it.
     const double quiet_nm = quiet_rms(left, c, rules.noise_floor);
     if (quiet_nm > 0.0 && quiet_nm < rules.noise_floor.unsteady * floor.rms_nm)
-        floor = {quiet_nm, quiet_nm, {}};
+        floor = {quiet_nm, quiet_nm, {}, quiet_nm, {quiet_nm * quiet_nm}};
     return floor;
+}
+
+NoiseFloor noise_of_residual(const Case& looked_at, const std::vector<double>& residual_nm,
+                             const NoiseFloor& floor, const DiagnosisRules& rules) {
+    const double samples = static_cast<double>(looked_at.used());
+    const auto lags = static_cast<std::size_t>(
+        std::min(rules.beside.memory_s * looked_at.motion.sample_rate.value(), samples / 10.0));
+    std::vector<double> covariance = autocovariance(residual_nm, looked_at, lags);
+    covariance[0] *= 1.0 + rules.beside.color_floor;
+    NoiseFloor noise = modelled(std::move(covariance), samples, rules.noise_floor.lag_price, 1.0);
+    noise.material_nm = floor.rms_nm;
+    return noise;
 }
 
 NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,

@@ -125,7 +125,7 @@ RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::
     if (slight)
         return {FindingStatus::immaterial,
                 fmt::format("it changes the torque by {:.2g} Nm rms beside a noise of {:.2g} Nm",
-                            evidence.share_nm, bench.noise().rms_nm)};
+                            evidence.share_nm, bench.noise().material_nm)};
     const double share_nm = std::max(evidence.share_nm, 1e-12);
     if (hearing.asked("doubt.most_inflation", evidence.own_nm / share_nm,
                       evidence.own_nm > rules.most_inflation * share_nm))

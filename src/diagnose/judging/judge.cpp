@@ -30,6 +30,26 @@ double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& w
     return total > 0.0 ? (total - most) / total : 0.0;
 }
 
+// The gain block by block. A block is longer than what the noise remembers, so that blocks are independent.
+void take_blocks(const ModelBench& bench, const Model& with, const Model& without, Evidence& evidence) {
+    const auto now = bench.residual(with), before = bench.residual(without);
+    const double memory = 5.0 * static_cast<double>(bench.noise().color.size());
+    const auto length = static_cast<std::size_t>(
+        std::max({bench.rules().beside.block_s * bench.looked_at().motion.sample_rate.value(), memory, 20.0}));
+    double sum = 0.0, squares = 0.0;
+    for (std::size_t r = 0; r < bench.rows().size(); ++evidence.blocks) {
+        double gain = 0.0;
+        for (const std::size_t end = std::min(r + length, bench.rows().size()); r < end; ++r)
+            gain += before[r] * before[r] - now[r] * now[r];
+        evidence.blocks_positive += gain > 0.0 ? 1 : 0;
+        sum += gain;
+        squares += gain * gain;
+    }
+    const double blocks = static_cast<double>(evidence.blocks);
+    const double variance = squares - sum * sum / std::max(blocks, 1.0);
+    evidence.t = variance > 0.0 && blocks > 1.0 ? sum / std::sqrt(variance * blocks / (blocks - 1.0)) : 0.0;
+}
+
 // A curve over the speed with nothing but a size, such as its square.
 bool is_fixed_curve(const Effect& effect) {
     return effect.side == Side::joint && effect.domain == Domain::speed &&
@@ -104,13 +124,14 @@ Finding judged_finding(const ModelBench& bench, const Candidate& model, const Ca
     evidence.gain = fewer.gain_left - model.gain_left;
     evidence.price = model.prices[term];
     evidence.share_sigma = bench.share(model, fewer);
-    evidence.share_nm = evidence.share_sigma * bench.noise().rms_nm;
+    evidence.share_nm = evidence.share_sigma * bench.noise().material_nm;
     // Of the rows that the share is of: where a resonance is largest may be what is left out.
     std::vector<double> counted_nm;
     for (const std::size_t k : bench.rows()) counted_nm.push_back(torque_nm[k]);
     evidence.own_nm = rms(counted_nm);
     evidence.raw_gain = squares(bench, fewer.stated) - squares(bench, model.stated);
     evidence.elsewhere = gain_elsewhere(bench, model.stated, fewer.stated);
+    take_blocks(bench, model.stated, fewer.stated, evidence);
     finding.where = place_of(bench.looked_at(), torque_nm, finding.term, bench.rules().place);
     return finding;
 }

@@ -10,16 +10,11 @@
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/search/hearing.hpp"
 #include "diagnose/search/search.hpp"
+#include "diagnose/telling/summary.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {
 namespace {
-
-std::vector<double> residual_nm(const Case& other, const Model& stated) {
-    std::vector<double> left = predict_nm(stated, other.motion);
-    for (std::size_t k = 0; k < left.size(); ++k) left[k] = other.torque_nm[k] - left[k];
-    return left;
-}
 
 double rms_used(const Case& other, const std::vector<double>& values) {
     double sum = 0.0;
@@ -49,7 +44,7 @@ Check checked(const ModelBench& bench, const Case& other, const Candidate& with,
     std::vector<double> brought = before;
     for (std::size_t k = 0; k < brought.size(); ++k) brought[k] -= after[k];
     return {rms_used(other, before), rms_used(other, after),
-            rms_used(other, brought) > material_sigma(other, bench.rules()) * bench.noise().rms_nm};
+            rms_used(other, brought) > material_sigma(other, bench.rules()) * bench.noise().material_nm};
 }
 
 void note(Finding& finding, const Check& check) {

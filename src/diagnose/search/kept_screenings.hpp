@@ -72,6 +72,7 @@ struct Trial {
 struct Screened {
     std::vector<Trial> trials;
     double unit_nm2 = 1.0;
+    std::vector<double> color = {};  ///< of the noise that they were weighed by
 };
 
 /// The best gear ratios where the torque is late by what makes the most of them, and without.

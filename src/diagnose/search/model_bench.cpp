@@ -50,7 +50,7 @@ ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& wor
       noise_(noise),
       work_(work),
       rules_(rules),
-      weighing_(looked_at.size(), looked_at.use, noise.color),
+      weighing_(looked_at.size(), looked_at.use, noise.color, looked_at.valid),
       kept_(std::move(kept)) {}
 
 double ModelBench::same_model_nm2() const {
@@ -71,6 +71,7 @@ void ModelBench::settle_on(const Model& model) {
 
 std::vector<Nuisance> ModelBench::errors_of(const Model& model) const {
     std::vector<Nuisance> errors = acceleration_errors(case_, model);
+    for (Nuisance& column : uncertain_torques(case_, model)) errors.push_back(std::move(column));
     errors.insert(errors.end(), walks_.begin(), walks_.end());
     return errors;
 }
@@ -161,7 +162,7 @@ double ModelBench::share(const Candidate& with, const Candidate& without) const 
     // Of coloured noise the whitened gain is the sharper measure, of a slow effect the torque itself; nothing
     // explains more than the torque that it brings.
     const double white = (without.gain_left - with.gain_left) / samples() * noise_.white_nm * noise_.white_nm;
-    return std::sqrt(std::max({std::min(white, moved), raw, 0.0})) / noise_.rms_nm;
+    return std::sqrt(std::max({std::min(white, moved), raw, 0.0})) / noise_.material_nm;
 }
 
 std::vector<double> ModelBench::cleared_residual(const Model& stated) const {

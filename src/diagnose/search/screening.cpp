@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose/search/screening.hpp"
 
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -42,8 +43,11 @@ Column residual_of(const ModelBench& bench, const Case& some, const std::vector<
 
 class Screening {
   public:
+    static constexpr std::size_t all_lags = static_cast<std::size_t>(-1);
+
+    /// `most_lags`: as many samples as there are before the first that counts.
     Screening(const ModelBench& bench, const Candidate& model, const std::vector<double>& left_nm, Case some,
-              const Hints& hints)
+              const Hints& hints, std::size_t most_lags)
         : model_(model),
           rules_(bench.rules()),
           case_(std::move(some)),
@@ -51,12 +55,21 @@ class Screening {
           samples_(bench.samples()),
           work_(bench.work()),
           hints_(hints) {
+        const double full_hz = bench.looked_at().motion.sample_rate.value();
+        const auto step = static_cast<std::size_t>(std::lround(full_hz / case_.motion.sample_rate.value()));
+        const double counting = std::max(static_cast<double>(case_.used()), 1.0);
+        const double lag_price = rules_.noise_floor.lag_price;
+        const NoiseFloor::Thinned noise = bench.noise().thinned(step, most_lags, counting, lag_price);
+        const NoiseFloor::Thinned full = bench.noise().thinned(1, all_lags, samples_, lag_price);
+        weighing_.emplace(case_.size(), case_.use, noise.color, case_.valid);
+        weighing_->set_nuisance(uncertain_torques(case_, model.stated), noise.white_nm);
         residual_ = counted(residual_of(bench, case_, left_nm));
         look_at_slopes();
         left_ = outside_of(basis_, residual_);
-        // Gains of the thinned log in those of the whole one.
-        unit_ = samples_ / std::max(static_cast<double>(residual_.size()), 1.0) /
-                (bench.noise().rms_nm * bench.noise().rms_nm);
+        // Gains of the thinned log in those of the whole one: what slow torques stand against is the noise's
+        // density there, and that of rows which were left out is as large.
+        const double part = counting * static_cast<double>(step) / samples_;
+        unit_ = noise.density_nm2 / full.density_nm2 / part / (noise.white_nm * noise.white_nm);
     }
 
     /// Among the starts that act as a sensor does, or among the others.
@@ -118,16 +131,8 @@ class Screening {
         return trial;
     }
 
-    // The samples that count.
-    [[nodiscard]] Column counted(Column column) const {
-        std::size_t kept = 0;
-        for (std::size_t k = 0; k < column.size(); ++k) {
-            column[kept] = column[k];
-            kept += case_.use[k] != 0 ? 1 : 0;
-        }
-        column.resize(kept);
-        return column;
-    }
+    // The samples that count, whitened.
+    [[nodiscard]] Column counted(const Column& column) const { return (*weighing_)(column); }
 
     // Fall of the sum of squares, in Nm^2, of the thinned log.
     [[nodiscard]] double gain_of(const Term& start) const {
@@ -227,7 +232,7 @@ class Screening {
                               std::vector<double> torque_nm) const {
         for (std::size_t k = 0; k < torque_nm.size(); ++k)
             torque_nm[k] = prediction_.torque_nm()[k] - torque_nm[k];
-        Column left = counted(std::move(torque_nm));
+        Column left = counted(torque_nm);
         for (std::size_t k = 0; k < left.size(); ++k) left[k] += residual_[k];
         return product(left_, left_) - (product(left, left) - explained(basis, columns, left));
     }
@@ -238,6 +243,7 @@ class Screening {
     mutable Carriers carriers_;
     Prediction prediction_;
     double samples_, unit_ = 1.0;
+    std::optional<Weighing> weighing_;
     Work& work_;
     Column residual_, left_;
     std::vector<std::vector<double>> slopes_nm_;  ///< one for each of the model's coordinates
@@ -253,6 +259,16 @@ std::vector<Trial> sorted(std::vector<Trial> trials) {
     return trials;
 }
 
+// Filters as near as that rank trials alike.
+bool same_color(const std::vector<double>& a, const std::vector<double>& b) {
+    constexpr double near = 0.02;
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (std::abs(a[i] - b[i]) > near) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
@@ -261,21 +277,25 @@ std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
     const SeenModel seen{model.open, left_nm, effects};
     const double unit_nm2 = bench.noise().rms_nm * bench.noise().rms_nm;
     KeptBeside<Screened>& kept = bench.kept()->screened;
-    if (const Screened* before = kept.find(seen, bench.looked_at().use, bench.same_model_nm2())) {
+    const Screened* before = kept.find(seen, bench.looked_at().use, bench.same_model_nm2());
+    if (before != nullptr && same_color(before->color, bench.noise().color)) {
         std::vector<Trial> trials = before->trials;
         for (Trial& trial : trials) trial.gain *= before->unit_nm2 / unit_nm2;
         return sorted(std::move(trials));
     }
     const Hints hints = hints_of(bench, model.stated, left_nm);
     const std::size_t count = bench.rules().screening.sketch_samples;
-    const Screening thinned(bench, model, left_nm, sketch(bench.looked_at(), count), hints);
+    const Screening thinned(bench, model, left_nm, sketch(bench.looked_at(), count), hints,
+                            Screening::all_lags);
     // Delays and lags look at neighbouring samples, which a thinned log does not have.
     const Screening stretches(bench, model, left_nm,
-                              blocks(bench.looked_at(), count, bench.rules().recording), hints);
+                              blocks(bench.looked_at(), count, bench.rules().recording), hints,
+                              bench.rules().recording.block_begin);
     std::optional<Screening> ringing;
     if (std::ranges::any_of(effects, [](const Effect* effect) { return effect->whole.has_value(); }))
         ringing.emplace(bench, model, left_nm,
-                        long_blocks(bench.looked_at(), 2 * count, bench.rules().recording), hints);
+                        long_blocks(bench.looked_at(), 2 * count, bench.rules().recording), hints,
+                        bench.rules().recording.ringing_begin);
     std::vector<Trial> trials;
     // A thinned log has no delay of a few samples, and what lies behind one has the wrong phase there.
     const bool delayed = std::ranges::any_of(model.stated.terms,
@@ -288,7 +308,7 @@ std::vector<Trial> screen(const ModelBench& bench, const Candidate& model,
             if (auto trial = screening.best(*effect, effects.size(), sensors)) trials.push_back(*trial);
         }
     }
-    return sorted(kept.keep(seen, {std::move(trials), unit_nm2}).trials);
+    return sorted(kept.keep(seen, {std::move(trials), unit_nm2, bench.noise().color}).trials);
 }
 
 }  // namespace ripplenotch

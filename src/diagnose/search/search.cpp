@@ -57,20 +57,24 @@ std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate&
     return tried[0];
 }
 
-// Part of the gap, as the torque has it, that a line closes; 0 of what is no line. What is missing below a
-// line's frequency colours the noise that the gap is weighed by, and the line weighs little then.
+// Part of the gap that closes, as the torque has it.
+double raw_part(const ModelBench& bench, const Candidate& now, const Candidate& next) {
+    double before = 0.0, after = 0.0;
+    const auto left_before = bench.cleared_residual(now.stated), left_after = bench.cleared_residual(next.stated);
+    for (std::size_t r = 0; r < left_before.size(); ++r) {
+        before += left_before[r] * left_before[r];
+        after += left_after[r] * left_after[r];
+    }
+    const double noise_nm = bench.noise().material_nm, gap = before - bench.samples() * noise_nm * noise_nm;
+    return gap > 0.0 ? (before - after) / gap : 0.0;
+}
+
+// The same of a line, 0 of what is none. What is missing below a line's frequency colours the noise that the gap
+// is weighed by, and the line weighs little then.
 double line_part(const ModelBench& bench, const Candidate& now, const Candidate& next) {
     // A line has a place, its order or frequency, before its size; gravity has none.
     const auto& polar = next.stated.terms.back().effect->polar;
-    if (!polar || polar->size == 0) return 0.0;
-    double before = 0.0, after = 0.0;
-    const auto left_before = bench.raw_residual(now.stated), left_after = bench.raw_residual(next.stated);
-    for (const std::size_t k : bench.rows()) {
-        before += left_before[k] * left_before[k];
-        after += left_after[k] * left_after[k];
-    }
-    const double noise_nm = bench.noise().rms_nm, gap = before - bench.samples() * noise_nm * noise_nm;
-    return gap > 0.0 ? (before - after) / gap : 0.0;
+    return polar && polar->size > 0 ? raw_part(bench, now, next) : 0.0;
 }
 
 bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& next,
@@ -82,6 +86,11 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     if (hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma())) return false;
     const double gap = now.gain_left - samples;
     const SearchRules& rules = bench.rules().search;
+    // What changes the torque as a whole takes up errors of whatever makes it.
+    if (bench.beside_residual() && next.stated.terms.back().effect->side != Side::joint) {
+        const double part = raw_part(bench, now, next);
+        if (hearing.asked("search.fair_part", part, part < rules.fair_part)) return false;
+    }
     const bool open = gap > rules.open_gap * samples;
     if (!open) return true;
     const double part = std::max(gain / gap, line_part(bench, now, next));

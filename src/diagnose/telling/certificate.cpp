@@ -22,10 +22,8 @@ double percent(const Counted& counted) { return 100.0 * (counted.wrong + 0.5) / 
 }  // namespace
 
 std::optional<double> wrong_percent(const Diagnosis& diagnosis) {
-    const bool beside = !diagnosis.given.empty() ||
-                        std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(),
-                                    [](const Finding& finding) { return finding.out_of_fold.has_value(); });
-    if (diagnosis.named.empty() || beside) return std::nullopt;
+    if (diagnosis.named.empty() || !diagnosis.given.empty() || diagnosis.residual_in_noise)
+        return std::nullopt;
     return percent(diagnosis.verdict == DiagnosisVerdict::explained ? where_explained
                                                                     : where_something_is_left);
 }

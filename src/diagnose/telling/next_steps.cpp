@@ -94,20 +94,6 @@ void add_doubtful(const Diagnosis& diagnosis, std::vector<std::string>& steps) {
     }
 }
 
-// A friction that would drive the joint is what a simulation has too much of, if it has any.
-void add_simulation(const Diagnosis& diagnosis, std::vector<std::string>& steps) {
-    if (!is_given(diagnosis.given, "simulated")) return;
-    const auto is_fitted = [](const Term& term) { return term.effect->resists; };
-    if (std::ranges::any_of(diagnosis.baseline.terms, is_fitted)) return;
-    const auto drives = [](const Finding& finding) {
-        return is_doubtful(finding) && finding.term.effect->resists && *finding.term.values.front() < 0.0;
-    };
-    if (std::ranges::any_of(diagnosis.rounds, drives))
-        steps.emplace_back(
-            "if the simulation has friction of its own, --simulated ...,friction=fit finds what of it is too "
-            "much");
-}
-
 }  // namespace
 
 std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& smoothed,
@@ -115,7 +101,6 @@ std::vector<std::string> next_steps(const Diagnosis& diagnosis, const Motion& sm
     std::vector<std::string> steps;
     add_ties(diagnosis, steps);
     add_doubtful(diagnosis, steps);
-    add_simulation(diagnosis, steps);
     if (in_doubt(diagnosis).empty()) return steps;
     const auto missing = missing_motion(diagnosis, seen_in(smoothed, rules), rules.advice);
     if (missing.empty()) return steps;

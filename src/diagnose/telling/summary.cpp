@@ -3,22 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <optional>
 #include <set>
 
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/search/search.hpp"
-#include "ripplenotch/analysis/fourier.hpp"
 #include "ripplenotch/core/portable_math.hpp"
 
 namespace ripplenotch {
 namespace {
 
 double residual_rms(const Case& c, const Model& stated, const std::vector<unsigned char>& use) {
-    std::vector<double> left = predict_nm(stated, c.motion);
-    for (std::size_t k = 0; k < left.size(); ++k) left[k] = c.torque_nm[k] - left[k];
-    return rms_of(left, use);
+    return rms_of(residual_nm(c, stated), use);
 }
 
 // Part of the squared gap above the floor that is gone, of samples that no fault spoiled. Empty when there
@@ -45,6 +41,16 @@ double rms_of(const std::vector<double>& values, const std::vector<unsigned char
     return std::sqrt(sum / std::max(count, 1.0));
 }
 
+std::vector<double> residual_nm(const Case& looked_at, const Model& stated) {
+    std::vector<double> left = predict_nm(stated, looked_at.motion);
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] = looked_at.torque_nm[k] - left[k];
+    return left;
+}
+
+double left_rms(const Case& looked_at, const Model& stated) {
+    return rms_of(residual_nm(looked_at, stated), looked_at.use);
+}
+
 DiagnosisVerdict verdict_of(const Diagnosis& diagnosis) {
     const bool told = !diagnosis.named.empty() || !diagnosis.ambiguous.empty();
     const bool doubtful = std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), is_doubtful);
@@ -65,7 +71,7 @@ void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules) {
         if (finding.status != FindingStatus::ambiguous) continue;
         Tie tie{{name}, {}};
         for (const RivalFinding& rival : finding.alternatives) {
-            if (!finding.out_of_fold && rival.margin >= rules.judge.tie_margin) continue;
+            if (rival.margin >= rules.judge.tie_margin) continue;
             tie.effects.emplace_back(rival.effect);
             if (tie.advice.empty()) tie.advice = what_would_tell(effect, find_effect(rival.effect));
         }
@@ -85,26 +91,6 @@ void measure_gap(Diagnosis& diagnosis, const GapCase& whole, const GapCase* vali
     gap.validation_before_nm = residual_rms(validation->as_given, diagnosis.baseline, every);
     gap.validation_after_nm = residual_rms(validation->improved, diagnosis.model, every);
     gap.validation_closed_percent = closed_percent(*validation, diagnosis, rules.values.least_gap);
-}
-
-std::vector<BandLeft> left_by_band(const Case& looked_at, const Model& stated) {
-    // Rows that do not count are 0: an excerpt's and a fault's.
-    std::vector<double> left = predict_nm(stated, looked_at.motion);
-    for (std::size_t k = 0; k < left.size(); ++k)
-        left[k] = looked_at.use[k] != 0 ? looked_at.torque_nm[k] - left[k] : 0.0;
-    const auto sums = real_fourier(left);
-    const double cell_hz = looked_at.motion.sample_rate.value() / static_cast<double>(left.size());
-    std::vector<BandLeft> bands = {{0.0, 1.0, 0.0}, {1.0, 10.0, 0.0}, {10.0, 0.0, 0.0}};
-    for (std::size_t cell = 0; cell < sums.size(); ++cell) {
-        const double hz = cell_hz * static_cast<double>(cell);
-        const bool single = cell == 0 || 2 * cell == left.size();
-        BandLeft& band = bands[hz < 1.0 ? 0 : (hz < 10.0 ? 1 : 2)];
-        band.rms_nm += (single ? 1.0 : 2.0) * std::norm(sums[cell]);
-    }
-    const auto samples = static_cast<double>(left.size());
-    for (BandLeft& band : bands)
-        band.rms_nm = std::sqrt(band.rms_nm / samples / std::max(static_cast<double>(looked_at.used()), 1.0));
-    return bands;
 }
 
 }  // namespace ripplenotch

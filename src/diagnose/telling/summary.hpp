@@ -27,8 +27,10 @@ struct GapCase {
 void measure_gap(Diagnosis& diagnosis, const GapCase& whole, const GapCase* validation,
                  const DiagnosisRules& rules);
 
-/// What the improved model leaves in the bands below 1 Hz, from 1 to 10 Hz and above.
-[[nodiscard]] std::vector<BandLeft> left_by_band(const Case& looked_at, const Model& stated);
+/// Measured less predicted torque, a number a sample.
+[[nodiscard]] std::vector<double> residual_nm(const Case& looked_at, const Model& stated);
+/// rms of it over the samples that count.
+[[nodiscard]] double left_rms(const Case& looked_at, const Model& stated);
 
 [[nodiscard]] DiagnosisVerdict verdict_of(const Diagnosis& diagnosis);
 

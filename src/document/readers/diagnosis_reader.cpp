@@ -84,7 +84,11 @@ void read_evidence(Fields& fields, Finding& finding) {
                         .own_nm = number_or_unknown(entry, "own_nm"),
                         .raw_gain = unknown,
                         .elsewhere = number_or_unknown(entry, "gain_elsewhere")};
-    read_out_of_fold(entry, finding);
+    finding.evidence.t = entry.number_if_any("t").value_or(0.0);
+    if (entry.has("blocks")) {
+        finding.evidence.blocks = entry.whole("blocks");
+        finding.evidence.blocks_positive = entry.whole("blocks_positive");
+    }
     entry.finish();
 }
 
@@ -95,7 +99,6 @@ Finding finding_at(Fields& fields, std::size_t place) {
     if (fields.has("reason")) finding.reason = fields.text("reason");
     finding.where = place_of(fields, "where");
     read_evidence(fields, finding);
-    finding.size_uncertain = fields.has("size_uncertain") && fields.flag("size_uncertain");
     fields.each("alternatives", [&](Fields& rival) {
         finding.alternatives.push_back({effect_of(rival).name, number_or_unknown(rival, "margin")});
     });

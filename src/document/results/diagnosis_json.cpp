@@ -74,9 +74,10 @@ Json round_json(const Finding& finding) {
                         {"share_nm", six_digits(finding.evidence.share_nm)},
                         {"share_of_noise", six_digits(finding.evidence.share_sigma)},
                         {"own_nm", six_digits(finding.evidence.own_nm)},
-                        {"gain_elsewhere", six_digits(finding.evidence.elsewhere)}};
-    put_out_of_fold(json["evidence"], finding);
-    if (finding.size_uncertain) json["size_uncertain"] = true;
+                        {"gain_elsewhere", six_digits(finding.evidence.elsewhere)},
+                        {"t", six_digits(finding.evidence.t)},
+                        {"blocks", finding.evidence.blocks},
+                        {"blocks_positive", finding.evidence.blocks_positive}};
     json["alternatives"] = Json::array();
     for (const RivalFinding& rival : finding.alternatives)
         list_in(json, "alternatives")

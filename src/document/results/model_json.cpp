@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ripplenotch/document/model_json.hpp"
 
-#include <array>
 #include <string_view>
 #include <utility>
 
@@ -13,14 +12,6 @@
 
 namespace ripplenotch {
 namespace {
-
-template <class Simulated>
-auto own_nuisance_fields(Simulated& term) {
-    return std::array{std::pair(std::string_view("offset_nm"), &term.offset_nm),
-                      std::pair(std::string_view("inertia_kgm2"), &term.inertia_kgm2),
-                      std::pair(std::string_view("gravity_cosine_nm"), &term.gravity_cosine_nm),
-                      std::pair(std::string_view("gravity_sine_nm"), &term.gravity_sine_nm)};
-}
 
 Json term_json(const Term& term) {
     Json json = Json::object();
@@ -54,12 +45,7 @@ Term term_of(Fields& fields, const Model& model) {
 Json simulated_json(const SimulatedTerm& term) {
     Json json{{"column", term.column}};
     json["scale"] = term.scale ? Json(*term.scale) : Json(nullptr);
-    json["delay_s"] = term.fit_delay ? Json(nullptr) : Json(term.delay_s);
-    Json nuisance = Json::object();
-    for (const auto& [name, value] : own_nuisance_fields(term)) {
-        if (*value != 0.0) nuisance[std::string(name)] = *value;
-    }
-    if (!nuisance.empty()) json["nuisance"] = nuisance;
+    json["delay_s"] = term.delay_s;
     return json;
 }
 
@@ -68,12 +54,6 @@ SimulatedTerm simulated_of(Fields& fields) {
     term.column = fields.text("column");
     term.scale = fields.number_if_any("scale");
     term.delay_s = fields.number_if_any("delay_s").value_or(0.0);
-    if (fields.has("nuisance")) {
-        Fields nuisance = fields.object("nuisance");
-        for (const auto& [name, value] : own_nuisance_fields(term))
-            *value = nuisance.number_if_any(name).value_or(0.0);
-        nuisance.finish();
-    }
     fields.finish();
     return term;
 }
@@ -137,9 +117,6 @@ ModelWithGiven read_model_with_given(std::string_view text, const std::string& s
     if (fields.has("simulated")) {
         Fields simulated = fields.object("simulated");
         found.simulated = simulated_of(simulated);
-        // Left out it is 0; null is to be fitted.
-        const Json& stated = json["simulated"];
-        found.simulated->fit_delay = stated.contains("delay_s") && stated["delay_s"].is_null();
     }
     if (fields.has("arm")) {
         Fields arm = fields.object("arm");

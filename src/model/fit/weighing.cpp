@@ -18,20 +18,41 @@ double length_of(const std::vector<double>& column) {
 
 }  // namespace
 
-Weighing::Weighing(std::size_t samples, std::span<const unsigned char> use, std::span<const double> color)
+Weighing::Weighing(std::size_t samples, std::span<const unsigned char> use, std::span<const double> color,
+                   std::span<const unsigned char> valid)
     : color_(color.begin(), color.end()) {
-    std::size_t since_unused = 0;
+    if (valid.empty()) valid = use;
     for (std::size_t k = 0; k < samples; ++k) {
-        const bool used = use.empty() || use[k] != 0;
-        since_unused = used ? since_unused + 1 : 0;
-        if (since_unused <= color_.size()) continue;
+        if (!valid.empty() && valid[k] == 0) {
+            if (gaps_.empty() || gaps_.back().first + gaps_.back().count != k) gaps_.push_back({k, 0});
+            ++gaps_.back().count;
+        }
+        if (k < color_.size() || (!use.empty() && use[k] == 0)) continue;
         if (rows_.empty() || rows_.back() + 1 != k) runs_.push_back({k, 0});
         ++runs_.back().count;
         rows_.push_back(k);
     }
 }
 
+std::vector<double> Weighing::bridged(std::span<const double> torque_nm) const {
+    std::vector<double> whole(torque_nm.begin(), torque_nm.end());
+    for (const Run& gap : gaps_) {
+        const std::size_t end = gap.first + gap.count;
+        const bool before = gap.first > 0, after = end < whole.size();
+        const double left = before ? whole[gap.first - 1] : (after ? whole[end] : 0.0);
+        const double right = after ? whole[end] : left;
+        for (std::size_t k = gap.first; k < end; ++k) {
+            const double part =
+                static_cast<double>(k - gap.first + 1) / static_cast<double>(gap.count + 1);
+            whole[k] = left + part * (right - left);
+        }
+    }
+    return whole;
+}
+
 void Weighing::whiten(std::span<const double> torque_nm, double* white) const {
+    std::vector<double> whole;
+    if (!gaps_.empty() && !color_.empty()) torque_nm = whole = bridged(torque_nm);
     for (const Run& run : runs_) {
         prediction_errors(torque_nm.data() + run.first, run.count, color_.data(), color_.size(), white);
         white += run.count;

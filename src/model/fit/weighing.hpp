@@ -18,8 +18,11 @@ struct Nuisance {
 class Weighing {
   public:
     /// `use`: 0 for samples that do not count; empty is all. `color`: coefficients a1 ... ap of the noise
-    /// e(k) = a1 e(k-1) + ... + ap e(k-p) + white. The p samples after one that does not count do not either.
-    Weighing(std::size_t samples, std::span<const unsigned char> use, std::span<const double> color);
+    /// e(k) = a1 e(k-1) + ... + ap e(k-p) + white; the first p samples do not count. `valid`: 0 for samples
+    /// that hold no torque, `use` where it is empty. The whitening filter reads a straight line in their
+    /// place, in every torque alike, so that what is linear in the torques stays so.
+    Weighing(std::size_t samples, std::span<const unsigned char> use, std::span<const double> color,
+             std::span<const unsigned char> valid = {});
 
     /// `noise_nm`: rms of the white part, against which usual sizes are weighed.
     void set_nuisance(const std::vector<Nuisance>& nuisance, double noise_nm);
@@ -41,8 +44,10 @@ class Weighing {
     };
 
     void whiten(std::span<const double> torque_nm, double* white) const;
+    [[nodiscard]] std::vector<double> bridged(std::span<const double> torque_nm) const;
     std::vector<std::size_t> rows_;
     std::vector<Run> runs_;  ///< the same rows
+    std::vector<Run> gaps_;  ///< samples that hold no torque
     std::vector<double> color_;
     std::size_t bounded_ = 0;
     std::vector<double> basis_;  ///< orthonormal columns of size() each

@@ -20,19 +20,12 @@ class Ridge {
     Ridge(const std::vector<std::vector<double>>& columns, std::span<const double> deviation, double noise);
 
     [[nodiscard]] std::vector<double> solve(std::span<const double> target) const;
-    /// `target` less the columns times `values`.
-    [[nodiscard]] std::vector<double> left(std::span<const double> target,
-                                           const std::vector<double>& values) const;
-    [[nodiscard]] std::vector<double> left(std::span<const double> target) const;
-    /// The same of several targets.
-    [[nodiscard]] std::vector<std::vector<double>> left(std::vector<std::vector<double>> targets) const;
+    /// Standard errors of the values, where what the columns do not explain is white and of rms `noise`.
+    [[nodiscard]] std::vector<double> standard_errors() const;
 
   private:
-    /// Of two targets what is left of them.
-    void leave(std::vector<double>& one, std::vector<double>& other) const;
-    [[nodiscard]] std::vector<double> values_of(Eigen::VectorXd products) const;
-
     const std::vector<std::vector<double>>& columns_;
+    double noise_;
     Eigen::VectorXd scale_;
     DefiniteFactors factored_;
 };
