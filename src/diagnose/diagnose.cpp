@@ -67,26 +67,19 @@ Searched search_case(const Case& c, const Model& model, std::span<const Effect* 
     return found;
 }
 
-// rms of the residual, with the best values of what is uncertain of the known torque.
-double gap_nm(const ModelBench& bench, const Model& stated) {
-    const Case& c = bench.looked_at();
-    if (c.uncertain.empty()) return rms_of(bench.raw_residual(stated), c.use);
-    return left_rms(with_known_values(c, fit_known_values(c, stated, bench.noise())), stated);
-}
-
 // The gap after each addition, in the order of adoption.
 void tell_rounds(Diagnosis& diagnosis, const ModelBench& bench, const Candidate& last, std::size_t own) {
     Candidate now = last;
     now.open.terms.resize(own);
     now.stated.terms.resize(own);
-    double before = gap_nm(bench, diagnosis.baseline);
+    double before = rms_of(bench.raw_residual(diagnosis.baseline), bench.looked_at().use);
     for (std::size_t i = 0; i < diagnosis.rounds.size(); ++i) {
         Finding& finding = diagnosis.rounds[i];
         now.open.terms.push_back(last.open.terms[own + i]);
         now.stated.terms.push_back(last.stated.terms[own + i]);
         now = bench.fitted(now.open, now.stated, {}, 4);
         finding.gap_before_nm = before;
-        finding.gap_after_nm = before = gap_nm(bench, now.stated);
+        finding.gap_after_nm = before = rms_of(bench.raw_residual(now.stated), bench.looked_at().use);
     }
 }
 

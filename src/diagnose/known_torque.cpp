@@ -3,7 +3,6 @@
 
 #include "core/matrices/normal_errors.hpp"
 #include "core/vectors/dot.hpp"
-#include "diagnose/ridge.hpp"
 
 namespace ripplenotch {
 namespace {
@@ -27,24 +26,51 @@ void take_known_torque(Case& whole, std::span<const GivenTerm> given) {
     }
 }
 
+namespace {
+
+std::vector<std::vector<double>> torques_of(const std::vector<Nuisance>& columns) {
+    std::vector<std::vector<double>> torques;
+    for (const Nuisance& column : columns) torques.push_back(column.torque_nm);
+    return torques;
+}
+
+std::vector<std::vector<double>> whitened(const std::vector<std::vector<double>>& columns,
+                                          const Weighing& weighing) {
+    std::vector<std::vector<double>> white;
+    for (const auto& column : columns) white.push_back(weighing.whitened(column));
+    return white;
+}
+
+std::vector<double> deviations_of(const std::vector<Nuisance>& columns) {
+    std::vector<double> deviations;
+    for (const Nuisance& column : columns) deviations.push_back(column.usual_size);
+    return deviations;
+}
+
+}  // namespace
+
+KnownFit::KnownFit(const Case& looked_at, const Model& model, const Weighing& weighing, double white_nm)
+    : sensed_nm_(torques_of(uncertain_torques(looked_at, model))),
+      white_(whitened(sensed_nm_, weighing)),
+      fit_(white_, deviations_of(looked_at.uncertain), white_nm) {}
+
+KnownValues KnownFit::values(const Weighing& weighing, const std::vector<double>& left_nm) const {
+    return {fit_.solve(weighing.whitened(left_nm)), fit_.standard_errors()};
+}
+
+std::vector<double> KnownFit::residual(const Weighing& weighing, std::vector<double> left_nm) const {
+    const std::vector<double> values = fit_.solve(weighing.whitened(left_nm));
+    for (std::size_t i = 0; i < values.size(); ++i)
+        add_scaled(-values[i], sensed_nm_[i].data(), left_nm.data(), left_nm.size());
+    return left_nm;
+}
+
 KnownValues fit_known_values(const Case& looked_at, const Model& stated, const NoiseFloor& noise) {
-    const std::vector<Nuisance> columns = uncertain_torques(looked_at, stated);
-    KnownValues values;
-    if (columns.empty()) return values;
+    if (looked_at.uncertain.empty()) return {};
     const Weighing weighing(looked_at.size(), looked_at.use, noise.color, looked_at.valid);
     std::vector<double> left = predict_nm(stated, looked_at.motion);
     for (std::size_t k = 0; k < left.size(); ++k) left[k] = looked_at.torque_nm[k] - left[k];
-    left = weighing.whitened(left);
-    std::vector<std::vector<double>> white;
-    std::vector<double> deviation;
-    for (const Nuisance& column : columns) {
-        white.push_back(weighing.whitened(column.torque_nm));
-        deviation.push_back(column.usual_size);
-    }
-    const Ridge fit(white, deviation, noise.white_nm);
-    values.departure = fit.solve(left);
-    values.standard_error = fit.standard_errors();
-    return values;
+    return KnownFit(looked_at, stated, weighing, noise.white_nm).values(weighing, left);
 }
 
 Case with_known_values(Case looked_at, const KnownValues& values) {

@@ -7,6 +7,7 @@
 
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/noise_floor.hpp"
+#include "diagnose/ridge.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/model/given_term.hpp"
 
@@ -17,11 +18,31 @@ namespace ripplenotch {
 /// of a simulation does not: whether it is 1 is a question for the effect `simulation-scale`.
 void take_known_torque(Case& whole, std::span<const GivenTerm> given);
 
-/// Departures of the uncertain values from their means: generalized least squares beside this model, with the
-/// noise's colour and the priors.
+/// Departures of the uncertain values from their means, and their standard errors; one for each of
+/// Case::uncertain.
 struct KnownValues {
-    std::vector<double> departure, standard_error;  ///< one for each of Case::uncertain
+    std::vector<double> departure, standard_error;
 };
+
+/// The fit of the uncertain values to what a model leaves: generalized least squares with the noise's colour
+/// and the priors.
+class KnownFit {
+  public:
+    /// The columns are taken through the sensors of `model`. `weighing`: of the case.
+    KnownFit(const Case& looked_at, const Model& model, const Weighing& weighing, double white_nm);
+    KnownFit(const KnownFit&) = delete;
+    KnownFit& operator=(const KnownFit&) = delete;
+
+    [[nodiscard]] KnownValues values(const Weighing& weighing, const std::vector<double>& left_nm) const;
+    /// What is left of a residual when they have their best values.
+    [[nodiscard]] std::vector<double> residual(const Weighing& weighing, std::vector<double> left_nm) const;
+
+  private:
+    std::vector<std::vector<double>> sensed_nm_, white_;
+    Ridge fit_;
+};
+
+/// The same along a case, beside this model.
 [[nodiscard]] KnownValues fit_known_values(const Case& looked_at, const Model& stated, const NoiseFloor& noise);
 
 /// The same case with these departures in its known torque.

@@ -42,6 +42,12 @@ Term parse_term(std::string_view text) {
     return term;
 }
 
+double most_in(const Model& model, const Effect& effect, std::size_t parameter) {
+    const Parameter& described = effect.parameters[parameter];
+    const bool is_step = effect.resists && described.name == "width_deg_s" && model.widest_step_deg_s > 0.0;
+    return is_step ? std::clamp(model.widest_step_deg_s, described.start, described.upper) : described.upper;
+}
+
 double least_in(const Model& model, const Effect& effect, std::size_t parameter) {
     const Parameter& described = effect.parameters[parameter];
     return model.beside_simulation && effect.resists && parameter == 0 ? -described.upper : described.lower;

@@ -37,9 +37,14 @@ struct Model {
     /// A simulation's torque is beside it, and that may hold too much of a friction: such a term's size is
     /// below 0.
     bool beside_simulation = false;
+    /// Widest step of a friction at standstill in a fit: a wider one is no step but grows with the speed. 0: that
+    /// of the effect.
+    double widest_step_deg_s = 0.0;
     bool operator==(const Model&) const = default;
 };
 
+/// The most that this parameter of an effect may be in a fit of the model.
+[[nodiscard]] double most_in(const Model& model, const Effect& effect, std::size_t parameter);
 /// The least that this parameter of an effect may be in the model.
 [[nodiscard]] double least_in(const Model& model, const Effect& effect, std::size_t parameter);
 

@@ -46,6 +46,12 @@ std::string uneven_words(const Unevenness& uneven) {
                        100.0 * std::min(uneven.part, 9.99), uneven.where);
 }
 
+// A ripple is named by its order: one whose size changes along the log is still that ripple, as long as it is larger
+// than the change.
+double most_uneven(const Term& term, const DiagnosisRules& rules) {
+    return term.effect->ripple_order ? 1.0 : rules.evenness.most_uneven;
+}
+
 bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
 
 bool of_one_kind(Domain a, Domain b) { return is_fast(a) == is_fast(b); }
@@ -151,7 +157,7 @@ RaisedDoubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::
         return {FindingStatus::tentative,
                 "it explains one short stretch of the log and hardly anything elsewhere"};
     const Unevenness uneven = unevenness(bench, model.stated, term);
-    if (hearing.asked("evenness.most_uneven", uneven.part, uneven.part > bench.rules().evenness.most_uneven))
+    if (hearing.asked("evenness.most_uneven", uneven.part, uneven.part > most_uneven(model.stated.terms[term], bench.rules())))
         return {FindingStatus::tentative, uneven_words(uneven)};
     const auto above = above_wandering(bench, model.stated, term, evidence.raw_gain);
     if (above && hearing.asked("wandering.least_above", *above, *above < bench.rules().wandering.least_above))
@@ -262,7 +268,7 @@ bool doubt_beside(const ModelBench& bench, const Candidate& kept, std::size_t ow
         const DiagnosisRules& rules = bench.rules();
         const double share_nm = finding.evidence.share_nm;
         const bool outdone = (same || kin) && excess_nm > rules.doubt.outgrown * share_nm;
-        if (!outdone && uneven.part <= rules.evenness.most_uneven) continue;
+        if (!outdone && uneven.part <= most_uneven(finding.term, rules)) continue;
         Hearing hearing(rules, finding.decisions);
         if (outdone)
             hearing.asked("doubt.outgrown", excess_nm / share_nm, true);

@@ -17,27 +17,27 @@ struct PlaceSums {
     double samples = 0.0, left = 0.0, torque = 0.0, both = 0.0, square = 0.0;
 };
 
-// The finding's torque and what is left over, a number per row that counts.
+// The finding's torque and what is left over, a number per row that counts, in units of the white noise.
 struct Torques {
+    static constexpr double variance_nm2 = 1.0;
     std::vector<double> finding_nm, left_nm;
-    double variance_nm2 = 0.0;  ///< of a sum of noise over places, per sample
     double telling_nm2 =
         0.0;               ///< sum of squares from which a torque tells its size: rules.telling_deviations
     bool changes = false;  ///< in the log, be it in rows that do not count
     bool by_its_torque = false;  ///< a place has the say of the finding's torque there
 };
 
+// Both whitened, so that noise of whatever colour counts alike in every sum.
 Torques torques_of(const ModelBench& bench, const Model& stated, std::size_t term) {
     const auto added = bench.torque_of(stated, term);
     Torques torques;
-    torques.left_nm = bench.cleared_residual(stated);
+    torques.left_nm = bench.residual(stated);
+    torques.finding_nm = bench.whitened(added);
     torques.by_its_torque = stated.terms[term].effect->side != side_of(stated.terms[term]);
-    for (const std::size_t k : bench.rows()) torques.finding_nm.push_back(added[k]);
     const auto [low, high] = std::minmax_element(added.begin(), added.end());
     torques.changes = *high - *low > 1e-6 * std::max(std::abs(*low), std::abs(*high));
-    torques.variance_nm2 = portable::pow(bench.noise().rms_nm, 2) * bench.noise().of_sums();
     const double deviations = bench.rules().evenness.telling_deviations;
-    torques.telling_nm2 = deviations * deviations * torques.variance_nm2;
+    torques.telling_nm2 = deviations * deviations;
     return torques;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/rows/rms.hpp"
+#include "diagnose/known_torque.hpp"
 #include "diagnose/search/stated_speed.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
@@ -60,12 +61,15 @@ double ModelBench::same_model_nm2() const {
 void ModelBench::settle_on(const Model& model) {
     // A walk of the angle is weighed against all that the model leaves: against the sensor's noise alone, one
     // that nobody expects would stand in for what the model lacks, and blow up the ripple to do so.
+    if (!case_.uncertain.empty() && !known_)
+        known_ = std::make_shared<KnownFit>(case_, model, weighing_, noise_.white_nm);
     const std::vector<double> white = weighing_.whitened(raw_residual(model));
     const double left_nm = rms(std::span(white).first(weighing_.rows().size()));
     walks_ = walk_errors(case_, model, rules_.recording);
     walks_beside_nm_ = std::max(noise_.white_nm, left_nm);
     sensors_ = sensors_of(model);
     is_settled_ = true;
+    if (!case_.uncertain.empty()) known_ = std::make_shared<KnownFit>(case_, model, weighing_, noise_.white_nm);
     weighing_.set_nuisance(errors_of(model), walks_beside_nm_);
 }
 
@@ -189,7 +193,14 @@ double ModelBench::floor_nm(const Model& stated) const {
 std::vector<double> ModelBench::raw_residual(const Model& stated) const {
     std::vector<double> left = predict_nm(stated, case_.motion);
     for (std::size_t k = 0; k < left.size(); ++k) left[k] = case_.torque_nm[k] - left[k];
-    return left;
+    return known_ ? known_->residual(weighing_, std::move(left)) : left;
+}
+
+std::vector<double> ModelBench::whitened(std::span<const double> torque_nm) const {
+    std::vector<double> white = weighing_.whitened(torque_nm);
+    white.resize(weighing_.rows().size());
+    for (double& value : white) value /= noise_.white_nm;
+    return white;
 }
 
 std::vector<double> ModelBench::residual(const Model& stated) const {

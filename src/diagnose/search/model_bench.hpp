@@ -35,6 +35,8 @@ struct Candidate {
     [[nodiscard]] double criterion() const;
 };
 
+class KnownFit;
+
 class ModelBench {
   public:
     /// `looked_at`, `work` and `rules` must outlive it. `kept`: of other benches on the same case.
@@ -52,7 +54,10 @@ class ModelBench {
     [[nodiscard]] Candidate settled(const Candidate& model) const;
     /// Weighed measured less predicted torque, in units of the noise, a number per row().
     [[nodiscard]] std::vector<double> residual(const Model& stated) const;
+    /// Measured less predicted torque; what is uncertain of the known torque has its best values.
     [[nodiscard]] std::vector<double> raw_residual(const Model& stated) const;
+    /// A torque whitened, in units of the noise, a number per row().
+    [[nodiscard]] std::vector<double> whitened(std::span<const double> torque_nm) const;
     /// The same without what errors of the measured motion can explain; an entry per row().
     [[nodiscard]] std::vector<double> cleared_residual(const Model& stated) const;
     /// What this term of the model adds to all its others, in Nm; an entry per sample, counted or not.
@@ -101,6 +106,7 @@ class ModelBench {
     std::vector<Nuisance> walks_;  ///< and what its angle's walk would leave
     double walks_beside_nm_ = 1.0;
     std::shared_ptr<KeptScreenings> kept_;
+    std::shared_ptr<const KnownFit> known_;  ///< behind the sensors of the model settled on
 };
 
 }  // namespace ripplenotch
