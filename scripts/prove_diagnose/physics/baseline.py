@@ -10,6 +10,7 @@ import numpy as np
 from .. import joint, measured
 from . import cases
 
+WIDTHS = (0.2, 0.4, 0.7, 1.2)  # deg/s, of a friction's step
 SMALLEST_SHARE = 1e-9  # of a column's squares that has to be left beside the columns before
 
 
@@ -36,17 +37,25 @@ def ripple_gain(log, hertz, damping, order):
     return 1 / (1 - u**2 + 2j * damping * u) - 1
 
 
-def known_columns(log, case):
-    """Columns of what the user states; {key: columns}"""
+def known_columns(log, case, width=0.2):
+    """Columns of what the user states; {key: columns}. width: of the Coulomb friction's step."""
     if case.form != "model":
         return {"simulated": [log.simulated]}
     found = {}
     for entry in case.model()["effects"]:
         name, order = entry["effect"], entry.get("order")
         key = name if order is None else f"{name} {order:g}"
-        found[key] = {"inertia": [np.radians(log.a)], "gravity": measured.waves(log.rad), "coulomb-friction": [np.tanh(log.v / 0.2)],
+        found[key] = {"inertia": [np.radians(log.a)], "gravity": measured.waves(log.rad), "coulomb-friction": [np.tanh(log.v / width)],
                       "viscous-friction": [log.v]}.get(name) or log.waves(order)
     return found
+
+
+def best_width(log, case):
+    """The width with which the known terms leave least of the log's torque."""
+    def rest(width):
+        columns = [column for group in known_columns(log, case, width).values() for column in group]
+        return measured.rms(log.torque - np.column_stack(columns) @ fit(columns, log.torque))
+    return min(WIDTHS, key=rest) if case.form == "model" else WIDTHS[0]
 
 
 def filtered(values, time_constant, step):
@@ -58,9 +67,9 @@ def filtered(values, time_constant, step):
     return found
 
 
-def dictionary(log, case, expected):
+def dictionary(log, expected, width):
     """[(key, columns)]; several entries of one key are shapes of the same name. expected: the torque of the known terms."""
-    sense, load = np.tanh(log.v / 0.2), np.abs(expected)
+    sense, load = np.tanh(log.v / width), np.abs(expected)
     ripple = [wave for order in (1, 2) for wave in log.waves(order)]
     found = [(("offset", None), [np.ones_like(log.t)]), (("inertia", None), [np.radians(log.a)]),
              (("gravity", None), measured.waves(log.rad)), (("coulomb-friction", None), [sense]), (("viscous-friction", None), [log.v]),
@@ -136,17 +145,17 @@ def fit(columns, values):
 
 
 def names(case, logs):
-    """The names that the baseline finds; every tenth row or so is enough for it."""
+    """The names that the baseline finds; some 6000 rows are enough for it."""
     ratio = case.given_ratio()
-    prepared = {}
+    prepared, width = {}, best_width(Log(logs["train"], ratio), case)
     for purpose, columns in logs.items():
         log = Log(columns, ratio)
-        known = [column for group in known_columns(log, case).values() for column in group]
+        known = [column for group in known_columns(log, case, width).values() for column in group]
         if case.form == "simulated_scale1":
             expected, values, fixed = log.simulated, log.torque - log.simulated, []
         else:
             expected, values, fixed = np.column_stack(known) @ fit(known, log.torque), log.torque, known
-        entries = dictionary(log, case, expected)
+        entries = dictionary(log, expected, width)
         listed = known_columns(log, case) if case.form == "model" else {}
         entries = [(key, group) for key, group in entries if (key[0] if key[1] is None else f"{key[0]} {key[1]:g}") not in listed]
         every = max(1, len(log.t) // 6000)

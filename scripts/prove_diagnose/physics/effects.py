@@ -214,14 +214,14 @@ def resonance(rng, j):
     """Torque of the mesh of known orders, which meets a soft torsional mode within the speeds of the log."""
     phases = rng.uniform(-math.pi, math.pi, 2)
     fastest_hz = 2 * j.ratio * j.fastest_deg_s / 360
-    mode = fastest_hz * rng.uniform(0.5, 0.85)
+    mode, damping = fastest_hz * rng.uniform(0.5, 0.85), rng.uniform(0.03, 0.08)
 
     def prepare(p, s):
         p["gauge"], p["mesh"] = [], [(1, s, phases[0]), (2, 0.7 * s, phases[1])]
 
     def apply(p, s):
         prepare(p, s)
-        p.update(plants.spring(p, mode))
+        p.update(plants.spring(p, mode, damping))
         p.update(plants.controller(p, min(6.0, mode / 4)))
     return Hidden([RESONANT], apply, prepare, 3 * j.noise_nm, allowed=[*RESONANT, ("start-stop-ringing", None)],
                   ripple_is_new=True)

@@ -4,7 +4,7 @@
 // Bodies: motor (angle th, on the output side of the gear) and link (q), with a flexspline between them: a spring with linear
 // and cubic stiffness and damping, wound up by th + transmission error(th) - q. A discrete controller (PD with integrator and
 // feedforward of the rigid body) acts on the quantized encoder of the motor. Friction of motor and link is LuGre: bristles that
-// deflect, whose tension relaxes in the grease at standstill (a Maxwell element). The torque sensor is at the flexspline's
+// deflect, whose tension relaxes in the grease at standstill (as in a Maxwell element). The torque sensor is at the flexspline's
 // output: it shows what drives the link, plus the strain by which the wave generator deforms the gauges.
 //
 // Input: lines "key value ..." up to "reference COUNT", then COUNT rows of four float64 (angle, speed, acceleration in rad,
@@ -44,12 +44,14 @@ struct Input {
     }
 };
 
-// LuGre bristles: tension = stiffness * z, z at most level / stiffness while sliding.
+// LuGre bristles: tension = stiffness * z, z at most level / stiffness while sliding. Below the creep speed the tension relaxes.
 struct Bristle {
-    double stiffness = 0, damping = 0, relaxation_s = 0, z = 0;
+    double stiffness = 0, damping = 0, creep = 0, z = 0;
     double force(double v, double level) {
         if (stiffness <= 0 || level <= 0) return 0;
-        const double rate = std::fabs(v) * stiffness / level + (relaxation_s > 0 ? 1 / relaxation_s : 0);
+        double rate = std::fabs(v);
+        if (creep > 0) rate += creep / (1 + v * v / (creep * creep));
+        rate *= stiffness / level;
         const double before = z;
         z = (z + v * dt) / (1 + dt * rate);
         return stiffness * z + damping * (z - before) / dt;
@@ -61,9 +63,9 @@ struct Joint {
     explicit Joint(const Input& in) : p(in) {
         te = in.all("te"), gauge = in.all("gauge"), mesh = in.all("mesh"), spline = in.all("spline");
         tone = in.all("tone");
-        link_friction = {p.get("bristle"), p.get("bristle_damping"), p.get("relaxation"), 0};
+        link_friction = {p.get("bristle"), p.get("bristle_damping"), p.get("creep"), 0};
         soft_friction = {p.get("soft_level") / p.get("soft_width", 1), 0, 0, 0};
-        motor_friction = {p.get("motor_bristle"), 0, p.get("relaxation"), 0};
+        motor_friction = {p.get("motor_bristle"), 0, p.get("creep"), 0};
     }
 
     const Input& p;

@@ -10,6 +10,9 @@ import numpy as np
 from .integrator import CONTROLLER_RATE_HZ as RATE_HZ
 
 
+SHORTEST_RAMP_S = 0.2
+
+
 def _integrated(speed, start_deg):
     """Angle, speed and acceleration (rad) of a speed in deg/s."""
     speed = np.radians(speed)
@@ -18,8 +21,8 @@ def _integrated(speed, start_deg):
 
 
 def _ramp(start, end, acceleration):
-    """A change of speed along half a cosine, of the given largest acceleration."""
-    count = max(2, round(np.pi / 2 * abs(end - start) / acceleration * RATE_HZ))
+    """A change of speed along half a cosine, of the given largest acceleration or, if that is shorter, of the shortest ramp."""
+    count = round(max(SHORTEST_RAMP_S, np.pi / 2 * abs(end - start) / acceleration) * RATE_HZ)
     return start + (end - start) * (1 - np.cos(np.pi * np.arange(count) / count)) / 2
 
 
@@ -46,10 +49,10 @@ class _Pieces:
 
     def stroke(self, distance, speed, acceleration):
         """From rest to rest, at most at that speed."""
-        ramp = np.pi / 2 * speed / acceleration
+        ramp = max(SHORTEST_RAMP_S, np.pi / 2 * speed / acceleration)
         if speed * ramp > abs(distance):
             speed = np.sqrt(2 / np.pi * abs(distance) * acceleration)
-            ramp = np.pi / 2 * speed / acceleration
+            ramp = max(SHORTEST_RAMP_S, np.pi / 2 * speed / acceleration)
         sign = np.sign(distance)
         self.to_speed(sign * speed, acceleration)
         self.hold(max(0.0, abs(distance) / speed - ramp))

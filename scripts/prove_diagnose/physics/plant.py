@@ -23,11 +23,11 @@ class Plant:
         return self.parameters["weight"] != 0
 
 
-def spring(parameters, mode_hz):
-    """Stiffness for a mode of the link; a tenth more of it at 1 mrad of torsion; a twentieth of critical damping."""
+def spring(parameters, mode_hz, damping=0.08):
+    """Stiffness for a mode of the link; a tenth more of it at 1 mrad of torsion; damping as a part of the critical."""
     omega = 2 * math.pi * mode_hz
     stiffness = parameters["link_inertia"] * omega**2
-    return {"stiffness": stiffness, "cubic": 0.1 * stiffness / 1e-6, "damping": 0.1 * parameters["link_inertia"] * omega}
+    return {"stiffness": stiffness, "cubic": 0.1 * stiffness / 1e-6, "damping": 2 * damping * parameters["link_inertia"] * omega}
 
 
 def controller(parameters, loop_hz):
@@ -49,9 +49,9 @@ def drawn(rng, gravity=None):
     p |= spring(p, rng.uniform(*MODE_HZ)) | controller(p, rng.uniform(8.0, 14.0))
     p |= {"known_inertia": inertia, "known_weight": p["weight"]}
     coulomb = rng.uniform(4.0, 9.0) * noise
-    p |= {"coulomb": coulomb, "bristle_width": math.radians(rng.uniform(0.003, 0.006)), "relaxation": rng.uniform(0.02, 0.03),
+    p |= {"coulomb": coulomb, "bristle_width": math.radians(rng.uniform(0.0008, 0.0015)), "creep": math.radians(rng.uniform(0.3, 0.8)),
           "viscous": rng.uniform(3.0, 7.0) * noise / math.radians(fastest),
-          "motor_coulomb": rng.uniform(0.2, 1.0), "motor_bristle": 1e4, "motor_viscous": rng.uniform(0.1, 0.5)}
+          "motor_coulomb": rng.uniform(0.05, 0.3), "motor_bristle": 1e4, "motor_viscous": rng.uniform(0.1, 0.5)}
     p["gauge"] = [(n, rng.uniform(2.5, 8.0) * noise, rng.uniform(-math.pi, math.pi)) for n in (1, 2)]
     known = {"inertia": {}, "coulomb-friction": {}, "viscous-friction": {}, "ripple 1": {}, "ripple 2": {}}
     if level:
