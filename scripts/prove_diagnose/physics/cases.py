@@ -13,7 +13,7 @@ import zlib
 
 import numpy as np
 
-from . import effects, integrator, motions, plant
+from . import catalogue, integrator, motions, plant
 
 FORMS = ("model", "simulated", "simulated_scale1")
 COLUMN, SIMULATED_ANGLE = "tau_sim_nm", "q_sim_deg"
@@ -83,7 +83,10 @@ class Case:
         clean = found["torque"] + sensor.get("offset", 0.0)
         torque, limit = converted(clean + noise(rng, len(clean), setting, rate), sensor, rng, rate)
         step = 360 / 2**19
-        position = step * np.floor(np.degrees(found["motor_angle"]) / step + 0.5)
+        angle = np.degrees(found["motor_angle"])
+        if "eccentric_deg" in sensor:
+            angle = angle + sensor["eccentric_deg"] * np.cos(found["motor_angle"] + sensor["eccentric_angle"])
+        position = step * np.floor(angle / step + 0.5)
         speed = velocity(setting, rng, position, np.degrees(found["motor_speed"]), rate) + sensor.get("velocity_bias", 0.0)
         columns = {"time_s": np.arange(len(torque)) / rate, "velocity_deg_s": speed, "torque_nm": torque}
         if all(h.position for h in setting.hidden):
@@ -91,7 +94,8 @@ class Case:
         if self.form != "model":
             simulated = self.simulation(setting, reference)
             columns[COLUMN] = simulated["torque"]
-            columns[SIMULATED_ANGLE] = np.degrees(simulated["motor_angle"])
+            if "position_deg" in columns:  # else the tool would take it for the log's own
+                columns[SIMULATED_ANGLE] = np.degrees(simulated["motor_angle"])
         return columns, clean, limit
 
     def simulation(self, setting, reference):
@@ -174,12 +178,11 @@ class Case:
 @functools.lru_cache(maxsize=4)
 def _setting(case):
     rng = case.rng("joint")
-    level = next((effects.GRAVITY[label] for label in case.labels if label in effects.GRAVITY), None)
-    drawn = plant.drawn(rng, level)
+    drawn = plant.drawn(rng, catalogue.gravity(case.labels))
     rate = int(rng.choice(list(RATES)))
     memory, velocity_kind = rng.uniform(0.0, 0.6), str(rng.choice(["noisy", "differenced", "filtered"]))
-    kinds = tuple(str(kind) for kind in rng.permutation(effects.motions(case.labels))[:2])
-    hidden = [effects.drawer(label)(rng, drawn) for label in case.labels]
+    kinds = tuple(str(kind) for kind in rng.permutation(catalogue.motions(case.labels))[:2])
+    hidden = [catalogue.drawer(label)(rng, drawn) for label in case.labels]
     setting = Setting(drawn, hidden, [h.start for h in hidden], [None] * len(hidden), rate, memory, velocity_kind, kinds)
     reference = _reference(setting, case.rng("train"), kinds[0])
     for k, h in enumerate(hidden):
@@ -266,18 +269,18 @@ def _disturb(label, rng, shared, setting, p, reference):
         reference[:, 3] = rng.uniform(3, 8) * size * np.sin(phase) * ((s > 0) & (s < length))
     else:
         walk = np.cumsum(rng.standard_normal(count))
-        walk -= np.convolve(np.append(np.full(rate, walk[0]), walk), np.ones(rate) / rate, "valid")[:count] * 0.0 + walk.mean()
+        walk -= walk.mean()
         reference[:, 3] = rng.uniform(2, 5) * size * walk / walk.std()
 
 
-def planned(first, seeds, forms, nulls):
-    """The cases of the study: singles and pairs, nulls and disturbances, in every form, with friction in the simulation and without."""
+def planned(first, seeds, forms, nulls, labels):
+    """labels: the effects that are hidden alone. The cases of the study: singles and pairs, nulls and disturbances, in every form, with friction in the simulation and without."""
     numbers, found = range(first, first + seeds), []
     for form in forms:
         for friction in ("friction", "frictionless")[: 1 if form == "model" else 2]:
-            singles = [*(["friction"] if friction == "frictionless" else []), *effects.singles()]
+            singles = [*(["friction"] if friction == "frictionless" else []), *labels]
             found += [Case(form, friction, "single", label, n) for label in singles for n in numbers]
-            found += [Case(form, friction, "pair", "+".join(pair), n) for pair in effects.PAIRS for n in numbers]
+            found += [Case(form, friction, "pair", pair, n) for pair in catalogue.PAIRS for n in numbers]
         found += [Case(form, "friction", "null", "nothing", n) for n in range(first, first + nulls)]
         found += [Case(form, "friction", "outside", label, n) for label in OUTSIDE for n in numbers]
     return found

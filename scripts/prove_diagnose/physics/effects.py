@@ -12,9 +12,6 @@ from typing import Callable
 
 from . import plant as plants
 
-ANY_MOTION = ("trapezoid", "sine", "fourier", "jog")
-WIDE_MOTION = ("trapezoid", "jog", "sine")  # with a travel of more than half a turn
-STOPPING = ("trapezoid", "jog")
 RESONANT = [("resonance", None), ("ripple-speed-dependence", None)]
 
 
@@ -145,7 +142,9 @@ def drift(rng, j):
 
     def apply(p, s):
         p["drift"], p["drift_s"] = sign * s, time_constant
-    return Hidden(one("drift"), apply, start=4 * j.noise_nm, allowed=[("offset", None)])
+    return Hidden(one("drift"), apply, start=4 * j.noise_nm, allowed=[("offset", None)],
+                  truth=lambda s: {("drift", None, "rate_nm_s"): sign * s / time_constant,
+                                   ("drift", None, "time_constant_s"): time_constant})
 
 
 def transmission_error(order):
@@ -300,18 +299,6 @@ SINGLES = {
     "dropout": dropout,
 }
 
-GRAVITY = {"load-friction": True, "payload": True, "gravity": True, "ripple-load-dependence": True, "inertia": False}
-WIDE = ("gravity", "payload", "load-friction", "ripple-modulation", "output-ripple", "ripple-load-dependence", "gear-ratio")
-SLOW = ("stribeck-friction",)  # needs slow passes
-
-
-def motions(labels):
-    """Kinds of motion that can show the effects: where only starts and stops do, they have to be there."""
-    if "start-stop-ringing" in labels or set(SLOW) & set(labels):
-        return STOPPING
-    return WIDE_MOTION if set(WIDE) & set(labels) else ANY_MOTION
-
-
 PAIRS = (
     ("coulomb-friction", "viscous-friction"), ("coulomb-friction", "transmission-error-1"), ("coulomb-friction", "gravity"),
     ("coulomb-friction", "delay"), ("stribeck-friction", "mesh-ripple"), ("viscous-friction", "drift"),
@@ -321,12 +308,3 @@ PAIRS = (
     ("resonance", "offset"), ("ripple-direction-dependence", "viscous-friction"), ("start-stop-ringing", "tone-50"),
     ("quantization", "stribeck-friction"),
 )
-
-
-
-def drawer(label):
-    return SINGLES[label]
-
-
-def singles():
-    return list(SINGLES)

@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 
 from .. import score, tool
-from . import baseline, cases, tables
+from . import baseline, cases, catalogue, tables
 
 TOLERANCE = 0.025  # of an order, within which it is the same
 GROWTH = 1.001  # of a gap that counts as larger
@@ -48,8 +48,8 @@ def intervals(truth, keys):
                 continue
             ends = given.get("ci95")
             turn = 360.0 * round((given["value"] - true) / 360.0) if parameter == "phase_deg" else 0.0
-            held = None if not ends or None in ends else ends[0] <= true + turn <= ends[1]
-            rows.append({"parameter": f"{effect}.{parameter}", "true": true, "value": given["value"], "ci95": ends, "held": held})
+            held = None if not ends or None in ends else bool(ends[0] <= true + turn <= ends[1])
+            rows.append({"parameter": f"{effect}.{parameter}", "true": float(true), "value": given["value"], "ci95": ends, "held": held})
             break
     return rows
 
@@ -83,6 +83,7 @@ def failed(row):
 
 @dataclasses.dataclass(frozen=True)
 class Study:
+    program: str
     forms: tuple = cases.FORMS
     options: tuple = ()
     nulls: int | None = None
@@ -90,7 +91,8 @@ class Study:
 
     def chosen(self, first, seeds):
         """nulls: forty times as many as of each other case, in each form."""
-        return [case for case in cases.planned(first, seeds, self.forms, 40 * seeds if self.nulls is None else self.nulls)
+        nulls = 40 * seeds if self.nulls is None else self.nulls
+        return [case for case in cases.planned(first, seeds, self.forms, nulls, catalogue.listed(self.program))
                 if not self.kinds or case.kind in self.kinds]
 
     def trial(self, program, case, keep=None):

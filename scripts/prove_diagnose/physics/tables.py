@@ -2,7 +2,7 @@
 """The tables of the study."""
 
 from .. import bars, table
-from . import cases, effects
+from . import cases, catalogue
 
 CONFIGURATIONS = [(form, friction) for form in cases.FORMS for friction in ("friction", "frictionless")
                   if form != "model" or friction == "friction"]
@@ -63,7 +63,7 @@ def summary(rows):
 def by_label(rows):
     """Exactly right, and logs with a false name, per effect and form; the baseline's exactly right after the stroke."""
     there = [c for c in CONFIGURATIONS if any((row["form"], row["friction"]) == c for row in rows)]
-    labels = ["friction", *effects.singles(), *("+".join(pair) for pair in effects.PAIRS), "nothing", *cases.OUTSIDE]
+    labels = ["friction", *catalogue.labels(), *catalogue.PAIRS, "nothing", *cases.OUTSIDE]
     lines = []
     for label in labels:
         cells = []
