@@ -51,11 +51,12 @@ def known_columns(log, case, width=0.2):
 
 
 def best_width(log, case):
-    """The width with which the known terms leave least of the log's torque."""
+    """The width of friction's step with which known terms and friction leave least of the log's torque."""
     def rest(width):
         columns = [column for group in known_columns(log, case, width).values() for column in group]
+        columns = columns if case.form == "model" else [*columns, np.tanh(log.v / width), log.v]
         return measured.rms(log.torque - np.column_stack(columns) @ fit(columns, log.torque))
-    return min(WIDTHS, key=rest) if case.form == "model" else WIDTHS[0]
+    return min(WIDTHS, key=rest)
 
 
 def filtered(values, time_constant, step):

@@ -144,7 +144,12 @@ class Case:
         return required, allowed
 
     def truth(self, limit):
+        """Values that the physics states: {(effect, order, parameter): value}."""
         values = {}
+        if self.friction == "frictionless":
+            p = self.setting().plant.parameters
+            values = {("coulomb-friction", None, "torque_nm"): p["coulomb"],
+                      ("viscous-friction", None, "coefficient_nm_per_deg_s"): p["viscous"] * math.pi / 180}
         for hidden, s in zip(self.setting().hidden, self.setting().strengths):
             values |= hidden.truth(s)
         if limit is not None:

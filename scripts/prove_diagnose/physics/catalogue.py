@@ -7,10 +7,10 @@ from . import effects, later
 
 GRAVITY = {"load-friction": True, "payload": True, "gravity": True, "ripple-load-dependence": True, "inertia": False, **later.GRAVITY}
 WIDE = ("gravity", "payload", "load-friction", "ripple-modulation", "output-ripple", "ripple-load-dependence", "gear-ratio", *later.WIDE)
-SLOW = ("start-stop-ringing", "stribeck-friction")  # need starts and stops, or slow passes
+NEEDS = {"start-stop-ringing": ("trapezoid", "trapezoid"), "stribeck-friction": ("trapezoid", "jog"),  # starts and stops, slow passes
+         "resonance": ("sine", "fourier", "jog"), "ripple-speed-dependence": ("sine", "fourier", "jog")}  # many speeds
 ANY_MOTION = ("trapezoid", "sine", "fourier", "jog")
 WIDE_MOTION = ("trapezoid", "jog", "sine")  # with a travel of more than half a turn
-STOPPING = ("trapezoid", "jog")
 PAIRS = ["+".join(pair) for pair in effects.PAIRS]
 
 
@@ -36,6 +36,7 @@ def gravity(labels):
 
 def motions(labels):
     """Kinds of motion that can show the effects."""
-    if set(SLOW) & set(labels):
-        return STOPPING
+    for label in NEEDS:
+        if label in labels:
+            return NEEDS[label]
     return WIDE_MOTION if set(WIDE) & set(labels) else ANY_MOTION

@@ -213,7 +213,7 @@ def resonance(rng, j):
     """Torque of the mesh of known orders, which meets a soft torsional mode within the speeds of the log."""
     phases = rng.uniform(-math.pi, math.pi, 2)
     fastest_hz = 2 * j.ratio * j.fastest_deg_s / 360
-    mode, damping = fastest_hz * rng.uniform(0.5, 0.85), rng.uniform(0.03, 0.08)
+    mode, damping = fastest_hz * rng.uniform(0.5, 0.8), rng.uniform(0.02, 0.06)
 
     def prepare(p, s):
         p["gauge"], p["mesh"] = [], [(1, s, phases[0]), (2, 0.7 * s, phases[1])]
@@ -222,7 +222,7 @@ def resonance(rng, j):
         prepare(p, s)
         p.update(plants.spring(p, mode, damping))
         p.update(plants.controller(p, min(6.0, mode / 4)))
-    return Hidden([RESONANT], apply, prepare, 3 * j.noise_nm, allowed=[*RESONANT, ("start-stop-ringing", None)],
+    return Hidden([RESONANT], apply, prepare, 3 * j.noise_nm, 15 * j.noise_nm, allowed=[*RESONANT, ("start-stop-ringing", None)],
                   ripple_is_new=True)
 
 
@@ -262,7 +262,7 @@ def velocity_bias(rng, j):
 
 def ringing(rng, j):
     """Part of the load hangs on a spring of its own and swings when the joint starts and stops."""
-    hertz, damping = rng.uniform(4.0, 9.0), rng.uniform(0.04, 0.1)
+    hertz, damping = rng.uniform(2.5, 5.0), rng.uniform(0.03, 0.08)
 
     def prepare(p, s):
         p["known_inertia"] = p["link_inertia"] = j.parameters["link_inertia"] * (1 + s)
@@ -270,7 +270,7 @@ def ringing(rng, j):
     def apply(p, s):
         p["link_inertia"] = j.parameters["link_inertia"]
         p |= {"flex_inertia": s * p["link_inertia"], "flex_hz": hertz, "flex_damping": damping}
-    return Hidden(one("start-stop-ringing"), apply, prepare, 0.3, 2.0, allowed=[("resonance", None), ("inertia", None)])
+    return Hidden([[("start-stop-ringing", None), ("resonance", None)]], apply, prepare, 0.3, 2.0, allowed=[("inertia", None)])
 
 
 def saturation(rng, j):

@@ -24,10 +24,10 @@ class Plant:
 
 
 def spring(parameters, mode_hz, damping=0.08):
-    """Stiffness for a mode of the link; a tenth more of it at 1 mrad of torsion; damping as a part of the critical."""
+    """Stiffness for a mode of the link; a tenth more of it at 2 mrad of torsion; damping as a part of the critical."""
     omega = 2 * math.pi * mode_hz
     stiffness = parameters["link_inertia"] * omega**2
-    return {"stiffness": stiffness, "cubic": 0.1 * stiffness / 1e-6, "damping": 2 * damping * parameters["link_inertia"] * omega}
+    return {"stiffness": stiffness, "cubic": 0.1 * stiffness / 4e-6, "damping": 2 * damping * parameters["link_inertia"] * omega}
 
 
 def controller(parameters, loop_hz):
