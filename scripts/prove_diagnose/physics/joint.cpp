@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 // One joint with a harmonic drive, integrated from its equations of motion. Uses nothing of the tool.
 //
-// Bodies: motor (angle th, on the output side of the gear) and link (q), with a flexspline between them: a spring with linear
-// and cubic stiffness and damping, wound up by th + transmission error(th) - q. A discrete controller (PD with integrator and
-// feedforward of the rigid body) acts on the quantized encoder of the motor. Friction of motor and link is LuGre: bristles that
-// deflect, whose tension relaxes in the grease at standstill (as in a Maxwell element). The torque sensor is at the flexspline's
-// output: it shows what drives the link, plus the strain by which the wave generator deforms the gauges.
+// Bodies: motor (angle th, on the output side of the gear) and link (q), with a flexspline between them: a
+// spring with linear and cubic stiffness and damping, wound up by th + transmission error(th) - q. A discrete
+// controller (PD with integrator and feedforward of the rigid body) acts on the quantized encoder of the
+// motor. Friction of motor and link is LuGre: bristles that deflect, whose tension relaxes in the grease at
+// standstill (as in a Maxwell element). The torque sensor is at the flexspline's output: it shows what drives
+// the link, plus the strain by which the wave generator deforms the gauges.
 //
-// Input: lines "key value ..." up to "reference COUNT", then COUNT rows of four float64 (angle, speed, acceleration in rad,
-// and external torque on the link in Nm) at the controller's rate. Output: rows of six float64 at the log's rate: motor angle
-// and speed, link angle and speed, measured torque, torque across the flexspline; rad, rad/s, Nm.
-// Semi-implicit Euler (speeds before angles), bristles implicit.
+// Input: lines "key value ..." up to "reference COUNT", then COUNT rows of four float64 (angle, speed,
+// acceleration in rad, and external torque on the link in Nm) at the controller's rate. Output: rows of six
+// float64 at the log's rate: motor angle and speed, link angle and speed, measured torque, torque across the
+// flexspline; rad, rad/s, Nm. Semi-implicit Euler (speeds before angles), bristles implicit.
 #include <cmath>
 #include <cstdio>
 #include <deque>
@@ -44,7 +45,8 @@ struct Input {
     }
 };
 
-// LuGre bristles: tension = stiffness * z, z at most level / stiffness while sliding. Below the creep speed the tension relaxes.
+// LuGre bristles: tension = stiffness * z, z at most level / stiffness while sliding. Below the creep speed
+// the tension relaxes.
 struct Bristle {
     double stiffness = 0, damping = 0, creep = 0, z = 0;
     double force(double v, double level) {
@@ -71,14 +73,14 @@ struct Joint {
     const Input& p;
     std::vector<Wave> te, gauge, mesh, spline, tone;
     Bristle link_friction, soft_friction, motor_friction;
-    double th = 0, w = 0, q = 0, v = 0;         // motor and link
-    double flex_x = 0, flex_v = 0;              // payload on its own spring, relative to the link
-    double grip = 0;                            // flank that carries, -1 to 1
-    double drive = 0;                           // torque of the motor
-    double spring = 0;                          // torque across the flexspline
-    double heat = 0;                            // of the friction, 0 cold to 1 warm
+    double th = 0, w = 0, q = 0, v = 0;  // motor and link
+    double flex_x = 0, flex_v = 0;       // payload on its own spring, relative to the link
+    double grip = 0;                     // flank that carries, -1 to 1
+    double drive = 0;                    // torque of the motor
+    double spring = 0;                   // torque across the flexspline
+    double heat = 0;                     // of the friction, 0 cold to 1 warm
     double lag = 0, low1 = 0, low2 = 0, zero = 0;
-    std::deque<double> line;                    // torque on its way to the log
+    std::deque<double> line;  // torque on its way to the log
 
     const double ratio = p.get("ratio", 100);
     const double jm = p.get("motor_inertia"), k = p.get("stiffness"), k3 = p.get("cubic");
@@ -92,8 +94,10 @@ struct Joint {
     const double uneven = p.get("uneven"), uneven_angle = p.get("uneven_angle");
     const double motor_level = p.get("motor_coulomb"), motor_viscous = p.get("motor_viscous");
     const double soft_level = p.get("soft_level");
-    const double flex_j = p.get("flex_inertia"), flex_w = 2 * pi * p.get("flex_hz"), flex_d = p.get("flex_damping");
-    const double added_at = p.get("added_at", 1e9), added_j = p.get("added_inertia"), added_g = p.get("added_weight");
+    const double flex_j = p.get("flex_inertia"), flex_w = 2 * pi * p.get("flex_hz"),
+                 flex_d = p.get("flex_damping");
+    const double added_at = p.get("added_at", 1e9), added_j = p.get("added_inertia"),
+                 added_g = p.get("added_weight");
     const double bump = p.get("bump"), bump_at = p.get("bump_at"), bump_width = p.get("bump_width", 1);
     const double eccentric = p.get("eccentric"), eccentric_angle = p.get("eccentric_angle");
     const double load_gain = p.get("gauge_by_load"), load_knee = p.get("gauge_load_knee", 1);
@@ -189,7 +193,7 @@ struct Joint {
             total = lag;
         }
         if (low_w > 0) {
-            low2 += dt * low_w * (low_w * (total - low1) / low_w - std::sqrt(2.0) * low2);
+            low2 += dt * low_w * (total - low1 - std::sqrt(2.0) * low2);
             low1 += dt * low_w * low2;
             total = low1;
         }
@@ -230,7 +234,8 @@ int main() {
     const auto substeps = static_cast<std::size_t>(steps_per_second / controller_rate);
     const auto log_every = static_cast<std::size_t>(steps_per_second / in.get("log_rate", 1000));
     const double settle_s = in.get("settle_s", 1.5), grain = in.get("encoder_step");
-    const double kp = in.get("kp"), kv = in.get("kv"), ki = in.get("ki"), filter = in.get("velocity_filter", 1);
+    const double kp = in.get("kp"), kv = in.get("kv"), ki = in.get("ki"),
+                 filter = in.get("velocity_filter", 1);
     const double rigid = in.get("known_inertia"), known_weight = in.get("known_weight");
     const double angle = in.get("weight_angle");
     const auto seen = [&](double x) { return grain > 0 ? grain * std::floor(x / grain + 0.5) : x; };

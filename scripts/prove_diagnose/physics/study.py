@@ -88,9 +88,12 @@ class Study:
     options: tuple = ()
     nulls: int | None = None
     kinds: tuple = ()
+    case: str | None = None  # only this one
 
     def chosen(self, first, seeds):
         """nulls: forty times as many as of each other case, in each form."""
+        if self.case:
+            return [cases.by_name(self.case)]
         nulls = 40 * seeds if self.nulls is None else self.nulls
         return [case for case in cases.planned(first, seeds, self.forms, nulls, catalogue.listed(self.program))
                 if not self.kinds or case.kind in self.kinds]
