@@ -88,8 +88,11 @@ def dictionary(log, expected, width):
     found += [(("output-ripple", float(order)), measured.waves(order * log.rad)) for order in (2, 3, 4)]
     found += [(("lag", None), [filtered(expected, tau, log.step) - expected]) for tau in (0.003, 0.01)]
     for hertz in (15.0, 25.0, 40.0):
-        gains = [(ripple_gain(log, hertz, 0.05, order), log.waves(order)) for order in (1, 2)]
-        found.append((("resonance", None), [part for gain, (c, s) in gains for part in (gain.real * c - gain.imag * s, gain.real * s + gain.imag * c)]))
+        columns = []
+        for order in (1, 2):
+            gain, (c, s) = ripple_gain(log, hertz, 0.05, order), log.waves(order)
+            columns += [gain.real * c - gain.imag * s, gain.real * s + gain.imag * c]
+        found.append((("resonance", None), columns))
     return found
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One case: a joint, what is hidden in it, two logs, and what the user hands to the tool.
+"""One case: a joint, the effects hidden in it, two logs, and the user's model or simulation.
 
 Everything is drawn from the case's name, so that any case can be made again by itself. The joint and its motions are the same in
 every form of the same label and number.
@@ -124,7 +124,7 @@ class Case:
         return {"schema": "ripplenotch/model/1", "gear_ratio": self.given_ratio(), "effects": entries}
 
     def options(self):
-        """How the tool is told of model or simulation."""
+        """The options of `diagnose` that state model or simulation."""
         if self.form == "model":
             return ["--model", "base.json"]
         return ["--simulated", COLUMN + (",scale=1" if self.form == "simulated_scale1" else ""), "--gear-ratio", repr(self.given_ratio())]
@@ -288,7 +288,7 @@ def by_name(name):
 
 
 def planned(first, seeds, forms, nulls, labels):
-    """labels: the effects that are hidden alone. The cases of the study: singles and pairs, nulls and disturbances, in every form, with friction in the simulation and without."""
+    """Singles of the labels, pairs, nulls and disturbances in every form, with friction in the simulation and without."""
     numbers, found = range(first, first + seeds), []
     for form in forms:
         for friction in ("friction", "frictionless")[: 1 if form == "model" else 2]:

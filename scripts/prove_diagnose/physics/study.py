@@ -19,27 +19,27 @@ GROWTH = 1.001  # of a gap that counts as larger
 
 
 def matches(name, key):
-    """Is a found (effect, order) the one that is asked for? An order of None is any."""
+    """Whether a finding (effect, order) agrees with an expected name; an order of None agrees with any."""
     return name[0] == key[0] and (name[1] is None or key[1] is None or abs(key[1] - name[1]) <= TOLERANCE * name[1])
 
 
 def found_keys(found):
-    """(effect, order or None) of each confirmed finding; names that no entry explains count without an order."""
+    """(effect, order or None) of each confirmed finding; a name without an entry of its own has no order."""
     entries = [e for e in found.get("rounds", []) if e.get("status") == "confirmed"] + found.get("faults", [])
     keys = {score.key(e["effect"], e.get("parameters", {})): e for e in entries if e["effect"] in found["named"]}
-    told = {key[0] for key in keys}
-    return keys | {(name, None): {} for name in found["named"] if name not in told}
+    with_entry = {key[0] for key in keys}
+    return keys | {(name, None): {} for name in found["named"] if name not in with_entry}
 
 
 def judged(required, allowed, keys):
-    """exactly right, and the names that are wrong."""
+    """Whether the names are exactly right, and which of them are false."""
     wrong = [key for key in keys if not any(matches(name, key) for name in [*allowed, *(n for group in required for n in group)])]
     whole = all(any(matches(name, key) for name in group for key in keys) for group in required)
     return {"exact": whole and not wrong, "false": score.words(wrong)}
 
 
 def intervals(truth, keys):
-    """For each value that the physics states: whether the 95 % interval holds it, None without an interval."""
+    """For each true value of a named effect: whether the 95 % interval contains it; None without an interval."""
     rows = []
     for (effect, order, parameter), true in truth.items():
         for key, entry in keys.items():
@@ -55,12 +55,12 @@ def intervals(truth, keys):
 
 
 def grown(found):
-    """Which gaps are larger than before: of the log, of the validation log, of rounds."""
+    """Gaps that are larger after the diagnosis than before: of training log, validation log and confirmed rounds."""
     gap, larger = found["gap"], []
-    for word in ("", "validation_"):
-        before, after = gap.get(f"{word}before_nm"), gap.get(f"{word}after_nm")
+    for log in ("", "validation_"):
+        before, after = gap.get(f"{log}before_nm"), gap.get(f"{log}after_nm")
         if before is not None and after is not None and after > GROWTH * before:
-            larger.append(f"{word or 'training_'}gap {before:.4g} to {after:.4g}")
+            larger.append(f"{(log or 'training_')[:-1]} gap {before:.4g} to {after:.4g}")
     for number, entry in enumerate(found.get("rounds", []), 1):
         before, after = entry.get("gap_before_nm"), entry.get("gap_after_nm")
         if entry.get("status") == "confirmed" and None not in (before, after) and after > GROWTH * before:
@@ -71,9 +71,9 @@ def grown(found):
 def diagnosed(program, case, folder, options):
     """The diagnosis and its processor time."""
     before = tool.cpu_seconds()
-    words = [folder / word if word == "base.json" else word for word in case.options()]
-    found = tool.run(program, "diagnose", folder / "train.npy", *words, "--validate", folder / "validate.npy", "--json", "--force",
-                     "-o", folder / "improved.json", *options)
+    options = [*(folder / option if option == "base.json" else option for option in case.options()), *options]
+    found = tool.run(program, "diagnose", folder / "train.npy", *options, "--validate", folder / "validate.npy", "--json", "--force",
+                     "-o", folder / "improved.json")
     return found, tool.cpu_seconds() - before
 
 
@@ -91,7 +91,7 @@ class Study:
     case: str | None = None  # only this one
 
     def chosen(self, first, seeds):
-        """nulls: forty times as many as of each other case, in each form."""
+        """Cases by form; nulls, unless their number is given, are forty times as many as the seeds."""
         if self.case:
             return [cases.by_name(self.case)]
         nulls = 40 * seeds if self.nulls is None else self.nulls
@@ -127,5 +127,5 @@ class Study:
 
 
 def answer(row):
-    """A row in a word, for the list that runs by."""
+    """One-line summary of a row, for the progress output."""
     return (", ".join(row["named"]) or "nothing") + ("" if row["exact"] else " WRONG") + ("".join(f"; {g}" for g in row["grown"]))

@@ -61,7 +61,7 @@ def summary(rows):
 
 
 def by_label(rows):
-    """Exactly right, and logs with a false name, per effect and form; the baseline's exactly right after the stroke."""
+    """Exactly right, and logs with a false name, per effect and form; the baseline's exactly right in brackets."""
     there = [c for c in CONFIGURATIONS if any((row["form"], row["friction"]) == c for row in rows)]
     labels = ["friction", *catalogue.labels(), *catalogue.PAIRS, "nothing", *cases.OUTSIDE]
     lines = []
@@ -90,12 +90,12 @@ def coverage(rows):
 
 def failure(row):
     sizes = ", ".join(f"{size:.1f}" for size in row["sizes"] if size is not None)
-    words = f"{row['case']}{f' ({sizes} of the noise)' if sizes else ''}: named {', '.join(row['named']) or 'nothing'}"
+    text = f"{row['case']}{f' ({sizes} of the noise)' if sizes else ''}: named {', '.join(row['named']) or 'nothing'}"
     if row["false"]:
-        words += f"; false: {', '.join(row['false'])}"
+        text += f"; false: {', '.join(row['false'])}"
     if row["grown"]:
-        words += f"; grew: {', '.join(row['grown'])}"
-    return f"{words}; {row.get('error') or row.get('verdict')}"
+        text += f"; grew: {', '.join(row['grown'])}"
+    return f"{text}; {row.get('error') or row.get('verdict')}"
 
 
 def blocks(about, rows):
