@@ -43,7 +43,7 @@ def drawn(rng, gravity=None):
     fastest = rng.uniform(0.6, 1.1) * 90.0 * min(1.6, max(0.7, 100 / ratio))
     level = rng.random() < 0.5 if gravity is None else gravity
     inertia = rng.uniform(0.15, 0.5)
-    p = {"ratio": ratio, "link_inertia": inertia, "motor_inertia": inertia * rng.uniform(1.0, 3.0),
+    p = {"ratio": ratio, "link_inertia": inertia, "motor_inertia": inertia * rng.uniform(3.0, 8.0),
          "weight": rng.uniform(4.0, 12.0) * rng.choice([-1, 1]) if level else 0.0,
          "weight_angle": rng.uniform(-math.pi, math.pi), "encoder_step": 2 * math.pi / (2**17 * ratio)}
     p |= spring(p, rng.uniform(*MODE_HZ)) | controller(p, rng.uniform(8.0, 14.0))
