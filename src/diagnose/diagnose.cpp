@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The loop: faults, noise, baseline, search, what is left, judgement, the final fit of the whole log.
+// The main loop of a diagnosis: select -> fit -> test -> report.
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -114,7 +116,7 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
                                      std::span<const Effect* const> tried,
                                      std::span<const std::string> without) {
     std::vector<const Effect*> others;
-    for (const Effect* effect : examined(model.stated, without, true)) {
+    for (const Effect* effect : examined(without, true)) {
         if (std::find(tried.begin(), tried.end(), effect) == tried.end()) others.push_back(effect);
     }
     std::vector<Undecidable> told;
@@ -123,7 +125,8 @@ std::vector<Undecidable> undecidable(const ModelBench& bench, const Candidate& m
     for (const Trial& trial : screen(bench, model, others)) {
         for (Undecidable& entry : told) {
             if (entry.effect == trial.start.effect->name && trial.score() > 0.0)
-                entry.would_explain_nm = bench.noise().rms_nm * std::sqrt(trial.gain / bench.samples());
+                entry.would_explain_nm =
+                    bench.share(with_trial(bench, model, trial), model) * bench.noise().material_nm;
         }
     }
     return told;
@@ -172,79 +175,20 @@ Searched search_straight(Case& whole, Case& part, const Model& model, std::span<
     return found;
 }
 
-// Where more than noise is left: the same search in a log that is whitened by what was left.
-void look_again(Searched& found, const Case& c, const Model& model, std::span<const Effect* const> effects,
-                Work& work, const DiagnosisRules& rules) {
-    const std::size_t own = model.terms.size();
+// Against the noise that holds the residual: the same search from the start.
+Searched search_again(const Searched& before, const Case& c, const Model& model,
+                      std::span<const Effect* const> effects, Work& work, const DiagnosisRules& rules) {
     std::vector<double> left(c.size(), 0.0);
-    const auto cleared = found.bench->cleared_residual(found.last.stated);
-    for (std::size_t r = 0; r < cleared.size(); ++r) left[found.bench->rows()[r]] = cleared[r];
-    found.noise = noise_of_residual(c, left, found.noise, rules);
+    const auto cleared = before.bench->cleared_residual(before.last.stated);
+    for (std::size_t r = 0; r < cleared.size(); ++r) left[before.bench->rows()[r]] = cleared[r];
+    Searched found;
+    found.noise = noise_of_residual(c, left, before.noise, rules);
     found.bench = std::make_unique<ModelBench>(c, found.noise, work, rules);
-    found.bench->settle_on(found.first.stated);
-    found.first = found.bench->fitted(found.first.open, found.first.stated, found.first.prices);
-    found.refused.clear();
-    found.last = search(*found.bench, found.first, own, effects, found.refused);
+    found.bench->settle_on(before.first.stated);
+    found.first = found.bench->fitted(before.first.open, before.first.stated, before.first.prices);
+    found.last = search(*found.bench, found.first, model.terms.size(), effects, found.refused);
+    return found;
 }
-
-// What of the findings is believed, and what is left then. `other`: the validation log, if there is one;
-// it may begin at an angle that only the model tells.
-Candidate judged(Diagnosis& diagnosis, const Searched& found, std::size_t own,
-                 std::span<const Effect* const> effects, Case* other, bool begins_anywhere) {
-    const ModelBench& bench = *found.bench;
-    diagnosis.unexplained = leftovers(bench, found.last.stated);
-    diagnosis.rounds = judge(bench, found.last, own, effects,
-                             bench.beside_residual() ? std::vector<Leftover>() : diagnosis.unexplained);
-    diagnosis.refused = found.refused;
-    diagnosis.baseline = found.first.stated;
-    diagnosis.evaluations =
-        bench.work().spent() * Work::unit_samples / static_cast<double>(bench.looked_at().size());
-    diagnosis.search_ended = bench.work().ended();
-    diagnosis.gap.noise_floor_nm = bench.floor_nm(found.last.stated);
-    diagnosis.noise_color = found.noise.color;
-    tell_rounds(diagnosis, bench, found.last, own);
-    Candidate last = believed(bench, found.last, own, diagnosis.rounds);
-    if (other != nullptr && begins_anywhere) put_in_place(*other, last.stated, bench.rules().recording);
-    if (other != nullptr)
-        last = reproduced(bench, found.last, last, diagnosis.baseline, *other, own, diagnosis.rounds);
-    // What a doubtful finding would explain is not explained.
-    if (last.stated.terms.size() < found.last.stated.terms.size())
-        diagnosis.unexplained = leftovers(bench, last.stated);
-    return last;
-}
-
-Candidate fitted_to_whole(const Case& whole, const Searched& found, const Candidate& last,
-                          Diagnosis& diagnosis, Work& work, const DiagnosisRules& rules) {
-    ModelBench all(whole, found.noise, work, rules);
-    all.settle_on(last.stated);
-    const Candidate fitted = all.fitted(last.open, last.stated, last.prices, 4);
-    diagnosis.baseline = all.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;
-    return fitted;
-}
-
-// The improved model with its values, those of each finding, and the faults, which are names too.
-void tell_model(Diagnosis& diagnosis, const Candidate& last, std::size_t own) {
-    diagnosis.model = last.stated;
-    diagnosis.values = last.values;
-    std::size_t place = own;
-    for (Finding& finding : diagnosis.rounds) {
-        if (is_doubtful(finding)) continue;
-        finding.term = last.stated.terms[place];
-        finding.values.clear();
-        for (const FittedValue& value : last.values) {
-            if (value.term == place) finding.values.push_back(value);
-        }
-        ++place;
-    }
-    for (const Fault& fault : diagnosis.faults) {
-        diagnosis.model.terms.push_back(fault.term);
-        diagnosis.named.emplace_back(fault.term.effect->name);
-    }
-}
-
-}  // namespace
-
-namespace {
 
 void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_view log) {
     for (const GivenTerm& term : given) {
@@ -262,102 +206,238 @@ bool is_scale_open(std::span<const GivenTerm> given) {
     });
 }
 
-// What the known torque brings into the model: friction that a simulation has too much of is below 0, and the
-// zero of the sensor is fitted beside an arm's weight, which it looks like.
-Model with_known_terms(Model model, std::span<const GivenTerm> given) {
-    model.beside_simulation = is_given(given, "simulated");
-    const bool has_offset = std::ranges::any_of(
-        model.terms, [](const Term& term) { return term.effect->name == "offset"; });
-    if (is_given(given, "arm") && !has_offset) model.terms.push_back(parse_term("offset"));
-    return model;
+bool has_offset(const Model& model) {
+    return std::ranges::any_of(model.terms, [](const Term& term) { return term.effect->name == "offset"; });
 }
+
+double fastest_deg_s(const Motion& motion) {
+    double fastest = 0.0;
+    for (const double v : motion.velocity_deg_s) fastest = std::max(fastest, std::abs(v));
+    return fastest;
+}
+
+class DiagnosisRun {
+  public:
+    DiagnosisRun(const Model& model, const TraceView& log, const TraceView* validation,
+                 const DiagnosisOptions& options)
+        : options_(options),
+          rules_(options.rules),
+          model_(model),
+          has_position_(log.has_position()),
+          whole_(whole_case(log, options.smoothing, rules_.recording)),
+          work_(rules_.search.most_evaluations),
+          more_work_(rules_.search.most_evaluations) {
+        take_known_torque(whole_, options.given);
+        // What the known torque brings into the model: friction that a simulation has too much of is below 0,
+        // and the zero of the sensor is fitted beside an arm's weight, which it looks like.
+        model_.beside_simulation = is_given(options.given, "simulated");
+        fits_offset_ = is_given(options.given, "arm") && !has_offset(model_);
+        if (fits_offset_) model_.terms.push_back(parse_term("offset"));
+        model_.widest_step_deg_s = rules_.search.widest_step * fastest_deg_s(whole_.motion);
+        own_ = model_.terms.size();
+        without_.assign(options.without.begin(), options.without.end());
+        if (!is_scale_open(options.given)) without_.emplace_back("simulation-scale");
+        effects_ = examined(without_, has_position_ || tells_position(whole_.motion, rules_.recording));
+        if (validation == nullptr) return;
+        other_ = whole_case(*validation, options.smoothing, rules_.recording);
+        take_known_torque(*other_, options.validation_given);
+        (void)find_faults(*other_, rules_.faults);
+        other_has_position_ = validation->has_position();
+    }
+
+    [[nodiscard]] Diagnosis run() {
+        told_.has_position = has_position_;
+        told_.false_alarm = rules_.screening.false_alarm;
+        told_.samples = whole_.size();
+        told_.faults = find_faults(whole_, rules_.faults);
+        std::vector<Leftover> spoiled = nameless(told_.faults, options_.without), aside;
+        AngleBefore before(whole_, has_position_);
+        if (!has_position_) straighten(whole_, model_, rules_);
+        Case part = excerpt(whole_, rules_.recording);
+        Searched found = search_straight(whole_, part, model_, effects_, told_, aside, work_, rules_, has_position_);
+        found.ground = {};  // nobody asks for the noise again
+        if (other_ && !(has_position_ && other_has_position_)) before.of_other(*other_);
+        Candidate last = tested(found, before.has_other());
+        if (is_residual_left(found)) {
+            const ModelBench plain = *found.bench;
+            found = search_again(found, part, model_, effects_, more_work_, rules_);
+            last = tested(found, before.has_other());
+            told_.unexplained = leftovers(plain, last.stated);
+            told_.gap.noise_floor_nm = plain.floor_nm(last.stated);
+            told_.residual_in_noise = true;
+        }
+        told_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
+        if (!has_position_) told_.undecidable = undecidable(*found.bench, last, effects_, without_);
+        measure_at_samples(spoiled, whole_, last.stated);
+        told_.unexplained.insert(told_.unexplained.begin(), spoiled.begin(), spoiled.end());
+        told_.unexplained.insert(told_.unexplained.begin(), aside.begin(), aside.end());
+        report(found, last, part, aside);
+        return std::move(told_);
+    }
+
+  private:
+    // Which findings hold, and what is left then.
+    [[nodiscard]] Candidate tested(Searched& found, bool other_begins_anywhere) {
+        const ModelBench& bench = *found.bench;
+        std::size_t own = model_.terms.size();
+        told_.unexplained = leftovers(bench, found.last.stated);
+        const auto unexplained = bench.beside_residual() ? std::vector<Leftover>() : told_.unexplained;
+        told_.rounds = judge(bench, found.last, own, effects_, unexplained);
+        if (fits_offset_) promote_offset(found, own, unexplained);
+        own_ = own;
+        told_.refused = found.refused;
+        told_.baseline = found.first.stated;
+        told_.evaluations =
+            bench.work().spent() * Work::unit_samples / static_cast<double>(bench.looked_at().size());
+        told_.search_ended = bench.work().ended();
+        told_.gap.noise_floor_nm = bench.floor_nm(found.last.stated);
+        told_.noise_color = found.noise.color;
+        tell_rounds(told_, bench, found.last, own);
+        Candidate last = believed(bench, found.last, own, told_.rounds);
+        if (other_ && other_begins_anywhere) put_in_place(*other_, last.stated, bench.rules().recording);
+        if (other_) last = reproduced(bench, found.last, last, told_.baseline, *other_, own, told_.rounds);
+        // What a doubtful finding would explain is not explained.
+        if (last.stated.terms.size() < found.last.stated.terms.size())
+            told_.unexplained = leftovers(bench, last.stated);
+        return last;
+    }
+
+    // The offset beside an arm is a finding where it passes the same tests, and is larger than what is left.
+    void promote_offset(Searched& found, std::size_t& own, const std::vector<Leftover>& unexplained) {
+        const ModelBench& bench = *found.bench;
+        Candidate model = found.last;
+        const std::size_t place = own - 1;
+        model.prices[place] = portable::log(bench.samples()) +
+                              2.0 * portable::log(static_cast<double>(effects_.size()) / rules_.screening.false_alarm);
+        Finding offset = judged_alone(bench, model, place, effects_, unexplained);
+        if (offset.status != FindingStatus::confirmed || offset.evidence.gain < model.prices[place] ||
+            offset.evidence.share_nm < rms(bench.cleared_residual(model.stated)))
+            return;
+        found.last.prices[place] = model.prices[place];
+        found.first = without_term(bench, found.first, place);
+        told_.rounds.insert(told_.rounds.begin(), std::move(offset));
+        own = place;
+    }
+
+    [[nodiscard]] bool is_residual_left(const Searched& found) const {
+        const bool doubtful = std::any_of(told_.rounds.begin(), told_.rounds.end(), is_doubtful);
+        return (doubtful || !told_.unexplained.empty()) &&
+               rms(found.bench->cleared_residual(found.last.stated)) > rules_.beside.least_left * found.noise.rms_nm;
+    }
+
+    // The excerpt chose; the whole log gives the values.
+    void report(const Searched& found, Candidate last, const Case& part, const std::vector<Leftover>& aside) {
+        const bool is_excerpt = part.size() < whole_.size();
+        Case all = is_excerpt ? whole_ : part;
+        if (is_excerpt) {
+            (void)set_aside(all, aside, rules_);
+            ModelBench bench(all, found.noise, work_, rules_);
+            bench.settle_on(last.stated);
+            last = bench.fitted(last.open, last.stated, last.prices, 4);
+            told_.baseline = bench.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;
+        }
+        told_.samples_used = all.used();
+        while (true) {
+            const Candidate settled =
+                told_values(all, found.noise, last, {told_.faults, told_.rounds, own_}, work_, rules_);
+            tell_model(settled);
+            measure(settled, found.noise, all);
+            if (!withdraw_for_gap(*found.bench, last)) break;
+        }
+        name_findings(told_, rules_);
+        for (const Fault& fault : told_.faults) told_.named.emplace_back(fault.term.effect->name);
+        told_.verdict = verdict_of(told_);
+    }
+
+    // The improved model with its values, and those of each finding.
+    void tell_model(const Candidate& last) {
+        told_.model = last.stated;
+        told_.values = last.values;
+        std::size_t place = own_;
+        for (Finding& finding : told_.rounds) {
+            if (is_doubtful(finding)) continue;
+            finding.term = last.stated.terms[place];
+            finding.values.clear();
+            for (const FittedValue& value : last.values) {
+                if (value.term == place) finding.values.push_back(value);
+            }
+            ++place;
+        }
+    }
+
+    // The gaps; they are what `simulate` leaves with the same model and log.
+    void measure(const Candidate& last, const NoiseFloor& noise, const Case& all) {
+        const KnownValues known = fit_known_values(all, last.stated, noise);
+        told_.given = reported_values(options_.given, known);
+        const Case improved = with_known_values(whole_, known);
+        const std::optional<Case> other = other_ ? std::optional(with_known_values(*other_, known)) : std::nullopt;
+        // A fault of the converter belongs to the model where that predicts the log better with it.
+        for (const Fault& fault : told_.faults) {
+            Model with = told_.model;
+            with.terms.push_back(fault.term);
+            if (left_rms(improved, with) <= left_rms(improved, told_.model)) told_.model = std::move(with);
+        }
+        const GapCase log_gap{whole_, improved};
+        const std::optional<GapCase> other_gap = other ? std::optional<GapCase>({*other_, *other}) : std::nullopt;
+        measure_gap(told_, log_gap, other_gap ? &*other_gap : nullptr, rules_);
+        if (options_.given.empty()) return;
+        told_.residual_before_nm = residual_nm(whole_, told_.baseline);
+        told_.residual_after_nm = residual_nm(improved, told_.model);
+        told_.beside_given_nm = residual_nm(improved, {told_.model.gear_ratio, {}});
+    }
+
+    // No model is an improvement that leaves more than the one given, here or on the validation log: the newest
+    // finding goes, and where there is none the values as they were. True when something was withdrawn.
+    [[nodiscard]] bool withdraw_for_gap(const ModelBench& bench, Candidate& last) {
+        const DiagnosisGap& gap = told_.gap;
+        const bool grows_here = gap.after_nm > gap.before_nm;
+        const bool grows_there = gap.validation_after_nm && *gap.validation_after_nm > *gap.validation_before_nm;
+        if (!grows_here && !grows_there) return false;
+        std::size_t place = last.stated.terms.size();
+        for (auto finding = told_.rounds.rbegin(); finding != told_.rounds.rend(); ++finding) {
+            if (is_doubtful(*finding)) continue;
+            finding->status = FindingStatus::not_reproduced;
+            finding->reason = fmt::format("with it the improved model leaves more of {} than the model as given",
+                                          grows_here ? "the log" : "the validation log");
+            last = without_term(bench, last, --place);
+            return true;
+        }
+        told_.model = told_.baseline;
+        told_.gap.after_nm = gap.before_nm;
+        told_.gap.validation_after_nm = gap.validation_before_nm;
+        told_.gap.closed_percent = told_.gap.closed_percent ? std::optional(0.0) : std::nullopt;
+        told_.gap.validation_closed_percent = told_.gap.validation_closed_percent ? std::optional(0.0) : std::nullopt;
+        told_.residual_after_nm = told_.residual_before_nm;
+        return false;
+    }
+
+    const DiagnosisOptions& options_;
+    const DiagnosisRules& rules_;
+    Model model_;
+    bool has_position_, other_has_position_ = false, fits_offset_ = false;
+    Case whole_;
+    std::optional<Case> other_;
+    Work work_, more_work_;
+    std::size_t own_ = 0;  ///< terms of the model as given
+    std::vector<std::string> without_;
+    std::vector<const Effect*> effects_;
+    Diagnosis told_;
+};
 
 }  // namespace
 
-Diagnosis diagnose(const Model& given_model, const TraceView& log, const TraceView* validation,
+Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* validation,
                    const DiagnosisOptions& options) {
+    check(options.rules);
+    for (const std::string& name : options.without) (void)find_effect(name);
     check_rows(options.given, log.size(), "the log");
     if (validation != nullptr) {
         if (options.validation_given.size() != options.given.size())
-            raise<UsageError>("{} terms are given for the log and {} for the validation log",
-                              options.given.size(), options.validation_given.size());
+            raise<UsageError>("{} terms are given for the log and {} for the validation log", options.given.size(),
+                              options.validation_given.size());
         check_rows(options.validation_given, validation->size(), "the validation log");
     }
-    const Model model = with_known_terms(given_model, options.given);
-    const DiagnosisRules& rules = options.rules;
-    check(rules);
-    for (const std::string& name : options.without) (void)find_effect(name);
-    const std::size_t own = model.terms.size();
-    Case whole = whole_case(log, options.smoothing, rules.recording);
-    take_known_torque(whole, options.given);
-    std::vector<std::string> without(options.without.begin(), options.without.end());
-    if (!is_scale_open(options.given)) without.emplace_back("simulation-scale");
-    const auto effects =
-        examined(model, without, log.has_position() || tells_position(whole.motion, rules.recording));
-    std::optional<Case> other;
-    if (validation != nullptr) {
-        other = whole_case(*validation, options.smoothing, rules.recording);
-        take_known_torque(*other, options.validation_given);
-        (void)find_faults(*other, rules.faults);
-    }
-    Work work(rules.search.most_evaluations);
-    Diagnosis diagnosis;
-    diagnosis.false_alarm = rules.screening.false_alarm;
-    diagnosis.has_position = log.has_position();
-    diagnosis.samples = whole.size();
-    diagnosis.faults = find_faults(whole, rules.faults);
-    std::vector<Leftover> spoiled = nameless(diagnosis.faults, options.without), aside;
-    AngleBefore before(whole, log.has_position());
-    if (!log.has_position()) straighten(whole, model, rules);
-    Case part = excerpt(whole, rules.recording);
-    Searched found =
-        search_straight(whole, part, model, effects, diagnosis, aside, work, rules, log.has_position());
-    found.ground = {};  // nobody asks for the noise again
-    if (other && !(log.has_position() && validation->has_position())) before.of_other(*other);
-    Candidate last = judged(diagnosis, found, own, effects, other ? &*other : nullptr, before.has_other());
-    const bool doubtful = std::any_of(diagnosis.rounds.begin(), diagnosis.rounds.end(), is_doubtful);
-    if (doubtful || !diagnosis.unexplained.empty()) {
-        const double left_nm = rms(found.bench->cleared_residual(found.last.stated));
-        if (left_nm > rules.beside.least_left * found.noise.rms_nm) {
-            const ModelBench plain = *found.bench;
-            look_again(found, part, model, effects, work, rules);
-            last = judged(diagnosis, found, own, effects, other ? &*other : nullptr, before.has_other());
-            diagnosis.unexplained = leftovers(plain, last.stated);
-            diagnosis.gap.noise_floor_nm = plain.floor_nm(last.stated);
-            diagnosis.residual_in_noise = true;
-        }
-    }
-    diagnosis.angle = before.account(whole, other ? &*other : nullptr);
-    if (!log.has_position())
-        diagnosis.undecidable = undecidable(*found.bench, last, effects, options.without);
-    measure_at_samples(spoiled, whole, last.stated);
-    diagnosis.unexplained.insert(diagnosis.unexplained.begin(), spoiled.begin(), spoiled.end());
-    diagnosis.unexplained.insert(diagnosis.unexplained.begin(), aside.begin(), aside.end());
-    // The excerpt chose; the whole log gives the values.
-    const bool is_excerpt = part.size() < whole.size();
-    if (is_excerpt) (void)set_aside(whole, aside, rules);
-    if (is_excerpt) last = fitted_to_whole(whole, found, last, diagnosis, work, rules);
-    const Case& all = is_excerpt ? whole : part;
-    last = told_values(all, found.noise, last, {diagnosis.faults, diagnosis.rounds, own}, work, rules);
-    tell_model(diagnosis, last, own);
-    name_findings(diagnosis, rules);
-    diagnosis.samples_used = all.used();
-    const KnownValues known = fit_known_values(all, last.stated, found.noise);
-    diagnosis.given = reported_values(options.given, known);
-    const Case improved = with_known_values(whole, known);
-    const std::optional<Case> other_improved =
-        other ? std::optional(with_known_values(*other, known)) : std::nullopt;
-    const GapCase log_gap{whole, improved};
-    const std::optional<GapCase> other_gap =
-        other ? std::optional<GapCase>({*other, *other_improved}) : std::nullopt;
-    measure_gap(diagnosis, log_gap, other_gap ? &*other_gap : nullptr, rules);
-    if (!options.given.empty()) {
-        diagnosis.residual_before_nm = residual_nm(whole, diagnosis.baseline);
-        diagnosis.residual_after_nm = residual_nm(improved, diagnosis.model);
-        diagnosis.beside_given_nm = residual_nm(improved, {diagnosis.model.gear_ratio, {}});
-    }
-    diagnosis.verdict = verdict_of(diagnosis);
-    return diagnosis;
+    return DiagnosisRun(model, log, validation, options).run();
 }
 
 }  // namespace ripplenotch

@@ -13,18 +13,11 @@ bool is_among(std::span<const std::string> names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::vector<const Effect*> examined(const Model& model, std::span<const std::string> without,
-                                    bool of_position, bool ripple_comes) {
+std::vector<const Effect*> examined(std::span<const std::string> without, bool of_position) {
     std::vector<const Effect*> effects;
     for (const Effect* effect : catalogue()) {
         const bool left_out = is_among(without, effect->name);
-        // Without ripple in the model there is nothing that these could change.
-        const bool ripple =
-            ripple_comes || std::any_of(model.terms.begin(), model.terms.end(), [](const Term& term) {
-                return term.effect->ripple_order.has_value();
-            });
         if (left_out || effect->side == Side::converter ||
-            (effect->side == Side::ripple && !effect->whole && !ripple) ||
             (!of_position && needs_position(*effect)))
             continue;
         effects.push_back(effect);

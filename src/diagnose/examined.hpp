@@ -14,11 +14,9 @@ namespace ripplenotch {
 
 [[nodiscard]] bool is_among(std::span<const std::string> names, std::string_view name);
 
-/// Effects that a fit can find beside this model; those of the converter are found in the log itself
-/// (find_faults). `of_position`: whether effects that need the joint's position take part. `ripple_comes`:
-/// what changes ripple takes part though the model has none, since it is named together with a ripple.
-[[nodiscard]] std::vector<const Effect*> examined(const Model& model, std::span<const std::string> without,
-                                                  bool of_position, bool ripple_comes = false);
+/// Effects that a fit can find; those of the converter are found in the log itself (find_faults).
+/// `of_position`: whether effects that need the joint's position take part.
+[[nodiscard]] std::vector<const Effect*> examined(std::span<const std::string> without, bool of_position);
 
 /// Faults whose effect is not to be tried have no name: what they spoiled is unexplained. They are taken out
 /// of `faults`.

@@ -146,11 +146,6 @@ TEST_CASE("an offset beside an arm is a finding with its interval, and with fric
     INFO(told_with_values(alone));
     REQUIRE(named(alone) == std::vector<std::string>{"offset"});
     check_holds(finding_of(alone, "offset").values[0], 0.4);
-    // What is a finding is nobody's nuisance any more.
-    const auto nuisance = std::find_if(alone.given.begin(), alone.given.end(),
-                                       [](const GivenValue& value) { return value.name == "offset_nm"; });
-    REQUIRE(nuisance != alone.given.end());
-    CHECK(nuisance->value == 0.0);
     const Diagnosis both =
         diagnosed(measured({"offset,torque_nm=-0.6", "coulomb-friction,torque_nm=0.8,width_deg_s=0.5"}, 16));
     INFO(told_with_values(both));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "diagnose_fixture.hpp"
 #include "ripplenotch/core/error.hpp"
@@ -50,6 +51,23 @@ std::string told(const Diagnosis& diagnosis) {
     return text;
 }
 
+constexpr double any_scale = std::numeric_limits<double>::infinity();
+
+const Finding& found_effect(const Diagnosis& diagnosis, const char* name) {
+    const auto found = std::ranges::find_if(diagnosis.rounds, [name](const Finding& finding) {
+        return finding.term.effect->name == std::string_view(name);
+    });
+    REQUIRE(found != diagnosis.rounds.end());
+    return *found;
+}
+
+void check_interval(const FittedValue& value, double truth) {
+    REQUIRE(value.ci95);
+    CHECK(value.ci95->low < truth);
+    CHECK(value.ci95->high > truth);
+    CHECK(value.value == Approx(truth).margin(0.5));
+}
+
 bool names(const Diagnosis& diagnosis, const char* name) {
     return std::find(diagnosis.named.begin(), diagnosis.named.end(), name) != diagnosis.named.end();
 }
@@ -70,14 +88,15 @@ TEST_CASE("measured minus simulated with a payload 3 % off: both frictions and t
 
 TEST_CASE("the simulation as a given term: the same names, its scale, and what the payload leaves") {
     const Trace log = measured(2), other = measured(3);
-    const std::vector<GivenTerm> given = {{"simulated", {arm_nm(1.0)}, {1.0}, {10.0}}};
+    const std::vector<GivenTerm> given = {{"simulated", {arm_nm(1.0)}, {1.0}, {any_scale}}};
     const Diagnosis found = diagnose({GearRatio(100.0), {}}, log.view(), nullptr, {.given = given});
     INFO(told(found));
     std::vector<std::string> named = found.named;
     std::sort(named.begin(), named.end());
-    CHECK(named == std::vector<std::string>{"coulomb-friction", "ripple", "viscous-friction"});
-    REQUIRE(!found.given.empty());
-    CHECK(found.given[0].value == Approx(1.01).margin(0.03));
+    CHECK(named ==
+          std::vector<std::string>{"coulomb-friction", "ripple", "simulation-scale", "viscous-friction"});
+    // A payload of 3 % is (30 + 51.5) / (30 + 50) of this arm's torque.
+    check_interval(found_effect(found, "simulation-scale").values[0], 1.875);
     CHECK(found.gap.after_nm < 0.5 * found.gap.before_nm);
     const TraceView view = other.view();
     CHECK_THROWS_AS(diagnose({GearRatio(100.0), {}}, log.view(), &view, {.given = given}), UsageError);
@@ -86,15 +105,14 @@ TEST_CASE("the simulation as a given term: the same names, its scale, and what t
     CHECK(*twice.gap.validation_after_nm < 0.5 * *twice.gap.validation_before_nm);
 }
 
-TEST_CASE("a simulation in other units shows in its scale") {
+TEST_CASE("a simulation in other units shows in its scale, which is not searched where it is stated") {
     Trace log = measured(4);
-    std::vector<GivenTerm> given = {{"simulated", {arm_nm(1.03)}, {1.0}, {10.0}}};
+    std::vector<GivenTerm> given = {{"simulated", {arm_nm(1.03)}, {1.0}, {any_scale}}};
     for (double& value : given[0].torque_nm[0]) value /= 0.9;
     const Diagnosis found = diagnose({GearRatio(100.0), {}}, log.view(), nullptr, {.given = given});
-    REQUIRE(found.given[0].ci95);
-    CHECK(found.given[0].ci95->low < 0.9);
-    CHECK(found.given[0].ci95->high > 0.9);
-    CHECK(found.given[0].ci95->high < 0.95);
+    check_interval(found_effect(found, "simulation-scale").values[0], -10.0);
+    given[0].deviation[0] = stated_deviation;
+    CHECK_FALSE(names(diagnose({GearRatio(100.0), {}}, log.view(), nullptr, {.given = given}), "simulation-scale"));
 }
 
 }  // namespace ripplenotch

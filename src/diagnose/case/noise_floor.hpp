@@ -14,7 +14,7 @@ struct NoiseFloor {
     double rms_nm = 0.0;        ///< of the noise
     double white_nm = 0.0;      ///< rms of its white part
     std::vector<double> color;  ///< coefficients of FitOptions::noise_color
-    double material_nm = 0.0;   ///< rms against which a torque matters or not
+    double material_nm = 0.0;   ///< rms against which a torque matters or not; 0: rms_nm
     std::vector<double> covariance_nm2 = {};  ///< at lags 0, 1, ... samples
 
     /// The whitening filter of every step-th sample, of at most this many lags.

@@ -138,21 +138,29 @@ Finding judged_finding(const ModelBench& bench, const Candidate& model, const Ca
 
 }  // namespace
 
+namespace {
+
+// By itself, and against its rivals.
+Finding tested_finding(const ModelBench& bench, const Candidate& model, std::size_t term,
+                       std::span<const Effect* const> effects, bool something_left) {
+    const Candidate fewer = without_term(bench, model, term);
+    Finding finding = judged_finding(bench, model, fewer, term, bench.torque_of(model.stated, term));
+    // It was worth its price when it was added; beside later ones it may be worth less.
+    const Evidence& evidence = finding.evidence;
+    Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);
+    doubt_alone(finding, bench, model, term);
+    if (is_trusted(finding)) find_rivals(bench, model, fewer, term, effects, something_left, finding);
+    return finding;
+}
+
+}  // namespace
+
 std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std::size_t own_terms,
                            std::span<const Effect* const> effects, const std::vector<Leftover>& unexplained) {
     std::vector<Finding> findings;
     const Candidate model = bench.with_errors(found);
-    for (std::size_t term = own_terms; term < model.stated.terms.size(); ++term) {
-        const Candidate fewer = without_term(bench, model, term);
-        Finding finding = judged_finding(bench, model, fewer, term, bench.torque_of(model.stated, term));
-        // It was worth its price when it was added; beside later ones it may be worth less.
-        const Evidence& evidence = finding.evidence;
-        Hearing(bench.rules(), finding.decisions).asked_price(evidence.gain, evidence.price, false);
-        doubt_alone(finding, bench, model, term);
-        if (is_trusted(finding))
-            find_rivals(bench, model, fewer, term, effects, !unexplained.empty(), finding);
-        findings.push_back(std::move(finding));
-    }
+    for (std::size_t term = own_terms; term < model.stated.terms.size(); ++term)
+        findings.push_back(tested_finding(bench, model, term, effects, !unexplained.empty()));
     const double excess_nm = excess_of(bench, model.stated);
     for (Finding& finding : findings) {
         if (!is_trusted(finding)) continue;
@@ -160,6 +168,11 @@ std::vector<Finding> judge(const ModelBench& bench, const Candidate& found, std:
         doubt_for_size(finding, findings, bench.rules());
     }
     return findings;
+}
+
+Finding judged_alone(const ModelBench& bench, const Candidate& found, std::size_t term,
+                     std::span<const Effect* const> effects, const std::vector<Leftover>& unexplained) {
+    return tested_finding(bench, bench.with_errors(found), term, effects, !unexplained.empty());
 }
 
 std::string what_would_tell(const Effect& one, const Effect& other) {

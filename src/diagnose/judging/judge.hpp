@@ -17,6 +17,11 @@ namespace ripplenotch {
                                          std::size_t own_terms, std::span<const Effect* const> effects,
                                          const std::vector<Leftover>& unexplained);
 
+/// One term, as if it were a finding, whatever else there is.
+[[nodiscard]] Finding judged_alone(const ModelBench& bench, const Candidate& model, std::size_t term,
+                                   std::span<const Effect* const> effects,
+                                   const std::vector<Leftover>& unexplained);
+
 /// The model without findings that are in doubt. Those that stay are looked at once more without these:
 /// beside a surrogate of its own domain a finding may look right that does not by itself, and a curve over
 /// the speed has to be ahead of another by more than they took up.

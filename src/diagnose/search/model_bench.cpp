@@ -52,7 +52,9 @@ ModelBench::ModelBench(const Case& looked_at, const NoiseFloor& noise, Work& wor
       work_(work),
       rules_(rules),
       weighing_(looked_at.size(), looked_at.use, noise.color, looked_at.valid),
-      kept_(std::move(kept)) {}
+      kept_(std::move(kept)) {
+    if (!(noise_.material_nm > 0.0)) noise_.material_nm = noise_.rms_nm;
+}
 
 double ModelBench::same_model_nm2() const {
     return rules_.screening.same_model * noise_.rms_nm * noise_.rms_nm;

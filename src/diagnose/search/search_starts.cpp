@@ -35,9 +35,29 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
 
 }  // namespace
 
+namespace {
+
+// A torque that has but a size, or a size and the width of its step.
+bool has_one_form(const Effect& effect) {
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+        const Parameter& parameter = effect.parameters[p];
+        const bool phase = effect.polar && effect.polar->phase == p;
+        if (!parameter.linear && !phase && parameter.name != "width_deg_s" &&
+            parameter.left_out != LeftOut::assumed)
+            return false;
+    }
+    return true;
+}
+
+}  // namespace
+
 bool is_there_already(const Term& tried, const Model& open) {
     const Effect& effect = *tried.effect;
-    if (effect.side == Side::joint) return false;
+    if (effect.side == Side::joint) {
+        return has_one_form(effect) && std::ranges::any_of(open.terms, [&](const Term& term) {
+                   return term.effect == &effect && !term.values.front();
+               });
+    }
     return std::any_of(open.terms.begin(), open.terms.end(), [&](const Term& term) {
         if (term.effect != &effect) return false;
         bool fitted = false;

@@ -82,12 +82,14 @@ void Coordinates::add_term(std::size_t i) {
         const double start = guess(i, p);
         if (parameter.logarithmic) {
             list_.push_back({CoordinateKind::logarithm, i, p, 0, portable::log(start),
-                             portable::log(parameter.lower), portable::log(parameter.upper), 1e-5, false});
+                             portable::log(parameter.lower), portable::log(most_in(model_, effect, p)), 1e-5,
+                             false});
             continue;
         }
         const bool linear = linear_term && parameter.linear;
         const double scale = std::max({std::abs(start), std::abs(parameter.start), 1e-3});
-        list_.push_back({CoordinateKind::plain, i, p, 0, start, least_in(model_, effect, p), parameter.upper,
+        list_.push_back({CoordinateKind::plain, i, p, 0, start, least_in(model_, effect, p),
+                         most_in(model_, effect, p),
                          linear ? scale : 1e-5 * scale, linear});
     }
 }
