@@ -23,6 +23,8 @@ constexpr Key column_keys[] = {
     {.name = "name", .kind = KeyKind::text, .required = true, .help = "of the column"},
     {.name = "scale", .kind = KeyKind::number, .help = "factor that is known; left out: 1, unless the log shows another"},
     {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, if it is known"},
+    {.name = "position", .kind = KeyKind::text, .help = "column of its position"},
+    {.name = "velocity", .kind = KeyKind::text, .help = "column of its velocity"},
 };
 constexpr Key log_keys[] = {
     {.name = "file", .kind = KeyKind::text, .required = true, .help = "the simulation's log"},
@@ -31,6 +33,8 @@ constexpr Key log_keys[] = {
     {.name = "align", .kind = KeyKind::choice, .choices = aligns, .help = "start: both logs begin together"},
     {.name = "scale", .kind = KeyKind::number, .help = "factor that is known; left out: 1, unless the log shows another"},
     {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, if it is known"},
+    {.name = "position", .kind = KeyKind::text, .help = "column of its position"},
+    {.name = "velocity", .kind = KeyKind::text, .help = "column of its velocity"},
 };
 
 // The cubic through the four samples about a time.
@@ -54,8 +58,8 @@ double cubic_at(const std::vector<double>& time_s, const std::vector<double>& va
     return sum;
 }
 
-// The same columns but for the torque, which is this one.
-ReadOptions with_torque(ReadOptions reading, const std::string& column) {
+// The same columns but for one role, which is this one.
+ReadOptions with_role(ReadOptions reading, const std::string& role, const std::string& column) {
     const bool by_place =
         std::any_of(reading.columns.begin(), reading.columns.end(),
                     [](const std::string& entry) { return entry.find('=') == std::string::npos; });
@@ -63,9 +67,9 @@ ReadOptions with_torque(ReadOptions reading, const std::string& column) {
         raise<UsageError>(
             "--simulated: with --columns by place its column cannot be named; name the columns, as in "
             "--columns velocity=dq,torque=tau");
-    std::erase_if(reading.columns, [](const std::string& entry) { return entry.starts_with("torque="); });
-    reading.columns.push_back("torque=" + column);
-    reading.units.erase("torque");
+    std::erase_if(reading.columns, [&](const std::string& entry) { return entry.starts_with(role + "="); });
+    reading.columns.push_back(role + "=" + column);
+    reading.units.erase(role);
     return reading;
 }
 
@@ -145,6 +149,14 @@ SimulatedOption::SimulatedOption(std::string_view text, const std::optional<Simu
     if (own) file_ = settings.text("file");
     if (own && settings.has("validate")) validation_file_ = settings.text("validate");
     align_start_ = own && settings.has("align");
+    if (settings.has("position")) position_ = settings.text("position");
+    if (settings.has("velocity")) velocity_ = settings.text("velocity");
+    if (!own && position_ && !velocity_)
+        raise<UsageError>(
+            "--simulated: position={} needs velocity= too: a position is checked against the velocity that "
+            "it "
+            "is read with, and that of the log is another motion",
+            *position_);
     if (stated) {
         if (states(spec, "scale") || states(spec, "delay"))
             raise<UsageError>("--simulated: the model states its scale and delay; change them there");
@@ -177,19 +189,42 @@ GivenTerm SimulatedOption::read_validation(const ReadOptions& reading, const std
     return from(reading, file_ ? *validation_file_ : path, log);
 }
 
-GivenTerm SimulatedOption::from(ReadOptions reading, const std::string& path, Log& log) const {
-    if (file_) {
-        // Its own layout: of what is said about the log only the unit of this column holds.
-        ReadOptions own;
-        own.columns = {"torque=" + term_.column};
-        if (const auto unit = reading.units.find(term_.column); unit != reading.units.end())
+ReadOptions SimulatedOption::reading_of(ReadOptions reading) const {
+    if (!file_) return with_role(std::move(reading), "torque", term_.column);
+    // Its own layout: of what is said about the log only the units of these columns hold.
+    ReadOptions own;
+    own.columns = {"torque=" + term_.column};
+    own.gear_ratio = reading.gear_ratio;
+    own.takes_motor_units = true;
+    if (position_) own.columns.push_back("position=" + *position_);
+    if (velocity_) own.columns.push_back("velocity=" + *velocity_);
+    for (const std::string& column : {term_.column, position_.value_or(""), velocity_.value_or("")})
+        if (const auto unit = reading.units.find(column); unit != reading.units.end())
             own.units.insert(*unit);
-        own.gear_ratio = reading.gear_ratio;
-        own.takes_motor_units = true;
-        reading = own;
-    } else {
-        reading = with_torque(std::move(reading), term_.column);
+    return own;
+}
+
+SimulatedMotion SimulatedOption::read_motion(const ReadOptions& reading, const std::string& path,
+                                             const Log& log) const {
+    ReadOptions own = reading_of(reading);
+    own.needs_velocity = false;
+    if (!file_ && position_) own = with_role(std::move(own), "position", *position_);
+    if (!file_ && velocity_) own = with_role(std::move(own), "velocity", *velocity_);
+    const Trace trace = read_log(file_.value_or(path), own).trace;
+    SimulatedMotion motion{trace.time_s, {}, {}, trace.torque_nm};
+    if (file_ || position_) motion.position_deg = trace.position_deg;
+    const bool has_velocity = std::any_of(trace.velocity_deg_s.begin(), trace.velocity_deg_s.end(),
+                                          [](double each) { return std::isfinite(each); });
+    if (has_velocity && (file_ || velocity_)) motion.velocity_deg_s = trace.velocity_deg_s;
+    if (align_start_) {
+        const double ahead_s = log.trace.time_s.front() - motion.time_s.front();
+        for (double& time : motion.time_s) time += ahead_s;
     }
+    return motion;
+}
+
+GivenTerm SimulatedOption::from(ReadOptions reading, const std::string& path, Log& log) const {
+    reading = reading_of(std::move(reading));
     const Log simulated = read_log(path, reading);
     refuse_useless(simulated.trace.torque_nm, file_ ? nullptr : &log, term_.column, path);
     std::vector<double> time_s = simulated.trace.time_s;

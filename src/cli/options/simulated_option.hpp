@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "ripplenotch/diagnose/alignment.hpp"
 #include "ripplenotch/document/simulated_term.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/given_term.hpp"
@@ -15,9 +16,10 @@ namespace ripplenotch {
 
 class SimulatedOption {
   public:
-    /// "tau_model[,scale=1][,delay=2ms]", the same as "column,name=tau_model...", or "log,file=sim.csv,
-    /// column=torque[,validate=sim2.csv][,align=start]...". Beside a model that states a simulation it says
-    /// only where its torque is: scale and delay are the model's. Throws UsageError.
+    /// "tau_model[,scale=1][,delay=2ms][,position=q_model][,velocity=dq_model]", the same as
+    /// "column,name=tau_model...", or "log,file=sim.csv, column=torque[,validate=sim2.csv][,align=start]...".
+    /// Beside a model that states a simulation it says only where its torque is: scale and delay are the
+    /// model's. Throws UsageError.
     explicit SimulatedOption(std::string_view text, const std::optional<SimulatedTerm>& stated = {});
 
     /// As a model.json states it: a column of the log.
@@ -29,14 +31,21 @@ class SimulatedOption {
     /// The same for the validation log, for which a simulation in a file of its own has another file.
     [[nodiscard]] GivenTerm read_validation(const ReadOptions& reading, const std::string& path,
                                             Log& log) const;
+    /// The simulation itself, on its own clock (with align=start begun with the log): torque as it stands,
+    /// and position and velocity where it has them. A simulation in columns of the log has those that
+    /// position= and velocity= name; one in a file of its own has those that the file has. Throws as read().
+    [[nodiscard]] SimulatedMotion read_motion(const ReadOptions& reading, const std::string& path,
+                                              const Log& log) const;
     [[nodiscard]] const SimulatedTerm& term() const { return term_; }
     /// Of the simulation, where it has one of its own.
     [[nodiscard]] const std::optional<std::string>& file() const { return file_; }
 
   private:
     [[nodiscard]] GivenTerm from(ReadOptions reading, const std::string& path, Log& log) const;
+    /// How the log that holds the simulation is read.
+    [[nodiscard]] ReadOptions reading_of(ReadOptions reading) const;
     SimulatedTerm term_;
-    std::optional<std::string> file_, validation_file_;
+    std::optional<std::string> file_, validation_file_, position_, velocity_;
     bool align_start_ = false;
 };
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A mistake in how a log and a model of it were put together, which no effect of the joint explains.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace ripplenotch {
+
+enum class SetupFaultKind {
+    wrong_joint,        ///< the simulation is of another joint of the log
+    other_motion,       ///< the simulation is of another motion
+    motion_sign,        ///< position or velocity of the simulation counts the other way
+    motion_unit,        ///< rad for deg
+    motor_side_motion,  ///< position or velocity before the gear
+    torque_sign,        ///< the torque of log or simulation counts the other way
+    torque_unit,        ///< mNm for Nm
+    motor_side_torque,  ///< the torque before the gear
+    gravity_direction,  ///< the weight acts in another direction
+};
+/// "torque-sign".
+[[nodiscard]] std::string_view setup_fault_name(SetupFaultKind kind);
+
+struct SetupFault {
+    SetupFaultKind kind = SetupFaultKind::other_motion;
+    std::string statement;  ///< a sentence without its full stop
+    std::string option;     ///< that would repair it, "scale=-1"; empty where none does
+    double factor = 1.0;    ///< by which the series of the simulation has to be multiplied, where that is it
+    /// Shares of the variance that simulation or arm explain of blocks that nothing was fitted to: as things
+    /// are, and with the fault repaired. Below 0 where the simulation leaves more than there was.
+    double explained_before = 0.0, explained_after = 0.0;
+    std::size_t blocks_improved = 0, blocks = 0;
+};
+
+}  // namespace ripplenotch
