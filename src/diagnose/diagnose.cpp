@@ -228,6 +228,7 @@ class DiagnosisRun {
           work_(rules_.search.most_evaluations),
           more_work_(rules_.search.most_evaluations) {
         take_known_torque(whole_, options.given);
+        whole_.expected_delay = options.expected_delay;
         // What the known torque brings into the model: friction that a simulation has too much of is below 0,
         // and the zero of the sensor is fitted beside an arm's weight, which it looks like.
         model_.beside_simulation = is_given(options.given, "simulated");

@@ -7,10 +7,10 @@
 namespace ripplenotch {
 namespace {
 
-constexpr std::string_view simulated = "simulated";
+constexpr std::string_view simulation_name = "simulated";
 
 bool is_uncertain(const GivenTerm& term, std::size_t value) {
-    return term.deviation[value] > stated_deviation && term.name != simulated;
+    return term.deviation[value] > stated_deviation && term.name != simulation_name;
 }
 
 }  // namespace

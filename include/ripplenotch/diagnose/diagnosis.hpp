@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "ripplenotch/core/trace.hpp"
+#include "ripplenotch/diagnose/alignment.hpp"
 #include "ripplenotch/diagnose/rules.hpp"
 #include "ripplenotch/model/fit.hpp"
 #include "ripplenotch/model/given_term.hpp"
 #include "ripplenotch/model/measured_motion.hpp"
 #include "ripplenotch/model/model.hpp"
+#include "ripplenotch/model/setup_fault.hpp"
 
 namespace ripplenotch {
 
@@ -200,6 +202,11 @@ struct Diagnosis {
     std::vector<AcceptedFinding> accepted;
     std::vector<std::string> not_accepted;  ///< why a name is not, a sentence each
     std::vector<std::string> next;          ///< what to do where something is in doubt, a sentence each
+    /// Faults of the set-up, which make every name doubtful; the first to be mended comes first.
+    std::vector<SetupFault> setup;
+    /// How far the log is behind the user's simulation, where their motions show it. The known torque is
+    /// shifted by that: it is no effect of the model.
+    std::optional<SimulationLag> alignment;
     bool residual_in_noise = false;  ///< names were weighed against noise that holds what nothing explains
     std::vector<Leftover> disagreement;  ///< where the model as given and the log disagree, largest first
     std::size_t samples = 0, samples_used = 0;
@@ -226,6 +233,8 @@ struct DiagnosisOptions {
     /// Terms that are stated and not searched, a column per value and a row per row of the log; the same of
     /// the validation log, where there is one.
     std::span<const GivenTerm> given = {}, validation_given = {};
+    /// A delay at which the search for one begins as well.
+    std::optional<Seconds> expected_delay = {};
     DiagnosisRules rules = {};
 };
 

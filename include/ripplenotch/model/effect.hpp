@@ -40,6 +40,7 @@ enum class Hint {
     none,
     ripple_orders,  ///< at the orders of the model's own ripple terms
     tones,          ///< at the strongest lines of the residual against time, in hertz
+    delay,          ///< where the torques of a log and of its simulation agree best
     gear_ratios,    ///< where the gear ratio would put the model's ripple on lines of the log
 };
 

@@ -123,7 +123,7 @@ ExitCode run_diagnose(const DiagnoseRequest& request, const std::string& command
         return ExitCode::done;
     }
     check(request);
-    GivenSource given(request.given, request.smoothing);
+    GivenSource given(request.given, true);
     return request.all_joints() ? run_all(request, given, command_line)
                                 : run_one(request, given, command_line);
 }

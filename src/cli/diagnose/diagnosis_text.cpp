@@ -81,6 +81,23 @@ bool drives(const Finding& finding) {
     return finding.term.effect->resists && finding.term.values.front().value_or(0.0) < 0.0;
 }
 
+std::string setup_text(const Diagnosis& diagnosis) {
+    std::string text;
+    for (const SetupFault& fault : diagnosis.setup)
+        text += fmt::format("Check the set-up: {}{}.\n", fault.statement,
+                            fault.option.empty() ? "" : fmt::format(" ({})", fault.option));
+    if (!diagnosis.alignment) return text;
+    const SimulationLag& lag = *diagnosis.alignment;
+    const double half_s = 0.5 * (lag.delay_95_s.high - lag.delay_95_s.low);
+    text += fmt::format("Delay: the log is {} +/- {} ms {} the simulation (by their motions, correlation {:.4f})",
+                        short_number(1e3 * std::abs(lag.delay_s)), fmt::format("{:.2g}", 1e3 * half_s),
+                        lag.delay_s > 0.0 ? "behind" : "ahead of", lag.correlation);
+    if (lag.clock_error) text += fmt::format("; clocks differ by {:.3g} ppm", 1e6 * *lag.clock_error);
+    if (lag.position)
+        text += fmt::format("; positions then differ by {} deg rms", short_number(lag.position->rms_difference));
+    return text + ".\n";
+}
+
 // The verdict in one sentence, with names, sizes and what is left.
 std::string answer(const Diagnosis& diagnosis) {
     std::string names;
@@ -242,7 +259,7 @@ std::string angle_text(const Diagnosis& diagnosis) {
 std::string diagnosis_story(const Diagnosis& diagnosis, bool explain) {
     if (diagnosis.verdict == DiagnosisVerdict::undecided) return diagnosis.doubt + "\n";
     const DiagnosisGap& gap = diagnosis.gap;
-    std::string text = answer(diagnosis);
+    std::string text = setup_text(diagnosis) + answer(diagnosis);
     text += fmt::format("verdict: {}\n", closing(diagnosis));
     text += fmt::format("named: {}\n", diagnosis.named.empty() ? "nothing" : joined(diagnosis.named, ", "));
     text += fmt::format("{} samples, {} used; noise floor {} Nm rms\n", diagnosis.samples,

@@ -81,6 +81,13 @@ void say_arm(const CommonOptions& common, const ArmAccount& arm) {
     say_warnings(common, arm.warnings);
 }
 
+// Where no motion of the simulation says how late the log is, the torques may.
+std::optional<Seconds> expected_delay(const GivenTerms& given) {
+    if (!given.setup || given.setup->motion_lag || !given.setup->torque_lag) return std::nullopt;
+    const SimulationLag& lag = *given.setup->torque_lag;
+    return lag.identifiable ? std::optional(Seconds(lag.delay_s)) : std::nullopt;
+}
+
 Diagnosis diagnosed(const DiagnoseRequest& request, const Model& model, const JointDiagnosis& one,
                     const std::optional<Log>& other) {
     try {
@@ -90,6 +97,7 @@ Diagnosis diagnosed(const DiagnoseRequest& request, const Model& model, const Jo
                                   .accept = request.accept,
                                   .given = one.given.log,
                                   .validation_given = one.given.validation,
+                                  .expected_delay = expected_delay(one.given),
                                   .rules = rules_of(request)});
     } catch (const DataError& error) {  // the library knows no file
         raise<DataError>("{}: {}", request.path, error.what());
@@ -141,6 +149,10 @@ JointDiagnosis diagnosed_joint(const DiagnoseRequest& request, const std::option
     for (const std::string& file : one.given.files) one.provenance.inputs.push_back(input_record(file));
     Progress::current().begin("looking for what is missing", "", 0);
     one.diagnosis = diagnosed(request, model.model, one, other);
+    if (one.given.setup) {
+        one.diagnosis.setup = one.given.setup->faults;
+        one.diagnosis.alignment = one.given.setup->motion_lag;
+    }
     return one;
 }
 

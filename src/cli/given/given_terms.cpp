@@ -2,9 +2,9 @@
 #include "cli/given/given_terms.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/gear/joint_methods.hpp"
-#include "cli/options/simulated_option.hpp"
 #include "core/vectors/dot.hpp"
 #include "ripplenotch/core/error.hpp"
 
@@ -87,12 +87,61 @@ GivenTerms GivenSource::read(const ModelWithGiven& stated, const ReadOptions& re
     return terms;
 }
 
+namespace {
+
+// The other joints of the log, of one of which the simulation may be.
+std::vector<Log> other_joints(const ReadOptions& reading, const GivenLog& log) {
+    constexpr std::size_t most_joints = 12;  // of an arm; a file of more is no log of one
+    std::vector<Log> others;
+    if (log.path == "-") return others;
+    ReadOptions words = reading;
+    words.joint.reset();
+    const std::vector<std::string> joints = open_log(log.path, words)->layout().joints;
+    if (joints.size() > most_joints) return others;
+    for (const std::string& joint : joints) {
+        if (joint == log.log.trace.joint) continue;
+        words.joint = joint;
+        others.push_back(read_log(log.path, words));
+    }
+    return others;
+}
+
+// The motions of both say where a delay is to be told from none.
+bool is_behind(const SimulationLag& lag, const Trace& log) {
+    const double half_sample_s = 0.5 / log.sample_rate.value();
+    return std::abs(lag.delay_s) > half_sample_s && (lag.delay_95_s.low > 0.0 || lag.delay_95_s.high < 0.0);
+}
+
+}  // namespace
+
+void GivenSource::check_setup(GivenTerms& terms, SimulatedOption& simulated, const ModelWithGiven& stated,
+                              const ReadOptions& reading, const GivenLog& log) {
+    if (simulated.states_delay()) return;
+    SetupContext context = simulated.names();
+    context.gear_ratio = stated.model.gear_ratio;
+    context.joint = log.log.trace.joint;
+    const SimulatedMotion motion = simulated.read_motion(reading, log.path, log.log);
+    terms.setup = suspect_setup(log.log.trace.view(), motion, context);
+    // Whether it is another joint's is asked where it does not fit this one.
+    if (!terms.setup->faults.empty() || terms.setup->lag() == nullptr) {
+        const std::vector<Log> others = other_joints(reading, log);
+        for (const Log& other : others) context.others.push_back({other.trace.joint, other.trace.view()});
+        if (!others.empty()) terms.setup = suspect_setup(log.log.trace.view(), motion, context);
+    }
+    const std::optional<SimulationLag>& by_motion = terms.setup->motion_lag;
+    if (by_motion && by_motion->identifiable && is_behind(*by_motion, log.log.trace))
+        simulated.set_delay(-by_motion->delay_s);
+    else
+        terms.setup->motion_lag.reset();
+}
+
 void GivenSource::add_simulated(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
-                                const GivenLog& log, const GivenLog* validation) const {
-    const SimulatedOption simulated =
+                                const GivenLog& log, const GivenLog* validation) {
+    SimulatedOption simulated =
         options_.simulated
             ? SimulatedOption(with_joint(*options_.simulated, log.log.trace.joint), stated.simulated)
             : SimulatedOption(*stated.simulated);
+    if (checks_setup_) check_setup(terms, simulated, stated, reading, log);
     terms.simulated = simulated.term();
     if (simulated.file()) terms.files.push_back(*simulated.file());
     terms.log.push_back(simulated.read(reading, log.path, log.log));

@@ -11,8 +11,10 @@
 
 #include "cli/arm/given_arm.hpp"
 #include "cli/options/options.hpp"
+#include "cli/options/simulated_option.hpp"
 #include "ripplenotch/arm/arm_account.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
+#include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/document/model_json.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/given_term.hpp"
@@ -47,6 +49,7 @@ struct GivenTerms {
     std::optional<StatedArm> arm;            ///< as stated, or as --arm has it
     std::optional<ArmAccount> account;       ///< of the arm
     std::vector<std::string> files;          ///< that were read beside the logs
+    std::optional<SetupAnswer> setup;        ///< of simulation and log, where it was asked for
     std::shared_ptr<GivenArm> fitted_arm;    ///< whose values are found with the rest; null: all are stated
 
     /// "simulated.scale", "arm.links": values that nobody states yet; empty: none.
@@ -56,9 +59,10 @@ struct GivenTerms {
 /// One for a command; the arm of --arm is read and fitted once for all joints.
 class GivenSource {
   public:
-    /// `smoothing`: of the motion that the model moves along.
-    GivenSource(GivenOptions options, Seconds smoothing)
-        : options_(std::move(options)), smoothing_(smoothing) {}
+    /// `checks_setup`: whether a simulation is aligned with the log by their motions, and hypotheses on the
+    /// set-up are tested.
+    explicit GivenSource(GivenOptions options, bool checks_setup = false)
+        : options_(std::move(options)), checks_setup_(checks_setup) {}
 
     /// `reading`: how the log is read, so that its further columns are read alike. Throws UsageError,
     /// DataError, FileError.
@@ -71,12 +75,14 @@ class GivenSource {
 
   private:
     void add_simulated(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
-                       const GivenLog& log, const GivenLog* validation) const;
+                       const GivenLog& log, const GivenLog* validation);
+    void check_setup(GivenTerms& terms, SimulatedOption& simulated, const ModelWithGiven& stated,
+                     const ReadOptions& reading, const GivenLog& log);
     void add_arm(GivenTerms& terms, const ModelWithGiven& stated, const ReadOptions& reading,
                  const GivenLog& log, const GivenLog* validation);
 
     GivenOptions options_;
-    Seconds smoothing_;
+    bool checks_setup_;
     std::map<std::size_t, std::shared_ptr<GivenArm>> arms_;  ///< by the most rows held
 };
 

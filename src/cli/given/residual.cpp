@@ -26,7 +26,7 @@ std::vector<double> predicted_torque(const ResidualOptions& residual, const Mode
     if (residual.simulated) options.simulated = with_joint(*residual.simulated, log.log.trace.joint);
     std::vector<GivenTerm> terms;
     if (options.any() || model.any_given()) {
-        GivenTerms given = GivenSource(options, default_smoothing).read(model, reading, log, nullptr);
+        GivenTerms given = GivenSource(options).read(model, reading, log, nullptr);
         if (given.fitted_arm)
             raise<UsageError>("--residual {}: the model does not state arm.links; diagnose -o writes them",
                               *residual.model);

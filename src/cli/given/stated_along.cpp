@@ -10,9 +10,9 @@
 namespace ripplenotch {
 
 std::vector<double> stated_torque_along(const GivenOptions& options, const ModelWithGiven& model,
-                                const ReadOptions& reading, const GivenLog& log, Seconds smoothing) {
+                                const ReadOptions& reading, const GivenLog& log) {
     if (!options.any() && !model.any_given()) return {};
-    GivenSource source(options, smoothing);
+    GivenSource source(options);
     const GivenTerms given = source.read(model, reading, log, nullptr);
     const auto open = given.open();
     if (!open.empty())

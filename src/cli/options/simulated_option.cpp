@@ -160,12 +160,14 @@ SimulatedOption::SimulatedOption(std::string_view text, const std::optional<Simu
     if (stated) {
         if (states(spec, "scale") || states(spec, "delay"))
             raise<UsageError>("--simulated: the model states its scale and delay; change them there");
+        states_delay_ = true;
         const std::string column = std::exchange(term_.column, {});
         term_ = *stated;
         term_.column = column;
         return;
     }
     if (settings.has("scale")) term_.scale = settings.number("scale");
+    states_delay_ = states(spec, "delay");
     const std::string delay = settings.text("delay");
     if (delay == "fit")
         raise<UsageError>(
@@ -202,6 +204,14 @@ ReadOptions SimulatedOption::reading_of(ReadOptions reading) const {
         if (const auto unit = reading.units.find(column); unit != reading.units.end())
             own.units.insert(*unit);
     return own;
+}
+
+SetupContext SimulatedOption::names() const {
+    SetupContext context;
+    context.torque_column = term_.column;
+    if (position_) context.position_column = *position_;
+    if (velocity_) context.velocity_column = *velocity_;
+    return context;
 }
 
 SimulatedMotion SimulatedOption::read_motion(const ReadOptions& reading, const std::string& path,

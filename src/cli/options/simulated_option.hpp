@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "ripplenotch/diagnose/alignment.hpp"
+#include "ripplenotch/diagnose/setup.hpp"
 #include "ripplenotch/document/simulated_term.hpp"
 #include "ripplenotch/log/log.hpp"
 #include "ripplenotch/model/given_term.hpp"
@@ -23,7 +23,7 @@ class SimulatedOption {
     explicit SimulatedOption(std::string_view text, const std::optional<SimulatedTerm>& stated = {});
 
     /// As a model.json states it: a column of the log.
-    explicit SimulatedOption(SimulatedTerm term) : term_(std::move(term)) {}
+    explicit SimulatedOption(SimulatedTerm term) : term_(std::move(term)), states_delay_(true) {}
 
     /// The term for the rows of the log at `path`; its deviation is 0 where the scale is stated. Rows that a simulation in a file of its own does not span are taken out of the log. Throws
     /// UsageError, DataError, FileError.
@@ -37,6 +37,12 @@ class SimulatedOption {
     [[nodiscard]] SimulatedMotion read_motion(const ReadOptions& reading, const std::string& path,
                                               const Log& log) const;
     [[nodiscard]] const SimulatedTerm& term() const { return term_; }
+    /// Whether the user or the model says by how much the column is later than the log.
+    [[nodiscard]] bool states_delay() const { return states_delay_; }
+    /// Takes it from a comparison of the motions.
+    void set_delay(double delay_s) { term_.delay_s = delay_s; }
+    /// Names of the columns of its torque and motion, as the options have them.
+    [[nodiscard]] SetupContext names() const;
     /// Of the simulation, where it has one of its own.
     [[nodiscard]] const std::optional<std::string>& file() const { return file_; }
 
@@ -46,7 +52,7 @@ class SimulatedOption {
     [[nodiscard]] ReadOptions reading_of(ReadOptions reading) const;
     SimulatedTerm term_;
     std::optional<std::string> file_, validation_file_, position_, velocity_;
-    bool align_start_ = false;
+    bool align_start_ = false, states_delay_ = false;
 };
 
 }  // namespace ripplenotch

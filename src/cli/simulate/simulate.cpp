@@ -80,7 +80,7 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     Log log = read_log(options.log, reading);
     say_layout(options.common, log.layout);
     std::vector<double> known_nm = stated_torque_along({options.simulated, std::nullopt}, model, reading,
-                                            {options.log, log}, options.smoothing);
+                                            {options.log, log});
     say_warnings(options.common, log.recording.warnings);
     Motion motion = motion_along(log.trace.view(), options.smoothing);
     motion.known_nm = std::move(known_nm);

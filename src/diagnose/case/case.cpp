@@ -41,6 +41,7 @@ Case rows_of(const Case& whole, const std::vector<std::size_t>& rows, Hertz samp
     some.row = picked(whole.row, rows);
     some.rough_deg_s2 = picked(whole.rough_deg_s2, rows);
     some.blunted_deg_s2 = picked(whole.blunted_deg_s2, rows);
+    some.expected_delay = whole.expected_delay;
     some.walk_deg = whole.walk_deg;
     some.step_nm = whole.step_nm;
     some.moving_deg_s = whole.moving_deg_s;

@@ -3,6 +3,7 @@
 // What of a log a diagnosis looks at: the motion, the torque, which samples count, and what is uncertain
 // about the motion itself.
 
+#include <optional>
 #include <vector>
 
 #include "core/rows/rms.hpp"
@@ -26,6 +27,7 @@ struct Case {
     /// Columns of the known torque whose factors are not certain, and by how much: an arm's masses.
     std::vector<Nuisance> uncertain;
     std::vector<unsigned char> edge;  ///< 1: so near to a start or stop that noise decides what the speed is
+    std::optional<Seconds> expected_delay;  ///< at which the search for a delay begins as well
     double walk_deg =
         0.0;               ///< rms error of the position after 1 s, where it is the integral of a noisy speed
     double step_nm = 0.0;  ///< of a log that holds whole steps coarser than its noise

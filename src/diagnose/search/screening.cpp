@@ -79,7 +79,7 @@ class Screening {
         std::optional<Trial> best;
         for (const Term& start : starts) {
             if (sensors != (side_of(start) == Side::sensor)) continue;
-            if (is_there_already(start, model_.open)) continue;
+            if (is_there_already(start, model_.open) || !turns_a_period(start)) continue;
             Trial trial = opened(start);
             const double values = static_cast<double>(free_values(trial.open));
             trial.price = values * portable::log(samples_) + 2.0 * portable::log(cells) +
@@ -91,6 +91,17 @@ class Screening {
     }
 
   private:
+    // What repeats with the output angle has to repeat within the travel: over less than a period every smooth
+    // function of the position looks like it.
+    [[nodiscard]] bool turns_a_period(const Term& start) const {
+        const Effect& effect = *start.effect;
+        const auto order = find_parameter(effect, "order");
+        if (effect.domain != Domain::position || !order) return true;
+        const auto& position_deg = case_.motion.position_deg;
+        const auto [low, high] = std::ranges::minmax_element(position_deg);
+        return (*high - *low) * *start.values[*order] >= 360.0;
+    }
+
     // Slopes of the model's coordinates, and the errors of the motion.
     void look_at_slopes() {
         std::vector<Column> all;

@@ -24,6 +24,7 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
         values = hints.tones_hz;
         cells *= samples / 2.0;
     }
+    if (parameter.hint == Hint::delay && hints.delay_s) values.push_back(*hints.delay_s);
     if (parameter.hint == Hint::gear_ratios && !hints.ratios.ratios.empty()) {
         cells += hints.ratios.compared;
         for (const double ratio : hints.ratios.ratios)
@@ -88,6 +89,7 @@ double value_for_ratio(const Effect& effect, std::size_t parameter, GearRatio st
 
 Hints hints_of(const ModelBench& bench, const Model& stated, const std::vector<double>& left_nm) {
     Hints hints;
+    if (bench.looked_at().expected_delay) hints.delay_s = bench.looked_at().expected_delay->value();
     hints.tones_hz = strongest_tones_hz(bench.looked_at(), left_nm, bench.rules());
     StatedRipple ripple = stated_ripple(stated);
     hints.ratio = ripple.ratio;

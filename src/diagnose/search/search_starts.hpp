@@ -3,6 +3,7 @@
 // Where the search for an effect may begin: the values that the catalogue says to try, and those that the
 // residual itself shows.
 
+#include <optional>
 #include <vector>
 
 #include "diagnose/case/lines.hpp"
@@ -15,6 +16,7 @@ struct Hints {
     std::vector<double> tones_hz, orders;
     GearRatio ratio;
     RatioCandidates ratios;
+    std::optional<double> delay_s = {};
 };
 
 /// What the parameter has to be for the effect to make `stated` the ratio `wanted`.

@@ -14,6 +14,20 @@ void put_beside(Json& json, const Diagnosis& diagnosis) {
         if (value.name == simulated) json["simulated"] = {{"scale", six_digits(value.value)}};
     }
     if (diagnosis.residual_in_noise) json["residual_in_noise"] = true;
+    if (!diagnosis.setup.empty()) json["setup"] = Json::array();
+    for (const SetupFault& fault : diagnosis.setup)
+        list_in(json, "setup")
+            .push_back({{"fault", setup_fault_name(fault.kind)},
+                        {"statement", fault.statement},
+                        {"option", fault.option},
+                        {"explained_before", six_digits(fault.explained_before)},
+                        {"explained_after", six_digits(fault.explained_after)}});
+    if (!diagnosis.alignment) return;
+    const SimulationLag& lag = *diagnosis.alignment;
+    json["alignment"] = {{"delay_s", six_digits(lag.delay_s)},
+                         {"ci95_s", {six_digits(lag.delay_95_s.low), six_digits(lag.delay_95_s.high)}},
+                         {"correlation", six_digits(lag.correlation)},
+                         {"clock_error_ppm", lag.clock_error ? six_digits(1e6 * *lag.clock_error) : Json(nullptr)}};
 }
 
 void read_beside(Fields& fields, Diagnosis& diagnosis) {

@@ -18,7 +18,8 @@ constexpr Parameter parameters[] = {
      .start = 0.002,
      .lower = -0.5,
      .upper = 0.5,
-     .tried = tried_delays},
+     .tried = tried_delays,
+     .hint = Hint::delay},
 };
 
 constexpr LookAlike look_alikes[] = {
