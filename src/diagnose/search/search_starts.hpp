@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnose/case/lines.hpp"
+#include "diagnose/search/change_times.hpp"
 #include "diagnose/search/model_bench.hpp"
 
 namespace ripplenotch {
@@ -15,6 +16,7 @@ struct Hints {
     std::vector<double> tones_hz, orders;
     GearRatio ratio;
     RatioCandidates ratios;
+    ChangeTimes changes;
 };
 
 /// What the parameter has to be for the effect to make `stated` the ratio `wanted`.
