@@ -201,7 +201,9 @@ double ScaleBounds::high(const Parameter& scale) const {
 bool ScaleBounds::is_bent(const Shape& shape) const {
     for (const std::size_t p : scales_of(*shape.term.effect)) {
         const Parameter& scale = shape.term.effect->parameters[p];
-        if (is_step(scale) || scale.unit == "s") continue;
+        // Drift may be a straight line; a friction that outlasts the log is one that does not change.
+        const bool line = scale.unit == "s" && shape.term.effect->domain == Domain::time;
+        if (is_step(scale) || line) continue;
         const double value = *shape.term.values[p];
         if (value < rules.near_low * low(scale) || value > high(scale) / rules.near_high) return true;
     }
