@@ -115,8 +115,8 @@ class Case:
             torque = torque + disturbing
         noise = sensor.noise(rng, self.noise, len(time), strengths.TORQUE_NOISE_NM)
         torque = sensor.convert(torque + noise, hidden, rng)
+        q, v = joint.seen(q, v, hidden)
         v = v + strengths.VELOCITY_NOISE_DEG_S * rng.standard_normal(len(time))
-        v = v + sum(e["bias_deg_s"] for e in joint.named(hidden, "velocity-bias"))
         position = np.round(q * 2**19 / 360) * 360 / 2**19 if self.position else None  # an encoder of 19 bits
         return Log(time, v, torque, position, float(np.sqrt(np.mean(noise**2))), place)
 
@@ -134,7 +134,7 @@ def studies(name, seeds, seed0=0):
     """The cases of one study; seeds: how many of each."""
     numbers = range(seed0, seed0 + seeds)
     if name == "single":
-        return [Case(name, label, n, hidden=(label,)) for label in strengths.HIDDEN for n in numbers]
+        return [Case(name, label, n, hidden=(label,)) for label in (*strengths.HIDDEN, *strengths.FURTHER) for n in numbers]
     if name == "rarer":
         return [Case(name, label, n, hidden=(label,), position=label != "velocity-bias")
                 for label in strengths.RARER for n in numbers]
@@ -169,7 +169,7 @@ def studies(name, seeds, seed0=0):
                 for variant in VARIANTS for label in strengths.HIDDEN for n in numbers]
     if name == "recorded":
         return [dataclasses.replace(case, study=name) for n in numbers for kind, count in RECORDED.items()
-                for case in studies(kind, count, n * count)]
+                for case in studies(kind, count, n * count) if not set(case.hidden) & set(strengths.FURTHER)]
     if name == "without":
         return [Case(name, label, n, hidden=(label,), without=label) for label in strengths.HIDDEN for n in numbers]
     raise SystemExit(f"there is no study '{name}'")

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 SUBSTEPS = 8  # of a sample, where a differential equation is integrated
+LOADS = ("inertia", "gravity", "payload-change")  # what gear and bearings carry
 
 
 class Instants:
@@ -21,7 +22,7 @@ class Instants:
         self.q, self.v, self.a = motion.at(time_s)
         self.rad = np.radians(self.q)
         self.gear_ratio = gear_ratio
-        self.load = np.abs(sum((TORQUES[e["effect"]](self, e) for e in truth if e["effect"] in ("inertia", "gravity")),
+        self.load = np.abs(sum((TORQUES[e["effect"]](self, e) for e in truth if e["effect"] in LOADS),
                                np.zeros_like(self.t)))
 
 
@@ -71,6 +72,25 @@ def hysteresis(x, e):
     return e["torque_nm"] * states
 
 
+def backlash(x, e):
+    """The play operator: the state moves by 2 across the play and stops at the flanks."""
+    state, states = e.get("initial_state", 0.0), np.empty(len(x.t))
+    for k, step in enumerate((2.0 * np.diff(x.q, prepend=x.q[0]) / e["width_deg"]).tolist()):
+        state = min(max(state + step, -1.0), 1.0)
+        states[k] = state
+    return e["torque_nm"] * states**3
+
+
+def payload(x, e):
+    """From time_s on there is another inertia and another weight."""
+    there = 0.5 * (1.0 + np.tanh((x.t - e["time_s"]) / e.get("ramp_s", 0.05)))
+    return there * (e["inertia_kgm2"] * np.radians(x.a) + e["cosine_nm"] * np.cos(x.rad) + e["sine_nm"] * np.sin(x.rad))
+
+
+def warm_up(x, e):
+    return e["change_nm"] * np.exp(-np.maximum(x.t, 0.0) / e["time_constant_s"]) * direction(x.v, 0.2)
+
+
 def ringing(x, e):
     moving, total = abs(x.v[0]) > 1.0, np.zeros_like(x.t)
     speeds = np.abs(x.v)
@@ -102,13 +122,19 @@ TORQUES = {
     "offset": lambda x, e: np.full_like(x.t, e["torque_nm"]),
     "drift": drift,
     "gravity": lambda x, e: wave(e["amplitude_nm"], x.q / 360.0, e["phase_deg"]),
+    "payload-change": payload,
     "coulomb-friction": lambda x, e: e["torque_nm"] * direction(x.v, e["width_deg_s"]),
+    "asymmetric-friction": lambda x, e: e["difference_nm"] / 2 * direction(x.v, 0.2) ** 2,
     "viscous-friction": lambda x, e: e["coefficient_nm_per_deg_s"] * x.v,
     "quadratic-viscous-friction": lambda x, e: e["coefficient_nm_per_deg2_s2"] * x.v * np.abs(x.v),
     "stribeck-friction": lambda x, e: (e["torque_nm"] * direction(x.v, 0.2)
                                        * np.exp(-((x.v / e["stribeck_speed_deg_s"]) ** 2))),
     "load-friction": lambda x, e: e["torque_nm"] * x.load ** e["exponent"] * direction(x.v, 0.2),
+    "position-dependent-friction": lambda x, e: (wave(e["amplitude_nm"], e["order"] * x.q / 360.0, e["phase_deg"])
+                                                 * direction(x.v, 0.2)),
+    "friction-warm-up": warm_up,
     "hysteresis": hysteresis,
+    "backlash": backlash,
     "start-stop-ringing": ringing,
     "output-ripple": lambda x, e: wave(e["amplitude_nm"], e["order"] * x.q / 360.0, e["phase_deg"]),
     "tone": lambda x, e: wave(e["amplitude_nm"], e["frequency_hz"] * x.t, e["phase_deg"]),
@@ -160,7 +186,8 @@ def torque(motion, truth, gear_ratio, time_s, other=None):
         gear_ratio *= 1 + e["error_percent"] / 100
     late = sum(e["delay_s"] for e in named(truth, "delay"))
     lags = [e["time_constant_s"] for e in named(truth, "lag")]
-    integrated = lags or named(truth, "resonance") or (other and other.finer)
+    cutoffs = [e["cutoff_hz"] for e in named(truth, "sensor-lowpass")]
+    integrated = lags or cutoffs or named(truth, "resonance") or (other and other.finer)
     step, finer = time_s[1] - time_s[0], SUBSTEPS if integrated else 1
     times = time_s[0] + np.arange((len(time_s) - 1) * finer + 1) * step / finer - late
     x = Instants(times, motion, truth, gear_ratio)
@@ -169,7 +196,21 @@ def torque(motion, truth, gear_ratio, time_s, other=None):
         total = other(x, truth, total)
     for constant in lags:
         total = first_order(total, step / finer, constant)
+    for cutoff in cutoffs:
+        total = oscillator(total, step / finer, cutoff, math.sqrt(0.5))
     return total[::finer]
+
+
+def seen(q, v, truth):
+    """Angle and speed as the log has them: those of an encoder that errs, and a speed that is off by a constant."""
+    for e in named(truth, "encoder-eccentricity"):
+        true = q
+        for _ in range(8):  # the error goes with the angle that is shown
+            phase = np.radians(e["order"] * q + e["phase_deg"])
+            q = true + e["amplitude_deg"] * np.cos(phase)
+        steep = e["amplitude_deg"] * np.radians(e["order"]) * np.sin(np.radians(e["order"] * q + e["phase_deg"]))
+        v = v / (1.0 + steep)
+    return q, v + sum(e["bias_deg_s"] for e in named(truth, "velocity-bias"))
 
 
 def turn(rng):
@@ -216,6 +257,22 @@ HIDDEN = {
     "spikes": lambda r: effect("spikes", rate_percent=r.uniform(0.05, 0.2), size_nm=r.uniform(4.0, 9.0)),
     "dropout": lambda r: effect("dropout", held=int(r.integers(12, 26)), milliseconds=[40.0, 160.0]),
     "gear-ratio": lambda r: effect("gear-ratio", error_percent=r.choice([-20.0, 1.0, 20.0, 60.0])),
+}
+
+# Singles are drawn from these too; pairs and triples are not, whose draws would all be others.
+FURTHER = {
+    "asymmetric-friction": lambda r: effect("asymmetric-friction", difference_nm=sign(r) * r.uniform(0.3, 1.0)),
+    "backlash": lambda r: effect("backlash", torque_nm=r.uniform(0.5, 1.2), width_deg=r.uniform(0.5, 6.0)),
+    "friction-warm-up": lambda r: effect("friction-warm-up", change_nm=sign(r) * r.uniform(0.4, 1.0),
+                                         time_constant_s=r.uniform(8.0, 25.0)),
+    "position-dependent-friction": lambda r: effect("position-dependent-friction", order=int(r.choice([1, 2])),
+                                                    amplitude_nm=r.uniform(0.3, 0.8), phase_deg=turn(r)),
+    "payload-change": lambda r: effect("payload-change", inertia_kgm2=sign(r) * r.uniform(0.05, 0.2),
+                                       cosine_nm=sign(r) * r.uniform(0.4, 1.5), sine_nm=sign(r) * r.uniform(0.4, 1.5),
+                                       time_s=r.uniform(10.0, 30.0)),
+    "encoder-eccentricity": lambda r: effect("encoder-eccentricity", order=int(r.choice([1, 2])),
+                                             amplitude_deg=r.uniform(0.05, 0.25), phase_deg=turn(r)),
+    "sensor-lowpass": lambda r: effect("sensor-lowpass", cutoff_hz=r.uniform(12.0, 40.0)),
 }
 
 # The rest of the catalogue; velocity-bias needs a log without position.

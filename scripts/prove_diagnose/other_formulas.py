@@ -64,7 +64,7 @@ def second_order_lag(rng):
     def change(x, truth, torque):
         return joint.oscillator(torque, x.t[1] - x.t[0], hertz, math.sqrt(0.5))
 
-    return Other(change, ("lag", "delay", "resonance"), finer=True)
+    return Other(change, ("sensor-lowpass", "lag", "delay", "resonance"), finer=True)
 
 
 def two_masses(rng):
@@ -85,7 +85,7 @@ def asymmetric_coulomb(rng):
     def change(x, truth, torque):
         return torque + np.where(x.v > 0, forth, back) * np.tanh(x.v / 0.2)
 
-    return Other(change, ("coulomb-friction", "offset"))
+    return Other(change, ("coulomb-friction", "asymmetric-friction", "offset"))
 
 
 def begun_in_the_loop(rng):

@@ -19,7 +19,7 @@ import numpy as np
 from . import bars, cases, joint, motion, score, sensor, strengths, table, tool
 
 SIZES = (0.1, 0.2, 0.4, 0.8, 1.5, 3.0)
-# The numbers that make an effect larger; below 0: smaller. velocity-bias, which no torque of a log shows, is left out.
+# The numbers that make an effect larger; below 0: smaller. What no torque of a log shows, velocity-bias and encoder-eccentricity, is left out.
 SIZE = {"offset": ("torque_nm", 1), "drift": ("rate_nm_s", 1), "gravity": ("amplitude_nm", 1), "coulomb-friction": ("torque_nm", 1),
         "viscous-friction": ("coefficient_nm_per_deg_s", 1), "stribeck-friction": ("torque_nm", 1), "ripple": ("amplitude_nm", 1),
         "output-ripple": ("amplitude_nm", 1), "tone": ("amplitude_nm", 1), "ripple-speed-dependence": ("gain_percent", 1),
@@ -27,8 +27,10 @@ SIZE = {"offset": ("torque_nm", 1), "drift": ("rate_nm_s", 1), "gravity": ("ampl
         "hysteresis": ("torque_nm", 1), "delay": ("delay_s", 1), "lag": ("time_constant_s", 1), "saturation": ("limit_nm", -1),
         "quantization": ("step_nm", 1), "spikes": ("size_nm", 1), "dropout": ("milliseconds", 1), "gear-ratio": ("error_percent", 1),
         "quadratic-viscous-friction": ("coefficient_nm_per_deg2_s2", 1), "load-friction": ("torque_nm", 1),
-        "ripple-direction-dependence": ("gain_percent", 1), "start-stop-ringing": ("amplitude_nm", 1)}
-ALSO = {"ripple-direction-dependence": ("phase_deg",)}  # grow with it
+        "ripple-direction-dependence": ("gain_percent", 1), "start-stop-ringing": ("amplitude_nm", 1),
+        "asymmetric-friction": ("difference_nm", 1), "backlash": ("torque_nm", 1), "friction-warm-up": ("change_nm", 1),
+        "position-dependent-friction": ("amplitude_nm", 1), "payload-change": ("cosine_nm", 1), "sensor-lowpass": ("cutoff_hz", -1)}
+ALSO = {"ripple-direction-dependence": ("phase_deg",), "payload-change": ("inertia_kgm2", "sine_nm")}  # grow with it
 
 
 def scaled(effect, factor):

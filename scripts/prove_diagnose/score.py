@@ -8,9 +8,10 @@ import math
 
 from . import strengths
 
-ORDER = {"ripple": "order", "output-ripple": "order", "ripple-modulation": "output_order"}
+ORDER = {"ripple": "order", "output-ripple": "order", "ripple-modulation": "output_order",
+         "position-dependent-friction": "order", "encoder-eccentricity": "order"}
 # Shapes that a log of motion hardly tells, and what says which line is meant, are not counted as parameters.
-UNCOUNTED = ("effect", "width_deg_s", "order", "output_order", "held", "milliseconds", "initial_state")
+UNCOUNTED = ("effect", "width_deg_s", "order", "output_order", "held", "milliseconds", "initial_state", "ramp_s")
 
 
 def value_of(parameter):

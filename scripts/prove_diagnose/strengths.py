@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The joint that effects hide in, and which of them hide together."""
 
-from .joint import HIDDEN, RARER, turn
+from .joint import FURTHER, HIDDEN, RARER, turn
 
 GEAR_RATIO = 100
 TORQUE_NOISE_NM = 0.06
@@ -20,7 +20,7 @@ FAULTS = ("saturation", "quantization", "spikes", "dropout")
 
 
 def draw(rng, label):
-    return (HIDDEN.get(label) or RARER[label])(rng)
+    return {**RARER, **FURTHER, **HIDDEN}[label](rng)
 
 
 def draw_several(rng, count):

@@ -2,9 +2,12 @@
 // A screening ranks what is there first, asks its price, and is made once.
 #include "diagnose/search/screening.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "bench_fixture.hpp"
+#include "diagnose/search/change_times.hpp"
 #include "diagnose/search/search.hpp"
 #include "support/catch.hpp"
 
@@ -144,4 +147,32 @@ TEST_CASE("what was screened against another noise is told in units of this one"
     CHECK(again[0].gain == Approx(first[0].gain / 4.0));
     CHECK(again[0].price == first[0].price);
     for (std::size_t i = 1; i < again.size(); ++i) CHECK(again[i].score() <= again[i - 1].score());
+}
+
+TEST_CASE(
+    "the time at which a payload changes is found to a tenth of a second, in moves and at rest, and comes "
+    "first") {
+    for (const double time_s : {4.3, 9.1, 13.7}) {
+        Model truth = joint();
+        truth.terms.push_back(parse_term(
+            fmt::format("payload-change,inertia_kgm2=0.1,cosine_nm=0.5,sine_nm=-0.3,time_s={}", time_s)));
+        const TestBench on(case_of(plain_log(truth, 79)));
+        const Candidate without = on.fitted(joint());
+        const ChangeTimes found = change_times(on.c, on.bench.raw_residual(without.stated), on.rules);
+        REQUIRE(!found.times_s.empty());
+        CHECK(found.times_s.size() <= on.rules.screening.most_change_times);
+        CHECK(found.times_s.front() == Approx(time_s).margin(0.1));
+        CHECK(found.compared == static_cast<double>(on.rules.screening.compared_times));
+        const auto trials = screen(on.bench, without,
+                                   Effects{&find_effect("offset"), &find_effect("gravity"),
+                                           &find_effect("drift"), &find_effect("payload-change")});
+        REQUIRE(!trials.empty());
+        CHECK(trials[0].start.effect->name == "payload-change");
+    }
+}
+
+TEST_CASE("a log of few samples has no times of a change to be compared") {
+    Case c = case_of(plain_log(joint(), 80));
+    std::fill(c.use.begin() + 200, c.use.end(), 0);
+    CHECK(change_times(c, std::vector<double>(c.size(), 0.1), standard).times_s.empty());
 }

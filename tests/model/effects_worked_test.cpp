@@ -49,6 +49,68 @@ TEST_CASE("friction: quadratic quadruples at double speed, Stribeck fades beyond
     CHECK(std::abs(at_speed({stribeck}, 60.0)) < 1e-15);
 }
 
+TEST_CASE("friction that differs by direction is half the difference either way, and nothing at rest") {
+    constexpr std::string_view term = "asymmetric-friction,difference_nm=0.6";
+    CHECK(at_speed({term}, 50.0) == Approx(0.3));
+    CHECK(at_speed({term}, -50.0) == Approx(0.3));
+    CHECK(at_speed({term}, 0.0) == 0.0);
+    CHECK(at_speed({term}, -0.2) == Approx(0.3 * std::pow(std::tanh(1.0), 2)));
+    // Beside Coulomb friction of 0.5 Nm: 0.8 Nm forth, 0.2 Nm back.
+    constexpr std::string_view coulomb = "coulomb-friction,torque_nm=0.5,width_deg_s=0.2";
+    CHECK(at_speed({coulomb, term}, 50.0) == Approx(0.8));
+    CHECK(at_speed({coulomb, term}, -50.0) == Approx(-0.2));
+    CHECK(at_speed({"asymmetric-friction,difference_nm=-0.6"}, 50.0) == Approx(-0.3));
+}
+
+TEST_CASE("friction by position turns with the position and with the direction") {
+    // 90 deg/s, one sample a second: 0, 90, 180, 270 deg.
+    constexpr std::string_view term = "position-dependent-friction,order=1,amplitude_nm=0.4,phase_deg=0";
+    const auto forth = predict_nm(model_of({term}), move({"constant,duration=4s,speed=90"}, 1.0));
+    const auto back = predict_nm(model_of({term}), move({"constant,duration=4s,speed=-90"}, 1.0));
+    const double expected[] = {0.4, 0.0, -0.4, 0.0};
+    for (std::size_t k = 0; k < 4; ++k) {
+        CHECK(forth[k] == Approx(expected[k]).margin(1e-12));
+        CHECK(back[k] == Approx(-expected[k]).margin(1e-12));
+    }
+    CHECK(at_speed({"position-dependent-friction,order=2,amplitude_nm=0.4,phase_deg=60"}, -9.0) ==
+          Approx(-0.2));
+}
+
+TEST_CASE("warm-up leaves 37 % of the change after its time constant, with the sign of the speed") {
+    for (const double speed : {30.0, -30.0}) {
+        const double sign = speed / 30.0;
+        const auto torque = predict_nm(model_of({"friction-warm-up,change_nm=0.8,time_constant_s=4"}),
+                                       move({fmt::format("constant,duration=100s,speed={}", speed)}, 10.0));
+        CHECK(torque[0] == Approx(sign * 0.8));
+        CHECK(torque[40] == Approx(sign * 0.8 / std::numbers::e));
+        CHECK(std::abs(torque.back()) < 1e-10);
+    }
+    CHECK(at_speed({"friction-warm-up,change_nm=-0.8,time_constant_s=4"}, 30.0) == Approx(-0.8));
+    CHECK(at_speed({"friction-warm-up,change_nm=0.8,time_constant_s=4"}, 0.0) == 0.0);
+}
+
+TEST_CASE("a payload is not there before its time, and an inertia and a weight after it") {
+    // 90 deg/s2 from rest: pi / 2 rad/s2; after 4 s the joint is at 720 deg.
+    const Motion m = move({"ramp,from-speed=0,to-speed=900deg/s,duration=10s"}, 100.0);
+    const auto torque =
+        predict_nm(model_of({"payload-change,inertia_kgm2=0.2,cosine_nm=1.5,sine_nm=-0.7,time_s=3"}), m);
+    CHECK(std::abs(torque[250]) < 1e-7);
+    CHECK(torque[300] == Approx(0.5 * (0.1 * pi + 1.5 * std::cos(2.25 * pi) - 0.7 * std::sin(2.25 * pi))));
+    CHECK(torque[400] == Approx(0.1 * pi + 1.5));
+    // The same weight as gravity has with a phase: 1.5 cos q - 0.7 sin q.
+    const auto gravity =
+        predict_nm(model_of({"inertia,inertia_kgm2=0.2",
+                             fmt::format("gravity,amplitude_nm={},phase_deg={}", std::hypot(1.5, 0.7),
+                                         std::atan2(0.7, 1.5) * 180.0 / pi)}),
+                   m);
+    for (std::size_t k = 400; k < m.size(); ++k) REQUIRE(torque[k] == Approx(gravity[k]).margin(1e-9));
+    // Gear and bearings carry it: half a newton-metre of friction at a weight of 5 Nm.
+    const std::string_view friction = "load-friction,torque_nm=0.1,exponent=1",
+                           weight = "payload-change,inertia_kgm2=0,cosine_nm=5,sine_nm=0,time_s=0";
+    const Motion turning = move({"constant,duration=9s,speed=360"}, 1.0);
+    CHECK(predict_nm(model_of({weight, friction}), turning)[5] == Approx(5.5));
+}
+
 TEST_CASE("load friction follows the torque of inertia and gravity, whatever else the model holds") {
     // 2 kg m2 at 1 rad/s2: a load of 2 Nm, from either end; the friction has the sign of the speed.
     constexpr std::string_view friction = "load-friction,torque_nm=0.1,exponent=2";
@@ -79,6 +141,30 @@ TEST_CASE("hysteresis turns over 63 % of the way within its width, and stays at 
                                   move({"rest,duration=1s", "constant,speed=10deg/s,duration=1s"}, 100.0));
     CHECK(wound[99] == Approx(-0.3));
     CHECK(wound[120] == Approx(0.6 * (1.0 - 1.5 * std::exp(-1.0))).epsilon(0.02));
+}
+
+TEST_CASE("backlash carries nothing in the middle of the play, and all at its ends") {
+    const Motion m = move(
+        {"constant,speed=10deg/s,duration=10s", "rest,duration=1s", "constant,speed=-10deg/s,duration=10s"},
+        100.0);
+    const auto torque = predict_nm(model_of({"backlash,torque_nm=0.6,width_deg=4"}), m);
+    CHECK(torque[0] == 0.0);
+    CHECK(torque[10] == Approx(0.6 * 0.125));  // from the middle half way to the flank: 1 of 2 deg
+    CHECK(torque[20] == Approx(0.6));
+    CHECK(torque[999] == Approx(0.6));
+    CHECK(torque[1050] == Approx(0.6));  // at rest the flank stays in contact
+    // 1 deg back: half of the way to the middle; 2 deg: the middle; 4 deg: the other flank.
+    CHECK(torque[1110] == Approx(0.6 * 0.125).epsilon(1e-6));
+    CHECK(torque[1120] == Approx(0.0).margin(1e-9));
+    CHECK(torque[1130] == Approx(-0.6 * 0.125).epsilon(1e-6));
+    CHECK(torque[1140] == Approx(-0.6));
+    CHECK(torque.back() == Approx(-0.6));
+    // Turned round within the play, it goes back the way that it came.
+    const auto within = predict_nm(
+        model_of({"backlash,torque_nm=0.6,width_deg=4,initial_state=1"}),
+        move({"constant,speed=-10deg/s,duration=0.1s", "constant,speed=10deg/s,duration=1s"}, 100.0));
+    CHECK(within[10] == Approx(0.6 * 0.125));
+    CHECK(within[20] == Approx(0.6));
 }
 
 TEST_CASE("hysteresis does not creep with the noise of a joint at rest") {
@@ -210,6 +296,28 @@ TEST_CASE("delay and lag move the torque in time, and a delayed model is the mod
     CHECK(ramp[900] == Approx(90.0 - 2.0).epsilon(1e-10));
 }
 
+TEST_CASE(
+    "a low-pass of second order answers a line as Butterworth says, and delays a slow torque by sqrt(2) / "
+    "w") {
+    for (const double speed : {72.0, -72.0, 144.0, 288.0}) {  // order 1 at 20, 40, 80 Hz
+        const Motion m = move({fmt::format("constant,duration=2s,speed={}", speed)}, 2000.0);
+        const auto torque = predict_nm(
+            model_of({"ripple,order=1,amplitude_nm=1,phase_deg=25", "sensor-lowpass,cutoff_hz=40"}), m);
+        const std::complex<double> s(0.0, speed / 3.6 / 40.0);
+        const auto response = 1.0 / (1.0 + std::sqrt(2.0) * s + s * s);
+        CHECK(std::abs(response) == Approx(1.0 / std::sqrt(1.0 + std::pow(speed / 144.0, 4))));
+        for (std::size_t k = 1000; k + 10 < m.size(); ++k) {
+            const auto turned =
+                response * std::polar(1.0, 2.0 * pi * speed / 3.6 * m.time_s[k] + 25.0 * pi / 180.0);
+            REQUIRE(torque[k] == Approx(turned.real()).margin(1e-4));
+        }
+    }
+    const auto ramp =
+        predict_nm(model_of({"viscous-friction,coefficient_nm_per_deg_s=1", "sensor-lowpass,cutoff_hz=10"}),
+                   move({"ramp,to-speed=100deg/s,duration=1s"}));
+    CHECK(ramp[900] == Approx(90.0 - 100.0 * std::sqrt(2.0) / (20.0 * pi)).epsilon(1e-6));
+}
+
 TEST_CASE("the converter clips and rounds noise along with torque") {
     const Motion m = move({"rest,duration=4s"}, 1.0);
     const std::vector<double> noise = {0.26, -0.74, 3.0, -3.0};
@@ -262,4 +370,29 @@ TEST_CASE(
                    move({"rest,duration=2s"}, 1.0));
     CHECK(torque[0] == 0.0);
     CHECK(torque[1] == Approx(1.0));
+}
+
+TEST_CASE(
+    "an eccentric encoder turns the ripple on by its error, and speed and acceleration are its derivatives") {
+    // Where the log shows 0 deg the joint is at -0.9 deg, a quarter of a cycle of order 1; at 90 deg it is
+    // at 90.
+    const auto torque = predict_nm(model_of({"ripple,order=1,amplitude_nm=1,phase_deg=90",
+                                             "encoder-eccentricity,order=1,amplitude_deg=0.9,phase_deg=0"}),
+                                   move({"constant,duration=4s,speed=90"}, 1.0));
+    CHECK(torque[0] == Approx(1.0));
+    CHECK(torque[1] == Approx(0.0).margin(1e-9));
+    CHECK(torque[2] == Approx(-1.0));
+    const Motion logged = move({"poly6,from=-50deg,to=170deg,duration=2s"});
+    Motion seen = logged;
+    GearRatio ratio(100.0);
+    find_effect("encoder-eccentricity").change_motion(std::vector{2.0, 0.3, 40.0}, seen, ratio);
+    for (std::size_t k = 1; k + 1 < seen.size(); ++k) {
+        const double q = logged.position_deg[k];
+        REQUIRE(seen.position_deg[k] ==
+                Approx(q - 0.3 * std::cos((2.0 * q + 40.0) * pi / 180.0)).margin(1e-9));
+        REQUIRE(seen.velocity_deg_s[k] ==
+                Approx((seen.position_deg[k + 1] - seen.position_deg[k - 1]) / 0.002).margin(1e-3));
+        REQUIRE(seen.acceleration_deg_s2[k] ==
+                Approx((seen.velocity_deg_s[k + 1] - seen.velocity_deg_s[k - 1]) / 0.002).margin(2e-2));
+    }
 }

@@ -60,6 +60,7 @@ std::vector<double> planted_values(const Effect& effect) {
                                                                {"velocity-bias.bias_deg_s", 0.02},
                                                                {"drift.time_constant_s", 8.0},
                                                                {"drift.rate_nm_s", 0.1},
+                                                               {"payload-change.time_s", 1.03},
                                                                {"saturation.limit_nm", 2.2}};
     std::vector<double> values;
     for (const Parameter& p : effect.parameters) {

@@ -19,13 +19,13 @@ class Agreement(unittest.TestCase):
         names = {effect["effect"] for effect in json.loads(listed)["effects"]}
         rng = np.random.default_rng(1)
         always = {effect["effect"] for effect in strengths.base_joint(rng)}
-        drawn = {strengths.draw(rng, label)["effect"] for label in (*strengths.HIDDEN, *strengths.RARER)}
+        drawn = {strengths.draw(rng, label)["effect"] for label in (*strengths.HIDDEN, *strengths.FURTHER, *strengths.RARER)}
         self.assertEqual(names - drawn - always, set(), "formula and strength are missing: scripts/prove_diagnose/joint.py")
         self.assertEqual((drawn | always) - names, set(), "drawn by scripts/prove_diagnose/joint.py, and no effect")
 
     def test_the_truth_along_a_log_leaves_no_more_than_the_noise_of_the_log(self):
         rows = agreement.rows(prove.TOOL)
-        certain = [label for label in (*strengths.HIDDEN, *strengths.RARER)
+        certain = [label for label in (*strengths.HIDDEN, *strengths.FURTHER, *strengths.RARER)
                    if score.explainable([strengths.draw(np.random.default_rng(1), label)])]
         self.assertEqual([label for label, *_ in rows], certain)
         for label, without, complete, floor in rows:

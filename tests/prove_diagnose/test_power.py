@@ -28,9 +28,10 @@ class Sizes(unittest.TestCase):
         self.assertLess(numpy.max(numpy.abs(off)), 1e-9)
         self.assertAlmostEqual(abs(offsets[1]), 3.0 * strengths.TORQUE_NOISE_NM, delta=0.01)
 
-    def test_every_effect_of_the_generator_but_one_has_a_size(self):
-        labels = {joint.RARER[label](numpy.random.default_rng(1))["effect"] for label in joint.RARER} | set(joint.HIDDEN)
-        self.assertEqual(labels - set(power.SIZE), {"velocity-bias"})
+    def test_every_effect_of_the_generator_but_errors_of_the_motion_has_a_size(self):
+        labels = {joint.RARER[label](numpy.random.default_rng(1))["effect"] for label in joint.RARER}
+        labels |= set(joint.HIDDEN) | set(joint.FURTHER)
+        self.assertEqual(labels - set(power.SIZE), {"velocity-bias", "encoder-eccentricity"})
 
 
 class Table(unittest.TestCase):

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "diagnose/case/place.hpp"
+#include "diagnose/search/bent_shape.hpp"
 #include "diagnose/search/hearing.hpp"
 #include "diagnose/search/search.hpp"
 
@@ -100,6 +101,10 @@ void find_rivals(const ModelBench& bench, const Candidate& model, const Candidat
         const bool is_form_alone =
             is_fixed_curve(*trial.start.effect) && is_fixed_curve(*model.stated.terms[term].effect);
         const double margin = margin_of(bench, model, other, is_form_alone, something_left);
+        // At a bound it stands in for something else: a warm-up that never ends is a constant friction.
+        if (std::abs(margin) < rules.tie_margin &&
+            !bend_of(bench, other, other.stated.terms.size() - 1).parameter.empty())
+            continue;
         finding.alternatives.push_back({trial.start.effect->name, margin});
         if (hearing.asked("judge.tie_margin", margin, margin < rules.tie_margin))
             finding.status = FindingStatus::ambiguous;

@@ -30,6 +30,10 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
         for (const double ratio : hints.ratios.ratios)
             values.push_back(value_for_ratio(effect, p, hints.ratio, ratio));
     }
+    if (parameter.hint == Hint::change_times && !hints.changes.times_s.empty()) {
+        values = hints.changes.times_s;
+        cells *= hints.changes.compared;
+    }
     std::erase_if(values, [&](double value) { return !allows(parameter, value); });
     return values;
 }
@@ -100,6 +104,7 @@ Hints hints_of(const ModelBench& bench, const Model& stated, const std::vector<d
     hints.ratios =
         likely_ratios(seen_late(bench.looked_at(), lateness_of(stated)), bench.raw_residual(without_ripple),
                       hints.orders, hints.ratio.value(), bench.rules());
+    hints.changes = change_times(bench.looked_at(), left_nm, bench.rules());
     return hints;
 }
 

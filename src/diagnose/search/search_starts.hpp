@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "diagnose/case/lines.hpp"
+#include "diagnose/search/change_times.hpp"
 #include "diagnose/search/model_bench.hpp"
 
 namespace ripplenotch {
@@ -17,6 +18,7 @@ struct Hints {
     GearRatio ratio;
     RatioCandidates ratios;
     std::optional<double> delay_s = {};
+    ChangeTimes changes;
 };
 
 /// What the parameter has to be for the effect to make `stated` the ratio `wanted`.

@@ -24,8 +24,14 @@ constexpr std::array reasons = {
     MjcfReason{"stribeck-friction",
                "lugre has it only with a stiffness and a damping of its bristle, which no log here tells"},
     MjcfReason{"load-friction", "frictionloss does not follow the load"},
+    MjcfReason{"payload-change", "a body has one mass at all times; attach the payload in the simulation"},
+    MjcfReason{"asymmetric-friction", "frictionloss is the same in both directions"},
+    MjcfReason{"position-dependent-friction", "frictionloss does not follow the angle"},
+    MjcfReason{"friction-warm-up", "frictionloss does not follow the time"},
+    MjcfReason{"backlash", "play takes two bodies, motor and link, with a limit between them"},
     MjcfReason{"start-stop-ringing", "it is the answer of a controller, which the file has not"},
     MjcfReason{"velocity-bias", "it is an error of the log's speed"},
+    MjcfReason{"encoder-eccentricity", "it is an error of the log's angle"},
 };
 
 std::string why_not(const Effect& effect) {

@@ -25,6 +25,8 @@ constexpr Parameter parameters[] = {
 constexpr LookAlike look_alikes[] = {
     {"lag", "the ripple is slow against the lag",
      "a faster move: a lag makes the ripple smaller, a delay does not"},
+    {"sensor-lowpass", "the ripple is slow against the cut-off frequency",
+     "a faster move: a low-pass makes the ripple smaller, a delay does not"},
     {"ripple-direction-dependence", "there is one speed in each direction",
      "two speeds in the same direction"},
     {"velocity-bias", "the log is one stroke",

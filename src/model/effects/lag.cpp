@@ -21,6 +21,8 @@ constexpr Parameter parameters[] = {
 constexpr LookAlike look_alikes[] = {
     {"delay", "the ripple is slow against the lag",
      "a faster move: a lag makes the ripple smaller, a delay does not"},
+    {"sensor-lowpass", "the ripple is slow against the lag, or fast against it throughout",
+     "a move whose ripple passes the cut-off frequency: first order falls half as steeply"},
     {"ripple-speed-dependence", "the ripple falls with the speed",
      "inertia torque and ripple in the same log: a lag delays both"},
     {"resonance", "the damping is 0.5 or more", "a faster move"},
@@ -37,7 +39,7 @@ void apply(const Situation& situation, std::span<const double> values, std::span
 
 const Effect effects::lag{
     .name = "lag",
-    .summary = "the amplifier or a filter follows with one time constant",
+    .summary = "the amplifier or a filter of first order follows with one time constant",
     .equation = "time_constant_s * d(logged torque)/dt + logged torque = torque",
     .symptom = "the residual of a delay, and ripple that is smaller the faster the joint turns",
     .look_alikes = look_alikes,
