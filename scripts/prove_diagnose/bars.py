@@ -77,7 +77,7 @@ def same_names(rows):
 
 
 def bars(rows, told):
-    """told: share of a hidden effect's energy in the places told from which on the place is right."""
+    """told: share of a hidden effect's energy located, from which on the place is right."""
     same = same_names(rows)
 
     def variant(*kinds):
@@ -92,7 +92,7 @@ def bars(rows, told):
             lambda r: r["exact"], 0.95),
         Bar("a disturbance outside the catalogue: a false name", "at most 5 %", OUTSIDE, lambda r: bool(r["false"]),
             0.0, 0.05),
-        Bar("the same: its place in time is told", "each", OUTSIDE, lambda r: r["place"], 1.0),
+        Bar("the same: its interval in time is reported", "each", OUTSIDE, lambda r: r["place"], 1.0),
         Bar("95 % interval holds the truth", "90 to 98 %", HIDDEN, held, 0.9, 0.98),
         Bar("`simulate` leaves on the other log what was said, within 10 %", "each", HIDDEN,
             lambda r: r["gap"]["as_said"], 1.0),

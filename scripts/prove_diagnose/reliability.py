@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How often a confirmed name is wrong, by the verdict that it came with, beside the chance that the diagnosis told
+"""How often a confirmed name is wrong, by the verdict that it came with, with the chance that the diagnosis states
 (`wrong_percent`): one line a verdict.
 
 Counted are logs that have nothing in common: halves of a log, the same log in other units and logs whose effect the tool
@@ -10,7 +10,7 @@ from . import bars
 
 STUDIES = ("single", "rarer", "pair", "triple", "noise", "poor", "null", "null ar0.5", "null t4", "outside", "outside+single",
            "formula")
-HEAD = ["verdict", "logs", "names told", "wrong", "share wrong", "95 % of chance", "told", "within"]
+HEAD = ["verdict", "logs", "names", "wrong", "share wrong", "95 % of chance", "stated", "within"]
 # Only "explained" says that nothing is left beside the names.
 VERDICTS = ("explained", "partly-explained", "unexplained", "matches")
 
@@ -33,9 +33,9 @@ def lines(rows):
     found = []
     for verdict in VERDICTS:
         of_verdict = [row for row in counted if row["verdict"] == verdict]
-        # Names beside a leftover come without a chance, and so did all those of earlier programs.
+        # Names tested against a residual come without a chance, and so did all those of earlier programs.
         untold = [row for row in of_verdict if row["named"] and row.get("told_wrong") is None]
         told = [row for row in of_verdict if row not in untold]
         found += [line(verdict, told)] if told else []
-        found += [line(f"{verdict}, no chance told", untold)] if untold else []
+        found += [line(f"{verdict}, no chance stated", untold)] if untold else []
     return found

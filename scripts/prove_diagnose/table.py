@@ -94,7 +94,7 @@ def variant(rows):
 
 
 def without(rows):
-    head = ["taken out", "logs", "verdict", "told of its energy", "named in its place"]
+    head = ["taken out", "logs", "verdict", "share of its energy located", "named in its place"]
     return markdown(head, [[label, str(len(group)), ", ".join(sorted({r["verdict"] for r in group})),
                             ", ".join(f"{100 * r['told']:.0f} %" for r in group),
                             "; ".join(sorted({", ".join(r["named"]) for r in group if r["named"]})) or "none"]
@@ -142,7 +142,7 @@ def failure(row):
     if row["study"].startswith("outside"):
         more += f", place {'right' if row['place'] else 'wrong'}"
     elif row["study"] == "without":
-        return f"{row['case']}: {100 * row['told']:.0f} % told, named {', '.join(row['named']) or 'nothing'}; {row['verdict']}"
+        return f"{row['case']}: {100 * row['told']:.0f} % located, named {', '.join(row['named']) or 'nothing'}; {row['verdict']}"
     elif row["gap"]["as_said"] is False:
         more += f", residual said {row['gap']['said_after_nm']:.4f} Nm and is {row['gap']['after_nm']:.4f} Nm"
     if row["lowers"] is False:
@@ -209,7 +209,7 @@ APART = {"recorded": of_recorders, "nulls": of_nulls, "physics": of_physics}
 
 
 def blocks(abouts, rows, failed):
-    """Every table by the name of its mark in docs/diagnose.md; failed(row) says which cases are listed as wrong."""
+    """Every table by the name of its mark in docs/diagnose.md and docs/studies; failed(row) says which cases are listed as wrong."""
     others, found = [row for row in rows if row["study"] not in APART], {}
     if others or not rows:
         wrong = [failure(row) for row in others if failed(row)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A short case of each study of the proof; all of it is scripts/prove-diagnose. See docs/diagnose.md."""
+"""A short case of each study of the proof; all of it is scripts/prove-diagnose. See docs/studies."""
 
 import unittest
 

@@ -78,7 +78,7 @@ class Record(unittest.TestCase):
         done = prove.prove("--print", str(self.path), "--table", "reliability", "--write", str(page))
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
         self.assertEqual(page.read_text().count("\nold\n"), 4)
-        self.assertIn("| explained, no chance told |", page.read_text())
+        self.assertIn("| explained, no chance stated |", page.read_text())
         done = prove.prove("--print", str(self.path), "--table", "reliable")
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("no table 'reliable'; there are: about, bars", done.stderr)

@@ -104,9 +104,9 @@ class Reliability(unittest.TestCase):
         row = {"study": "single", "verdict": "explained", "named": ["offset"], "false": []}
         self.assertEqual(reliability.lines([{**row, "told_wrong": 0.5}] * 100)[0][-2:], ["0.5 %", "yes"])
         self.assertEqual(reliability.lines([{**row, "told_wrong": 5.0}] * 100)[0][-2:], ["5 %", "**no**"])
-        # Names beside a leftover have a line of their own.
+        # Names tested against a residual have a line of their own.
         lines = reliability.lines([{**row, "told_wrong": 0.5}] * 3 + [{**row, "told_wrong": None}] * 2)
-        self.assertEqual([line[:3] for line in lines], [["explained", "3", "3"], ["explained, no chance told", "2", "2"]])
+        self.assertEqual([line[:3] for line in lines], [["explained", "3", "3"], ["explained, no chance stated", "2", "2"]])
         self.assertEqual(lines[1][-2:], ["-", "-"])
 
 
@@ -162,7 +162,7 @@ class Scores(unittest.TestCase):
                  "named": ["ripple 1"] if right else [], "offered": right, "parameters": [{"beyond": 0.5}]}
                 for k, (size, right) in enumerate(((0.8, False), (2.0, True), (3.0, True)))]
         lines = {line[0]: line for line in table.bar_lines(rows)}
-        self.assertIn("2/3", lines["names exactly right, each hidden effect 0.7 times the leftover or more"][2])
+        self.assertIn("2/3", lines["names exactly right, each hidden effect at least 0.7 times the residual"][2])
         self.assertIn("2/2", lines["the same, each 1.5 times or more"][2])
         self.assertIn("3/3", lines["95 % interval holds the truth"][2])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One semi-synthetic log: which joint, which leftover, what is hidden and how large."""
+"""One semi-synthetic log: which joint, which residual, what is hidden and how large."""
 
 import dataclasses
 import pathlib
@@ -14,7 +14,7 @@ KINDS = ("nothing", "coulomb-friction", "viscous-friction", "stribeck-friction",
          "output-ripple", "drift", "coulomb-friction+viscous-friction", "coulomb-friction+ripple",
          "hysteresis+viscous-friction", "coulomb-friction+stribeck-friction", "ripple+drift")
 DISTURBANCES = {"contact": 0.4, "burst": 1.0}  # s; in no catalogue
-LEAST, MOST = 0.7, 4.0  # size of a hidden effect, of the leftover's rms
+LEAST, MOST = 0.7, 4.0  # size of a hidden effect, of the residual's rms
 INERTIA_OFF = 0.2  # standard deviation of what each inertial value is off by, of the value
 LOAD_PART = 0.15  # a load friction is at most so much of what the joint bears
 
@@ -38,7 +38,7 @@ class Log:
     joint: int
     columns: dict  # name of the column: values
     hidden: list  # as in model.json, sizes included
-    sizes: list  # of each, of the leftover's rms
+    sizes: list  # of each, of the residual's rms
     left_nm: float
     seconds: float
 
@@ -88,7 +88,7 @@ def chosen_joint(rng, log, kind):
 
 
 def disturbing(rng, time, length_s, left_nm):
-    """A pulse, or a second of noise, of 3 to 8 times the leftover."""
+    """A pulse, or a second of noise, of 3 to 8 times the residual."""
     count = round(length_s / (time[1] - time[0]))
     first = int(rng.uniform(0.1, 0.85) * len(time))
     shape = np.hanning(count) * (rng.standard_normal(count) if length_s > 0.5 else 1.0)

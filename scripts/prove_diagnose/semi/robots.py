@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robots whose logs lend motion, rigid bodies and leftover. The logs are no part of this repository."""
+"""The robots whose logs lend motion, rigid bodies and residual. The logs are no part of this repository."""
 
 import dataclasses
 import math

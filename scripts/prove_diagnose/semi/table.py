@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What was asked of names beside a real leftover against what was measured, and the tables of it."""
+"""What was asked of names with a real residual against what was measured, and the tables of it."""
 
 from .. import bars, table
 from . import cases
 
-ENOUGH = 1.5  # times the leftover's rms
+ENOUGH = 1.5  # times the residual's rms
 
 
 def hides(row):
@@ -21,7 +21,7 @@ def bar_lines(rows):
     stribeck = [row for row in hidden if row["label"] == "coulomb-friction+stribeck-friction"]
     nothing = [row for row in rows if not hides(row)]
     return [
-        bars.line("names exactly right, each hidden effect 0.7 times the leftover or more", "at least 95 %",
+        bars.line("names exactly right, each hidden effect at least 0.7 times the residual", "at least 95 %",
              [r["exact"] for r in hidden], 0.95),
         bars.line("the same, each 1.5 times or more", "at least 97 %", [r["exact"] for r in large], 0.97),
         bars.line("Coulomb with Stribeck friction", "at least 90 %", [r["exact"] for r in stribeck], 0.9),
@@ -53,7 +53,7 @@ def size(least):
 
 
 def wrong(rows):
-    lines = [f"* {row['case']} ({row['joint']}, {size(row['least'])} times the leftover): named "
+    lines = [f"* {row['case']} ({row['joint']}, {size(row['least'])} times the residual): named "
              f"{', '.join(row['named']) or 'nothing'}{', and the rest offered' if row['offered'] and not row['exact'] else ''}"
              for row in rows if not row["exact"]]
     return "\n".join(lines) or "Nothing."

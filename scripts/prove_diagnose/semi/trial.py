@@ -26,7 +26,7 @@ def write(log, folder):
 
 
 def scored(log, found):
-    """Names right, false, offered; values and their intervals; sizes told of what was rightly named."""
+    """Names right, false, offered; values and their intervals; reported sizes of what was rightly named."""
     names = score.names(None, (), log.hidden, found)
     values = [p for p in score.parameters(log.hidden, found, log.seconds)
               if p["parameter"].partition(".")[2] not in UNCOUNTED]

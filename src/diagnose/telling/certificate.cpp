@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How often a name is wrong, as counted over simulated logs whose truth is known (docs/diagnose.md).
+// How often a name is wrong, as counted over simulated logs whose truth is known
+// (docs/studies/diagnose-catalogue.md).
 
 #include <algorithm>
 
