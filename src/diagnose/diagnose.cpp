@@ -268,11 +268,13 @@ class DiagnosisRun {
         Candidate last = tested(found, before.has_other());
         if (is_residual_left(found)) {
             const ModelBench plain = *found.bench;
+            first_bench_ = &plain;
             found = search_again(found, part, model_, effects_, more_work_, rules_);
             last = tested(found, before.has_other());
             told_.unexplained = leftovers(plain, last.stated);
             told_.gap.noise_floor_nm = plain.floor_nm(last.stated);
             told_.residual_in_noise = true;
+            first_bench_ = nullptr;
         }
         told_.angle = before.account(whole_, other_ ? &*other_ : nullptr);
         if (!has_position_) told_.undecidable = undecidable(*found.bench, last, effects_, without_);
@@ -289,7 +291,12 @@ class DiagnosisRun {
         const ModelBench& bench = *found.bench;
         std::size_t own = model_.terms.size();
         told_.unexplained = leftovers(bench, found.last.stated);
-        const auto unexplained = bench.beside_residual() ? std::vector<Leftover>() : told_.unexplained;
+        // A known torque is never right everywhere, and what it leaves says nothing against a finding that stands out
+        // of it. A model of the joint alone should leave nothing.
+        const bool may_be_left = bench.beside_residual() && !options_.given.empty();
+        const auto unexplained = may_be_left              ? std::vector<Leftover>()
+                                 : first_bench_ != nullptr ? leftovers(*first_bench_, found.last.stated)
+                                                           : told_.unexplained;
         told_.rounds = judge(bench, found.last, own, effects_, unexplained);
         search_without_balanced(found, unexplained);
         if (fits_offset_) promote_offset(found, own, unexplained);
@@ -451,6 +458,7 @@ class DiagnosisRun {
     Case whole_;
     std::optional<Case> other_;
     Work work_, more_work_;
+    const ModelBench* first_bench_ = nullptr;  ///< with the noise of the first search, during the second
     std::size_t own_ = 0;  ///< terms of the model as given
     std::vector<std::string> without_;
     std::vector<const Effect*> effects_;

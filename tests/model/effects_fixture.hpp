@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ripplenotch/model/model.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch::fixture {
@@ -20,13 +21,19 @@ inline const Motion& rich_motion() {
         "rest,duration=0.3s,from=20deg", "poly6,to=-70deg,duration=1s", "rest,duration=0.2s",
         "ramp,to-speed=100deg/s,duration=0.5s",
         "sine,amplitude=30deg,frequency=0.8Hz,duration=1.5s,phase=0deg"};
-    static const Motion motion = make_motion(specs, Hertz(500.0));
+    static const Motion motion = [] {
+        Motion made = make_motion(specs, Hertz(500.0));
+        // What a simulation may know of the joint.
+        for (const double t : made.time_s) made.known_nm.push_back(0.3 + 0.8 * portable::sin_degrees(290.0 * t));
+        return made;
+    }();
     return motion;
 }
 
 inline Motion first_part(const Motion& motion, std::size_t count) {
     Motion part = motion;
-    for (auto* column : {&part.time_s, &part.position_deg, &part.velocity_deg_s, &part.acceleration_deg_s2}) {
+    for (auto* column :
+         {&part.time_s, &part.position_deg, &part.velocity_deg_s, &part.acceleration_deg_s2, &part.known_nm}) {
         column->resize(count);
     }
     return part;

@@ -91,12 +91,13 @@ class Screening {
     }
 
   private:
-    // What repeats with the output angle has to repeat within the travel: over less than a period every smooth
-    // function of the position looks like it.
+    // A torque that repeats with the output angle has to repeat within the travel: over less than a period every
+    // smooth function of the position looks like it.
     [[nodiscard]] bool turns_a_period(const Term& start) const {
         const Effect& effect = *start.effect;
         const auto order = find_parameter(effect, "order");
-        if (effect.domain != Domain::position || !order) return true;
+        const bool is_friction = find_parameter(effect, "width_deg_s").has_value();
+        if (effect.domain != Domain::position || is_friction || !order) return true;
         const auto& position_deg = case_.motion.position_deg;
         const auto [low, high] = std::ranges::minmax_element(position_deg);
         return (*high - *low) * *start.values[*order] >= 360.0;

@@ -59,6 +59,11 @@ bool has_one_form(const Effect& effect) {
 bool is_there_already(const Term& tried, const Model& open) {
     const Effect& effect = *tried.effect;
     if (effect.side == Side::joint) {
+        // A load is picked up and put down; more changes take up whatever else differs from move to move.
+        constexpr std::ptrdiff_t most_changes = 2;
+        if (find_parameter(effect, "time_s") &&
+            std::ranges::count(open.terms, &effect, &Term::effect) >= most_changes)
+            return true;
         return has_one_form(effect) && std::ranges::any_of(open.terms, [&](const Term& term) {
                    return term.effect == &effect && !term.values.front();
                });
