@@ -216,6 +216,13 @@ double fastest_deg_s(const Motion& motion) {
     return fastest;
 }
 
+void widen(FittedValue& value, double times) {
+    if (!value.ci95) return;
+    const double middle = 0.5 * (value.ci95->low + value.ci95->high);
+    value.ci95->low = middle + times * (value.ci95->low - middle);
+    value.ci95->high = middle + times * (value.ci95->high - middle);
+}
+
 class DiagnosisRun {
   public:
     DiagnosisRun(const Model& model, const TraceView& log, const TraceView* validation,
@@ -284,6 +291,7 @@ class DiagnosisRun {
         told_.unexplained = leftovers(bench, found.last.stated);
         const auto unexplained = bench.beside_residual() ? std::vector<Leftover>() : told_.unexplained;
         told_.rounds = judge(bench, found.last, own, effects_, unexplained);
+        search_without_balanced(found, unexplained);
         if (fits_offset_) promote_offset(found, own, unexplained);
         own_ = own;
         told_.refused = found.refused;
@@ -301,6 +309,29 @@ class DiagnosisRun {
         if (last.stated.terms.size() < found.last.stated.terms.size())
             told_.unexplained = leftovers(bench, last.stated);
         return last;
+    }
+
+    // Findings whose torques are held in balance by one another hide what each of them would have been without the
+    // other: the weakest goes, and the search is made again without it.
+    void search_without_balanced(Searched& found, const std::vector<Leftover>& unexplained) {
+        std::vector<const Effect*> effects = effects_;
+        for (std::size_t round = 0; round < rules_.search.swap_rounds; ++round) {
+            const Finding* weakest = nullptr;
+            for (const Finding& finding : told_.rounds) {
+                if (finding.status != FindingStatus::unidentifiable) continue;
+                if (weakest == nullptr || finding.evidence.share_nm < weakest->evidence.share_nm) weakest = &finding;
+            }
+            if (weakest == nullptr || found.bench->work().is_over()) return;
+            std::erase(effects, weakest->term.effect);
+            Candidate other = search(*found.bench, found.first, model_.terms.size(), effects, found.refused);
+            std::vector<Finding> rounds = judge(*found.bench, other, model_.terms.size(), effects, unexplained);
+            const auto confirmed = [](const std::vector<Finding>& all) {
+                return std::ranges::count(all, FindingStatus::confirmed, &Finding::status);
+            };
+            if (confirmed(rounds) < confirmed(told_.rounds)) return;
+            found.last = std::move(other);
+            told_.rounds = std::move(rounds);
+        }
     }
 
     // The offset beside an arm is a finding where it passes the same tests, and is larger than what is left.
@@ -354,12 +385,13 @@ class DiagnosisRun {
     void tell_model(const Candidate& last) {
         told_.model = last.stated;
         told_.values = last.values;
+        for (FittedValue& value : told_.values) widen(value, rules_.values.interval_factor);
         std::size_t place = own_;
         for (Finding& finding : told_.rounds) {
             if (is_doubtful(finding)) continue;
             finding.term = last.stated.terms[place];
             finding.values.clear();
-            for (const FittedValue& value : last.values) {
+            for (const FittedValue& value : told_.values) {
                 if (value.term == place) finding.values.push_back(value);
             }
             ++place;

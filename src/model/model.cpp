@@ -50,7 +50,11 @@ double most_in(const Model& model, const Effect& effect, std::size_t parameter) 
 
 double least_in(const Model& model, const Effect& effect, std::size_t parameter) {
     const Parameter& described = effect.parameters[parameter];
-    return model.beside_simulation && effect.resists && parameter == 0 ? -described.upper : described.lower;
+    const bool has_size_alone = std::ranges::all_of(
+        effect.parameters, [](const Parameter& one) { return one.linear || one.name == "width_deg_s"; });
+    const bool may_be_too_much =
+        model.beside_simulation && effect.resists && has_size_alone && parameter == 0;
+    return may_be_too_much ? -described.upper : described.lower;
 }
 
 Side side_of(const Term& term) {

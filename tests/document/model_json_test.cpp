@@ -114,7 +114,7 @@ TEST_CASE("beside a simulation a friction may be below 0, and nothing else may, 
         if (size.lower < -0.3 || size.upper <= 0.0) continue;
         CAPTURE(effect->name);
         CHECK_THROWS_AS(read_model_with_given(text(effect->name, size.name, false), "m.json"), DataError);
-        if (!effect->resists) {
+        if (least_in({GearRatio(100.0), {}, true}, *effect, 0) >= 0.0) {
             CHECK_THROWS_AS(read_model_with_given(text(effect->name, size.name, true), "m.json"), DataError);
             continue;
         }

@@ -34,8 +34,8 @@ struct Term {
 struct Model {
     GearRatio gear_ratio;
     std::vector<Term> terms;
-    /// A simulation's torque is beside it, and that may hold too much of a friction: such a term's size is
-    /// below 0.
+    /// A simulation's torque is part of the known torque, and that may hold too much Coulomb, viscous or
+    /// quadratic friction: such a term's size is below 0.
     bool beside_simulation = false;
     /// Widest step of a friction at standstill in a fit: a wider one is no step but grows with the speed. 0: that
     /// of the effect.

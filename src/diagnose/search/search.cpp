@@ -255,8 +255,37 @@ Candidate without_term(const ModelBench& bench, const Candidate& model, std::siz
     return bench.fitted(open, guess, std::move(prices));
 }
 
-Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
-                 std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
+namespace {
+
+// What changes a ripple or a torque as a whole.
+bool transforms(const Term& term) { return term.effect->side != Side::joint; }
+
+bool is_friction(const Term& term) { return term.effect->resists; }
+
+// Two effects that change the same ripple in the place of one whose form is neither's: amplitude by speed and phase
+// by direction are together nearly a resonance.
+bool merge_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
+                std::span<const Effect* const> effects) {
+    for (std::size_t a = own_terms; a < now.stated.terms.size(); ++a) {
+        for (std::size_t b = own_terms; b < a; ++b) {
+            if (!transforms(now.stated.terms[a]) || !transforms(now.stated.terms[b])) continue;
+            if (bench.work().is_over()) return false;
+            const Candidate fewer = without_term(bench, without_term(bench, now, a), b);
+            const std::vector<Trial> trials = screen(bench, fewer, effects);
+            for (std::size_t i = 0; i < std::min(bench.rules().search.finalists, trials.size()); ++i) {
+                if (!transforms(trials[i].start)) continue;
+                Candidate one = with_trial(bench, fewer, trials[i]);
+                if (one.criterion() >= now.criterion() || newest_is_bent(bench, one)) continue;
+                now = std::move(one);
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own_terms,
+                      std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
     const SearchRules& rules = bench.rules().search;
     Candidate now = start;
     const auto add_all = [&] {
@@ -296,11 +325,55 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
     drop_needless(bench, now, own_terms, 0);
     add_all();
     for (std::size_t round = 0; round < rules.swap_rounds; ++round) {
-        if (!swap_once(bench, now, own_terms, effects)) break;
+        if (!swap_once(bench, now, own_terms, effects) && !merge_once(bench, now, own_terms, effects)) break;
         drop_needless(bench, now, own_terms);
         add_all();
     }
     drop_slight_twins(bench, now, own_terms);
+    return now;
+}
+
+// Coulomb and viscous friction together, the most that a simulation of rigid bodies lacks. Where a further friction is
+// missing as well, each alone is the worst first step: a curve between them is nearer.
+std::optional<Candidate> with_frictions(const ModelBench& bench, const Candidate& start,
+                                        std::span<const Effect* const> effects) {
+    Candidate now = start;
+    for (const std::string_view name : {"coulomb-friction", "viscous-friction"}) {
+        const Effect& effect = find_effect(name);
+        const bool is_tried = std::ranges::find(effects, &effect) != effects.end();
+        if (!is_tried || std::ranges::any_of(start.stated.terms,
+                                             [&](const Term& term) { return term.effect == &effect; }))
+            return std::nullopt;
+    }
+    for (const Trial& trial : screen(bench, start, effects)) {
+        if (trial.start.effect->name == "coulomb-friction") now = with_trial(bench, now, trial);
+    }
+    for (const Trial& trial : screen(bench, now, effects)) {
+        if (trial.start.effect->name == "viscous-friction") return with_trial(bench, now, trial);
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_terms,
+                 std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
+    Candidate now = search_from(bench, start, own_terms, effects, refused);
+    const auto found = now.stated.terms.begin() + static_cast<std::ptrdiff_t>(own_terms);
+    const bool is_curve = std::any_of(found, now.stated.terms.end(), [](const Term& term) {
+        return is_friction(term) && term.effect->name != "coulomb-friction" && term.effect->name != "viscous-friction";
+    });
+    if (!is_curve || bench.work().is_over()) return now;
+    if (const auto other_start = with_frictions(bench, start, effects)) {
+        std::vector<RefusedCandidate> other_refused;
+        bench.settle_on(other_start->stated);
+        Candidate other = search_from(bench, *other_start, own_terms, effects, other_refused);
+        if (other.criterion() < now.criterion()) {
+            refused = std::move(other_refused);
+            return other;
+        }
+        bench.settle_on(now.stated);
+    }
     return now;
 }
 

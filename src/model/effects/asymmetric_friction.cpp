@@ -25,8 +25,10 @@ constexpr Parameter parameters[] = {
 };
 
 constexpr LookAlike look_alikes[] = {
+    {"coulomb-friction", "the joint moves one way only", "a log that reverses, and rests"},
     {"offset", "the joint never rests, or all rests are short",
-     "standstill of a second or more between moves: an offset stays, a difference of friction goes"},
+     "reversals, and standstill of a second or more: an offset stays at rest, a difference of friction does "
+     "not"},
     {"gravity", "the travel is a small part of a turn, or a direction goes with a range of positions",
      "the same positions passed in both directions, and standstill at several positions"},
     {"quadratic-viscous-friction", "the joint moves one way only", "a log that reverses"},
