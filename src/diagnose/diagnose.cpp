@@ -10,17 +10,17 @@
 
 #include "diagnose/angle/angle.hpp"
 #include "diagnose/case/faults.hpp"
+#include "diagnose/case/known_torque.hpp"
 #include "diagnose/examined.hpp"
 #include "diagnose/judging/doubt.hpp"
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/judging/leftover.hpp"
 #include "diagnose/judging/reproduction.hpp"
 #include "diagnose/judging/values.hpp"
-#include "diagnose/known_torque.hpp"
 #include "diagnose/search/search.hpp"
 #include "diagnose/telling/summary.hpp"
-#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/core/error.hpp"
+#include "ripplenotch/core/portable_math.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
@@ -216,11 +216,16 @@ double fastest_deg_s(const Motion& motion) {
     return fastest;
 }
 
-void widen(FittedValue& value, double times) {
+// A value that is fitted in its logarithm has an interval of factors.
+void widen(FittedValue& value, const Parameter& parameter, double times) {
     if (!value.ci95) return;
-    const double middle = 0.5 * (value.ci95->low + value.ci95->high);
-    value.ci95->low = middle + times * (value.ci95->low - middle);
-    value.ci95->high = middle + times * (value.ci95->high - middle);
+    if (parameter.logarithmic && value.ci95->low > 0.0) {
+        value.ci95->low = value.value * portable::pow(value.ci95->low / value.value, times);
+        value.ci95->high = value.value * portable::pow(value.ci95->high / value.value, times);
+        return;
+    }
+    value.ci95->low = value.value + times * (value.ci95->low - value.value);
+    value.ci95->high = value.value + times * (value.ci95->high - value.value);
 }
 
 class DiagnosisRun {
@@ -262,7 +267,8 @@ class DiagnosisRun {
         AngleBefore before(whole_, has_position_);
         if (!has_position_) straighten(whole_, model_, rules_);
         Case part = excerpt(whole_, rules_.recording);
-        Searched found = search_straight(whole_, part, model_, effects_, told_, aside, work_, rules_, has_position_);
+        Searched found =
+            search_straight(whole_, part, model_, effects_, told_, aside, work_, rules_, has_position_);
         found.ground = {};  // nobody asks for the noise again
         if (other_ && !(has_position_ && other_has_position_)) before.of_other(*other_);
         Candidate last = tested(found, before.has_other());
@@ -291,10 +297,10 @@ class DiagnosisRun {
         const ModelBench& bench = *found.bench;
         std::size_t own = model_.terms.size();
         told_.unexplained = leftovers(bench, found.last.stated);
-        // A known torque is never right everywhere, and what it leaves says nothing against a finding that stands out
-        // of it. A model of the joint alone should leave nothing.
+        // A known torque is never right everywhere, and what it leaves says nothing against a finding that
+        // stands out of it. A model of the joint alone should leave nothing.
         const bool may_be_left = bench.beside_residual() && !options_.given.empty();
-        const auto unexplained = may_be_left              ? std::vector<Leftover>()
+        const auto unexplained = may_be_left               ? std::vector<Leftover>()
                                  : first_bench_ != nullptr ? leftovers(*first_bench_, found.last.stated)
                                                            : told_.unexplained;
         told_.rounds = judge(bench, found.last, own, effects_, unexplained);
@@ -318,20 +324,22 @@ class DiagnosisRun {
         return last;
     }
 
-    // Findings whose torques are held in balance by one another hide what each of them would have been without the
-    // other: the weakest goes, and the search is made again without it.
+    // Findings whose torques are held in balance by one another hide what each of them would have been
+    // without the other: the weakest goes, and the search is made again without it.
     void search_without_balanced(Searched& found, const std::vector<Leftover>& unexplained) {
         std::vector<const Effect*> effects = effects_;
         for (std::size_t round = 0; round < rules_.search.swap_rounds; ++round) {
             const Finding* weakest = nullptr;
             for (const Finding& finding : told_.rounds) {
                 if (finding.status != FindingStatus::unidentifiable) continue;
-                if (weakest == nullptr || finding.evidence.share_nm < weakest->evidence.share_nm) weakest = &finding;
+                if (weakest == nullptr || finding.evidence.share_nm < weakest->evidence.share_nm)
+                    weakest = &finding;
             }
             if (weakest == nullptr || found.bench->work().is_over()) return;
             std::erase(effects, weakest->term.effect);
             Candidate other = search(*found.bench, found.first, model_.terms.size(), effects, found.refused);
-            std::vector<Finding> rounds = judge(*found.bench, other, model_.terms.size(), effects, unexplained);
+            std::vector<Finding> rounds =
+                judge(*found.bench, other, model_.terms.size(), effects, unexplained);
             const auto confirmed = [](const std::vector<Finding>& all) {
                 return std::ranges::count(all, FindingStatus::confirmed, &Finding::status);
             };
@@ -346,8 +354,9 @@ class DiagnosisRun {
         const ModelBench& bench = *found.bench;
         Candidate model = found.last;
         const std::size_t place = own - 1;
-        model.prices[place] = portable::log(bench.samples()) +
-                              2.0 * portable::log(static_cast<double>(effects_.size()) / rules_.screening.false_alarm);
+        model.prices[place] =
+            portable::log(bench.samples()) +
+            2.0 * portable::log(static_cast<double>(effects_.size()) / rules_.screening.false_alarm);
         Finding offset = judged_alone(bench, model, place, effects_, unexplained);
         if (offset.status != FindingStatus::confirmed || offset.evidence.gain < model.prices[place] ||
             offset.evidence.share_nm < rms(bench.cleared_residual(model.stated)))
@@ -361,7 +370,8 @@ class DiagnosisRun {
     [[nodiscard]] bool is_residual_left(const Searched& found) const {
         const bool doubtful = std::any_of(told_.rounds.begin(), told_.rounds.end(), is_doubtful);
         return (doubtful || !told_.unexplained.empty()) &&
-               rms(found.bench->cleared_residual(found.last.stated)) > rules_.beside.least_left * found.noise.rms_nm;
+               rms(found.bench->cleared_residual(found.last.stated)) >
+                   rules_.beside.least_left * found.noise.rms_nm;
     }
 
     // The excerpt chose; the whole log gives the values.
@@ -392,7 +402,9 @@ class DiagnosisRun {
     void tell_model(const Candidate& last) {
         told_.model = last.stated;
         told_.values = last.values;
-        for (FittedValue& value : told_.values) widen(value, rules_.values.interval_factor);
+        for (FittedValue& value : told_.values)
+            widen(value, last.stated.terms[value.term].effect->parameters[value.parameter],
+                  rules_.values.interval_factor);
         std::size_t place = own_;
         for (Finding& finding : told_.rounds) {
             if (is_doubtful(finding)) continue;
@@ -410,7 +422,8 @@ class DiagnosisRun {
         const KnownValues known = fit_known_values(all, last.stated, noise);
         told_.given = reported_values(options_.given, known);
         const Case improved = with_known_values(whole_, known);
-        const std::optional<Case> other = other_ ? std::optional(with_known_values(*other_, known)) : std::nullopt;
+        const std::optional<Case> other =
+            other_ ? std::optional(with_known_values(*other_, known)) : std::nullopt;
         // A fault of the converter belongs to the model where that predicts the log better with it.
         for (const Fault& fault : told_.faults) {
             Model with = told_.model;
@@ -418,7 +431,8 @@ class DiagnosisRun {
             if (left_rms(improved, with) <= left_rms(improved, told_.model)) told_.model = std::move(with);
         }
         const GapCase log_gap{whole_, improved};
-        const std::optional<GapCase> other_gap = other ? std::optional<GapCase>({*other_, *other}) : std::nullopt;
+        const std::optional<GapCase> other_gap =
+            other ? std::optional<GapCase>({*other_, *other}) : std::nullopt;
         measure_gap(told_, log_gap, other_gap ? &*other_gap : nullptr, rules_);
         if (options_.given.empty()) return;
         told_.residual_before_nm = residual_nm(whole_, told_.baseline);
@@ -426,19 +440,22 @@ class DiagnosisRun {
         told_.beside_given_nm = residual_nm(improved, {told_.model.gear_ratio, {}});
     }
 
-    // No model is an improvement that leaves more than the one given, here or on the validation log: the newest
-    // finding goes, and where there is none the values as they were. True when something was withdrawn.
+    // No model is an improvement that leaves more than the one given, here or on the validation log: the
+    // newest finding goes, and where there is none the values as they were. True when something was
+    // withdrawn.
     [[nodiscard]] bool withdraw_for_gap(const ModelBench& bench, Candidate& last) {
         const DiagnosisGap& gap = told_.gap;
         const bool grows_here = gap.after_nm > gap.before_nm;
-        const bool grows_there = gap.validation_after_nm && *gap.validation_after_nm > *gap.validation_before_nm;
+        const bool grows_there =
+            gap.validation_after_nm && *gap.validation_after_nm > *gap.validation_before_nm;
         if (!grows_here && !grows_there) return false;
         std::size_t place = last.stated.terms.size();
         for (auto finding = told_.rounds.rbegin(); finding != told_.rounds.rend(); ++finding) {
             if (is_doubtful(*finding)) continue;
             finding->status = FindingStatus::not_reproduced;
-            finding->reason = fmt::format("with it the improved model leaves more of {} than the model as given",
-                                          grows_here ? "the log" : "the validation log");
+            finding->reason =
+                fmt::format("with it the improved model leaves more of {} than the model as given",
+                            grows_here ? "the log" : "the validation log");
             last = without_term(bench, last, --place);
             return true;
         }
@@ -446,7 +463,8 @@ class DiagnosisRun {
         told_.gap.after_nm = gap.before_nm;
         told_.gap.validation_after_nm = gap.validation_before_nm;
         told_.gap.closed_percent = told_.gap.closed_percent ? std::optional(0.0) : std::nullopt;
-        told_.gap.validation_closed_percent = told_.gap.validation_closed_percent ? std::optional(0.0) : std::nullopt;
+        told_.gap.validation_closed_percent =
+            told_.gap.validation_closed_percent ? std::optional(0.0) : std::nullopt;
         told_.residual_after_nm = told_.residual_before_nm;
         return false;
     }
@@ -459,7 +477,7 @@ class DiagnosisRun {
     std::optional<Case> other_;
     Work work_, more_work_;
     const ModelBench* first_bench_ = nullptr;  ///< with the noise of the first search, during the second
-    std::size_t own_ = 0;  ///< terms of the model as given
+    std::size_t own_ = 0;                      ///< terms of the model as given
     std::vector<std::string> without_;
     std::vector<const Effect*> effects_;
     Diagnosis told_;
@@ -474,8 +492,8 @@ Diagnosis diagnose(const Model& model, const TraceView& log, const TraceView* va
     check_rows(options.given, log.size(), "the log");
     if (validation != nullptr) {
         if (options.validation_given.size() != options.given.size())
-            raise<UsageError>("{} terms are given for the log and {} for the validation log", options.given.size(),
-                              options.validation_given.size());
+            raise<UsageError>("{} terms are given for the log and {} for the validation log",
+                              options.given.size(), options.validation_given.size());
         check_rows(options.validation_given, validation->size(), "the validation log");
     }
     return DiagnosisRun(model, log, validation, options).run();

@@ -17,8 +17,7 @@ std::vector<const Effect*> examined(std::span<const std::string> without, bool o
     std::vector<const Effect*> effects;
     for (const Effect* effect : catalogue()) {
         const bool left_out = is_among(without, effect->name);
-        if (left_out || effect->side == Side::converter ||
-            (!of_position && needs_position(*effect)))
+        if (left_out || effect->side == Side::converter || (!of_position && needs_position(*effect)))
             continue;
         effects.push_back(effect);
     }

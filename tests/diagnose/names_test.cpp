@@ -187,7 +187,8 @@ TEST_CASE("a name comes with the chance that it is wrong, larger where something
     CHECK(explained < 1.0);
     found.verdict = DiagnosisVerdict::partly_explained;
     CHECK(wrong_percent(found).value_or(0.0) > 3.0 * explained);
-    // Where the residual is part of the noise, or beside an arm that was given, the studies that it was counted in say nothing.
+    // Where the residual is part of the noise, or beside an arm that was given, the studies that it was
+    // counted in say nothing.
     Diagnosis beside = found;
     beside.residual_in_noise = true;
     CHECK(!wrong_percent(beside));

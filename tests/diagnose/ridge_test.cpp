@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Least squares in which each value is drawn towards 0 as by a measurement of its own.
-#include "diagnose/ridge.hpp"
+#include "diagnose/case/ridge.hpp"
 
 #include <cmath>
 #include <random>
@@ -35,7 +35,8 @@ TEST_CASE("free values are those of plain least squares, and errors cover what n
             for (std::size_t c = 0; c < 3; ++c) target[k] += truth[c] * columns[c][k];
         }
         const std::vector<double> values = ridge.solve(target);
-        for (std::size_t c = 0; c < 3; ++c, ++all) covered += std::abs(values[c] - truth[c]) < 1.96 * errors[c];
+        for (std::size_t c = 0; c < 3; ++c, ++all)
+            covered += std::abs(values[c] - truth[c]) < 1.96 * errors[c];
     }
     CHECK(covered > 0.92 * all);
     CHECK(covered < 0.98 * all);

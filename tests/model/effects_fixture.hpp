@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "ripplenotch/model/model.hpp"
 #include "ripplenotch/core/portable_math.hpp"
+#include "ripplenotch/model/model.hpp"
 #include "ripplenotch/model/motion.hpp"
 
 namespace ripplenotch::fixture {
@@ -24,7 +24,8 @@ inline const Motion& rich_motion() {
     static const Motion motion = [] {
         Motion made = make_motion(specs, Hertz(500.0));
         // What a simulation may know of the joint.
-        for (const double t : made.time_s) made.known_nm.push_back(0.3 + 0.8 * portable::sin_degrees(290.0 * t));
+        for (const double t : made.time_s)
+            made.known_nm.push_back(0.3 + 0.8 * portable::sin_degrees(290.0 * t));
         return made;
     }();
     return motion;
@@ -32,8 +33,8 @@ inline const Motion& rich_motion() {
 
 inline Motion first_part(const Motion& motion, std::size_t count) {
     Motion part = motion;
-    for (auto* column :
-         {&part.time_s, &part.position_deg, &part.velocity_deg_s, &part.acceleration_deg_s2, &part.known_nm}) {
+    for (auto* column : {&part.time_s, &part.position_deg, &part.velocity_deg_s, &part.acceleration_deg_s2,
+                         &part.known_nm}) {
         column->resize(count);
     }
     return part;

@@ -106,8 +106,8 @@ struct Finding {
     double gap_before_nm = 0.0, gap_after_nm = 0.0;
     /// rms residual of the validation log, without it and with it beside what is believed.
     std::optional<double> validation_before_nm, validation_after_nm;
-    std::string reason;                         ///< of a status other than confirmed, in words
-    std::vector<Decision> decisions;            ///< in the order in which the rules were asked
+    std::string reason;               ///< of a status other than confirmed, in words
+    std::vector<Decision> decisions;  ///< in the order in which the rules were asked
 };
 
 /// Effects between which this log does not decide.

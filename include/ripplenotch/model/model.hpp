@@ -37,8 +37,8 @@ struct Model {
     /// A simulation's torque is part of the known torque, and that may hold too much Coulomb, viscous or
     /// quadratic friction: such a term's size is below 0.
     bool beside_simulation = false;
-    /// Widest step of a friction at standstill in a fit: a wider one is no step but grows with the speed. 0: that
-    /// of the effect.
+    /// Widest step of a friction at standstill in a fit: a wider one is no step but grows with the speed. 0:
+    /// that of the effect.
     double widest_step_deg_s = 0.0;
     bool operator==(const Model&) const = default;
 };

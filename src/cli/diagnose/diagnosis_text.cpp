@@ -89,12 +89,14 @@ std::string setup_text(const Diagnosis& diagnosis) {
     if (!diagnosis.alignment) return text;
     const SimulationLag& lag = *diagnosis.alignment;
     const double half_s = 0.5 * (lag.delay_95_s.high - lag.delay_95_s.low);
-    text += fmt::format("Delay: the log is {} +/- {} ms {} the simulation (by their motions, correlation {:.4f})",
-                        short_number(1e3 * std::abs(lag.delay_s)), fmt::format("{:.2g}", 1e3 * half_s),
-                        lag.delay_s > 0.0 ? "behind" : "ahead of", lag.correlation);
+    text +=
+        fmt::format("Delay: the log is {} +/- {} ms {} the simulation (by their motions, correlation {:.4f})",
+                    short_number(1e3 * std::abs(lag.delay_s)), fmt::format("{:.2g}", 1e3 * half_s),
+                    lag.delay_s > 0.0 ? "behind" : "ahead of", lag.correlation);
     if (lag.clock_error) text += fmt::format("; clocks differ by {:.3g} ppm", 1e6 * *lag.clock_error);
     if (lag.position)
-        text += fmt::format("; positions then differ by {} deg rms", short_number(lag.position->rms_difference));
+        text +=
+            fmt::format("; positions then differ by {} deg rms", short_number(lag.position->rms_difference));
     return text + ".\n";
 }
 
@@ -110,7 +112,7 @@ std::string answer(const Diagnosis& diagnosis) {
     }
     for (const Tie& tie : diagnosis.ambiguous) add(joined(tie.effects, " or "));
     const DiagnosisGap& gap = diagnosis.gap;
-    const std::string head = !names.empty()                ? "Missing: " + names
+    const std::string head = !names.empty()                  ? "Missing: " + names
                              : diagnosis.unexplained.empty() ? "Nothing is missing"
                                                              : "Unexplained";
     return fmt::format("{}; residual {} to {} Nm rms, noise {} Nm rms.\n", head, short_number(gap.before_nm),
@@ -131,10 +133,10 @@ std::string round_text(const Finding& finding, std::size_t number) {
     if (drives(finding))
         text += "  negative friction is not physical: the simulation includes too much friction already\n";
     text += fmt::format("  acts {}\n", where_text(finding.where));
-    text += fmt::format(
-        "  gap {} -> {} Nm; alone it explains {} Nm rms; improves {} of {} blocks\n",
-        short_number(finding.gap_before_nm), short_number(finding.gap_after_nm),
-        short_number(finding.evidence.share_nm), finding.evidence.blocks_positive, finding.evidence.blocks);
+    text += fmt::format("  gap {} -> {} Nm; alone it explains {} Nm rms; improves {} of {} blocks\n",
+                        short_number(finding.gap_before_nm), short_number(finding.gap_after_nm),
+                        short_number(finding.evidence.share_nm), finding.evidence.blocks_positive,
+                        finding.evidence.blocks);
     if (finding.validation_before_nm) {
         text += fmt::format("  on the validation log {} -> {} Nm with it\n",
                             short_number(*finding.validation_before_nm),

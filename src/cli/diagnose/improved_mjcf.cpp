@@ -55,8 +55,7 @@ void add_given(JointMjcf& parts, const JointDiagnosis& one, const std::optional<
                                                      *tree)});
     if (one.given.arm && !tree)
         parts.not_held.push_back({"arm", "its bodies are not in this file; --arm mjcf,file=FILE has them"});
-    if (one.given.simulated)
-        parts.not_held.push_back({"simulated", "its torque is not in this file"});
+    if (one.given.simulated) parts.not_held.push_back({"simulated", "its torque is not in this file"});
 }
 
 std::vector<std::string> mjcf_heading(const JointDiagnosis& one, const MjcfAccount& account) {

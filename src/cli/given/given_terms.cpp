@@ -41,12 +41,10 @@ GivenTerm stated_term(std::string_view name, std::vector<double> torque_nm) {
 void add_arm_terms(std::vector<GivenTerm>& terms, GivenArm& arm, const StatedArm& stated,
                    const ArmReading& reading, const Log& log, std::size_t joint) {
     const Log& whole = reading.logs[joint];
-    GivenTerm term =
-        stated.values
-            ? stated_term(
-                  arm_name,
-                  stated_torque(arm.chain(), *stated.values, *stated.smoothing, reading.view(), joint))
-            : arm.term(joint, reading);
+    GivenTerm term = stated.values
+                         ? stated_term(arm_name, stated_torque(arm.chain(), *stated.values, *stated.smoothing,
+                                                               reading.view(), joint))
+                         : arm.term(joint, reading);
     terms.push_back(at_rows_of(log, whole, std::move(term)));
     if (!stated.nuisance.any()) return;
     auto beside_nm = nuisance_torque(arm.chain(), stated.nuisance, whole.trace.view(), joint);

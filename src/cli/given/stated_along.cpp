@@ -10,7 +10,7 @@
 namespace ripplenotch {
 
 std::vector<double> stated_torque_along(const GivenOptions& options, const ModelWithGiven& model,
-                                const ReadOptions& reading, const GivenLog& log) {
+                                        const ReadOptions& reading, const GivenLog& log) {
     if (!options.any() && !model.any_given()) return {};
     GivenSource source(options);
     const GivenTerms given = source.read(model, reading, log, nullptr);

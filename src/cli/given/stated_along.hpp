@@ -9,8 +9,9 @@ namespace ripplenotch {
 /// The sum of what the model and the options state; rows of the log that it does not span are taken out.
 /// Nothing given: empty. Throws UsageError for a value that is still to be fitted, and what GivenSource
 /// throws.
-[[nodiscard]] std::vector<double> stated_torque_along(const GivenOptions& options, const ModelWithGiven& model,
-                                              const ReadOptions& reading, const GivenLog& log);
+[[nodiscard]] std::vector<double> stated_torque_along(const GivenOptions& options,
+                                                      const ModelWithGiven& model, const ReadOptions& reading,
+                                                      const GivenLog& log);
 
 /// The scale that leaves least of the log's torque beside an offset, where it is not stated. What is in the
 /// torque besides may move it a little.

@@ -21,7 +21,9 @@ namespace {
 constexpr std::array<std::string_view, 1> aligns = {"start"};
 constexpr Key column_keys[] = {
     {.name = "name", .kind = KeyKind::text, .required = true, .help = "of the column"},
-    {.name = "scale", .kind = KeyKind::number, .help = "factor that is known; left out: 1, unless the log shows another"},
+    {.name = "scale",
+     .kind = KeyKind::number,
+     .help = "factor that is known; left out: 1, unless the log shows another"},
     {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, if it is known"},
     {.name = "position", .kind = KeyKind::text, .help = "column of its position"},
     {.name = "velocity", .kind = KeyKind::text, .help = "column of its velocity"},
@@ -31,7 +33,9 @@ constexpr Key log_keys[] = {
     {.name = "column", .kind = KeyKind::text, .required = true, .help = "of its torque"},
     {.name = "validate", .kind = KeyKind::text, .help = "its log for the validation log"},
     {.name = "align", .kind = KeyKind::choice, .choices = aligns, .help = "start: both logs begin together"},
-    {.name = "scale", .kind = KeyKind::number, .help = "factor that is known; left out: 1, unless the log shows another"},
+    {.name = "scale",
+     .kind = KeyKind::number,
+     .help = "factor that is known; left out: 1, unless the log shows another"},
     {.name = "delay", .kind = KeyKind::text, .default_text = "0s", .help = "of the column, if it is known"},
     {.name = "position", .kind = KeyKind::text, .help = "column of its position"},
     {.name = "velocity", .kind = KeyKind::text, .help = "column of its velocity"},

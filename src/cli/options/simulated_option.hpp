@@ -25,8 +25,9 @@ class SimulatedOption {
     /// As a model.json states it: a column of the log.
     explicit SimulatedOption(SimulatedTerm term) : term_(std::move(term)), states_delay_(true) {}
 
-    /// The term for the rows of the log at `path`; its deviation is 0 where the scale is stated. Rows that a simulation in a file of its own does not span are taken out of the log. Throws
-    /// UsageError, DataError, FileError.
+    /// The term for the rows of the log at `path`; its deviation is 0 where the scale is stated. Rows that a
+    /// simulation in a file of its own does not span are taken out of the log. Throws UsageError, DataError,
+    /// FileError.
     [[nodiscard]] GivenTerm read(const ReadOptions& reading, const std::string& path, Log& log) const;
     /// The same for the validation log, for which a simulation in a file of its own has another file.
     [[nodiscard]] GivenTerm read_validation(const ReadOptions& reading, const std::string& path,

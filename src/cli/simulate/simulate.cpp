@@ -79,12 +79,15 @@ Course course_of(const SimulateOptions& options, const ModelWithGiven& model) {
     const ReadOptions reading = read_options(words, assembled_gear(options.joint, model.model));
     Log log = read_log(options.log, reading);
     say_layout(options.common, log.layout);
-    std::vector<double> known_nm = stated_torque_along({options.simulated, std::nullopt}, model, reading,
-                                            {options.log, log});
+    std::vector<double> known_nm =
+        stated_torque_along({options.simulated, std::nullopt}, model, reading, {options.log, log});
     say_warnings(options.common, log.recording.warnings);
     Motion motion = motion_along(log.trace.view(), options.smoothing);
     motion.known_nm = std::move(known_nm);
-    return {std::move(motion), log.trace.velocity_deg_s, log.trace.torque_nm, log.trace.view().has_position(),
+    return {std::move(motion),
+            log.trace.velocity_deg_s,
+            log.trace.torque_nm,
+            log.trace.view().has_position(),
             {{log.recording}}};
 }
 

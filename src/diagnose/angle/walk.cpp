@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "core/vectors/dot.hpp"
-#include "diagnose/ridge.hpp"
 #include "diagnose/case/lines.hpp"
+#include "diagnose/case/ridge.hpp"
 #include "diagnose/case/undecidable.hpp"
 #include "model/fit/fit_coordinates.hpp"
 #include "model/motion/local_motion.hpp"

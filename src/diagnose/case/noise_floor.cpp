@@ -141,7 +141,8 @@ NoiseFloor::Thinned NoiseFloor::thinned(std::size_t step, std::size_t most_lags,
     Autoregression found = autoregression_of(covariance, samples, lag_price);
     double sum = 1.0;
     for (const double a : found.color) sum -= a;
-    const double density = found.white_nm * found.white_nm * static_cast<double>(step) / std::max(sum * sum, 1e-6);
+    const double density =
+        found.white_nm * found.white_nm * static_cast<double>(step) / std::max(sum * sum, 1e-6);
     return {std::move(found.color), found.white_nm, density};
 }
 

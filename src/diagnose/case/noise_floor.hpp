@@ -11,10 +11,10 @@
 namespace ripplenotch {
 
 struct NoiseFloor {
-    double rms_nm = 0.0;        ///< of the noise
-    double white_nm = 0.0;      ///< rms of its white part
-    std::vector<double> color;  ///< coefficients of FitOptions::noise_color
-    double material_nm = 0.0;   ///< rms against which a torque matters or not; 0: rms_nm
+    double rms_nm = 0.0;                      ///< of the noise
+    double white_nm = 0.0;                    ///< rms of its white part
+    std::vector<double> color;                ///< coefficients of FitOptions::noise_color
+    double material_nm = 0.0;                 ///< rms against which a torque matters or not; 0: rms_nm
     std::vector<double> covariance_nm2 = {};  ///< at lags 0, 1, ... samples
 
     /// The whitening filter of every step-th sample, of at most this many lags.
@@ -37,8 +37,8 @@ struct NoiseFloor {
 [[nodiscard]] NoiseFloor noise_floor(const Case& looked_at, const Model& model, const Model& open,
                                      const DiagnosisRules& rules, NoiseGround& ground);
 
-/// Where more than noise is left of the best model: what is left, as noise with a memory of `memory_s`. Names are
-/// weighed where it is quiet.
+/// Where more than noise is left of the best model: what is left, as noise with a memory of `memory_s`. Names
+/// are weighed where it is quiet.
 [[nodiscard]] NoiseFloor noise_of_residual(const Case& looked_at, const std::vector<double>& residual_nm,
                                            const NoiseFloor& floor, const DiagnosisRules& rules);
 

@@ -46,8 +46,8 @@ std::string uneven_words(const Unevenness& uneven) {
                        100.0 * std::min(uneven.part, 9.99), uneven.where);
 }
 
-// A ripple is named by its order: one whose size changes along the log is still that ripple, as long as it is larger
-// than the change.
+// A ripple is named by its order: one whose size changes along the log is still that ripple, as long as it is
+// larger than the change.
 double most_uneven(const Term& term, const DiagnosisRules& rules) {
     return term.effect->ripple_order ? 1.0 : rules.evenness.most_uneven;
 }
@@ -157,7 +157,8 @@ RaisedDoubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::
         return {FindingStatus::tentative,
                 "it explains one short stretch of the log and hardly anything elsewhere"};
     const Unevenness uneven = unevenness(bench, model.stated, term);
-    if (hearing.asked("evenness.most_uneven", uneven.part, uneven.part > most_uneven(model.stated.terms[term], bench.rules())))
+    if (hearing.asked("evenness.most_uneven", uneven.part,
+                      uneven.part > most_uneven(model.stated.terms[term], bench.rules())))
         return {FindingStatus::tentative, uneven_words(uneven)};
     const auto above = above_wandering(bench, model.stated, term, evidence.raw_gain);
     if (above && hearing.asked("wandering.least_above", *above, *above < bench.rules().wandering.least_above))

@@ -35,8 +35,8 @@ double gain_elsewhere(const ModelBench& bench, const Model& with, const Model& w
 void take_blocks(const ModelBench& bench, const Model& with, const Model& without, Evidence& evidence) {
     const auto now = bench.residual(with), before = bench.residual(without);
     const double memory = 5.0 * static_cast<double>(bench.noise().color.size());
-    const auto length = static_cast<std::size_t>(
-        std::max({bench.rules().beside.block_s * bench.looked_at().motion.sample_rate.value(), memory, 20.0}));
+    const auto length = static_cast<std::size_t>(std::max(
+        {bench.rules().beside.block_s * bench.looked_at().motion.sample_rate.value(), memory, 20.0}));
     double sum = 0.0, squares = 0.0;
     for (std::size_t r = 0; r < bench.rows().size(); ++evidence.blocks) {
         double gain = 0.0;

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnose/case/residual.hpp"
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/search/hearing.hpp"
 #include "diagnose/search/search.hpp"
-#include "diagnose/telling/summary.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
 namespace ripplenotch {

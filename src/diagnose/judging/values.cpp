@@ -38,8 +38,7 @@ std::optional<std::size_t> untold(const Candidate& told, const ToldOf& of, const
     std::size_t term = of.own_terms;
     for (Finding& finding : of.findings) {
         if (is_doubtful(finding)) continue;
-        if (is_trusted(finding) && doubt_told(finding, told, term, rules))
-            return term;
+        if (is_trusted(finding) && doubt_told(finding, told, term, rules)) return term;
         ++term;
     }
     return std::nullopt;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/rows/rms.hpp"
-#include "diagnose/known_torque.hpp"
+#include "diagnose/case/known_torque.hpp"
 #include "diagnose/search/stated_speed.hpp"
 #include "ripplenotch/model/prediction.hpp"
 
@@ -71,7 +71,8 @@ void ModelBench::settle_on(const Model& model) {
     walks_beside_nm_ = std::max(noise_.white_nm, left_nm);
     sensors_ = sensors_of(model);
     is_settled_ = true;
-    if (!case_.uncertain.empty()) known_ = std::make_shared<KnownFit>(case_, model, weighing_, noise_.white_nm);
+    if (!case_.uncertain.empty())
+        known_ = std::make_shared<KnownFit>(case_, model, weighing_, noise_.white_nm);
     weighing_.set_nuisance(errors_of(model), walks_beside_nm_);
 }
 

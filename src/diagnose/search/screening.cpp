@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "diagnose/search/screening.hpp"
 
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -91,8 +90,8 @@ class Screening {
     }
 
   private:
-    // A torque that repeats with the output angle has to repeat within the travel: over less than a period every
-    // smooth function of the position looks like it.
+    // A torque that repeats with the output angle has to repeat within the travel: over less than a period
+    // every smooth function of the position looks like it.
     [[nodiscard]] bool turns_a_period(const Term& start) const {
         const Effect& effect = *start.effect;
         const auto order = find_parameter(effect, "order");

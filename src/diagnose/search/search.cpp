@@ -60,7 +60,8 @@ std::optional<Candidate> best_addition(const ModelBench& bench, const Candidate&
 // Part of the gap that closes, as the torque has it.
 double raw_part(const ModelBench& bench, const Candidate& now, const Candidate& next) {
     double before = 0.0, after = 0.0;
-    const auto left_before = bench.cleared_residual(now.stated), left_after = bench.cleared_residual(next.stated);
+    const auto left_before = bench.cleared_residual(now.stated),
+               left_after = bench.cleared_residual(next.stated);
     for (std::size_t r = 0; r < left_before.size(); ++r) {
         before += left_before[r] * left_before[r];
         after += left_after[r] * left_after[r];
@@ -69,8 +70,8 @@ double raw_part(const ModelBench& bench, const Candidate& now, const Candidate& 
     return gap > 0.0 ? (before - after) / gap : 0.0;
 }
 
-// The same of a line, 0 of what is none. What is missing below a line's frequency colours the noise that the gap
-// is weighed by, and the line weighs little then.
+// The same of a line, 0 of what is none. What is missing below a line's frequency colours the noise that the
+// gap is weighed by, and the line weighs little then.
 double line_part(const ModelBench& bench, const Candidate& now, const Candidate& next) {
     // A line has a place, its order or frequency, before its size; gravity has none.
     const auto& polar = next.stated.terms.back().effect->polar;
@@ -262,8 +263,8 @@ bool transforms(const Term& term) { return term.effect->side != Side::joint; }
 
 bool is_friction(const Term& term) { return term.effect->resists; }
 
-// Two effects that change the same ripple in the place of one whose form is neither's: amplitude by speed and phase
-// by direction are together nearly a resonance.
+// Two effects that change the same ripple in the place of one whose form is neither's: amplitude by speed and
+// phase by direction are together nearly a resonance.
 bool merge_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
                 std::span<const Effect* const> effects) {
     for (std::size_t a = own_terms; a < now.stated.terms.size(); ++a) {
@@ -333,16 +334,16 @@ Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own
     return now;
 }
 
-// Coulomb and viscous friction together, the most that a simulation of rigid bodies lacks. Where a further friction is
-// missing as well, each alone is the worst first step: a curve between them is nearer.
+// Coulomb and viscous friction together, the most that a simulation of rigid bodies lacks. Where a further
+// friction is missing as well, each alone is the worst first step: a curve between them is nearer.
 std::optional<Candidate> with_frictions(const ModelBench& bench, const Candidate& start,
                                         std::span<const Effect* const> effects) {
     Candidate now = start;
     for (const std::string_view name : {"coulomb-friction", "viscous-friction"}) {
         const Effect& effect = find_effect(name);
         const bool is_tried = std::ranges::find(effects, &effect) != effects.end();
-        if (!is_tried || std::ranges::any_of(start.stated.terms,
-                                             [&](const Term& term) { return term.effect == &effect; }))
+        if (!is_tried ||
+            std::ranges::any_of(start.stated.terms, [&](const Term& term) { return term.effect == &effect; }))
             return std::nullopt;
     }
     for (const Trial& trial : screen(bench, start, effects)) {
@@ -361,7 +362,8 @@ Candidate search(ModelBench& bench, const Candidate& start, std::size_t own_term
     Candidate now = search_from(bench, start, own_terms, effects, refused);
     const auto found = now.stated.terms.begin() + static_cast<std::ptrdiff_t>(own_terms);
     const bool is_curve = std::any_of(found, now.stated.terms.end(), [](const Term& term) {
-        return is_friction(term) && term.effect->name != "coulomb-friction" && term.effect->name != "viscous-friction";
+        return is_friction(term) && term.effect->name != "coulomb-friction" &&
+               term.effect->name != "viscous-friction";
     });
     if (!is_curve || bench.work().is_over()) return now;
     if (const auto other_start = with_frictions(bench, start, effects)) {

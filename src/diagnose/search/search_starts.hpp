@@ -33,8 +33,9 @@ struct Hints {
 [[nodiscard]] std::vector<Term> starts_of(const Effect& effect, const Hints& hints, double samples,
                                           double& cells);
 
-/// A joint has one delay, one lag, one gear ratio, ripple grows with the speed in one way, and friction of one
-/// form has one size: what a second one would correct is another effect's. `open`: values to be fitted are empty.
+/// A joint has one delay, one lag, one gear ratio, ripple grows with the speed in one way, and friction of
+/// one form has one size: what a second one would correct is another effect's. `open`: values to be fitted
+/// are empty.
 [[nodiscard]] bool is_there_already(const Term& tried, const Model& open);
 
 }  // namespace ripplenotch

@@ -4,13 +4,10 @@
 
 #include <vector>
 
-#include "diagnose/case/case.hpp"
+#include "diagnose/case/residual.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 
 namespace ripplenotch {
-
-/// Of the values that `use` counts.
-[[nodiscard]] double rms_of(const std::vector<double>& values, const std::vector<unsigned char>& use);
 
 /// Fills in `named` and `ambiguous` from the rounds.
 void name_findings(Diagnosis& diagnosis, const DiagnosisRules& rules);
@@ -26,11 +23,6 @@ struct GapCase {
 /// may be absent.
 void measure_gap(Diagnosis& diagnosis, const GapCase& whole, const GapCase* validation,
                  const DiagnosisRules& rules);
-
-/// Measured less predicted torque, a number a sample.
-[[nodiscard]] std::vector<double> residual_nm(const Case& looked_at, const Model& stated);
-/// rms of it over the samples that count.
-[[nodiscard]] double left_rms(const Case& looked_at, const Model& stated);
 
 [[nodiscard]] DiagnosisVerdict verdict_of(const Diagnosis& diagnosis);
 

@@ -24,10 +24,11 @@ void put_beside(Json& json, const Diagnosis& diagnosis) {
                         {"explained_after", six_digits(fault.explained_after)}});
     if (!diagnosis.alignment) return;
     const SimulationLag& lag = *diagnosis.alignment;
-    json["alignment"] = {{"delay_s", six_digits(lag.delay_s)},
-                         {"ci95_s", {six_digits(lag.delay_95_s.low), six_digits(lag.delay_95_s.high)}},
-                         {"correlation", six_digits(lag.correlation)},
-                         {"clock_error_ppm", lag.clock_error ? six_digits(1e6 * *lag.clock_error) : Json(nullptr)}};
+    json["alignment"] = {
+        {"delay_s", six_digits(lag.delay_s)},
+        {"ci95_s", {six_digits(lag.delay_95_s.low), six_digits(lag.delay_95_s.high)}},
+        {"correlation", six_digits(lag.correlation)},
+        {"clock_error_ppm", lag.clock_error ? six_digits(1e6 * *lag.clock_error) : Json(nullptr)}};
 }
 
 void read_beside(Fields& fields, Diagnosis& diagnosis) {

@@ -89,8 +89,7 @@ void Coordinates::add_term(std::size_t i) {
         const bool linear = linear_term && parameter.linear;
         const double scale = std::max({std::abs(start), std::abs(parameter.start), 1e-3});
         list_.push_back({CoordinateKind::plain, i, p, 0, start, least_in(model_, effect, p),
-                         most_in(model_, effect, p),
-                         linear ? scale : 1e-5 * scale, linear});
+                         most_in(model_, effect, p), linear ? scale : 1e-5 * scale, linear});
     }
 }
 

@@ -42,8 +42,7 @@ std::vector<double> Weighing::bridged(std::span<const double> torque_nm) const {
         const double left = before ? whole[gap.first - 1] : (after ? whole[end] : 0.0);
         const double right = after ? whole[end] : left;
         for (std::size_t k = gap.first; k < end; ++k) {
-            const double part =
-                static_cast<double>(k - gap.first + 1) / static_cast<double>(gap.count + 1);
+            const double part = static_cast<double>(k - gap.first + 1) / static_cast<double>(gap.count + 1);
             whole[k] = left + part * (right - left);
         }
     }

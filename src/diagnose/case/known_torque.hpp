@@ -7,7 +7,7 @@
 
 #include "diagnose/case/case.hpp"
 #include "diagnose/case/noise_floor.hpp"
-#include "diagnose/ridge.hpp"
+#include "diagnose/case/ridge.hpp"
 #include "ripplenotch/diagnose/diagnosis.hpp"
 #include "ripplenotch/model/given_term.hpp"
 
@@ -43,7 +43,8 @@ class KnownFit {
 };
 
 /// The same along a case, beside this model.
-[[nodiscard]] KnownValues fit_known_values(const Case& looked_at, const Model& stated, const NoiseFloor& noise);
+[[nodiscard]] KnownValues fit_known_values(const Case& looked_at, const Model& stated,
+                                           const NoiseFloor& noise);
 
 /// The same case with these departures in its known torque.
 [[nodiscard]] Case with_known_values(Case looked_at, const KnownValues& values);

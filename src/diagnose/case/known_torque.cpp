@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/known_torque.hpp"
+#include "diagnose/case/known_torque.hpp"
 
 #include "core/matrices/normal_errors.hpp"
 #include "core/vectors/dot.hpp"
@@ -28,7 +28,7 @@ void take_known_torque(Case& whole, std::span<const GivenTerm> given) {
 
 namespace {
 
-std::vector<std::vector<double>> torques_of(const std::vector<Nuisance>& columns) {
+std::vector<std::vector<double>> torque_columns(const std::vector<Nuisance>& columns) {
     std::vector<std::vector<double>> torques;
     for (const Nuisance& column : columns) torques.push_back(column.torque_nm);
     return torques;
@@ -50,7 +50,7 @@ std::vector<double> deviations_of(const std::vector<Nuisance>& columns) {
 }  // namespace
 
 KnownFit::KnownFit(const Case& looked_at, const Model& model, const Weighing& weighing, double white_nm)
-    : sensed_nm_(torques_of(uncertain_torques(looked_at, model))),
+    : sensed_nm_(torque_columns(uncertain_torques(looked_at, model))),
       white_(whitened(sensed_nm_, weighing)),
       fit_(white_, deviations_of(looked_at.uncertain), white_nm) {}
 

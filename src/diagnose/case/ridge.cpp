@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "diagnose/ridge.hpp"
+#include "diagnose/case/ridge.hpp"
 
 #include <cmath>
 
@@ -34,7 +34,8 @@ Ridge::Ridge(const std::vector<std::vector<double>>& columns, std::span<const do
 std::vector<double> Ridge::solve(std::span<const double> target) const {
     Eigen::VectorXd products(scale_.size());
     for (Index r = 0; r < products.size(); ++r)
-        products[r] = dot(columns_[static_cast<std::size_t>(r)].data(), target.data(), target.size()) / scale_[r];
+        products[r] =
+            dot(columns_[static_cast<std::size_t>(r)].data(), target.data(), target.size()) / scale_[r];
     const Eigen::VectorXd values = factored_.solve(products).cwiseQuotient(scale_);
     return {values.begin(), values.end()};
 }
