@@ -217,7 +217,7 @@ double fastest_deg_s(const Motion& motion) {
 }
 
 // A value that is fitted in its logarithm has an interval of factors.
-void widen(FittedValue& value, const Parameter& parameter, double times) {
+void widen_interval(FittedValue& value, const Parameter& parameter, double times) {
     if (!value.ci95) return;
     if (parameter.logarithmic && value.ci95->low > 0.0) {
         value.ci95->low = value.value * portable::pow(value.ci95->low / value.value, times);
@@ -403,7 +403,7 @@ class DiagnosisRun {
         told_.model = last.stated;
         told_.values = last.values;
         for (FittedValue& value : told_.values)
-            widen(value, last.stated.terms[value.term].effect->parameters[value.parameter],
+            widen_interval(value, last.stated.terms[value.term].effect->parameters[value.parameter],
                   rules_.values.interval_factor);
         std::size_t place = own_;
         for (Finding& finding : told_.rounds) {
