@@ -41,6 +41,7 @@ enum class Hint {
     ripple_orders,  ///< at the orders of the model's own ripple terms
     tones,          ///< at the strongest lines of the residual against time, in hertz
     gear_ratios,    ///< where the gear ratio would put the model's ripple on lines of the log
+    both_ways,      ///< of `tried`, cycles of which the log passes a fair part in both directions
     change_times,   ///< when inertia and gravity change in the residual, in s from the first sample
 };
 
