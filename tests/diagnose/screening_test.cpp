@@ -158,7 +158,8 @@ TEST_CASE(
             fmt::format("payload-change,inertia_kgm2=0.1,cosine_nm=0.5,sine_nm=-0.3,time_s={}", time_s)));
         const TestBench on(case_of(plain_log(truth, 79)));
         const Candidate without = on.fitted(joint());
-        const ChangeTimes found = change_times(on.c, on.bench.raw_residual(without.stated), on.rules);
+        const ChangeTimes found =
+            change_times(on.c, on.bench.raw_residual(without.stated), noise_nm, on.rules);
         REQUIRE(!found.times_s.empty());
         CHECK(found.times_s.size() <= on.rules.screening.most_change_times);
         CHECK(found.times_s.front() == Approx(time_s).margin(0.1));
@@ -174,5 +175,27 @@ TEST_CASE(
 TEST_CASE("a log of few samples has no times of a change to be compared") {
     Case c = case_of(plain_log(joint(), 80));
     std::fill(c.use.begin() + 200, c.use.end(), 0);
-    CHECK(change_times(c, std::vector<double>(c.size(), 0.1), standard).times_s.empty());
+    CHECK(change_times(c, std::vector<double>(c.size(), 0.1), noise_nm, standard).times_s.empty());
+}
+
+TEST_CASE("a residual that no change of inertia and gravity closes has no times of a change") {
+    const Model truth = joint_with({"viscous-friction,coefficient_nm_per_deg_s=0.006"});
+    const TestBench on(case_of(plain_log(truth, 81)));
+    const Candidate without = on.fitted(joint());
+    CHECK(change_times(on.c, on.bench.raw_residual(without.stated), noise_nm, on.rules).times_s.empty());
+}
+
+TEST_CASE("a friction by position is tried only where the log passes its positions in both directions") {
+    const Effects effects{&find_effect("position-dependent-friction")};
+    const Model truth = joint_with({"position-dependent-friction,order=1,amplitude_nm=0.4,phase_deg=20"});
+    const TestBench on(case_of(plain_log(truth, 82)));
+    const auto trials = screen(on.bench, on.fitted(joint()), effects);
+    REQUIRE(!trials.empty());
+    CHECK(*trials[0].start.values[0] == 1.0);
+    Case one_way = case_of(plain_log(truth, 82));
+    for (std::size_t k = 0; k < one_way.size(); ++k) {
+        if (one_way.motion.velocity_deg_s[k] < 0.0) one_way.use[k] = 0;
+    }
+    const TestBench poor(std::move(one_way));
+    CHECK(screen(poor.bench, poor.fitted(joint()), effects).empty());
 }

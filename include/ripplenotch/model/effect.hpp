@@ -42,6 +42,7 @@ enum class Hint {
     tones,          ///< at the strongest lines of the residual against time, in hertz
     delay,          ///< where the torques of a log and of its simulation agree best
     gear_ratios,    ///< where the gear ratio would put the model's ripple on lines of the log
+    both_ways,      ///< of `tried`, cycles of which the log passes a fair part in both directions
     change_times,   ///< when inertia and gravity change in the residual, in s from the first sample
 };
 

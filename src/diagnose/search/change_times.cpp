@@ -50,6 +50,13 @@ class RunningSums {
     [[nodiscard]] std::size_t size() const { return times_s_.size(); }
     [[nodiscard]] double time_s(std::size_t place) const { return times_s_[place]; }
 
+    /// Sum of squares above the noise, less what a constant inertia, gravity and offset explain.
+    [[nodiscard]] double gap(double noise_nm) const {
+        const Eigen::VectorXd along = all_.topRightCorner<all_columns, 1>();
+        return all_(all_columns, all_columns) - along.dot(factors_.solve(along)) -
+               noise_nm * noise_nm * static_cast<double>(times_s_.size());
+    }
+
     /// Fall of the sum of squares by a change at this place.
     [[nodiscard]] double gain(std::size_t place) const {
         const ProductSums after = all_ - before_[place];
@@ -79,19 +86,25 @@ class RunningSums {
 
 }  // namespace
 
-ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm,
+ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm, double noise_nm,
                          const DiagnosisRules& rules) {
     const std::size_t compared_times = rules.screening.compared_times;
     const RunningSums sums(looked_at, residual_nm, rules.screening.change_samples);
     const std::size_t spacing = sums.size() / (compared_times + 1);
     if (spacing == 0) return {};
-    std::vector<double> gains(compared_times);
-    for (std::size_t i = 0; i < compared_times; ++i) gains[i] = sums.gain((i + 1) * spacing);
+    const auto apart_from_ends =
+        static_cast<std::size_t>(rules.screening.change_within * static_cast<double>(sums.size()));
+    std::vector<double> gains(compared_times, 0.0);
+    for (std::size_t i = 0; i < compared_times; ++i) {
+        const std::size_t place = (i + 1) * spacing;
+        if (place >= apart_from_ends && place + apart_from_ends <= sums.size()) gains[i] = sums.gain(place);
+    }
+    const double least = std::max(rules.screening.least_change * sums.gap(noise_nm), 0.0);
     ChangeTimes found{{}, static_cast<double>(compared_times)};
     const std::size_t apart = compared_times / 16;
     while (found.times_s.size() < rules.screening.most_change_times) {
         const auto best = static_cast<std::size_t>(std::ranges::max_element(gains) - gains.begin());
-        if (!(gains[best] > 0.0)) break;
+        if (!(gains[best] > least)) break;
         std::size_t place = best * spacing;
         const std::size_t end = std::min((best + 2) * spacing, sums.size());
         double most = 0.0;

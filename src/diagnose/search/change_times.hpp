@@ -18,6 +18,6 @@ struct ChangeTimes {
 /// The times at which a change of inertia and gravity reduces the sum of squares of the residual most, each
 /// by least squares beside a constant inertia, gravity and offset.
 [[nodiscard]] ChangeTimes change_times(const Case& looked_at, const std::vector<double>& residual_nm,
-                                       const DiagnosisRules& rules);
+                                       double noise_nm, const DiagnosisRules& rules);
 
 }  // namespace ripplenotch

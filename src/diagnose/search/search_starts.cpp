@@ -2,6 +2,8 @@
 #include "diagnose/search/search_starts.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <utility>
 
 #include "diagnose/search/late_ratio.hpp"
@@ -30,12 +32,27 @@ std::vector<double> tried(const Effect& effect, std::size_t p, const Hints& hint
         for (const double ratio : hints.ratios.ratios)
             values.push_back(value_for_ratio(effect, p, hints.ratio, ratio));
     }
-    if (parameter.hint == Hint::change_times && !hints.changes.times_s.empty()) {
+    if (parameter.hint == Hint::both_ways)
+        std::erase_if(values, [&](double order) { return order < hints.least_order; });
+    if (parameter.hint == Hint::change_times) {
         values = hints.changes.times_s;
         cells *= hints.changes.compared;
     }
     std::erase_if(values, [&](double value) { return !allows(parameter, value); });
     return values;
+}
+
+// Travel that is passed in both directions.
+double both_ways_deg(const Case& looked_at) {
+    constexpr double cell_deg = 5.0;  // by hand
+    std::map<long, unsigned> passed;
+    for (std::size_t k = 0; k < looked_at.size(); ++k) {
+        const double v = looked_at.motion.velocity_deg_s[k];
+        if (looked_at.use[k] == 0 || std::abs(v) < looked_at.moving_deg_s) continue;
+        passed[std::lround(looked_at.motion.position_deg[k] / cell_deg)] |= v > 0.0 ? 1U : 2U;
+    }
+    return cell_deg * static_cast<double>(
+                          std::ranges::count_if(passed, [](const auto& cell) { return cell.second == 3U; }));
 }
 
 }  // namespace
@@ -109,7 +126,9 @@ Hints hints_of(const ModelBench& bench, const Model& stated, const std::vector<d
     hints.ratios =
         likely_ratios(seen_late(bench.looked_at(), lateness_of(stated)), bench.raw_residual(without_ripple),
                       hints.orders, hints.ratio.value(), bench.rules());
-    hints.changes = change_times(bench.looked_at(), left_nm, bench.rules());
+    hints.least_order =
+        360.0 * bench.rules().screening.least_cycle / std::max(both_ways_deg(bench.looked_at()), 1e-9);
+    hints.changes = change_times(bench.looked_at(), left_nm, bench.noise().rms_nm, bench.rules());
     return hints;
 }
 

@@ -19,6 +19,8 @@ struct Hints {
     RatioCandidates ratios;
     std::optional<double> delay_s = {};
     ChangeTimes changes;
+    double least_order =
+        0.0;  ///< of what goes with position and direction: fewer cycles per turn are not passed
 };
 
 /// What the parameter has to be for the effect to make `stated` the ratio `wanted`.

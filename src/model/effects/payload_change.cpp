@@ -32,6 +32,7 @@ constexpr Parameter parameters[] = {
     {.name = "time_s",
      .unit = "s",
      .help = "of the change, from the first sample of the log",
+     .neutral = 1.0,
      .start = 1.0,
      .upper = 1e6,
      .hint = Hint::change_times},

@@ -9,8 +9,15 @@ namespace {
 // Places at which a screening of a log begins.
 constexpr double tried_orders[] = {1.0, 2.0};
 
+// A log of one direction shows no friction by position but a ripple.
+constexpr Parameter order_parameter() {
+    Parameter order = cycles_parameter("order", "cycles per output revolution", 1.0, 1e4, tried_orders);
+    order.hint = Hint::both_ways;
+    return order;
+}
+
 constexpr Parameter parameters[] = {
-    cycles_parameter("order", "cycles per output revolution", 1.0, 1e4, tried_orders),
+    order_parameter(),
     cosine_amplitude_parameter,
     cosine_phase_parameter,
     width_parameter,
