@@ -404,7 +404,7 @@ class DiagnosisRun {
         told_.values = last.values;
         for (FittedValue& value : told_.values)
             widen_interval(value, last.stated.terms[value.term].effect->parameters[value.parameter],
-                  rules_.values.interval_factor);
+                           rules_.values.interval_factor);
         std::size_t place = own_;
         for (Finding& finding : told_.rounds) {
             if (is_doubtful(finding)) continue;
