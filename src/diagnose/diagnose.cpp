@@ -420,22 +420,27 @@ class DiagnosisRun {
     // The gaps; they are what `simulate` leaves with the same model and log.
     void measure(const Candidate& last, const NoiseFloor& noise, const Case& all) {
         const KnownValues known = fit_known_values(all, last.stated, noise);
+        // What is uncertain of an arm is fitted beside the model as given, too.
+        const KnownValues alone = fit_known_values(all, told_.baseline, noise);
         told_.given = reported_values(options_.given, known);
-        const Case improved = with_known_values(whole_, known);
-        const std::optional<Case> other =
-            other_ ? std::optional(with_known_values(*other_, known)) : std::nullopt;
+        given_alone_ = reported_values(options_.given, alone);
+        const Case improved = with_known_values(whole_, known), as_given = with_known_values(whole_, alone);
+        const auto of_other = [&](const KnownValues& values) {
+            return other_ ? std::optional(with_known_values(*other_, values)) : std::nullopt;
+        };
+        const std::optional<Case> other = of_other(known), other_as_given = of_other(alone);
         // A fault of the converter belongs to the model where that predicts the log better with it.
         for (const Fault& fault : told_.faults) {
             Model with = told_.model;
             with.terms.push_back(fault.term);
             if (left_rms(improved, with) <= left_rms(improved, told_.model)) told_.model = std::move(with);
         }
-        const GapCase log_gap{whole_, improved};
+        const GapCase log_gap{as_given, improved};
         const std::optional<GapCase> other_gap =
-            other ? std::optional<GapCase>({*other_, *other}) : std::nullopt;
+            other ? std::optional<GapCase>({*other_as_given, *other}) : std::nullopt;
         measure_gap(told_, log_gap, other_gap ? &*other_gap : nullptr, rules_);
         if (options_.given.empty()) return;
-        told_.residual_before_nm = residual_nm(whole_, told_.baseline);
+        told_.residual_before_nm = residual_nm(as_given, told_.baseline);
         told_.residual_after_nm = residual_nm(improved, told_.model);
         told_.beside_given_nm = residual_nm(improved, {told_.model.gear_ratio, {}});
     }
@@ -460,6 +465,7 @@ class DiagnosisRun {
             return true;
         }
         told_.model = told_.baseline;
+        told_.given = given_alone_;
         told_.gap.after_nm = gap.before_nm;
         told_.gap.validation_after_nm = gap.validation_before_nm;
         told_.gap.closed_percent = told_.gap.closed_percent ? std::optional(0.0) : std::nullopt;
@@ -476,6 +482,7 @@ class DiagnosisRun {
     Case whole_;
     std::optional<Case> other_;
     Work work_, more_work_;
+    std::vector<GivenValue> given_alone_;      ///< fitted beside the model as given
     const ModelBench* first_bench_ = nullptr;  ///< with the noise of the first search, during the second
     std::size_t own_ = 0;                      ///< terms of the model as given
     std::vector<std::string> without_;

@@ -94,7 +94,9 @@ std::vector<Log> other_joints(const ReadOptions& reading, const GivenLog& log) {
     if (log.path == "-") return others;
     ReadOptions words = reading;
     words.joint.reset();
+    words.every_joint = true;
     const std::vector<std::string> joints = open_log(log.path, words)->layout().joints;
+    words.every_joint = false;
     if (joints.size() > most_joints) return others;
     for (const std::string& joint : joints) {
         if (joint == log.log.trace.joint) continue;

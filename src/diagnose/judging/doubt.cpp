@@ -48,8 +48,11 @@ std::string uneven_words(const Unevenness& uneven) {
 
 // A ripple is named by its order: one whose size changes along the log is still that ripple, as long as it is
 // larger than the change.
-double most_uneven(const Term& term, const DiagnosisRules& rules) {
-    return term.effect->ripple_order ? 1.0 : rules.evenness.most_uneven;
+double most_uneven(const Term& term, const ModelBench& bench) {
+    if (term.effect->ripple_order) return 1.0;
+    const DiagnosisRules& rules = bench.rules();
+    const bool beside_known = bench.beside_residual() && !bench.looked_at().motion.known_nm.empty();
+    return beside_known ? rules.beside.most_uneven : rules.evenness.most_uneven;
 }
 
 bool is_fast(Domain d) { return d == Domain::order || d == Domain::frequency; }
@@ -123,8 +126,13 @@ RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::
                           const Evidence& evidence, Hearing& hearing) {
     const Term& stated = model.stated.terms[term];
     const DoubtRules& rules = bench.rules().doubt;
-    bool slight = hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
+    bool slight = !bench.beside_residual() &&
+                  hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
                                 evidence.share_sigma < bench.material_sigma());
+    // Instead it has to gain in most of the log's blocks.
+    if (bench.beside_residual() &&
+        hearing.asked("beside.least_t", evidence.t, evidence.t < bench.rules().beside.least_t))
+        return {FindingStatus::tentative, "its gain is that of a few blocks of the log"};
     // A delay of part of a sample is a matter of when a sample is said to be taken.
     if (const auto samples = shortest_delay_samples(stated, bench); samples && !slight)
         slight = hearing.asked("doubt.least_delay_samples", *samples, *samples < rules.least_delay_samples);
@@ -158,7 +166,7 @@ RaisedDoubt doubt_of_kind(const ModelBench& bench, const Candidate& model, std::
                 "it explains one short stretch of the log and hardly anything elsewhere"};
     const Unevenness uneven = unevenness(bench, model.stated, term);
     if (hearing.asked("evenness.most_uneven", uneven.part,
-                      uneven.part > most_uneven(model.stated.terms[term], bench.rules())))
+                      uneven.part > most_uneven(model.stated.terms[term], bench)))
         return {FindingStatus::tentative, uneven_words(uneven)};
     const auto above = above_wandering(bench, model.stated, term, evidence.raw_gain);
     if (above && hearing.asked("wandering.least_above", *above, *above < bench.rules().wandering.least_above))
@@ -269,7 +277,7 @@ bool doubt_beside(const ModelBench& bench, const Candidate& kept, std::size_t ow
         const DiagnosisRules& rules = bench.rules();
         const double share_nm = finding.evidence.share_nm;
         const bool outdone = (same || kin) && excess_nm > rules.doubt.outgrown * share_nm;
-        if (!outdone && uneven.part <= most_uneven(finding.term, rules)) continue;
+        if (!outdone && uneven.part <= most_uneven(finding.term, bench)) continue;
         Hearing hearing(rules, finding.decisions);
         if (outdone)
             hearing.asked("doubt.outgrown", excess_nm / share_nm, true);

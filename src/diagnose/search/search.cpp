@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "diagnose/search/bent_shape.hpp"
@@ -83,8 +84,9 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     Hearing hearing(bench.rules(), decisions);
     const double gain = now.gain_left - next.gain_left, samples = bench.samples();
     if (hearing.asked_price(gain, next.prices.back(), next.criterion() >= now.criterion())) return false;
+    // What is small against the noise floor still stands out of the residual where that is quiet.
     const double share = bench.share(next, now);
-    if (hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma())) return false;
+    if (!bench.beside_residual() && hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma())) return false;
     const double gap = now.gain_left - samples;
     const SearchRules& rules = bench.rules().search;
     // What changes the torque as a whole takes up errors of whatever makes it.
@@ -285,6 +287,40 @@ bool merge_once(const ModelBench& bench, Candidate& now, std::size_t own_terms,
     return false;
 }
 
+// A ripple that passes the elastic joint: alone it explains little, and what changes it nothing without it.
+std::optional<Candidate> ripple_with_change(const ModelBench& bench, const Candidate& now,
+                                            const std::vector<Trial>& trials,
+                                            std::span<const Effect* const> effects) {
+    std::vector<const Effect*> changes;
+    std::ranges::copy_if(effects, std::back_inserter(changes),
+                         [](const Effect* effect) { return effect->side == Side::ripple; });
+    for (const Trial& trial : trials) {
+        if (!trial.start.effect->ripple_order || trial.score() <= 0.0 || bench.work().is_over()) continue;
+        const Candidate ripple = with_trial(bench, now, trial);
+        for (const Trial& change : screen(bench, ripple, changes)) {
+            if (side_of(change.start) != Side::ripple || change.score() <= 0.0) continue;
+            Candidate both = with_trial(bench, ripple, change);
+            std::vector<Decision> decisions;
+            if (both.criterion() < ripple.criterion() && both.criterion() < now.criterion() &&
+                !newest_is_bent(bench, both))
+                return both;
+            break;
+        }
+    }
+    return std::nullopt;
+}
+
+// Where the residual is part of the noise, the addition that gains most may be one that is refused for its kind.
+std::optional<Candidate> other_addition(const ModelBench& bench, const Candidate& now,
+                                        const std::vector<Trial>& trials, const std::vector<Candidate>& tried,
+                                        std::span<const Effect* const> effects) {
+    for (const Candidate& candidate : tried) {
+        std::vector<Decision> decisions;
+        if (worth_it(bench, now, candidate, decisions) && !newest_is_bent(bench, candidate)) return candidate;
+    }
+    return ripple_with_change(bench, now, trials, effects);
+}
+
 Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own_terms,
                       std::span<const Effect* const> effects, std::vector<RefusedCandidate>& refused) {
     const SearchRules& rules = bench.rules().search;
@@ -307,7 +343,9 @@ Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own
                     other && worth_it(bench, now, *other, decisions))
                     next = std::move(other);
             }
-            if (!next || !worth_it(bench, now, *next, decisions)) {
+            if (!next || !worth_it(bench, now, *next, decisions))
+                next = bench.beside_residual() ? other_addition(bench, now, trials, tried, effects) : std::nullopt;
+            if (!next) {
                 refused = refused_by(bench, now, trials, tried);
                 return;
             }
