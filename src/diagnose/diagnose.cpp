@@ -304,7 +304,7 @@ class DiagnosisRun {
                                  : first_bench_ != nullptr ? leftovers(*first_bench_, found.last.stated)
                                                            : told_.unexplained;
         told_.rounds = judge(bench, found.last, own, effects_, unexplained);
-        search_without_balanced(found, unexplained);
+        drop_balanced(found, unexplained);
         if (fits_offset_) promote_offset(found, own, unexplained);
         own_ = own;
         told_.refused = found.refused;
@@ -324,28 +324,23 @@ class DiagnosisRun {
         return last;
     }
 
-    // Findings whose torques are held in balance by one another hide what each of them would have been
-    // without the other: the weakest goes, and the search is made again without it.
-    void search_without_balanced(Searched& found, const std::vector<Leftover>& unexplained) {
-        std::vector<const Effect*> effects = effects_;
-        for (std::size_t round = 0; round < rules_.search.swap_rounds; ++round) {
-            const Finding* weakest = nullptr;
-            for (const Finding& finding : told_.rounds) {
-                if (finding.status != FindingStatus::unidentifiable) continue;
-                if (weakest == nullptr || finding.evidence.share_nm < weakest->evidence.share_nm)
-                    weakest = &finding;
+    // Findings whose torques are held in balance by one another hide what each of them would be without the
+    // other: the weakest goes, and the others are tested without it.
+    void drop_balanced(Searched& found, const std::vector<Leftover>& unexplained) {
+        const std::size_t own = model_.terms.size();
+        for (std::size_t most = told_.rounds.size(); most > 0; --most) {
+            const auto doubtful = std::ranges::count_if(told_.rounds, is_doubtful);
+            if (std::ranges::count(told_.rounds, FindingStatus::unidentifiable, &Finding::status) == 0 ||
+                doubtful < 2)
+                return;
+            std::optional<std::size_t> weakest;
+            for (std::size_t i = 0; i < told_.rounds.size(); ++i) {
+                const bool weaker =
+                    !weakest || told_.rounds[i].evidence.share_nm < told_.rounds[*weakest].evidence.share_nm;
+                if (is_doubtful(told_.rounds[i]) && weaker) weakest = i;
             }
-            if (weakest == nullptr || found.bench->work().is_over()) return;
-            std::erase(effects, weakest->term.effect);
-            Candidate other = search(*found.bench, found.first, model_.terms.size(), effects, found.refused);
-            std::vector<Finding> rounds =
-                judge(*found.bench, other, model_.terms.size(), effects, unexplained);
-            const auto confirmed = [](const std::vector<Finding>& all) {
-                return std::ranges::count(all, FindingStatus::confirmed, &Finding::status);
-            };
-            if (confirmed(rounds) < confirmed(told_.rounds)) return;
-            found.last = std::move(other);
-            told_.rounds = std::move(rounds);
+            found.last = without_term(*found.bench, found.last, own + *weakest);
+            told_.rounds = judge(*found.bench, found.last, own, effects_, unexplained);
         }
     }
 
