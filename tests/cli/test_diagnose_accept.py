@@ -15,7 +15,8 @@ TRUTH = ["--gear-ratio", "100", "--inertia", "0.4", "--ripple", "1:0.7Nm:30deg",
          "--effect", "coulomb-friction,torque_nm=0.5,width_deg_s=0.2"]
 THERE_AND_BACK = ["rest,duration=0.5s", "poly6,to=120deg,duration=2s", "rest,duration=0.5s", "poly6,to=-60deg,duration=3s",
                   "rest,duration=0.5s", "poly6,to=30deg,duration=1.5s", "rest,duration=0.5s"]
-BLIND = ["--without", "coulomb-friction", "--without", "stribeck-friction", "--without", "hysteresis"]
+BLIND = [word for name in ("coulomb-friction", "stribeck-friction", "hysteresis", "friction-warm-up", "position-dependent-friction")
+         for word in ("--without", name)]
 
 
 class Accept(unittest.TestCase):
@@ -69,7 +70,7 @@ class Accept(unittest.TestCase):
 
     def test_what_is_not_in_doubt_is_refused_with_what_is(self):
         self.log("log.csv", THERE_AND_BACK)
-        for words, part in (((*BLIND, "--accept", "gravity"), "no finding of that name; in doubt is viscous-friction"),
+        for words, part in (((*BLIND, "--accept", "gravity"), "no finding of that name; in doubt is load-friction"),
                             (("--accept", "coulomb-friction"), "it is confirmed, and in the model already; in doubt is nothing"),
                             (("--accept", "coulomb"), "there is no effect 'coulomb'")):
             done = self.tool("diagnose", "log.csv", "--model", "model.json", *words)
