@@ -430,12 +430,17 @@ class DiagnosisRun {
             with.terms.push_back(fault.term);
             if (left_rms(improved, with) <= left_rms(improved, told_.model)) told_.model = std::move(with);
         }
-        const GapCase log_gap{whole_, improved};
+        // What is uncertain of the known torque has its best value beside the model as given, too.
+        const KnownValues at_first = fit_known_values(all, told_.baseline, noise);
+        const Case as_given = with_known_values(whole_, at_first);
+        const std::optional<Case> other_as_given =
+            other_ ? std::optional(with_known_values(*other_, at_first)) : std::nullopt;
+        const GapCase log_gap{as_given, improved};
         const std::optional<GapCase> other_gap =
-            other ? std::optional<GapCase>({*other_, *other}) : std::nullopt;
+            other ? std::optional<GapCase>({*other_as_given, *other}) : std::nullopt;
         measure_gap(told_, log_gap, other_gap ? &*other_gap : nullptr, rules_);
         if (options_.given.empty()) return;
-        told_.residual_before_nm = residual_nm(whole_, told_.baseline);
+        told_.residual_before_nm = residual_nm(as_given, told_.baseline);
         told_.residual_after_nm = residual_nm(improved, told_.model);
         told_.beside_given_nm = residual_nm(improved, {told_.model.gear_ratio, {}});
     }
