@@ -27,10 +27,10 @@ def arm_nm(t, q, payload):
 
 
 @functools.cache
-def made(friction="coulomb-friction,torque_nm=0.9,width_deg_s=1"):
+def made(friction="coulomb-friction,torque_nm=0.9,width_deg_s=1", laps=2):
     """The rows of a joint that moves alone, simulated once for all tests."""
     with tempfile.TemporaryDirectory() as folder:
-        motion = [word for lap in range(2) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.7), (-20, 1.2))
+        motion = [word for lap in range(laps) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.7), (-20, 1.2))
                   for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
         plain = pathlib.Path(folder) / "plain.csv"
         subprocess.run([TOOL, "simulate", "--gear-ratio", "100", "--effect", friction,
@@ -142,7 +142,7 @@ class Simulated(unittest.TestCase):
         self.assertIn("it is confirmed", done.stderr)
 
     def test_friction_of_another_form_than_the_simulation_has_is_named_and_the_simulation_s_is_too_much(self):
-        self.rows = made("hysteresis,torque_nm=0.9,width_deg=3")
+        self.rows = made("hysteresis,torque_nm=0.9,width_deg=3", laps=3)
         self.write_with_friction(0.9)
         done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--json", "--simulated", "tau_model_nm")
         self.assertEqual(done.returncode, 0, done.stderr)
