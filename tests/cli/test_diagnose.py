@@ -64,7 +64,9 @@ class Diagnose(unittest.TestCase):
         first = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive")
         self.assertEqual(first.returncode, 0, first.stderr)
         self.assertEqual(first.stdout, self.run_tool("diagnose", "log.csv", "--model", "model.json").stdout)
-        self.assertIn("named: offset\nverdict: explained\n", first.stdout)
+        # The answer comes first.
+        self.assertRegex(first.stdout, r"^Missing: offset 0\.4\d* \+/- 0\.00\d+ Nm; residual 0\.3\d+ to 0\.04\d+ Nm rms, noise 0\.04\d+ Nm rms\.\n"
+                                       r"verdict: explained\nnamed: offset\n")
         others = [name for effect in ("offset", "drift", "gravity", "output-ripple", "coulomb-friction", "hysteresis")
                   for name in ("--without", effect)]
         second = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--require-conclusive", *others)

@@ -70,7 +70,7 @@ class Accept(unittest.TestCase):
 
     def test_what_is_not_in_doubt_is_refused_with_what_is(self):
         self.log("log.csv", THERE_AND_BACK)
-        for words, part in (((*BLIND, "--accept", "gravity"), "no finding of that name; in doubt is viscous-friction"),
+        for words, part in (((*BLIND, "--accept", "gravity"), "no finding of that name; in doubt is load-friction"),
                             (("--accept", "coulomb-friction"), "it is confirmed, and in the model already; in doubt is nothing"),
                             (("--accept", "coulomb"), "there is no effect 'coulomb'")):
             done = self.tool("diagnose", "log.csv", "--model", "model.json", *words)

@@ -157,8 +157,8 @@ class Arm(unittest.TestCase):
         (self.folder / "ur10.csv").write_text(UR10_DH)
         # Bounds: what was left of the raw torque, and twice what was measured when this was written.
         for joint, names, after_nm in (("shoulder_pan_joint", {"coulomb-friction"}, 2.4),
-                                       ("shoulder_lift_joint", {"load-friction", "viscous-friction"}, 2.5),
-                                       ("wrist_2_joint", {"coulomb-friction", "viscous-friction"}, 0.7)):
+                                       ("shoulder_lift_joint", {"coulomb-friction"}, 2.5),
+                                       ("wrist_2_joint", {"coulomb-friction"}, 0.7)):
             with self.subTest(joint=joint):
                 done = self.tool("diagnose", "first.csv", "--joint", joint, "--arm", "dh,file=ur10.csv", "--gear-ratio", "101",
                                  "--validate", "last.csv", "--json", "-q")

@@ -13,6 +13,7 @@ import tempfile
 import unittest
 
 TOOL = os.environ["RIPPLENOTCH"]
+NAMES = ["coulomb-friction", "simulation-scale", "viscous-friction"]
 
 
 def written(path, head, rows):
@@ -26,10 +27,10 @@ def arm_nm(t, q, payload):
 
 
 @functools.cache
-def made(friction="coulomb-friction,torque_nm=0.9,width_deg_s=1"):
+def made(friction="coulomb-friction,torque_nm=0.9,width_deg_s=1", laps=2):
     """The rows of a joint that moves alone, simulated once for all tests."""
     with tempfile.TemporaryDirectory() as folder:
-        motion = [word for lap in range(3) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.7), (-20, 1.2))
+        motion = [word for lap in range(laps) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.7), (-20, 1.2))
                   for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
         plain = pathlib.Path(folder) / "plain.csv"
         subprocess.run([TOOL, "simulate", "--gear-ratio", "100", "--effect", friction,
@@ -72,12 +73,17 @@ class Simulated(unittest.TestCase):
                              "--json", "-o", "improved.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         found = json.loads(done.stdout)
-        self.assertEqual(sorted(found["named"]), ["coulomb-friction", "viscous-friction"])
-        self.assertAlmostEqual(found["simulated"]["scale"]["value"], 1.02, delta=0.03)
-        self.assertEqual(len(found["leftover"]), 3)
-        self.assertTrue(all(entry["size_uncertain"] for entry in found["rounds"]))
+        self.assertEqual(sorted(found["named"]), NAMES)
+        self.assertEqual(found["simulated"], {"scale": 1})
+        # All of its torque is the payload's and 1.5 of 80 Nm too small.
+        error = next(entry["parameters"]["error_percent"] for entry in found["rounds"] if entry["effect"] == "simulation-scale")
+        self.assertAlmostEqual(error["value"], 1.875, delta=0.02)
+        for entry in found["rounds"]:
+            evidence = entry["evidence"]
+            self.assertGreater(evidence["t"], 0)
+            self.assertGreaterEqual(evidence["blocks"], evidence["blocks_positive"])
         improved = json.loads((self.path / "improved.json").read_text())
-        self.assertEqual(improved["simulated"]["column"], "tau_model_nm")
+        self.assertEqual(improved["simulated"], {"column": "tau_model_nm", "scale": 1, "delay_s": 0})
         again = self.run_tool("diagnose", "log.csv", "--model", "improved.json")
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertIn("named: nothing", again.stdout)
@@ -88,26 +94,20 @@ class Simulated(unittest.TestCase):
         return json.loads(done.stdout)["along_log"]["residual_rms_nm"]
 
     def test_the_improved_model_leaves_what_was_said_and_diagnosed_again_begins_there(self):
-        for name, scale in (("fitted", ""), ("kept", ",scale=1"), ("late", ",delay=fit")):
+        for name, scale in (("tried", ""), ("kept", ",scale=1")):
             with self.subTest(name):
                 done = self.run_tool("diagnose", "log.csv", "--simulated", f"column,name=tau_model_nm{scale}", "--gear-ratio",
                                      "100", "--json", "-o", f"{name}.json")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 found = json.loads(done.stdout)
-                stated = json.loads((self.path / f"{name}.json").read_text())["simulated"]
-                self.assertLessEqual({"offset_nm", "inertia_kgm2", "gravity_cosine_nm", "gravity_sine_nm"}, set(stated["nuisance"]))
-                # A fitted delay is the slope of the column in the fit and a shift of it in the model.
-                off = 0.02 if name == "late" else 1e-4
+                self.assertEqual("simulation-scale" in found["named"], not scale)
                 left = self.residual_nm("--model", f"{name}.json", "log.csv")
-                self.assertAlmostEqual(left / found["gap"]["after_nm"], 1.0, delta=off)
-                again = self.run_tool("diagnose", "log.csv", "--model", f"{name}.json", "--json", "-o", "again.json", "--force")
+                self.assertAlmostEqual(left / found["gap"]["after_nm"], 1.0, delta=1e-4)
+                again = self.run_tool("diagnose", "log.csv", "--model", f"{name}.json", "--json")
                 self.assertEqual(again.returncode, 0, again.stderr)
                 before = json.loads(again.stdout)
                 self.assertAlmostEqual(before["gap"]["before_nm"] / left, 1.0, delta=1e-4)
                 self.assertEqual(before["named"], [])
-                told = json.loads((self.path / "again.json").read_text())["simulated"]["nuisance"]
-                for key, value in stated["nuisance"].items():
-                    self.assertAlmostEqual(told[key], value, delta=0.02 + 0.05 * abs(value))
 
     def write_with_friction(self, friction_nm, payload=1.03):
         """The log beside a simulation that has this friction, and the viscous one as it is."""
@@ -115,104 +115,73 @@ class Simulated(unittest.TestCase):
         log = [[t, v, tau + arm_nm(t, q, payload), q, nm] for (t, v, tau, q), nm in zip(self.rows, simulated, strict=True)]
         written(self.path / "rubs.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], log)
 
-    def test_what_a_simulation_has_too_much_of_is_no_name_and_said_where_it_is_said_to_have_friction(self):
+    def size_of(self, found, effect, parameter):
+        (entry,) = [entry for entry in found["rounds"] if entry["effect"] == effect and entry["status"] == "confirmed"]
+        return entry["parameters"][parameter]
+
+    def test_what_a_simulation_has_too_much_of_is_a_finding_below_0_and_for_that_simulation_alone(self):
         self.write_with_friction(1.3)  # 0.9 are there
-        words = ["diagnose", "rubs.csv", "--gear-ratio", "100"]
-        done = self.run_tool(*words, "--simulated", "tau_model_nm")
+        words = ["diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm"]
+        done = self.run_tool(*words, "-o", "improved.json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("its size is below 0", done.stdout)
-        self.assertIn("named: nothing", done.stdout)
-        self.assertIn("next: if the simulation has friction of its own, --simulated ...,friction=fit", done.stdout)
-        done = self.run_tool(*words, "--simulated", "tau_model_nm,friction=fit", "-o", "improved.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"simulated: coulomb-friction, torque_nm = -0\.4\d* \[.*: 1.0\d* times the simulation's torque has too much of it")
-        self.assertNotIn("friction=fit", done.stdout)
-        self.assertIn("named: nothing", done.stdout)
+        self.assertRegex(done.stdout.splitlines()[0],
+                         r"^Missing: .*coulomb-friction -0\.4\d* \+/- [\d.]+ Nm \(the simulation has too much of it\).*; residual ")
+        self.assertEqual(done.stdout.splitlines()[1:3], ["verdict: explained", "named: simulation-scale, coulomb-friction"])
         improved = json.loads((self.path / "improved.json").read_text())
-        (own,) = improved["effects"]
-        self.assertEqual(own["effect"], "coulomb-friction")
-        too_much_nm = 1.3 * improved["simulated"]["scale"] - 0.9
-        self.assertAlmostEqual(own["torque_nm"], -too_much_nm, delta=0.03)  # its own error is 0.01 Nm, the width's another
-        self.assertLess(self.residual_nm("--model", "improved.json", "rubs.csv"), 0.06)  # the noise is 0.05 Nm
+        friction = next(effect for effect in improved["effects"] if effect["effect"] == "coulomb-friction")
+        self.assertAlmostEqual(friction["torque_nm"], -(1.3 * 1.01875 - 0.9), delta=0.01)
+        self.assertLess(self.residual_nm("--model", "improved.json", "rubs.csv"), 0.051)  # the noise is 0.05 Nm
+        improved["effects"] = [friction]
         del improved["simulated"]
         (self.path / "alone.json").write_text(json.dumps(improved))
         done = self.run_tool("simulate", "--model", "alone.json", "rubs.csv")
         self.assertEqual(done.returncode, 3)
         self.assertIn("torque_nm is -0.", done.stderr)
+        done = self.run_tool(*words, "--accept", "coulomb-friction")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("it is confirmed", done.stderr)
 
-    def test_friction_of_another_form_than_the_simulation_has_is_named_once_that_is_fitted_and_nothing_else_before(self):
-        self.rows = made("hysteresis,torque_nm=0.9,width_deg=3")
+    def test_friction_of_another_form_than_the_simulation_has_is_named_and_the_simulation_s_is_too_much(self):
+        self.rows = made("hysteresis,torque_nm=0.9,width_deg=3", laps=3)
         self.write_with_friction(0.9)
-        words = ["diagnose", "rubs.csv", "--gear-ratio", "100", "--json"]
-        done = self.run_tool(*words, "--simulated", "tau_model_nm,friction=fit")
+        done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--json", "--simulated", "tau_model_nm")
         self.assertEqual(done.returncode, 0, done.stderr)
         found = json.loads(done.stdout)
-        self.assertEqual(found["named"], ["hysteresis"])
-        low, high = found["own_terms"][0]["parameters"]["torque_nm"]["ci95"]
-        all_of_it_nm = 0.9 * found["simulated"]["scale"]["value"]
-        self.assertTrue(low <= -all_of_it_nm <= high, (low, high))
-        done = self.run_tool(*words, "--simulated", "tau_model_nm")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertLessEqual(set(json.loads(done.stdout)["named"]), {"hysteresis"})
+        self.assertEqual(sorted(found["named"]), ["coulomb-friction", "hysteresis", "simulation-scale"])
+        low, high = self.size_of(found, "coulomb-friction", "torque_nm")["ci95"]
+        self.assertTrue(low <= -0.9 * 1.01875 <= high, (low, high))
+        low, high = self.size_of(found, "hysteresis", "torque_nm")["ci95"]
+        self.assertTrue(low <= 0.9 <= high, (low, high))
 
-    def test_where_the_scale_is_not_told_neither_is_what_of_the_friction_is_too_much(self):
-        # All else that the simulation holds is the joint's own weight, which is mended.
-        def write(viscous):
-            rows = []
-            for t, v, tau, q in self.rows:  # 0.012 Nm per deg/s of it are viscous
-                weight = 30 * math.cos(math.radians(q))
-                rows.append([t, v, tau + (viscous - 0.012) * v + weight, q, weight + 1.3 * math.tanh(v)])
-            written(self.path / "alone.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], rows)
-        write(0.0)
-        words = ["diagnose", "alone.csv", "--gear-ratio", "100", "--simulated"]
-        done = self.run_tool(*words, "tau_model_nm,friction=fit")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("whether it has too much or too little is not told", done.stdout)
-        self.assertNotIn("coulomb-friction, torque_nm = -0.4 [", done.stdout)
-        done = self.run_tool(*words, "tau_model_nm,friction=fit,scale=1")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"torque_nm = -0\.(39|40?)\d* \[.*: the simulation has too much of it")
-        write(0.012)  # viscous friction is missing as well, and the step of the other is bent towards it
-        done = self.run_tool(*words, "tau_model_nm,friction=fit,scale=1")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertNotIn("has too little of it", done.stdout)
-
-    def test_a_friction_below_0_that_is_accepted_is_taken_into_the_model(self):
-        self.write_with_friction(1.3)
-        done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm", "--accept",
-                             "coulomb-friction", "-o", "improved.json")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"accepted by you .*: coulomb-friction, torque_nm = -0\.4")
-        self.assertLess(self.residual_nm("--model", "improved.json", "rubs.csv"), 0.06)
+    def test_too_much_of_one_friction_and_too_little_of_another(self):
+        rows = []
+        for t, v, tau, q in self.rows:
+            weight = 30 * math.cos(math.radians(q))
+            rows.append([t, v, tau + weight, q, weight + 1.3 * math.tanh(v)])
+        written(self.path / "alone.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_model_nm"], rows)
+        for scale in ("", ",scale=1"):
+            done = self.run_tool("diagnose", "alone.csv", "--gear-ratio", "100", "--json", "--simulated", f"tau_model_nm{scale}")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found = json.loads(done.stdout)
+            self.assertEqual(sorted(found["named"]), ["coulomb-friction", "viscous-friction"])
+            for effect, parameter, truth in (("coulomb-friction", "torque_nm", -0.4),
+                                             ("viscous-friction", "coefficient_nm_per_deg_s", 0.012)):
+                low, high = self.size_of(found, effect, parameter)["ci95"]
+                self.assertTrue(low <= truth <= high, (effect, low, high))
 
     def test_of_a_simulation_with_the_right_friction_no_error_is_told(self):
         self.write_with_friction(0.9, payload=1.0)
-        done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm,friction=fit")
+        done = self.run_tool("diagnose", "rubs.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, "simulated: coulomb-friction, .*: whether it has too much or too little is not told")
-        self.assertIn("named: nothing", done.stdout)
+        self.assertTrue(done.stdout.startswith("Nothing is missing; "), done.stdout)
+        self.assertIn("\nnamed: nothing\n", done.stdout)
 
-    def test_friction_of_a_simulation_is_fitted_once_and_by_diagnose_alone(self):
-        model = {"schema": "ripplenotch/model/1", "gear_ratio": 100, "effects": [{"effect": "coulomb-friction", "torque_nm": 0.5}]}
-        (self.path / "model.json").write_text(json.dumps(model))
-        done = self.run_tool("diagnose", "log.csv", "--model", "model.json", "--simulated", "tau_model_nm,friction=fit")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("leave its torque_nm out there", done.stderr)
-        done = self.run_tool("simulate", "log.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm,scale=1,friction=fit")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("simulated.friction", done.stderr)
-        done = self.run_tool("diagnose", "log.csv", "--gear-ratio", "100", "--simulated", "tau_model_nm,friction=yes")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("fit", done.stderr)
-
-    def test_simulate_takes_a_simulation_whose_scale_is_stated(self):
+    def test_simulate_takes_a_simulation_whose_scale_is_1_unless_stated(self):
         words = ["--gear-ratio", "100", "--effect", "coulomb-friction,torque_nm=0.9,width_deg_s=1"]
         left = self.residual_nm(*words, "--simulated", "column,name=tau_model_nm,scale=1", "log.csv")
         alone = self.residual_nm(*words, "log.csv")
         self.assertLess(left, 0.2 * alone)
-        done = self.run_tool("simulate", *words, "--simulated", "column,name=tau_model_nm", "log.csv")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("simulated.scale", done.stderr)
+        self.assertEqual(self.residual_nm(*words, "--simulated", "column,name=tau_model_nm", "log.csv"), left)
         done = self.run_tool("simulate", *words, "--simulated", "column,name=tau", "--motion", "rest,duration=1s", "--sample-rate",
                              "100Hz")
         self.assertEqual(done.returncode, 2)
@@ -261,7 +230,7 @@ class Simulated(unittest.TestCase):
                              "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         found = json.loads(done.stdout)
-        self.assertEqual(sorted(found["named"]), ["coulomb-friction", "viscous-friction"])
+        self.assertEqual(sorted(found["named"]), NAMES)
         self.assertIn("outside what sim.csv spans", done.stderr)
         self.assertLess(found["samples"], len(self.rows) - 190)
 
@@ -281,11 +250,133 @@ class Simulated(unittest.TestCase):
                 (["--simulated", "column,name=tau_model_nm"], 2, "--gear-ratio is missing"),
                 (["--simulated", "tau", *ratio], 2, "no column 'tau'"),
                 (["--simulated", "log.csv", *ratio], 2, "--simulated log,file=log.csv,column=NAME"),
+                (["--simulated", "tau_model_nm,delay=fit", *ratio], 2, "delay=fit is not needed"),
+                (["--simulated", "tau_model_nm,friction=fit", *ratio], 2, "no key 'friction'"),
                 (["--simulated", "colum,name=tau_model_nm", *ratio], 2, "neither column,name=NAME nor log"),
                 (ratio, 2, "--model is missing")):
             done = self.run_tool("diagnose", "log.csv", *words)
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertIn(part, done.stderr)
+
+
+RIPPLE = ("--ripple", "1:0.6Nm:30deg", "--ripple", "2:0.9Nm:-40deg")
+FRICTION = ("--effect", "coulomb-friction,torque_nm=1.5,width_deg_s=1", "--effect", "viscous-friction,coefficient_nm_per_deg_s=0.03")
+RIGID = ("--inertia", "1", "--effect", "gravity,amplitude_nm=8,phase_deg=20")
+WHOLE = (*RIGID, *FRICTION, *RIPPLE)
+
+
+@functools.cache
+def moved(words, noise):
+    """Rows of time, velocity, torque and position of a joint of these effects; 16 s, the same motion each time."""
+    motion = [word for _ in range(2) for to, s in ((150, 2.2), (-60, 3), (100, 1.6), (60, 1.2))
+              for word in ("--motion", f"poly6,to={to}deg,duration={s}s")]
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "rows.csv"
+        subprocess.run([TOOL, "simulate", "--gear-ratio", "100", *words, *motion, "--sample-rate", "500Hz", "--noise",
+                        f"{0.05 * noise}Nm", "--velocity-noise", f"{0.05 * noise}deg/s", "--seed", "1", "-q", "-o", path],
+                       check=True, capture_output=True, timeout=300)
+        with open(path) as file:
+            return [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
+
+
+class Known(unittest.TestCase):
+    """Logs with a known truth beside a simulation that lacks a part of it."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def json_of(self, *words):
+        done = subprocess.run([TOOL, *words, "--json", "-q", "--force"], cwd=self.folder.name, capture_output=True, text=True,
+                              timeout=300, stdin=subprocess.DEVNULL)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(done.stdout)
+
+    def diagnosed(self, real, simulation, more="", times=1.0):
+        """What is said of a real joint beside a simulated one; its improved model has to leave just that."""
+        rows = [[*row, times * twin[2]] for row, twin in zip(moved(real, 1), moved(simulation, 0), strict=True)]
+        written(self.path / "log.csv", ["time_s", "velocity_deg_s", "torque_nm", "position_deg", "tau_sim_nm"], rows)
+        return self.checked("tau_sim_nm" + more, ())
+
+    def checked(self, simulated, beside):
+        found = self.json_of("diagnose", "log.csv", "--simulated", simulated, "--gear-ratio", "100", "-o", "improved.json")
+        gap = found["gap"]
+        self.assertLessEqual(gap["after_nm"], gap["before_nm"])
+        left = self.json_of("simulate", "--model", "improved.json", *beside, "log.csv", "-o", "again.csv")
+        self.assertAlmostEqual(left["along_log"]["residual_rms_nm"] / gap["after_nm"], 1.0, delta=1e-4)
+        return found
+
+    def sizes(self, found, effect, parameter):
+        return sorted(entry["parameters"][parameter]["value"] for entry in found["rounds"]
+                      if entry["effect"] == effect and entry["status"] == "confirmed")
+
+    def check_explained(self, found, *names):
+        self.assertEqual((found["verdict"], found["named"]), ("explained", list(names)))
+        self.assertEqual(found["simulated"], {"scale": 1})
+        self.assertLess(found["gap"]["after_nm"], 0.051)
+        self.assertNotIn("residual_in_noise", found)
+
+    def test_a_delay_of_6_ms_beside_a_simulation_with_ripple_is_a_delay_and_nothing_else(self):
+        found = self.diagnosed((*WHOLE, "--effect", "delay,delay_s=0.006"), WHOLE)
+        self.check_explained(found, "delay")
+        self.assertAlmostEqual(self.sizes(found, "delay", "delay_s")[0], 0.006, delta=5e-5)
+
+    def test_a_delay_of_20_ms_is_found_without_ripple(self):
+        found = self.diagnosed((*RIGID, *FRICTION, "--effect", "delay,delay_s=0.02"), (*RIGID, *FRICTION))
+        self.check_explained(found, "delay")
+        self.assertAlmostEqual(self.sizes(found, "delay", "delay_s")[0], 0.02, delta=2e-4)
+
+    def test_mains_hum_is_a_tone(self):
+        found = self.diagnosed((*WHOLE, "--effect", "tone,amplitude_nm=0.15,frequency_hz=50,phase_deg=10"), WHOLE)
+        self.check_explained(found, "tone")
+        self.assertAlmostEqual(self.sizes(found, "tone", "amplitude_nm")[0], 0.15, delta=0.005)
+        self.assertAlmostEqual(self.sizes(found, "tone", "frequency_hz")[0], 50, delta=0.01)
+
+    def test_a_fifth_of_the_inertia_is_missing(self):
+        found = self.diagnosed(WHOLE, ("--inertia", "0.8", *WHOLE[2:]))
+        self.check_explained(found, "inertia")
+        low, high = found["rounds"][0]["parameters"]["inertia_kgm2"]["ci95"]
+        self.assertTrue(low <= 0.2 <= high, (low, high))
+
+    def test_friction_and_ripple_are_missing_beside_a_rigid_body_whether_its_scale_is_stated_or_not(self):
+        for scale in ("", ",scale=1"):
+            with self.subTest(scale=scale):
+                found = self.diagnosed(WHOLE, RIGID, scale)
+                self.check_explained(found, "viscous-friction", "coulomb-friction", "ripple")
+                self.assertAlmostEqual(self.sizes(found, "coulomb-friction", "torque_nm")[0], 1.5, delta=0.01)
+                self.assertAlmostEqual(self.sizes(found, "viscous-friction", "coefficient_nm_per_deg_s")[0], 0.03, delta=1e-4)
+                for size, truth in zip(self.sizes(found, "ripple", "amplitude_nm"), (0.6, 0.9), strict=True):
+                    self.assertAlmostEqual(size, truth, delta=0.005)
+
+    def test_a_lag_of_the_sensor_is_a_lag(self):
+        found = self.diagnosed((*WHOLE, "--effect", "lag,time_constant_s=0.01"), WHOLE)
+        if found["named"] != ["lag"]:  # a low-pass of first order is the same
+            self.assertEqual([set(tie["effects"]) for tie in found["ambiguous"]], [{"lag", "sensor-lowpass"}])
+        self.assertLess(found["gap"]["after_nm"], 0.051)
+        self.assertLess(len(found["rounds"]), 2)
+
+    def test_a_reversed_sign_is_a_fault_of_the_set_up(self):
+        found = self.diagnosed(WHOLE, WHOLE, times=-1.0)
+        self.assertEqual(found["setup"][0]["fault"], "torque-sign")
+        self.assertEqual(found["setup"][0]["option"], "scale=-1")
+
+    def test_a_sign_that_the_user_has_put_right_is_no_fault_any_more(self):
+        found = self.diagnosed(WHOLE, WHOLE, ",scale=-1", times=-1.0)
+        self.assertEqual((found["verdict"], found["named"], found["simulated"]), ("matches", [], {"scale": -1}))
+        self.assertNotIn("setup", found)
+
+    def test_a_simulation_in_a_file_of_its_own_that_is_early_is_aligned_by_the_motions(self):
+        head = ["time_s", "velocity_deg_s", "torque_nm", "position_deg"]
+        written(self.path / "log.csv", head, [[t + 1, v, tau, q] for t, v, tau, q in moved(WHOLE, 1)])
+        written(self.path / "sim.csv", head, [[t + 0.83, v, tau, q] for t, v, tau, q in moved((*RIGID, *FRICTION), 0)])
+        own = "log,file=sim.csv,column=torque_nm"
+        found = self.checked(own, ("--simulated", own))
+        self.assertAlmostEqual(found["alignment"]["delay_s"], 0.17, delta=1e-4)
+        self.assertGreater(found["alignment"]["correlation"], 0.999)
+        self.assertIsNone(found["alignment"]["clock_error_ppm"])
+        self.check_explained(found, "ripple")
+        self.assertAlmostEqual(json.loads((self.path / "improved.json").read_text())["simulated"]["delay_s"], -0.17, delta=1e-4)
 
 
 if __name__ == "__main__":

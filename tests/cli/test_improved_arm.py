@@ -58,7 +58,8 @@ class Improved(unittest.TestCase):
         self.assertEqual(arm["identified"], "torque")
         self.assertEqual([len(link["inertia_kgm2"]) for link in arm["links"]], [6, 6])
         self.assertIn({"name": "dh.csv", "sha256": hashlib.sha256(DH.encode()).hexdigest()}, model["inputs"])
-        self.assertEqual([one["effect"] for one in model["effects"]], ["coulomb-friction"])
+        self.assertNotIn("nuisance", arm)
+        self.assertEqual([one["effect"] for one in model["effects"]], ["offset", "coulomb-friction"])
 
     def test_simulate_leaves_what_the_diagnosis_said_on_both_logs(self):
         (self.folder / "dh.csv").rename(self.folder / "gone.csv")
@@ -83,7 +84,7 @@ class Improved(unittest.TestCase):
 
     def test_an_arm_whose_links_are_left_out_is_fitted_anew(self):
         model = json.loads((self.folder / "j1.json").read_text())
-        del model["arm"]["links"], model["arm"]["rotor_inertia_kgm2"], model["arm"]["nuisance"]
+        del model["arm"]["links"], model["arm"]["rotor_inertia_kgm2"]
         model["effects"] = []
         (self.folder / "open.json").write_text(json.dumps(model))
         again = self.json_of("diagnose", "log.csv", "--model", "open.json")

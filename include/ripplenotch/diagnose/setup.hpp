@@ -36,7 +36,8 @@ struct SetupContext {
     std::optional<GearRatio> gear_ratio = {};
     /// Names of the simulation's columns, as options have them; empty: it has no such column.
     std::string torque_column = "simulated", position_column = "position", velocity_column = "velocity";
-    std::string joint;  ///< of the log; may be empty
+    double torque_scale = 1.0;  ///< stated, and in the simulation's torque already
+    std::string joint;          ///< of the log; may be empty
     std::vector<LoggedJoint> others = {};
     AlignmentOptions alignment = {};
     SetupLimits limits = {};

@@ -120,7 +120,9 @@ void GivenSource::check_setup(GivenTerms& terms, SimulatedOption& simulated, con
     SetupContext context = simulated.names();
     context.gear_ratio = stated.model.gear_ratio;
     context.joint = log.log.trace.joint;
-    const SimulatedMotion motion = simulated.read_motion(reading, log.path, log.log);
+    SimulatedMotion motion = simulated.read_motion(reading, log.path, log.log);
+    context.torque_scale = simulated.term().scale.value_or(1.0);
+    for (double& nm : motion.torque_nm) nm *= context.torque_scale;
     terms.setup = suspect_setup(log.log.trace.view(), motion, context);
     // Whether it is another joint's is asked where it does not fit this one.
     if (!terms.setup->faults.empty() || terms.setup->lag() == nullptr) {

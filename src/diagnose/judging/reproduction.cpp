@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "diagnose/case/known_torque.hpp"
 #include "diagnose/case/residual.hpp"
 #include "diagnose/judging/judge.hpp"
 #include "diagnose/search/hearing.hpp"
@@ -32,6 +33,12 @@ Model with_own_phase(const Case& other, const Model& stated, std::size_t term) {
     return fit(open, other.motion, other.torque_nm, {.first_guess = &stated, .use = other.use}).model;
 }
 
+// The other log with what is uncertain of the known torque as this model leaves it to be.
+Case beside(const ModelBench& bench, const Case& other, const Model& stated) {
+    if (other.uncertain.empty()) return other;
+    return with_known_values(other, fit_known_values(bench.looked_at(), stated, bench.noise()));
+}
+
 struct Check {
     double before_nm = 0.0, after_nm = 0.0;
     bool acts = false;  ///< on the other log it brings a torque that would be seen
@@ -39,8 +46,10 @@ struct Check {
 
 Check checked(const ModelBench& bench, const Case& other, const Candidate& with, const Candidate& without,
               std::size_t term) {
-    const Model own = with_own_phase(other, with.stated, term);
-    const auto after = residual_nm(other, own), before = residual_nm(other, without.stated);
+    const Case other_with = beside(bench, other, with.stated);
+    const Model own = with_own_phase(other_with, with.stated, term);
+    const auto after = residual_nm(other_with, own);
+    const auto before = residual_nm(beside(bench, other, without.stated), without.stated);
     std::vector<double> brought = before;
     for (std::size_t k = 0; k < brought.size(); ++k) brought[k] -= after[k];
     return {rms_used(other, before), rms_used(other, after),
@@ -65,7 +74,8 @@ void note_doubtful(const ModelBench& bench, const Candidate& all, const Candidat
     }
 }
 
-double rms_left(const Case& other, Model stated) {
+double rms_left(const ModelBench& bench, const Case& log, Model stated) {
+    const Case other = beside(bench, log, stated);
     for (std::size_t term = 0; term < stated.terms.size(); ++term)
         stated = with_own_phase(other, stated, term);
     return rms_used(other, residual_nm(other, stated));
@@ -75,7 +85,7 @@ double rms_left(const Case& other, Model stated) {
 // the model as given.
 void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& given, const Case& other,
                      std::size_t own_terms, std::vector<Finding>& findings) {
-    const double given_nm = rms_left(other, given);
+    const double given_nm = rms_left(bench, other, given);
     while (true) {
         std::size_t term = own_terms, place = 0;
         Finding* newest = nullptr;
@@ -88,7 +98,7 @@ void withdraw_newest(const ModelBench& bench, Candidate& kept, const Model& give
             ++term;
         }
         if (newest == nullptr) return;
-        const double kept_nm = rms_left(other, kept.stated);
+        const double kept_nm = rms_left(bench, other, kept.stated);
         if (kept_nm <= bench.rules().reproduction.most_left * given_nm) return;
         newest->status = FindingStatus::not_reproduced;
         Hearing(bench.rules(), newest->decisions).asked("reproduction.most_left", kept_nm / given_nm, true);
@@ -123,7 +133,7 @@ Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candid
                      const Model& given, const Case& other, std::size_t own_terms,
                      std::vector<Finding>& findings) {
     Candidate kept = model;
-    const double most = bench.rules().reproduction.most_left, most_nm = most * rms_left(other, given);
+    const double most = bench.rules().reproduction.most_left, most_nm = most * rms_left(bench, other, given);
     while (true) {
         Worst named, nameless;
         named.most = nameless.most = most;
@@ -138,7 +148,7 @@ Candidate reproduced(const ModelBench& bench, const Candidate& all, const Candid
             Worst& worst = is_trusted(finding) ? named : nameless;
             if (check.acts && worse > worst.most) worst = {&finding, std::move(fewer), worse};
         }
-        const bool spoilt = nameless.finding != nullptr && rms_left(other, kept.stated) > most_nm;
+        const bool spoilt = nameless.finding != nullptr && rms_left(bench, other, kept.stated) > most_nm;
         if (named.finding == nullptr && !spoilt) break;
         Worst& worst = nameless.finding != nullptr ? nameless : named;
         withdraw(*worst.finding, worst.most, bench.rules());

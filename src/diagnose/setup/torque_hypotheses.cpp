@@ -176,7 +176,7 @@ std::string factor_statement(const MistakenFactor& found, double scale, bool mea
 std::string factor_option(const MistakenFactor& found, const SetupContext& context) {
     if (found.kind == SetupFaultKind::torque_unit && found.factor > 0.0 && found.factor < 1.0)
         return fmt::format("--unit {}=mNm", context.torque_column);
-    return fmt::format("scale={:.6g}", found.factor);
+    return fmt::format("scale={:.6g}", context.torque_scale * found.factor);
 }
 
 std::optional<SetupFault> factor_fault(const TorqueComparison& torques, const SetupContext& context) {
