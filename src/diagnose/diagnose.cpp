@@ -251,7 +251,8 @@ class DiagnosisRun {
         without_.assign(options.without.begin(), options.without.end());
         if (!is_scale_open(options.given)) without_.emplace_back("simulation-scale");
         // An arm has inertia and gravity of its own.
-        if (is_given(options.given, "arm")) without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
+        if (is_given(options.given, "arm"))
+            without_.insert(without_.end(), {"inertia", "gravity", "payload-change"});
         effects_ = examined(without_, has_position_ || tells_position(whole_.motion, rules_.recording));
         if (validation == nullptr) return;
         other_ = whole_case(*validation, options.smoothing, rules_.recording);

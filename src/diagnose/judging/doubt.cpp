@@ -126,9 +126,9 @@ RaisedDoubt doubt_of_size(const ModelBench& bench, const Candidate& model, std::
                           const Evidence& evidence, Hearing& hearing) {
     const Term& stated = model.stated.terms[term];
     const DoubtRules& rules = bench.rules().doubt;
-    bool slight = !bench.beside_residual() &&
-                  hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
-                                evidence.share_sigma < bench.material_sigma());
+    bool slight =
+        !bench.beside_residual() && hearing.asked(material_rule(bench.looked_at()), evidence.share_sigma,
+                                                  evidence.share_sigma < bench.material_sigma());
     // Instead it has to gain in most of the log's blocks.
     if (bench.beside_residual() &&
         hearing.asked("beside.least_t", evidence.t, evidence.t < bench.rules().beside.least_t))

@@ -86,7 +86,9 @@ bool worth_it(const ModelBench& bench, const Candidate& now, const Candidate& ne
     if (hearing.asked_price(gain, next.prices.back(), next.criterion() >= now.criterion())) return false;
     // What is small against the noise floor still stands out of the residual where that is quiet.
     const double share = bench.share(next, now);
-    if (!bench.beside_residual() && hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma())) return false;
+    if (!bench.beside_residual() &&
+        hearing.asked(material_rule(bench.looked_at()), share, share < bench.material_sigma()))
+        return false;
     const double gap = now.gain_left - samples;
     const SearchRules& rules = bench.rules().search;
     // What changes the torque as a whole takes up errors of whatever makes it.
@@ -310,7 +312,8 @@ std::optional<Candidate> ripple_with_change(const ModelBench& bench, const Candi
     return std::nullopt;
 }
 
-// Where the residual is part of the noise, the addition that gains most may be one that is refused for its kind.
+// Where the residual is part of the noise, the addition that gains most may be one that is refused for its
+// kind.
 std::optional<Candidate> other_addition(const ModelBench& bench, const Candidate& now,
                                         const std::vector<Trial>& trials, const std::vector<Candidate>& tried,
                                         std::span<const Effect* const> effects) {
@@ -344,7 +347,8 @@ Candidate search_from(ModelBench& bench, const Candidate& start, std::size_t own
                     next = std::move(other);
             }
             if (!next || !worth_it(bench, now, *next, decisions))
-                next = bench.beside_residual() ? other_addition(bench, now, trials, tried, effects) : std::nullopt;
+                next = bench.beside_residual() ? other_addition(bench, now, trials, tried, effects)
+                                               : std::nullopt;
             if (!next) {
                 refused = refused_by(bench, now, trials, tried);
                 return;
