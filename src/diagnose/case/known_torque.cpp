@@ -34,10 +34,17 @@ std::vector<std::vector<double>> torque_columns(const std::vector<Nuisance>& col
     return torques;
 }
 
+// A number a row that counts, whatever nuisance parameters the weighing has.
+std::vector<double> white_rows(const Weighing& weighing, const std::vector<double>& torque_nm) {
+    std::vector<double> white = weighing.whitened(torque_nm);
+    white.resize(weighing.rows().size());
+    return white;
+}
+
 std::vector<std::vector<double>> whitened(const std::vector<std::vector<double>>& columns,
                                           const Weighing& weighing) {
     std::vector<std::vector<double>> white;
-    for (const auto& column : columns) white.push_back(weighing.whitened(column));
+    for (const auto& column : columns) white.push_back(white_rows(weighing, column));
     return white;
 }
 
@@ -55,11 +62,11 @@ KnownFit::KnownFit(const Case& looked_at, const Model& model, const Weighing& we
       fit_(white_, deviations_of(looked_at.uncertain), white_nm) {}
 
 KnownValues KnownFit::values(const Weighing& weighing, const std::vector<double>& left_nm) const {
-    return {fit_.solve(weighing.whitened(left_nm)), fit_.standard_errors()};
+    return {fit_.solve(white_rows(weighing, left_nm)), fit_.standard_errors()};
 }
 
 std::vector<double> KnownFit::residual(const Weighing& weighing, std::vector<double> left_nm) const {
-    const std::vector<double> values = fit_.solve(weighing.whitened(left_nm));
+    const std::vector<double> values = fit_.solve(white_rows(weighing, left_nm));
     for (std::size_t i = 0; i < values.size(); ++i)
         add_scaled(-values[i], sensed_nm_[i].data(), left_nm.data(), left_nm.size());
     return left_nm;
