@@ -311,7 +311,7 @@ class DiagnosisRun {
         if (fits_offset_) promote_offset(found, own, unexplained);
         own_ = own;
         told_.refused = found.refused;
-        told_.baseline = found.first.stated;
+        told_.baseline = as_given(bench, found.first).stated;
         told_.evaluations =
             bench.work().spent() * Work::unit_samples / static_cast<double>(bench.looked_at().size());
         told_.search_ended = bench.work().ended();
@@ -347,6 +347,11 @@ class DiagnosisRun {
         }
     }
 
+    // Without the offset beside an arm where that is a finding.
+    [[nodiscard]] Candidate as_given(const ModelBench& bench, const Candidate& first) const {
+        return own_ < first.stated.terms.size() ? without_term(bench, first, own_) : first;
+    }
+
     // The offset beside an arm is a finding where it passes the same tests, and is larger than what is left.
     void promote_offset(Searched& found, std::size_t& own, const std::vector<Leftover>& unexplained) {
         const ModelBench& bench = *found.bench;
@@ -360,7 +365,6 @@ class DiagnosisRun {
             offset.evidence.share_nm < rms(bench.cleared_residual(model.stated)))
             return;
         found.last.prices[place] = model.prices[place];
-        found.first = without_term(bench, found.first, place);
         told_.rounds.insert(told_.rounds.begin(), std::move(offset));
         own = place;
     }
@@ -381,7 +385,8 @@ class DiagnosisRun {
             ModelBench bench(all, found.noise, work_, rules_);
             bench.settle_on(last.stated);
             last = bench.fitted(last.open, last.stated, last.prices, 4);
-            told_.baseline = bench.fitted(found.first.open, found.first.stated, found.first.prices, 4).stated;
+            const Candidate first = as_given(bench, found.first);
+            told_.baseline = bench.fitted(first.open, first.stated, first.prices, 4).stated;
         }
         told_.samples_used = all.used();
         while (true) {
