@@ -199,7 +199,7 @@ void check_rows(std::span<const GivenTerm> given, std::size_t rows, std::string_
     }
 }
 
-// Whether a simulation is there of which nobody states the scale.
+// Whether there is a simulation whose scale is not stated.
 bool is_scale_open(std::span<const GivenTerm> given) {
     return std::ranges::any_of(given, [](const GivenTerm& term) {
         return term.name == "simulated" && term.deviation[0] > stated_deviation;
@@ -272,7 +272,7 @@ class DiagnosisRun {
         Case part = excerpt(whole_, rules_.recording);
         Searched found =
             search_straight(whole_, part, model_, effects_, told_, aside, work_, rules_, has_position_);
-        found.ground = {};  // nobody asks for the noise again
+        found.ground = {};  // its columns are not needed any more
         if (other_ && !(has_position_ && other_has_position_)) before.of_other(*other_);
         Candidate last = tested(found, before.has_other());
         if (is_residual_left(found)) {

@@ -202,7 +202,7 @@ struct Diagnosis {
     std::vector<AcceptedFinding> accepted;
     std::vector<std::string> not_accepted;  ///< why a name is not, a sentence each
     std::vector<std::string> next;          ///< what to do where something is in doubt, a sentence each
-    /// Faults of the set-up, which make every name doubtful; the first to be mended comes first.
+    /// Faults of the set-up, which make every name doubtful; the first to repair comes first.
     std::vector<SetupFault> setup;
     /// How far the log is behind the user's simulation, where their motions show it. The known torque is
     /// shifted by that: it is no effect of the model.

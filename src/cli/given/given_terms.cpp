@@ -106,7 +106,7 @@ std::vector<Log> other_joints(const ReadOptions& reading, const GivenLog& log) {
     return others;
 }
 
-// The motions of both say where a delay is to be told from none.
+// Whether the delay differs from 0 by more than its interval and half a sample.
 bool is_behind(const SimulationLag& lag, const Trace& log) {
     const double half_sample_s = 0.5 / log.sample_rate.value();
     return std::abs(lag.delay_s) > half_sample_s && (lag.delay_95_s.low > 0.0 || lag.delay_95_s.high < 0.0);
